@@ -1,0 +1,40 @@
+//! # Lights, Camera, Models!
+//!
+//! A laboratory for the equations that light a surface. The modules stand in the order in which a
+//! scene flows through them:
+//!
+//! ```text
+//! JSON ─ scene ─ spawn ─► entities: Light · Object · Observer ─► materials ─► shader ─► picture
+//!                              ▲                                    ▲
+//!                            panel                     reflection, shading, light, shape
+//! ```
+//!
+//! - [`optics`]: the vocabulary of every model, pure functions on vectors, no Bevy.
+//! - [`reflection`], [`shading`], [`light`], [`shape`]: a trait and a list each; one file per kind.
+//! - [`registry`]: what is known, looked up by id; registration from inside and outside the crate.
+//! - [`observer`]: the camera.
+//! - [`scene`]: the scene as a value; JSON; entities.
+//! - [`shader`]: WGSL text in, WGSL text out.
+//! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
+//! - [`capture`]: rendering without a window, PNG files.
+//! - [`panel`]: the window.
+//! - [`app`]: the plugins and the order of the systems.
+
+pub mod optics;
+
+pub mod light;
+pub mod reflection;
+pub mod shading;
+pub mod shape;
+
+pub mod registry;
+
+pub mod observer;
+pub mod scene;
+pub mod shader;
+
+pub mod capture;
+pub mod panel;
+pub mod reference;
+
+pub mod app;

@@ -1,0 +1,161 @@
+//! Light types: how much light arrives at a point, and from where (R9).
+//!
+//! **To add one**: write `light/x.rs` and `assets/shaders/light/x.wgsl`, and add its name to
+//! [`register_builtin`].
+
+use std::fmt;
+
+use bevy::ecs::component::Component;
+use glam::Vec3;
+
+use crate::{
+    reflection::parameter::{Parameter, Values},
+    registry::Register,
+    shader::Source,
+};
+
+pub mod buffer;
+
+mod ambient;
+mod directional;
+mod point;
+mod spot;
+
+pub use ambient::Ambient;
+pub use directional::Directional;
+pub use point::Point;
+pub use spot::Spot;
+
+/// The built-in light types, in the order in which choosers list them. The one list.
+pub fn register_builtin(to: &mut impl Register) {
+    to.add_light_type::<Point>();
+    to.add_light_type::<Spot>();
+    to.add_light_type::<Directional>();
+    to.add_light_type::<Ambient>();
+}
+
+/// The most lights that a scene may have; the capacity of the light buffer.
+pub const MAX_LIGHTS: usize = 256;
+
+/// The most parameters that a light type may declare beside those that all lights have.
+pub const MAX_LIGHT_PARAMETERS: usize = 4;
+
+/// What a light type is called and which properties it has.
+#[derive(Debug)]
+pub struct Declaration {
+    /// The name in scene files.
+    pub id: &'static str,
+    /// The name that people read.
+    pub name: &'static str,
+    /// One sentence: what it does.
+    pub summary: &'static str,
+    /// A glyph for lists.
+    pub glyph: &'static str,
+    /// Whether it stands somewhere.
+    pub has_position: bool,
+    /// Whether it shines in a direction.
+    pub has_direction: bool,
+    /// The unit of its intensity: `cd` or `lx`.
+    pub unit: &'static str,
+    /// Its intensity when the scene does not give one.
+    pub default_intensity: f32,
+    /// Where a slider for the intensity ends.
+    pub slider_max: f32,
+    /// Further numbers, at most [`MAX_LIGHT_PARAMETERS`].
+    pub parameters: &'static [Parameter],
+    /// The half angle in degrees of the cone that a gizmo should draw: the index in `parameters`.
+    pub cone_parameter: Option<usize>,
+    /// The equation of what arrives at a point, readable mathematics.
+    pub equation: &'static str,
+    /// The twin in WGSL: `fn incident_<id>(light: Light, p: vec3<f32>) -> Incident`.
+    pub wgsl: Source,
+}
+
+/// A light as calculation sees it: decoded colour, unit direction, numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LightRecord {
+    /// Index of the type in the registry.
+    pub kind: u32,
+    /// Where it stands, metres; zero when the type has no position.
+    pub position: Vec3,
+    /// Where it shines, unit vector; zero when the type has no direction.
+    pub direction: Vec3,
+    /// Linear colour.
+    pub colour: Vec3,
+    /// In the unit of the type.
+    pub intensity: f32,
+    /// The declared parameters in order.
+    pub parameters: [f32; MAX_LIGHT_PARAMETERS],
+}
+
+/// The light that arrives at a point from one light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Incident {
+    /// From one direction: `l`, the unit vector to the light, and the intensity `I(p)`.
+    From {
+        /// Unit vector from the point to the light.
+        l: Vec3,
+        /// `I(p)`.
+        intensity: f32,
+    },
+    /// From everywhere alike.
+    Everywhere {
+        /// `I(p)`.
+        intensity: f32,
+    },
+}
+
+/// A light type. The implementing struct is the marker component of entities of the type.
+pub trait LightType: Component + Default {
+    /// Name, properties, shader.
+    const DECLARATION: Declaration;
+
+    /// The light that arrives at `p` (room coordinates).
+    fn incident(light: &LightRecord, p: Vec3) -> Incident;
+}
+
+/// A registered light type.
+#[derive(Clone, Copy)]
+pub struct LightEntry {
+    /// Name, properties, shader.
+    pub declaration: &'static Declaration,
+    /// See [`LightType::incident`].
+    pub incident: fn(&LightRecord, Vec3) -> Incident,
+    /// Puts the marker component on an entity.
+    pub mark: fn(&mut bevy::ecs::system::EntityCommands),
+    /// Takes the marker component off an entity.
+    pub unmark: fn(&mut bevy::ecs::system::EntityCommands),
+}
+
+impl LightEntry {
+    /// The entry of a light type.
+    #[must_use]
+    pub fn of<L: LightType>() -> Self {
+        Self {
+            declaration: const { &L::DECLARATION },
+            incident: L::incident,
+            mark: |entity| {
+                entity.insert(L::default());
+            },
+            unmark: |entity| {
+                entity.remove::<L>();
+            },
+        }
+    }
+
+    /// The declared parameters of a light as numbers, in order.
+    #[must_use]
+    pub fn numbers(&self, values: &Values) -> [f32; MAX_LIGHT_PARAMETERS] {
+        let mut numbers = [0.0; MAX_LIGHT_PARAMETERS];
+        for (number, parameter) in numbers.iter_mut().zip(self.declaration.parameters) {
+            *number = values.number(parameter);
+        }
+        numbers
+    }
+}
+
+impl fmt::Debug for LightEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("LightEntry").field(&self.declaration.id).finish()
+    }
+}

@@ -1,0 +1,35 @@
+use bevy::ecs::component::Component;
+use glam::Vec3;
+
+use super::{Declaration, Incident, LightRecord, LightType};
+use crate::{optics::radiometry::inverse_square, shader::wgsl};
+
+/// **Point light**: shines alike in every direction; `I(p) = I / |p − p₀|²` (CA DD7), I in candela.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub struct Point;
+
+impl LightType for Point {
+    const DECLARATION: Declaration = Declaration {
+        id: "point",
+        name: "Point",
+        summary: "Shines alike in every direction from one point; falls off with the square of the distance.",
+        glyph: "☀",
+        has_position: true,
+        has_direction: false,
+        unit: "cd",
+        default_intensity: 20.0,
+        slider_max: 200.0,
+        parameters: &[],
+        cone_parameter: None,
+        equation: "I(p) = I / d^2",
+        wgsl: wgsl!("light/point.wgsl"),
+    };
+
+    fn incident(light: &LightRecord, p: Vec3) -> Incident {
+        let to_light = light.position - p;
+        Incident::From {
+            l: to_light.normalize_or_zero(),
+            intensity: light.intensity * inverse_square(to_light),
+        }
+    }
+}

@@ -1,0 +1,60 @@
+use bevy::ecs::component::Component;
+use glam::Vec3;
+
+use super::{Declaration, Incident, LightRecord, LightType};
+use crate::{
+    optics::radiometry::{cone, inverse_square},
+    reflection::parameter::{ABOVE_ZERO, Parameter, ParameterKind},
+    shader::wgsl,
+};
+
+/// Half the opening of the cone.
+const CONE_ANGLE: Parameter = Parameter {
+    name: "cone_angle",
+    symbol: "θ",
+    label: "cone angle",
+    unit: "°",
+    help: "Half the opening of the cone: the angle between its axis and its edge.",
+    kind: ParameterKind::Number { min: ABOVE_ZERO, max: 90.0, default: 30.0 },
+};
+
+/// How soft the edge is.
+const PENUMBRA: Parameter = Parameter {
+    name: "penumbra",
+    symbol: "p",
+    label: "penumbra",
+    unit: "",
+    help: "How much of the cone the soft edge takes: 0 is a hard edge, 1 fades from the axis on.",
+    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.1 },
+};
+
+/// **Spotlight**: a point light within a cone; `I(p) = I · cone(θ) / |p − p₀|²`
+/// ([`cone`]), I in candela.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub struct Spot;
+
+impl LightType for Spot {
+    const DECLARATION: Declaration = Declaration {
+        id: "spot",
+        name: "Spot",
+        summary: "A point light within a cone; falls off with the square of the distance and fades at the cone's edge.",
+        glyph: "▼",
+        has_position: true,
+        has_direction: true,
+        unit: "cd",
+        default_intensity: 20.0,
+        slider_max: 200.0,
+        parameters: &[CONE_ANGLE, PENUMBRA],
+        cone_parameter: Some(0),
+        equation: "I(p) = I cone(θ) / d^2",
+        wgsl: wgsl!("light/spot.wgsl"),
+    };
+
+    fn incident(light: &LightRecord, p: Vec3) -> Incident {
+        let to_light = light.position - p;
+        let l = to_light.normalize_or_zero();
+        let [cone_angle, penumbra, ..] = light.parameters;
+        let profile = cone(light.direction.dot(-l), cone_angle, penumbra);
+        Incident::From { l, intensity: light.intensity * profile * inverse_square(to_light) }
+    }
+}

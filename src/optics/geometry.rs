@@ -1,0 +1,96 @@
+//! Directions at a surface point (R8). All vectors are unit vectors; `l` points from the surface
+//! **to** the light, `v` to the observer.
+
+use glam::Vec3;
+
+/// The local frame of a surface point: normal, tangent, bitangent; orthonormal, right-handed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// The shading normal.
+    pub n: Vec3,
+    /// The tangent: the direction along which anisotropic surfaces are brushed.
+    pub t: Vec3,
+    /// The bitangent, `n × t`.
+    pub b: Vec3,
+}
+
+impl Frame {
+    /// A frame around a normal alone, for surfaces without a preferred direction: the branchless
+    /// basis of T. Duff et al. (2017), *Building an Orthonormal Basis, Revisited*.
+    #[must_use]
+    pub fn from_normal(n: Vec3) -> Self {
+        let sign = if n.z >= 0.0 { 1.0 } else { -1.0 };
+        let a = -1.0 / (sign + n.z);
+        let c = n.x * n.y * a;
+        Self {
+            n,
+            t: Vec3::new(1.0 + sign * n.x * n.x * a, sign * c, -sign * n.x),
+            b: Vec3::new(c, sign + n.y * n.y * a, -n.y),
+        }
+    }
+}
+
+/// The mirror direction `R = 2(N·L)N − L` (law of reflection, T1: the angle of incidence equals the
+/// angle of reflection).
+#[must_use]
+pub fn mirror(l: Vec3, n: Vec3) -> Vec3 {
+    2.0 * n.dot(l) * n - l
+}
+
+/// The half vector `H = (L + V) / |L + V|` (J. Blinn 1977). Where the two are opposite it does not
+/// exist and the zero vector is returned, for which every lobe is zero.
+#[must_use]
+pub fn half_vector(l: Vec3, v: Vec3) -> Vec3 {
+    (l + v).normalize_or_zero()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn directions() -> impl Iterator<Item = Vec3> {
+        (0..400).map(|i| {
+            let z = 1.0 - (2.0 * i as f32 + 1.0) / 400.0;
+            let r = (1.0 - z * z).max(0.0).sqrt();
+            let phi = i as f32 * 2.399_963;
+            Vec3::new(r * phi.cos(), r * phi.sin(), z)
+        })
+    }
+
+    #[test]
+    fn angle_of_incidence_equals_angle_of_reflection() {
+        let n = Vec3::new(1.0, 2.0, -3.0).normalize();
+        for l in directions() {
+            let r = mirror(l, n);
+            assert!((r.dot(n) - l.dot(n)).abs() < 1e-5);
+            assert!((r.length() - 1.0).abs() < 1e-5);
+            // In the plane of incidence.
+            assert!(r.dot(n.cross(l)).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn half_vector_bisects_and_vanishes_for_opposite_directions() {
+        let v = Vec3::new(0.2, -0.4, 0.8).normalize();
+        for l in directions() {
+            let h = half_vector(l, v);
+            if h != Vec3::ZERO {
+                assert!((h.dot(l) - h.dot(v)).abs() < 1e-4);
+            }
+        }
+        assert_eq!(half_vector(v, -v), Vec3::ZERO);
+    }
+
+    #[test]
+    fn frames_are_orthonormal_and_right_handed() {
+        for n in directions().chain([Vec3::Z, Vec3::NEG_Z, Vec3::X, Vec3::Y]) {
+            let f = Frame::from_normal(n);
+            for (a, b, expected) in
+                [(f.t, f.t, 1.0), (f.b, f.b, 1.0), (f.t, f.n, 0.0), (f.b, f.n, 0.0), (f.t, f.b, 0.0)]
+            {
+                assert!((a.dot(b) - expected).abs() < 1e-5, "{n}: {f:?}");
+            }
+            assert!(f.n.cross(f.t).dot(f.b) > 0.999);
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The vocabulary of every reflection model: pure functions on [`glam`] vectors, no Bevy.
+//!
+//! Each module has a twin in `assets/shaders/terms.wgsl` with the same function names. The two are
+//! written separately on purpose: they are witnesses of each other.
+
+pub mod colour;
+pub mod geometry;
+pub mod radiometry;
+pub mod tone;
+
+pub use geometry::Frame;
+
+use glam::Vec3;
+
+/// The answer of a reflection model to one light of unit intensity, split into the three terms of
+/// the equation.
+///
+/// The sum is the **response** `π · f_r(l, v) · cos θ_i` (dimensionless, linear RGB); the ambient
+/// term is the part that does not depend on any direction (`I_a` of the CA, DD3).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Terms {
+    /// The direction-free part, `I_a` (DD3).
+    pub ambient: Vec3,
+    /// The part scattered in all directions, `I_d` (DD4).
+    pub diffuse: Vec3,
+    /// The part gathered around the mirror direction, `I_s` (DD5).
+    pub specular: Vec3,
+}
+
+impl Terms {
+    /// The sum of the terms that `selection` keeps.
+    #[must_use]
+    pub fn select(self, selection: TermSelection) -> Vec3 {
+        match selection {
+            TermSelection::All => self.ambient + self.diffuse + self.specular,
+            TermSelection::Ambient => self.ambient,
+            TermSelection::Diffuse => self.diffuse,
+            TermSelection::Specular => self.specular,
+        }
+    }
+}
+
+/// Which terms of the equation are shown: a lesson aid, see each part of `I = I_a + I_d + I_s` alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TermSelection {
+    /// The whole equation.
+    #[default]
+    All,
+    /// `I_a` alone. Ambient lights belong to this term.
+    Ambient,
+    /// `I_d` alone.
+    Diffuse,
+    /// `I_s` alone.
+    Specular,
+}
+
+impl TermSelection {
+    /// Every choice, in the order in which they are offered.
+    pub const ALL: [Self; 4] = [Self::All, Self::Ambient, Self::Diffuse, Self::Specular];
+
+    /// The name on the command line.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Ambient => "ambient",
+            Self::Diffuse => "diffuse",
+            Self::Specular => "specular",
+        }
+    }
+
+    /// The number that the shader knows it by (`TERM_…` in `lights.wgsl`).
+    #[must_use]
+    pub fn code(self) -> u32 {
+        match self {
+            Self::All => 0,
+            Self::Ambient => 1,
+            Self::Diffuse => 2,
+            Self::Specular => 3,
+        }
+    }
+}

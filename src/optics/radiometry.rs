@@ -1,0 +1,66 @@
+//! How much light arrives: distance and cones (R9).
+
+use glam::Vec3;
+
+/// The guard against division by zero in [`inverse_square`]: squared distances below (1 mm)² count
+/// as (1 mm)². Only a surface that touches the light can notice.
+pub const MINIMUM_DISTANCE_SQUARED: f32 = 1e-6;
+
+/// The intensity that reaches a point at distance `d` from a point source, `1 / d²` (CA DD7; exact:
+/// no window and no clamp but [`MINIMUM_DISTANCE_SQUARED`]). Metres in, 1/m² out.
+#[must_use]
+pub fn inverse_square(to_light: Vec3) -> f32 {
+    1.0 / to_light.length_squared().max(MINIMUM_DISTANCE_SQUARED)
+}
+
+/// The profile of a spotlight: 1 inside, 0 outside, and a smooth edge between.
+///
+/// `cos_angle` is the cosine between the axis and the ray, `cone_angle` the half angle of the cone in
+/// degrees (0 < a ≤ 90) and `penumbra` (0–1) the fraction of the half angle over which the light
+/// fades; 0 is a hard edge. The fade is Hermite's cubic `t²(3 − 2t)` of the **angle's cosine**, the
+/// convention of OpenGL and glTF spots.
+#[must_use]
+pub fn cone(cos_angle: f32, cone_angle: f32, penumbra: f32) -> f32 {
+    let cos_outer = cone_angle.to_radians().cos();
+    let cos_inner = (cone_angle * (1.0 - penumbra)).to_radians().cos();
+    if cos_inner - cos_outer < 1e-6 {
+        return if cos_angle >= cos_outer { 1.0 } else { 0.0 };
+    }
+    let t = ((cos_angle - cos_outer) / (cos_inner - cos_outer)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn twice_the_distance_is_a_quarter_of_the_light() {
+        let near = inverse_square(Vec3::new(0.0, 1.5, 0.0));
+        let far = inverse_square(Vec3::new(0.0, 0.0, 3.0));
+        assert!((near / far - 4.0).abs() < 1e-6);
+        assert!((inverse_square(Vec3::X * 2.0) - 0.25).abs() < 1e-7);
+        // Exact far away too: no window cuts the light off.
+        assert!((inverse_square(Vec3::X * 100.0) - 1e-4).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_surface_that_touches_the_light_gets_a_finite_answer() {
+        assert_eq!(inverse_square(Vec3::ZERO), 1e6);
+    }
+
+    #[test]
+    fn cones_are_full_inside_empty_outside_and_fade_between() {
+        let at = |degrees: f32| cone(degrees.to_radians().cos(), 30.0, 0.5);
+        assert_eq!(at(0.0), 1.0);
+        assert_eq!(at(14.9), 1.0);
+        assert_eq!(at(30.1), 0.0);
+        assert!(at(20.0) > at(25.0) && at(25.0) > 0.0 && at(20.0) < 1.0);
+    }
+
+    #[test]
+    fn a_penumbra_of_zero_is_a_hard_edge() {
+        assert_eq!(cone(29.9f32.to_radians().cos(), 30.0, 0.0), 1.0);
+        assert_eq!(cone(30.1f32.to_radians().cos(), 30.0, 0.0), 0.0);
+    }
+}

@@ -1,0 +1,85 @@
+use glam::Vec3;
+
+use super::{
+    Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
+};
+use crate::{
+    optics::{Frame, Terms, geometry::half_vector},
+    parameters,
+    shader::wgsl,
+};
+
+parameters! {
+    /// **Blinn–Phong** — Phong's highlight with the half vector (CA IM4).
+    ///
+    /// ```text
+    /// I_a = k_a C_b     I_d = k_d max(0, N·L) C_b     I_s = k_s max(0, N·H)^α C_s
+    /// H = (L + V)/|L + V|;  I_s = 0 where N·L ≤ 0
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `specular_colour` | C_s | sRGB | 0–255 | white |
+    /// | `k_a` | k_a | – | 0–1 | 0.1 |
+    /// | `k_d` | k_d | – | 0.5–1 | 0.8 |
+    /// | `k_s` | k_s | – | 0–1 | 0.5 |
+    /// | `alpha` | α | – | whole, ≥ 0 | 32 |
+    ///
+    /// Source: J. F. Blinn (1977), *Models of Light Reflection for Computer Synthesized Pictures*,
+    /// SIGGRAPH. The same α gives a wider highlight than Phong's (about four times α matches it head
+    /// on), and at grazing angles a narrower one, which is what measured surfaces do. Not reciprocal
+    /// (the lobe is divided by cos θ_i) and not energy conserving.
+    pub struct BlinnPhong {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `C_s`, linear.
+        specular_colour: colour = SPECULAR_COLOUR,
+        /// `k_a`.
+        k_a: number = K_A,
+        /// `k_d`.
+        k_d: number = K_D,
+        /// `k_s`.
+        k_s: number = K_S,
+        /// `α`.
+        alpha: number = ALPHA,
+    }
+}
+
+impl ReflectionModel for BlinnPhong {
+    const DECLARATION: Declaration = Declaration {
+        id: "blinn_phong",
+        name: "Blinn–Phong",
+        family: Family::Basic,
+        author: "J. F. Blinn 1977",
+        source: "J. F. Blinn (1977), Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH '77, 192–198",
+        summary: "Phong with the half vector: cheaper, and its highlights stretch at grazing angles as real ones do.",
+        equation: &[
+            EquationPart { term: Term::Total, text: "I = I_a + I_d + I_s" },
+            EquationPart { term: Term::Ambient, text: "I_a = k_a C_b" },
+            EquationPart { term: Term::Diffuse, text: "I_d = k_d max(0, N·L) C_b" },
+            EquationPart { term: Term::Specular, text: "I_s = k_s max(0, N·H)^α C_s" },
+        ],
+        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
+        wgsl: wgsl!("reflection/blinn_phong.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let cos_i = frame.n.dot(l);
+        let specular = if cos_i > 0.0 {
+            self.k_s * frame.n.dot(half_vector(l, v)).max(0.0).powf(self.alpha) * self.specular_colour
+        } else {
+            Vec3::ZERO
+        };
+        Terms {
+            ambient: self.k_a * self.base_colour,
+            diffuse: self.k_d * cos_i.max(0.0) * self.base_colour,
+            specular,
+        }
+    }
+
+    fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
+        self.k_a * self.base_colour
+    }
+}

@@ -1,0 +1,49 @@
+use glam::Vec3;
+
+use super::{Declaration, EquationPart, Family, Laws, ReflectionModel, Term, parameter::BASE_COLOUR};
+use crate::{
+    optics::{Frame, Terms},
+    parameters,
+    shader::wgsl,
+};
+
+parameters! {
+    /// **Lambert** — the ideal matte surface (CA IM1).
+    ///
+    /// ```text
+    /// response = max(0, N·L) · C_b          f_r = C_b / π
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    ///
+    /// Source: J. H. Lambert (1760), *Photometria sive de mensura et gradibus luminis, colorum et
+    /// umbrae*. Keeps every law: it is the measure for all others. Paper and plaster come close.
+    pub struct Lambert {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+    }
+}
+
+impl ReflectionModel for Lambert {
+    const DECLARATION: Declaration = Declaration {
+        id: "lambert",
+        name: "Lambert",
+        family: Family::Basic,
+        author: "J. H. Lambert 1760",
+        source: "J. H. Lambert (1760), Photometria sive de mensura et gradibus luminis, colorum et umbrae",
+        summary: "The ideal matte surface: equally bright from every side. The measure for all others.",
+        equation: &[EquationPart { term: Term::Diffuse, text: "I_d = max(0, N·L) C_b" }],
+        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
+        wgsl: wgsl!("reflection/lambert.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
+        Terms { diffuse: frame.n.dot(l).max(0.0) * self.base_colour, ..Terms::default() }
+    }
+
+    fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
+        self.base_colour
+    }
+}

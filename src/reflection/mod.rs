@@ -1,0 +1,224 @@
+//! Reflection models: how light leaves a surface.
+//!
+//! **To add one**: write `reflection/x.rs` and `assets/shaders/reflection/x.wgsl`, and add its name to
+//! [`register_builtin`]. Everything else (scene files, knobs, hot-swap, laws, parity, CPU renderer,
+//! README row) follows from the declaration.
+
+use std::{fmt, sync::Arc};
+
+use glam::Vec3;
+
+use crate::{
+    optics::{Frame, Terms, colour::Encoding},
+    registry::Register,
+    shader::Source,
+};
+
+pub mod material;
+pub mod parameter;
+pub mod swap;
+
+mod blinn_phong;
+mod lambert;
+mod mod_lambert;
+mod phong;
+
+pub use blinn_phong::BlinnPhong;
+pub use lambert::Lambert;
+pub use mod_lambert::ModLambert;
+use parameter::{Parameter, ParameterSet, Values};
+pub use phong::Phong;
+
+/// The built-in models, in the order in which choosers list them. The one list.
+pub fn register_builtin(to: &mut impl Register) {
+    to.add_reflection_model::<Lambert>();
+    to.add_reflection_model::<ModLambert>();
+    to.add_reflection_model::<Phong>();
+    to.add_reflection_model::<BlinnPhong>();
+}
+
+/// What a model is called, where it comes from and what it claims.
+#[derive(Debug)]
+pub struct Declaration {
+    /// The name in scene files: lower case, underscores.
+    pub id: &'static str,
+    /// The name that people read.
+    pub name: &'static str,
+    /// The family under which choosers list it.
+    pub family: Family,
+    /// Author and year, short: "B. T. Phong 1975".
+    pub author: &'static str,
+    /// Author, year, title, where published.
+    pub source: &'static str,
+    /// When to use it and what it shows, one or two sentences.
+    pub summary: &'static str,
+    /// The equation, one part per term so that the window can colour them.
+    pub equation: &'static [EquationPart],
+    /// The physical laws that the model keeps for all directions and legal parameters.
+    pub laws: Laws,
+    /// The twin in WGSL: `fn response` and `fn ambient_response` over a struct `Parameters`.
+    pub wgsl: Source,
+}
+
+/// One part of an equation in readable mathematics: `I_d = k_d max(0, N·L) C_b`. `_x` is a
+/// subscript and `^x` a superscript; braces group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EquationPart {
+    /// Which term it belongs to: decides its colour.
+    pub term: Term,
+    /// The mathematics.
+    pub text: &'static str,
+}
+
+/// A term of the equation of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Term {
+    /// The sum of the others.
+    Total,
+    /// `I_a`.
+    Ambient,
+    /// `I_d`.
+    Diffuse,
+    /// `I_s`.
+    Specular,
+}
+
+/// A family of models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Family {
+    /// The four models of the *Commonality Analysis*.
+    Basic,
+    /// Other classical models.
+    Classical,
+    /// Diffuse reflection of rough surfaces.
+    Diffuse,
+    /// Microfacet theory.
+    Microfacet,
+    /// The practical standard.
+    Standard,
+    /// Models that a user wrote.
+    Own,
+}
+
+impl Family {
+    /// The heading in choosers.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Basic => "Basic",
+            Self::Classical => "Classical",
+            Self::Diffuse => "Rough diffuse",
+            Self::Microfacet => "Microfacet",
+            Self::Standard => "Standard",
+            Self::Own => "Own files",
+        }
+    }
+}
+
+/// The physical laws that a model claims. Tests assert each where it is claimed and its violation
+/// where it is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Laws {
+    /// `f_r(l, v) = f_r(v, l)` (Helmholtz).
+    pub reciprocal: bool,
+    /// `E(μ) ≤ 1`: never more light out than in.
+    pub energy_conserving: bool,
+    /// `f_r ≥ 0`.
+    pub non_negative: bool,
+}
+
+impl Laws {
+    /// The laws with their names, kept or not.
+    #[must_use]
+    pub fn list(self) -> [(&'static str, bool); 3] {
+        [
+            ("reciprocal", self.reciprocal),
+            ("energy conserving", self.energy_conserving),
+            ("non-negative", self.non_negative),
+        ]
+    }
+}
+
+/// A reflection model. The implementing struct holds its parameters
+/// (see [`parameters!`](crate::parameters)).
+pub trait ReflectionModel: ParameterSet + Copy {
+    /// Name, source, laws, equation, shader.
+    const DECLARATION: Declaration;
+
+    /// The response `π f_r(l, v) cos θ_i` to a light of unit intensity, in terms; or, for the models
+    /// of the CA, their formula as published. Finite for all unit vectors and legal parameters.
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
+
+    /// The response to uniform light of 1 lx from everywhere.
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
+}
+
+/// A model with its parameters set, ready to be asked: the object-safe half of [`ReflectionModel`].
+pub trait Surface: Send + Sync {
+    /// See [`ReflectionModel::response`].
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
+    /// See [`ReflectionModel::ambient_response`].
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
+}
+
+impl<M: ReflectionModel> Surface for M {
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        ReflectionModel::response(self, l, v, frame)
+    }
+
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        ReflectionModel::ambient_response(self, v, frame)
+    }
+}
+
+/// The BRDF `f_r` in sr⁻¹ of a surface: diffuse plus specular response over `π cos θ_i`; the ambient
+/// term is left out. Zero where the light or the viewer is below the surface.
+#[must_use]
+pub fn brdf(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
+    let cos_i = frame.n.dot(l);
+    if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
+        return Vec3::ZERO;
+    }
+    let terms = surface.response(l, v, frame);
+    (terms.diffuse + terms.specular) / (std::f32::consts::PI * cos_i)
+}
+
+/// A registered model: what the rest of the program knows of it.
+#[derive(Clone)]
+pub struct ModelEntry {
+    /// Name, source, laws, equation, shader.
+    pub declaration: &'static Declaration,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+    instantiate: Arc<dyn Fn(&Values, Encoding) -> Box<dyn Surface> + Send + Sync>,
+}
+
+impl ModelEntry {
+    /// The entry of a model type.
+    #[must_use]
+    pub fn of<M: ReflectionModel>() -> Self {
+        Self {
+            declaration: const { &M::DECLARATION },
+            parameters: M::PARAMETERS,
+            instantiate: Arc::new(|values, encoding| Box::new(M::from_values(values, encoding))),
+        }
+    }
+
+    /// The model with the parameters of one object.
+    #[must_use]
+    pub fn instantiate(&self, values: &Values, encoding: Encoding) -> Box<dyn Surface> {
+        (self.instantiate)(values, encoding)
+    }
+
+    /// The parameter of that name, if the model uses it.
+    #[must_use]
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+}
+
+impl fmt::Debug for ModelEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("ModelEntry").field(&self.declaration.id).finish()
+    }
+}

@@ -1,0 +1,74 @@
+use glam::Vec3;
+
+use super::{
+    Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, K_D, Parameter, ParameterKind},
+};
+use crate::{
+    optics::{Frame, Terms},
+    parameters,
+    shader::wgsl,
+};
+
+/// The exponent of the wrapped cosine. The CA writes a square and also says that `k_d = 1` equals
+/// Lambert, which is true of exponent 1 only; hence a parameter.
+const WRAP_EXPONENT: Parameter = Parameter {
+    name: "wrap_exponent",
+    symbol: "p",
+    label: "wrap exponent",
+    unit: "",
+    help: "The power of the wrapped cosine: 2 is the equation as written and, with k_d = 0.5, Valve's Half-Lambert; 1 with k_d = 1 is Lambert.",
+    kind: ParameterKind::Number { min: 1.0, max: 4.0, default: 2.0 },
+};
+
+parameters! {
+    /// **Modified Lambert** — diffuse wrap: light reaches around the edge (CA IM2).
+    ///
+    /// ```text
+    /// response = max(0, (N·L) k_d + (1 − k_d))^p · C_b
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `k_d` | k_d | – | 0.5–1 | 0.8 |
+    /// | `wrap_exponent` | p | – | 1–4 | 2 |
+    ///
+    /// `N·L` is not clamped, the bracket is, before it is raised to the power. Source: CA IM2; the
+    /// half-Lambert case is J. Mitchell, M. McTaggart, C. Green (2006), *Shading in Valve's Source
+    /// Engine*. Breaks energy conservation and reciprocity: the part of the surface that faces away
+    /// from the light receives none, and yet shines.
+    pub struct ModLambert {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `k_d`.
+        k_d: number = K_D,
+        /// `p`.
+        wrap_exponent: number = WRAP_EXPONENT,
+    }
+}
+
+impl ReflectionModel for ModLambert {
+    const DECLARATION: Declaration = Declaration {
+        id: "mod_lambert",
+        name: "Modified Lambert",
+        family: Family::Basic,
+        author: "Mitchell, McTaggart, Green 2006",
+        source: "J. Mitchell, M. McTaggart, C. Green (2006), Shading in Valve's Source Engine, SIGGRAPH course; as generalised in CA IM2",
+        summary: "Diffuse wrap: softens the edge of the shadow and lights what faces away. Half-Lambert at k_d = 0.5.",
+        equation: &[EquationPart {
+            term: Term::Diffuse, text: "I_d = max(0, (N·L) k_d + (1 − k_d))^p C_b"
+        }],
+        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
+        wgsl: wgsl!("reflection/mod_lambert.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
+        let wrapped = frame.n.dot(l) * self.k_d + (1.0 - self.k_d);
+        Terms { diffuse: wrapped.max(0.0).powf(self.wrap_exponent) * self.base_colour, ..Terms::default() }
+    }
+
+    fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
+        self.base_colour
+    }
+}

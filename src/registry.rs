@@ -1,0 +1,216 @@
+//! What is known: reflection models, shading modes, light types and object types, looked up by id.
+//!
+//! The registry is a value. The command line and the CPU renderer use it as it is; in the Bevy app it
+//! is a resource, and `App` offers the same calls, so that a plugin outside this crate registers
+//! exactly as the built-in list does:
+//!
+//! ```no_run
+//! # use bevy::prelude::App;
+//! # use lights_camera_models::{reflection::Lambert, registry::Register};
+//! # let mut app = App::new();
+//! app.add_reflection_model::<Lambert>();
+//! ```
+
+use bevy::{app::App, ecs::resource::Resource};
+
+use crate::{
+    light::{self, LightEntry, LightType, MAX_LIGHT_PARAMETERS},
+    reflection::{
+        self, ModelEntry, ReflectionModel,
+        material::MaterialApp,
+        parameter::{BLOCK_BYTES, Parameter, layout},
+    },
+    shading::{self, ModeEntry, ShadingMode},
+    shape::{self, ObjectType, ShapeEntry},
+};
+
+/// Where new kinds of things are made known.
+pub trait Register {
+    /// Makes a reflection model known. A second one with the same id replaces the first.
+    fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self;
+    /// Makes a shading mode known.
+    fn add_shading_mode<S: ShadingMode>(&mut self) -> &mut Self;
+    /// Makes a light type known.
+    fn add_light_type<L: LightType>(&mut self) -> &mut Self;
+    /// Makes an object type known.
+    fn add_object_type<T: ObjectType>(&mut self) -> &mut Self;
+}
+
+/// Registers everything built in. The app and the registry both go through here.
+pub fn register_builtin(to: &mut impl Register) {
+    reflection::register_builtin(to);
+    shading::register_builtin(to);
+    light::register_builtin(to);
+    shape::register_builtin(to);
+}
+
+/// Everything that is known, in the order of registration.
+#[derive(Clone, Debug, Default, Resource)]
+pub struct Registry {
+    models: Vec<ModelEntry>,
+    modes: Vec<ModeEntry>,
+    lights: Vec<LightEntry>,
+    shapes: Vec<ShapeEntry>,
+}
+
+impl Registry {
+    /// The built-in models, modes, lights and shapes.
+    #[must_use]
+    pub fn builtin() -> Self {
+        let mut registry = Self::default();
+        register_builtin(&mut registry);
+        registry
+    }
+
+    /// All reflection models.
+    #[must_use]
+    pub fn models(&self) -> &[ModelEntry] {
+        &self.models
+    }
+
+    /// All shading modes.
+    #[must_use]
+    pub fn modes(&self) -> &[ModeEntry] {
+        &self.modes
+    }
+
+    /// All light types. The index is the number that shaders know the type by.
+    #[must_use]
+    pub fn lights(&self) -> &[LightEntry] {
+        &self.lights
+    }
+
+    /// All object types.
+    #[must_use]
+    pub fn shapes(&self) -> &[ShapeEntry] {
+        &self.shapes
+    }
+
+    /// The model of that id.
+    #[must_use]
+    pub fn model(&self, id: &str) -> Option<&ModelEntry> {
+        self.models.iter().find(|m| m.declaration.id == id)
+    }
+
+    /// The shading mode of that id.
+    #[must_use]
+    pub fn mode(&self, id: &str) -> Option<&ModeEntry> {
+        self.modes.iter().find(|m| m.declaration.id == id)
+    }
+
+    /// The light type of that id.
+    #[must_use]
+    pub fn light(&self, id: &str) -> Option<&LightEntry> {
+        self.lights.iter().find(|l| l.declaration.id == id)
+    }
+
+    /// The number that shaders know a light type by.
+    #[must_use]
+    pub fn light_index(&self, id: &str) -> Option<u32> {
+        self.lights.iter().position(|l| l.declaration.id == id).map(|i| i as u32)
+    }
+
+    /// The object type of that id.
+    #[must_use]
+    pub fn shape(&self, id: &str) -> Option<&ShapeEntry> {
+        self.shapes.iter().find(|s| s.declaration.id == id)
+    }
+
+    /// Every parameter that some model declares, each name once, in order of first declaration.
+    pub fn material_parameters(&self) -> impl Iterator<Item = &'static Parameter> + '_ {
+        let all = || self.models.iter().flat_map(|m| m.parameters.iter());
+        all().enumerate().filter(move |(i, p)| !all().take(*i).any(|q| q.name == p.name)).map(|(_, p)| p)
+    }
+
+    /// The declaration of a material parameter by name.
+    #[must_use]
+    pub fn material_parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.models.iter().find_map(|m| m.parameter(name))
+    }
+}
+
+/// Adds or replaces by id.
+fn put<T>(list: &mut Vec<T>, entry: T, id: impl Fn(&T) -> &'static str) {
+    match list.iter().position(|e| id(e) == id(&entry)) {
+        Some(i) => list[i] = entry,
+        None => list.push(entry),
+    }
+}
+
+impl Register for Registry {
+    /// # Panics
+    /// If the parameters do not fit the uniform block, or one shares its name, but not its type, with a
+    /// parameter of another model: mistakes of the author of the model, found at the first start.
+    fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self {
+        let entry = ModelEntry::of::<M>();
+        let id = entry.declaration.id;
+        let end = layout(entry.parameters).last().map_or(0, |f| f.2 + 12);
+        assert!(
+            end <= BLOCK_BYTES,
+            "reflection model `{id}`: its parameters take {end} bytes, at most {BLOCK_BYTES} fit"
+        );
+        for p in entry.parameters {
+            if let Some(other) = self.material_parameter(p.name) {
+                assert!(
+                    std::mem::discriminant(&other.kind) == std::mem::discriminant(&p.kind),
+                    "reflection model `{id}`: parameter `{}` has another type than in the models before it; \
+                     parameters are shared by name",
+                    p.name
+                );
+            }
+        }
+        put(&mut self.models, entry, |m| m.declaration.id);
+        self
+    }
+
+    fn add_shading_mode<S: ShadingMode>(&mut self) -> &mut Self {
+        put(&mut self.modes, ModeEntry::of::<S>(), |m| m.declaration.id);
+        self
+    }
+
+    /// # Panics
+    /// If the type declares more than [`MAX_LIGHT_PARAMETERS`] parameters.
+    fn add_light_type<L: LightType>(&mut self) -> &mut Self {
+        let entry = LightEntry::of::<L>();
+        let count = entry.declaration.parameters.len();
+        assert!(
+            count <= MAX_LIGHT_PARAMETERS,
+            "light type `{}`: declares {count} parameters, at most {MAX_LIGHT_PARAMETERS} fit",
+            entry.declaration.id
+        );
+        put(&mut self.lights, entry, |l| l.declaration.id);
+        self
+    }
+
+    fn add_object_type<T: ObjectType>(&mut self) -> &mut Self {
+        put(&mut self.shapes, ShapeEntry::of::<T>(), |s| s.declaration.id);
+        self
+    }
+}
+
+impl Register for App {
+    fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self {
+        self.init_resource::<Registry>();
+        self.world_mut().resource_mut::<Registry>().add_reflection_model::<M>();
+        self.add_model_material::<M>();
+        self
+    }
+
+    fn add_shading_mode<S: ShadingMode>(&mut self) -> &mut Self {
+        self.init_resource::<Registry>();
+        self.world_mut().resource_mut::<Registry>().add_shading_mode::<S>();
+        self
+    }
+
+    fn add_light_type<L: LightType>(&mut self) -> &mut Self {
+        self.init_resource::<Registry>();
+        self.world_mut().resource_mut::<Registry>().add_light_type::<L>();
+        self
+    }
+
+    fn add_object_type<T: ObjectType>(&mut self) -> &mut Self {
+        self.init_resource::<Registry>();
+        self.world_mut().resource_mut::<Registry>().add_object_type::<T>();
+        self
+    }
+}

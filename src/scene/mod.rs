@@ -1,0 +1,228 @@
+//! The scene: a value (R13), and one way to make it, JSON.
+//!
+//! [`Scene`] is what everything else works on: the loader makes it, [`spawn`] turns it into entities,
+//! the panels edit it, the CPU renderer draws it. Angles are degrees, lengths metres, colours
+//! sRGB-encoded integers: the values as users write them.
+
+use glam::Vec3;
+
+use crate::{
+    optics::{colour::Encoding, tone::ToneMapping},
+    reflection::parameter::Values,
+};
+
+pub mod check;
+pub mod error;
+pub mod format;
+pub mod load;
+pub mod save;
+pub mod spawn;
+
+/// Largest legal extent of a scene in any direction, metres (CA `MAX_HEIGHT`, `MAX_WIDTH`, `MAX_DEPTH`).
+pub const MAX_DIMENSION: f32 = 100.0;
+/// Default extent in every direction, metres (CA `DEF_HEIGHT`, `DEF_WIDTH`, `DEF_DEPTH`).
+pub const DEFAULT_DIMENSION: f32 = 10.0;
+/// The reflection model that is offered when a scene names none (CA `DEF_LIGHT`).
+pub const DEFAULT_REFLECTION_MODEL: &str = "lambert";
+/// The shading model that is offered when a scene names none (CA `DEF_SHADE`).
+pub const DEFAULT_SHADING_MODEL: &str = "gouraud";
+/// The most objects that a scene may have.
+pub const MAX_OBJECTS: usize = 10_000;
+/// Object size when a scene gives none, metres.
+pub const DEFAULT_SIZE: f32 = 2.0;
+/// Vertical field of view when a scene gives none, degrees.
+pub const DEFAULT_FIELD_OF_VIEW: f32 = 45.0;
+
+/// A scene, valid or not: checking is [`check`]'s work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// What the scene is called, for lists and window titles.
+    pub name: Option<String>,
+    /// One line: what the scene shows.
+    pub description: Option<String>,
+    /// The room.
+    pub scene_size: SceneSize,
+    /// Id of the reflection model of every object that names none itself.
+    pub reflection_model: String,
+    /// Id of the shading mode of every object that names none itself.
+    pub shading_model: String,
+    /// The lights, 1 to 256.
+    pub lights: Vec<Light>,
+    /// The one observer.
+    pub observer: Observer,
+    /// The objects, 1 to 10 000.
+    pub objects: Vec<Object>,
+    /// How the light in the picture is shown.
+    pub display: Display,
+}
+
+/// The extent of the room in metres; one corner is the origin. Right-handed, y up: `width` bounds x,
+/// `height` bounds y, `depth` bounds z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneSize {
+    /// Bounds y.
+    pub height: f32,
+    /// Bounds x.
+    pub width: f32,
+    /// Bounds z.
+    pub depth: f32,
+}
+
+impl SceneSize {
+    /// The corner opposite the origin.
+    #[must_use]
+    pub fn corner(self) -> Vec3 {
+        Vec3::new(self.width, self.height, self.depth)
+    }
+
+    /// Whether a point is in the room: 0 < coordinate ≤ size in each direction.
+    #[must_use]
+    pub fn contains(self, p: Vec3) -> bool {
+        p.cmpgt(Vec3::ZERO).all() && p.cmple(self.corner()).all()
+    }
+}
+
+impl Default for SceneSize {
+    fn default() -> Self {
+        Self { height: DEFAULT_DIMENSION, width: DEFAULT_DIMENSION, depth: DEFAULT_DIMENSION }
+    }
+}
+
+/// A light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// Id of the light type.
+    pub kind: String,
+    /// What the user calls it.
+    pub name: Option<String>,
+    /// Where it stands; `None` for types without a position.
+    pub position: Option<Vec3>,
+    /// Where it shines, not normalised; `None` for types without a direction.
+    pub direction: Option<Vec3>,
+    /// Colour.
+    pub colour: [u8; 3],
+    /// Intensity in the unit of the type.
+    pub intensity: f32,
+    /// Further parameters that the type declares; absent ones have their defaults.
+    pub parameters: Values,
+}
+
+/// The observer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observer {
+    /// Where the eye is.
+    pub position: Vec3,
+    /// Where it looks, not normalised.
+    pub direction: Vec3,
+    /// Vertical field of view in degrees.
+    pub field_of_view: f32,
+}
+
+/// An object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Id of the object type.
+    pub kind: String,
+    /// What the user calls it.
+    pub name: Option<String>,
+    /// Where its centre is.
+    pub position: Vec3,
+    /// Largest extent in metres.
+    pub size: f32,
+    /// Euler angles XYZ in degrees (extrinsic order: about x first, then y, then z of the room).
+    pub rotation: Vec3,
+    /// How finely it is cut; `None` for the type's default.
+    pub tessellation: Option<u32>,
+    /// Id of its own reflection model, if it has one.
+    pub reflection_model: Option<String>,
+    /// Id of its own shading mode, if it has one.
+    pub shading_model: Option<String>,
+    /// Parameters by name, of this model and of any other.
+    pub material: Values,
+}
+
+/// How the light in the picture is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Display {
+    /// The curve from light to display.
+    pub tone_mapping: ToneMapping,
+    /// Exposure in EV: the picture is multiplied by `2^EV`.
+    pub exposure: f32,
+    /// Whether colours are decoded and encoded.
+    pub encoding: Encoding,
+}
+
+impl Default for Light {
+    /// A white point light of 20 cd near the upper right front corner of the default room.
+    fn default() -> Self {
+        Self {
+            kind: "point".to_owned(),
+            name: None,
+            position: Some(Vec3::new(7.5, 8.0, 9.0)),
+            direction: None,
+            colour: [255; 3],
+            intensity: 20.0,
+            parameters: Values::default(),
+        }
+    }
+}
+
+impl Default for Observer {
+    /// In the middle of the front of the default room, looking at its centre.
+    fn default() -> Self {
+        Self {
+            position: Vec3::new(5.0, 5.0, 9.5),
+            direction: Vec3::NEG_Z,
+            field_of_view: DEFAULT_FIELD_OF_VIEW,
+        }
+    }
+}
+
+impl Default for Object {
+    /// A sphere of default material in the centre of the default room.
+    fn default() -> Self {
+        Self {
+            kind: "sphere".to_owned(),
+            name: None,
+            position: Vec3::splat(5.0),
+            size: DEFAULT_SIZE,
+            rotation: Vec3::ZERO,
+            tessellation: None,
+            reflection_model: None,
+            shading_model: None,
+            material: Values::default(),
+        }
+    }
+}
+
+impl Default for Scene {
+    /// The default scene (R4): 10×10×10, one white point light, one sphere of default material,
+    /// Gouraud shading, Lambertian reflection.
+    fn default() -> Self {
+        Self {
+            name: Some("Default scene".to_owned()),
+            description: Some("One white point light, one matte sphere: the scene to start from.".to_owned()),
+            scene_size: SceneSize::default(),
+            reflection_model: DEFAULT_REFLECTION_MODEL.to_owned(),
+            shading_model: DEFAULT_SHADING_MODEL.to_owned(),
+            lights: vec![Light::default()],
+            observer: Observer::default(),
+            objects: vec![Object::default()],
+            display: Display::default(),
+        }
+    }
+}
+
+impl Scene {
+    /// The reflection model of an object: its own, or the scene's.
+    #[must_use]
+    pub fn model_of<'a>(&'a self, object: &'a Object) -> &'a str {
+        object.reflection_model.as_deref().unwrap_or(&self.reflection_model)
+    }
+
+    /// The shading mode of an object: its own, or the scene's.
+    #[must_use]
+    pub fn mode_of<'a>(&'a self, object: &'a Object) -> &'a str {
+        object.shading_model.as_deref().unwrap_or(&self.shading_model)
+    }
+}

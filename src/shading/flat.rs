@@ -1,0 +1,37 @@
+use glam::Vec3;
+
+use super::{Corner, Declaration, Lighting, ShadingMode, Stage, Varying};
+use crate::shader::wgsl;
+
+/// **Flat shading**: one colour per polygon, calculated at its centre with its face normal (DD8).
+///
+/// Source: J. Bouknight (1970), *A Procedure for Generation of Three-dimensional Half-toned Computer
+/// Graphics Presentations*. Shows the polygons themselves, and Mach bands between them.
+#[derive(Clone, Copy, Debug)]
+pub struct Flat;
+
+impl ShadingMode for Flat {
+    const DECLARATION: Declaration = Declaration {
+        id: "flat",
+        name: "Flat",
+        short_name: "Flat",
+        author: "J. Bouknight 1970",
+        source: "J. Bouknight (1970), A Procedure for Generation of Three-dimensional Half-toned Computer Graphics Presentations, Communications of the ACM 13(9)",
+        summary: "One colour per polygon, calculated at its centre with its own normal.",
+        stage: Stage::Polygon,
+        key: 'F',
+        wgsl: wgsl!("shading/flat.wgsl"),
+    };
+
+    fn vertex(lighting: &dyn Lighting, corner: &Corner) -> Varying {
+        Varying {
+            position: corner.position,
+            normal: corner.face_normal,
+            colour: lighting.colour(corner.face_centre, corner.face_normal),
+        }
+    }
+
+    fn pixel(_lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
+        varying.colour
+    }
+}

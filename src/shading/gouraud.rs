@@ -1,0 +1,37 @@
+use glam::Vec3;
+
+use super::{Corner, Declaration, Lighting, ShadingMode, Stage, Varying};
+use crate::shader::wgsl;
+
+/// **Gouraud shading**: colour calculated at the vertices, interpolated between them (DD9).
+///
+/// Source: H. Gouraud (1971), *Continuous Shading of Curved Surfaces*. Smooth and cheap; a highlight
+/// that falls between the vertices is missed.
+#[derive(Clone, Copy, Debug)]
+pub struct Gouraud;
+
+impl ShadingMode for Gouraud {
+    const DECLARATION: Declaration = Declaration {
+        id: "gouraud",
+        name: "Gouraud",
+        short_name: "Gouraud",
+        author: "H. Gouraud 1971",
+        source: "H. Gouraud (1971), Continuous Shading of Curved Surfaces, IEEE Transactions on Computers C-20(6)",
+        summary: "Colour calculated at the vertices, interpolated between them. Misses highlights that fall between vertices.",
+        stage: Stage::Vertex,
+        key: 'G',
+        wgsl: wgsl!("shading/gouraud.wgsl"),
+    };
+
+    fn vertex(lighting: &dyn Lighting, corner: &Corner) -> Varying {
+        Varying {
+            position: corner.position,
+            normal: corner.normal,
+            colour: lighting.colour(corner.position, corner.normal),
+        }
+    }
+
+    fn pixel(_lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
+        varying.colour
+    }
+}

@@ -1,0 +1,145 @@
+//! Shading modes: where on a surface the reflection model is evaluated (R7).
+//!
+//! **To add one**: write `shading/x.rs` and `assets/shaders/shading/x.wgsl`, and add its name to
+//! [`register_builtin`].
+
+use std::fmt;
+
+use glam::Vec3;
+
+use crate::{registry::Register, shader::Source};
+
+pub mod normals;
+
+mod derivative;
+mod flat;
+mod gouraud;
+mod phong;
+
+pub use derivative::Derivative;
+pub use flat::Flat;
+pub use gouraud::Gouraud;
+pub use phong::PhongShading;
+
+/// The built-in modes, in the order in which choosers list them. The one list.
+pub fn register_builtin(to: &mut impl Register) {
+    to.add_shading_mode::<Flat>();
+    to.add_shading_mode::<Gouraud>();
+    to.add_shading_mode::<PhongShading>();
+    to.add_shading_mode::<Derivative>();
+}
+
+/// The stage that evaluates the reflection model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// Once per polygon.
+    Polygon,
+    /// Once per vertex.
+    Vertex,
+    /// Once per pixel.
+    Pixel,
+}
+
+impl Stage {
+    /// "per polygon", "per vertex" or "per pixel".
+    #[must_use]
+    pub fn phrase(self) -> &'static str {
+        match self {
+            Self::Polygon => "per polygon",
+            Self::Vertex => "per vertex",
+            Self::Pixel => "per pixel",
+        }
+    }
+}
+
+/// What a mode is called, where it comes from and what it needs.
+#[derive(Debug)]
+pub struct Declaration {
+    /// The name in scene files.
+    pub id: &'static str,
+    /// The name that people read.
+    pub name: &'static str,
+    /// Short name for narrow buttons.
+    pub short_name: &'static str,
+    /// Author and year.
+    pub author: &'static str,
+    /// Author, year, title, where published.
+    pub source: &'static str,
+    /// What it does and what to look for, one or two sentences.
+    pub summary: &'static str,
+    /// The stage that evaluates the reflection model.
+    pub stage: Stage,
+    /// The key that chooses it in the window.
+    pub key: char,
+    /// The twin in WGSL: `fn shade_vertex` and `fn shade_pixel`.
+    pub wgsl: Source,
+}
+
+/// Evaluates the light loop: the colour of a point with a normal, seen from the observer, under the
+/// object's reflection model and all lights of the scene. Linear RGB before exposure.
+pub trait Lighting {
+    /// The colour at `position` (room coordinates, metres) with unit normal `normal`.
+    fn colour(&self, position: Vec3, normal: Vec3) -> Vec3;
+}
+
+/// One corner of a polygon, in room coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct Corner {
+    /// Where it is.
+    pub position: Vec3,
+    /// The vertex normal, DD9.
+    pub normal: Vec3,
+    /// The normal of the polygon, DD8.
+    pub face_normal: Vec3,
+    /// The mean of the polygon's corners.
+    pub face_centre: Vec3,
+}
+
+/// What goes from the corners to the pixels, interpolated with perspective correction.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Varying {
+    /// Position in the room.
+    pub position: Vec3,
+    /// Normal, not renormalised.
+    pub normal: Vec3,
+    /// Colour calculated at the corner, if the mode does so.
+    pub colour: Vec3,
+}
+
+/// A shading mode: where the light loop is asked, and with which normal.
+pub trait ShadingMode: Send + Sync + 'static {
+    /// Name, source, stage, shader.
+    const DECLARATION: Declaration;
+
+    /// What is calculated at a corner of a polygon. For [`Stage::Polygon`] the result must be the same
+    /// at all corners of one polygon but for `position`.
+    fn vertex(lighting: &dyn Lighting, corner: &Corner) -> Varying;
+
+    /// The colour of a pixel; `face_normal` is the exact normal of the **triangle** that covers it.
+    fn pixel(lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3;
+}
+
+/// A registered mode.
+#[derive(Clone, Copy)]
+pub struct ModeEntry {
+    /// Name, source, stage, shader.
+    pub declaration: &'static Declaration,
+    /// See [`ShadingMode::vertex`].
+    pub vertex: fn(&dyn Lighting, &Corner) -> Varying,
+    /// See [`ShadingMode::pixel`].
+    pub pixel: fn(&dyn Lighting, &Varying, Vec3) -> Vec3,
+}
+
+impl ModeEntry {
+    /// The entry of a mode type.
+    #[must_use]
+    pub fn of<S: ShadingMode>() -> Self {
+        Self { declaration: const { &S::DECLARATION }, vertex: S::vertex, pixel: S::pixel }
+    }
+}
+
+impl fmt::Debug for ModeEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("ModeEntry").field(&self.declaration.id).finish()
+    }
+}

@@ -1,0 +1,80 @@
+//! Surface normals from polygons (R7): DD8 for polygons, DD9 for vertices.
+
+use glam::Vec3;
+
+/// The unit normal of a polygon whose corners run counter-clockwise seen from outside (CA DD8:
+/// `n = (P × Q)/|P × Q|` for two tangents P, Q).
+///
+/// For triangles P and Q are two edges; for quadrilaterals they are the diagonals, which gives the
+/// area-weighted mean of both ways to cut a quadrilateral that is not plane (M. Newell). Zero for
+/// degenerate polygons.
+#[must_use]
+pub fn polygon_normal(corners: &[Vec3]) -> Vec3 {
+    // Newell's sum over the edges, taken about the first corner; equals the two cases above.
+    let Some(&origin) = corners.first() else { return Vec3::ZERO };
+    let mut sum = Vec3::ZERO;
+    for pair in corners[1..].windows(2) {
+        sum += (pair[0] - origin).cross(pair[1] - origin);
+    }
+    sum.normalize_or_zero()
+}
+
+/// The mean of the corners of a polygon: the point at which flat shading evaluates the model.
+#[must_use]
+pub fn polygon_centre(corners: &[Vec3]) -> Vec3 {
+    corners.iter().sum::<Vec3>() / corners.len().max(1) as f32
+}
+
+/// Vertex normals: the normalised **unweighted** mean of the normals of all polygons that share the
+/// vertex (CA DD9: `n_v = Σ n_i / |Σ n_i|`). Degenerate polygons do not count; a vertex of no polygon
+/// gets zero.
+#[must_use]
+pub fn vertex_normals<'a>(
+    vertex_count: usize,
+    polygons: impl IntoIterator<Item = (&'a [u32], Vec3)>,
+) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; vertex_count];
+    for (corners, normal) in polygons {
+        for &corner in corners {
+            if let Some(sum) = sums.get_mut(corner as usize) {
+                *sum += normal;
+            }
+        }
+    }
+    sums.into_iter().map(Vec3::normalize_or_zero).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_triangle_has_the_normalised_cross_product_of_its_edges() {
+        let n = polygon_normal(&[Vec3::ZERO, Vec3::X * 3.0, Vec3::Y * 0.1]);
+        assert!((n - Vec3::Z).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_quadrilateral_has_the_normal_of_its_diagonals() {
+        let q = [Vec3::ZERO, Vec3::new(1.0, 0.0, 0.2), Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.0, 1.0, 0.3)];
+        let expected = (q[2] - q[0]).cross(q[3] - q[1]).normalize();
+        assert!((polygon_normal(&q) - expected).length() < 1e-6);
+    }
+
+    #[test]
+    fn degenerate_polygons_have_no_normal() {
+        assert_eq!(polygon_normal(&[Vec3::ZERO, Vec3::X, Vec3::X * 2.0]), Vec3::ZERO);
+        assert_eq!(polygon_normal(&[]), Vec3::ZERO);
+    }
+
+    #[test]
+    fn vertex_normals_are_the_unweighted_mean() {
+        // Two polygons of very different size meet at vertex 0: the mean must not care.
+        let normals = vertex_normals(2, [(&[0u32, 1][..], Vec3::X), (&[0u32][..], Vec3::Y)]);
+        let diagonal = (Vec3::X + Vec3::Y).normalize();
+        assert!((normals[0] - diagonal).length() < 1e-6);
+        // The wrong twin, a mean weighted 1:9 by area, must be told apart.
+        assert!((normals[0] - (Vec3::X + 9.0 * Vec3::Y).normalize()).length() > 0.1);
+        assert_eq!(normals[1], Vec3::X);
+    }
+}

@@ -1,0 +1,33 @@
+use glam::Vec3;
+
+use super::{Corner, Declaration, Lighting, ShadingMode, Stage, Varying};
+use crate::shader::wgsl;
+
+/// **Phong shading**: normals interpolated and renormalised, colour calculated per pixel (DD10).
+///
+/// Source: B. T. Phong (1975), *Illumination for Computer Generated Pictures*. Not to be confused
+/// with the Phong reflection model of the same paper.
+#[derive(Clone, Copy, Debug)]
+pub struct PhongShading;
+
+impl ShadingMode for PhongShading {
+    const DECLARATION: Declaration = Declaration {
+        id: "phong",
+        name: "Phong",
+        short_name: "Phong",
+        author: "B. T. Phong 1975",
+        source: "B. T. Phong (1975), Illumination for Computer Generated Pictures, Communications of the ACM 18(6), 311–317",
+        summary: "Normals interpolated between the vertices and renormalised; colour calculated at every pixel.",
+        stage: Stage::Pixel,
+        key: 'P',
+        wgsl: wgsl!("shading/phong.wgsl"),
+    };
+
+    fn vertex(_lighting: &dyn Lighting, corner: &Corner) -> Varying {
+        Varying { position: corner.position, normal: corner.normal, colour: Vec3::ZERO }
+    }
+
+    fn pixel(lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
+        lighting.colour(varying.position, varying.normal.normalize_or_zero())
+    }
+}
