@@ -40,12 +40,12 @@ fn vertex(in: VertexIn) -> Stages {
     corner.face_normal = unit_or_zero((room_from_local * vec4(in.face_normal, 0.0)).xyz);
     corner.face_centre = (room_from_local * vec4(in.face_centre, 1.0)).xyz;
 #endif
-    let varying = shade_vertex(corner);
+    let passed = shade_vertex(corner);
     var out: Stages;
     out.clip_position = position_world_to_clip(corner.position);
-    out.position = varying.position;
-    out.normal = varying.normal;
-    out.colour = varying.colour;
+    out.position = passed.position;
+    out.normal = passed.normal;
+    out.colour = passed.colour;
     out.offset = (room_from_local * vec4(in.position, 0.0)).xyz;
     return out;
 }

@@ -16,13 +16,14 @@ use bevy::{
         pipelined_rendering::PipelinedRenderingPlugin,
         render_asset::RenderAssets,
         render_resource::{
-            Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Extent3d, MapMode, PipelineCache,
+            Buffer, BufferDescriptor, BufferUsages, CachedPipelineState, CommandEncoderDescriptor, Extent3d, MapMode, PipelineCache,
             PollType, TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat, TextureUsages,
         },
         renderer::{RenderDevice, RenderQueue, initialize_renderer},
         settings::{Backends, RenderCreation, RenderResources, WgpuSettings},
         texture::GpuImage,
     },
+    shader::ShaderCacheError,
     tasks::block_on,
     window::{ExitCondition, WindowPlugin},
     winit::WinitPlugin,
@@ -49,6 +50,9 @@ pub enum GpuError {
     /// Nothing came out in time.
     #[error("the GPU renderer gave no picture within {0:?}; run with `--verbose` to see what it was waiting for, or use `--renderer cpu`")]
     TimedOut(Duration),
+    /// A shader could not be compiled.
+    #[error("a shader could not be compiled: {0}")]
+    Shader(String),
     /// The picture could not be copied from the GPU.
     #[error("the picture could not be copied from the GPU: {0}")]
     Copy(String),
@@ -235,7 +239,7 @@ impl GpuRenderer {
         // The first frame is drawn before the target is, hence two.
         while ready < 2 {
             self.step();
-            ready = if self.is_waiting() { 0 } else { ready + 1 };
+            ready = if self.is_waiting()? { 0 } else { ready + 1 };
             if start.elapsed() > PATIENCE {
                 return Err(GpuError::TimedOut(PATIENCE));
             }
@@ -243,9 +247,17 @@ impl GpuRenderer {
         Ok(())
     }
 
-    fn is_waiting(&self) -> bool {
-        let Some(render_app) = self.app.get_sub_app(RenderApp) else { return false };
-        render_app.world().resource::<PipelineCache>().waiting_pipelines().next().is_some()
+    fn is_waiting(&self) -> Result<bool, GpuError> {
+        let Some(render_app) = self.app.get_sub_app(RenderApp) else { return Ok(false) };
+        let cache = render_app.world().resource::<PipelineCache>();
+        for pipeline in cache.pipelines() {
+            if let CachedPipelineState::Err(error) = &pipeline.state
+                && !matches!(error, ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable)
+            {
+                return Err(GpuError::Shader(error.to_string()));
+            }
+        }
+        Ok(cache.waiting_pipelines().next().is_some())
     }
 
     /// The bytes of the picture as last drawn, rows without padding.

@@ -5,7 +5,7 @@ fn shade_vertex(corner: Corner) -> Varying {
     return Varying(corner.position, corner.normal, vec3(0.0), vec3(0.0));
 }
 
-fn shade_pixel(varying: Varying) -> vec3<f32> {
-    let normal = unit_or_zero(cross(dpdy(varying.offset), dpdx(varying.offset)));
-    return illuminate(varying.position, normal);
+fn shade_pixel(passed: Varying) -> vec3<f32> {
+    let normal = unit_or_zero(cross(dpdy(passed.offset), dpdx(passed.offset)));
+    return illuminate(passed.position, normal);
 }

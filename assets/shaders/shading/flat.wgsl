@@ -5,6 +5,6 @@ fn shade_vertex(corner: Corner) -> Varying {
     return Varying(corner.position, corner.face_normal, illuminate(corner.face_centre, corner.face_normal), vec3(0.0));
 }
 
-fn shade_pixel(varying: Varying) -> vec3<f32> {
-    return varying.colour;
+fn shade_pixel(passed: Varying) -> vec3<f32> {
+    return passed.colour;
 }

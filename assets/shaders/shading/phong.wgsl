@@ -4,6 +4,6 @@ fn shade_vertex(corner: Corner) -> Varying {
     return Varying(corner.position, corner.normal, vec3(0.0), vec3(0.0));
 }
 
-fn shade_pixel(varying: Varying) -> vec3<f32> {
-    return illuminate(varying.position, unit_or_zero(varying.normal));
+fn shade_pixel(passed: Varying) -> vec3<f32> {
+    return illuminate(passed.position, unit_or_zero(passed.normal));
 }
