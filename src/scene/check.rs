@@ -1,1 +1,610 @@
-//! Placeholder.
+//! Every constraint of a scene, once (R5, R6): the reader, the window and the writer all ask here.
+//!
+//! A rule for one field is a function that returns `Err` with the rule as a clause, so that it can end
+//! a sentence: "k_d is 0.2, but **the diffuse coefficient must be between 0.5 and 1**". [`scene`]
+//! applies them all to a whole scene.
+
+use std::{borrow::Cow, collections::HashMap, fmt};
+
+use glam::Vec3;
+
+use super::{
+    Light, MAX_DIMENSION, MAX_OBJECTS, Object, Observer, Scene, SceneSize,
+    error::{Path, Problem, quoted},
+};
+use crate::{
+    light::{LightEntry, MAX_LIGHTS},
+    reflection::parameter::{Parameter, ParameterKind, Value, Values},
+    registry::Registry,
+    shape::ShapeEntry,
+};
+
+/// The narrowest legal field of view, degrees.
+pub const MIN_FIELD_OF_VIEW: f32 = 1.0;
+/// The widest legal field of view, degrees.
+pub const MAX_FIELD_OF_VIEW: f32 = 170.0;
+/// The legal exposures reach from minus this to plus this, EV.
+pub const MAX_EXPOSURE: f32 = 16.0;
+
+/// `Ok`, or the rule that is broken.
+pub type Rule = Result<(), String>;
+
+/// `Ok` where a rule is kept.
+fn must(kept: bool, rule: impl FnOnce() -> String) -> Rule {
+    if kept { Ok(()) } else { Err(rule()) }
+}
+
+/// One extent of the room, in metres; `axis` is `height`, `width` or `depth`.
+pub fn dimension(axis: &str, metres: f32) -> Rule {
+    must(metres > 0.0 && metres <= MAX_DIMENSION, || {
+        format!("the {axis} of the room must be greater than 0 and at most {MAX_DIMENSION} m")
+    })
+}
+
+/// A position of a light, an object or the observer.
+pub fn position(room: SceneSize, position: Vec3) -> Rule {
+    must(room.contains(position), || {
+        let SceneSize { width, height, depth } = room;
+        format!(
+            "a position must be inside the room: 0 < x ≤ {width} (width), 0 < y ≤ {height} (height), \
+             0 < z ≤ {depth} (depth)"
+        )
+    })
+}
+
+/// A direction of a light or the observer. It need not have length 1.
+pub fn direction(direction: Vec3) -> Rule {
+    must(direction != Vec3::ZERO, || "a direction must not be zero".to_owned())?;
+    must(direction.is_finite() && direction.try_normalize().is_some(), || {
+        "this is too long or too short to be a direction; write it with a length near 1".to_owned()
+    })
+}
+
+/// The intensity of a light.
+pub fn intensity(value: f32) -> Rule {
+    must(value >= 0.0 && value.is_finite(), || {
+        if value == f32::INFINITY {
+            "an intensity must be at most 3.4e38".to_owned()
+        } else {
+            "an intensity must be at least 0".to_owned()
+        }
+    })
+}
+
+/// The vertical field of view of the observer, in degrees.
+pub fn field_of_view(degrees: f32) -> Rule {
+    must((MIN_FIELD_OF_VIEW..=MAX_FIELD_OF_VIEW).contains(&degrees), || {
+        format!("the field of view must be between {MIN_FIELD_OF_VIEW} and {MAX_FIELD_OF_VIEW} degrees")
+    })
+}
+
+/// The largest extent of an object, in metres.
+pub fn size(metres: f32) -> Rule {
+    must(metres > 0.0 && metres.is_finite(), || {
+        if metres == f32::INFINITY {
+            "a size must be at most 3.4e38".to_owned()
+        } else {
+            "a size must be greater than 0".to_owned()
+        }
+    })
+}
+
+/// Euler angles in degrees.
+pub fn rotation(degrees: Vec3) -> Rule {
+    must(degrees.is_finite(), || "a rotation must be three finite numbers of degrees".to_owned())
+}
+
+/// How finely an object of a type is cut.
+pub fn tessellation(shape: &ShapeEntry, count: u32) -> Rule {
+    let range = &shape.declaration.tessellation;
+    must(range.contains(&count), || tessellation_rule(shape))
+}
+
+/// The rule of [`tessellation`].
+pub(super) fn tessellation_rule(shape: &ShapeEntry) -> String {
+    let range = &shape.declaration.tessellation;
+    format!(
+        "the tessellation of a {} must be a whole number between {} and {}",
+        shape.declaration.id,
+        range.start(),
+        range.end()
+    )
+}
+
+/// The exposure of the display, in EV.
+pub fn exposure(ev: f32) -> Rule {
+    must((-MAX_EXPOSURE..=MAX_EXPOSURE).contains(&ev), || {
+        format!("the exposure must be between -{MAX_EXPOSURE} and {MAX_EXPOSURE} EV")
+    })
+}
+
+/// The value of a declared parameter of a model or a light.
+pub fn parameter(parameter: &Parameter, value: &Value) -> Rule {
+    must(parameter.allows(value), || parameter_rule(parameter))
+}
+
+/// The rule of [`parameter`].
+pub(super) fn parameter_rule(parameter: &Parameter) -> String {
+    format!("the {} must be {}{}", parameter.label, parameter.rule(), unit(parameter))
+}
+
+/// The unit of a parameter after its range.
+fn unit(parameter: &Parameter) -> String {
+    match (parameter.unit, &parameter.kind) {
+        ("", _) | (_, ParameterKind::Colour { .. } | ParameterKind::Choice { .. }) => String::new(),
+        ("°", _) => " degrees".to_owned(),
+        (unit, _) => format!(" {unit}"),
+    }
+}
+
+/// A parameter in the material of an object: if the object's own model declares it, in its range there,
+/// and otherwise in the range of some model that does.
+pub fn material_parameter(registry: &Registry, model: &str, name: &str, value: &Value) -> Rule {
+    if let Some(own) = registry.model(model).and_then(|m| m.parameter(name)) {
+        return parameter(own, value);
+    }
+    let mut rule = None;
+    for declared in registry.models().iter().filter_map(|m| m.parameter(name)) {
+        match parameter(declared, value) {
+            Ok(()) => return Ok(()),
+            Err(broken) => rule = rule.or(Some(broken)),
+        }
+    }
+    Err(rule.unwrap_or_else(|| unknown_material_parameter(registry, name)))
+}
+
+/// That no model declares a material parameter, and which one it might be.
+pub(super) fn unknown_material_parameter(registry: &Registry, name: &str) -> String {
+    let declared: Vec<_> = registry.material_parameters().collect();
+    let also = declared.iter().flat_map(|p| [(p.label, p.name), (p.symbol, p.name)]);
+    let known = declared.iter().map(|p| (p.name, p.name)).chain(also);
+    format!("no reflection model has a parameter of that name{}", did_you_mean(name, known))
+}
+
+/// The id of a reflection model.
+pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
+    let known = registry.models().iter().map(|m| (m.declaration.id, m.declaration.name));
+    one_of("the reflection model", id, known)
+}
+
+/// The id of a shading mode.
+pub fn shading_model(registry: &Registry, id: &str) -> Rule {
+    let known = registry.modes().iter().map(|m| (m.declaration.id, m.declaration.name));
+    one_of("the shading model", id, known)
+}
+
+/// The id of a light type.
+pub fn light_type(registry: &Registry, id: &str) -> Rule {
+    one_of("the light type", id, registry.lights().iter().map(|l| (l.declaration.id, l.declaration.name)))
+}
+
+/// The id of an object type.
+pub fn object_type(registry: &Registry, id: &str) -> Rule {
+    one_of("the object type", id, registry.shapes().iter().map(|s| (s.declaration.id, s.declaration.name)))
+}
+
+/// How many lights a scene has.
+pub fn light_count(count: usize) -> Rule {
+    must((1..=MAX_LIGHTS).contains(&count), || format!("a scene must have between 1 and {MAX_LIGHTS} lights"))
+}
+
+/// How many objects a scene has.
+pub fn object_count(count: usize) -> Rule {
+    must((1..=MAX_OBJECTS).contains(&count), || {
+        format!("a scene must have between 1 and {MAX_OBJECTS} objects")
+    })
+}
+
+/// One of several ids: the rule lists them and names the nearest.
+pub(super) fn one_of<'a>(
+    what: &str,
+    id: &str,
+    known: impl Iterator<Item = (&'a str, &'a str)> + Clone,
+) -> Rule {
+    must(known.clone().any(|(k, _)| k == id), || {
+        let ids: Vec<_> = known.clone().map(|(k, _)| quoted(k)).collect();
+        let names = known.clone().map(|(k, name)| (name, k));
+        let suggestion = did_you_mean(id, known.clone().map(|(k, _)| (k, k)).chain(names));
+        format!("{what} must be {}{suggestion}", listed(&ids, "or"))
+    })
+}
+
+/// "a", "a or b", "a, b or c".
+#[must_use]
+pub fn listed(items: &[impl AsRef<str>], conjunction: &str) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.as_ref().to_owned(),
+        [first @ .., last] => {
+            let first: Vec<_> = first.iter().map(AsRef::as_ref).collect();
+            format!("{} {conjunction} {}", first.join(", "), last.as_ref())
+        }
+    }
+}
+
+/// The target whose spelling is nearest to what was written, if any is near. Each candidate is a
+/// spelling and what it stands for.
+#[must_use]
+pub fn nearest<'a>(written: &str, candidates: impl Iterator<Item = (&'a str, &'a str)>) -> Option<&'a str> {
+    // Names are short; comparing a book with each of them would take forever.
+    if written.len() > 64 {
+        return None;
+    }
+    // Case and separators are the commonest slips: sceneSize, scene-size.
+    let plain = |s: &str| s.to_lowercase().replace(['_', '-', ' '], "");
+    let wanted = plain(written);
+    let distance = |candidate: &str| {
+        let candidate = plain(candidate);
+        let edits = strsim::damerau_levenshtein(&wanted, &candidate);
+        // A third of the letters may differ, and one of two: more is another word.
+        (edits <= candidate.chars().count().max(wanted.chars().count()).max(3) / 3).then_some(edits)
+    };
+    let near = candidates.filter(|(spelling, _)| !spelling.is_empty());
+    near.filter_map(|(spelling, target)| Some((distance(spelling)?, target))).min_by_key(|n| n.0).map(|n| n.1)
+}
+
+/// "; did you mean "lambert"?", or nothing.
+pub(super) fn did_you_mean<'a>(
+    written: &str,
+    candidates: impl Iterator<Item = (&'a str, &'a str)>,
+) -> String {
+    nearest(written, candidates).map_or_else(String::new, |n| format!("; did you mean {}?", quoted(n)))
+}
+
+/// A vector as scene files write it.
+struct Written(Vec3);
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "[{}, {}, {}]", self.0.x, self.0.y, self.0.z)
+    }
+}
+
+/// Everything that is wrong with a scene; empty if it is valid. The order is that of the scene.
+#[must_use]
+pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
+    let mut problems = Problems(Vec::new());
+    let root = Path::root();
+    let room = root.key("scene_size");
+    let SceneSize { height, width, depth } = scene.scene_size;
+    for (axis, metres) in [("height", height), ("width", width), ("depth", depth)] {
+        problems.add(dimension(axis, metres), || (room.key(axis), metres.to_string()));
+    }
+    let id = |key: &'static str, id: &str| (Path::root().key(key), quoted(id));
+    problems.add(reflection_model(registry, &scene.reflection_model), || {
+        id("reflection_model", &scene.reflection_model)
+    });
+    problems
+        .add(shading_model(registry, &scene.shading_model), || id("shading_model", &scene.shading_model));
+
+    let count = |n: usize, what: &str| match n {
+        0 => "empty".to_owned(),
+        _ => format!("a list of {n} {what}"),
+    };
+    problems.add(light_count(scene.lights.len()), || {
+        (Path::root().key("lights"), count(scene.lights.len(), "lights"))
+    });
+    let lights = root.key("lights");
+    for (i, l) in scene.lights.iter().enumerate() {
+        problems.0.extend(light_at(l, scene.scene_size, registry, || lights.index(i)));
+    }
+    problems.0.extend(observer(&scene.observer, scene.scene_size));
+    problems.add(object_count(scene.objects.len()), || {
+        (Path::root().key("objects"), count(scene.objects.len(), "objects"))
+    });
+    let objects = root.key("objects");
+    for (i, o) in scene.objects.iter().enumerate() {
+        problems.0.extend(object_at(o, scene, registry, || objects.index(i)));
+    }
+    let display = root.key("display").key("exposure");
+    let ev = scene.display.exposure;
+    problems.add(exposure(ev), || (display, ev.to_string()));
+    problems.0.extend(coincidences(scene));
+    problems.0
+}
+
+/// Everything that is wrong with one light; `index` is its place in the list.
+#[must_use]
+pub fn light(light: &Light, index: usize, room: SceneSize, registry: &Registry) -> Vec<Problem> {
+    light_at(light, room, registry, || Path::root().key("lights").index(index))
+}
+
+/// Everything that is wrong with one object of a scene, coincidences apart.
+#[must_use]
+pub fn object(object: &Object, index: usize, scene: &Scene, registry: &Registry) -> Vec<Problem> {
+    object_at(object, scene, registry, || Path::root().key("objects").index(index))
+}
+
+/// Everything that is wrong with the observer.
+#[must_use]
+pub fn observer(observer: &Observer, room: SceneSize) -> Vec<Problem> {
+    let mut problems = Problems(Vec::new());
+    let at = |key: &'static str| Path::root().key("observer").key(key);
+    problems.add(position(room, observer.position), || (at("position"), Written(observer.position)));
+    problems.add(direction(observer.direction), || (at("direction"), Written(observer.direction)));
+    problems.add(field_of_view(observer.field_of_view), || (at("field_of_view"), observer.field_of_view));
+    problems.0
+}
+
+/// The problems found so far.
+struct Problems(Vec<Problem>);
+
+impl Problems {
+    /// Adds the broken rule; the path is made only then, since valid scenes are the rule and large.
+    fn add<T: fmt::Display>(&mut self, rule: Rule, at: impl FnOnce() -> (Path, T)) {
+        if let Err(rule) = rule {
+            let (path, found) = at();
+            self.0.push(Problem::value(path, found, rule));
+        }
+    }
+}
+
+fn light_at(light: &Light, room: SceneSize, registry: &Registry, path: impl Fn() -> Path) -> Vec<Problem> {
+    let mut problems = Problems(Vec::new());
+    problems.add(light_type(registry, &light.kind), || (path().key("type"), quoted(&light.kind)));
+    let entry = registry.light(&light.kind);
+    if let Some(LightEntry { declaration, .. }) = entry {
+        let fields = [
+            ("position", light.position.is_some(), declaration.has_position),
+            ("direction", light.direction.is_some(), declaration.has_direction),
+        ];
+        for (key, is, should) in fields {
+            if is != should {
+                problems.0.push(Problem::about(path().key(key), presence(declaration.id, key, should)));
+            }
+        }
+    }
+    if let Some(p) = light.position {
+        problems.add(position(room, p), || (path().key("position"), Written(p)));
+    }
+    if let Some(d) = light.direction {
+        problems.add(direction(d), || (path().key("direction"), Written(d)));
+    }
+    problems.add(intensity(light.intensity), || (path().key("intensity"), light.intensity));
+    for (name, value) in &light.parameters.0 {
+        let key = || path().key(name.clone());
+        match entry.map(|e| e.declaration.parameters.iter().find(|p| p.name == name.as_ref())) {
+            Some(Some(declared)) => problems.add(parameter(declared, value), || (key(), written(value))),
+            Some(None) => problems.0.push(Problem::about(key(), presence(&light.kind, name, false))),
+            // The type is unknown, and that is reported already.
+            None => {}
+        }
+    }
+    problems.0
+}
+
+/// That a light of a type needs, or has not, a field.
+fn presence(kind: &str, field: &str, needed: bool) -> String {
+    let article = if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    if needed {
+        format!("is missing; {article} {kind} light needs one")
+    } else {
+        format!("is given, but {article} {kind} light has no {field}")
+    }
+}
+
+fn object_at(object: &Object, scene: &Scene, registry: &Registry, path: impl Fn() -> Path) -> Vec<Problem> {
+    let mut problems = Problems(Vec::new());
+    problems.add(object_type(registry, &object.kind), || (path().key("type"), quoted(&object.kind)));
+    problems.add(position(scene.scene_size, object.position), || {
+        (path().key("position"), Written(object.position))
+    });
+    problems.add(size(object.size), || (path().key("size"), object.size));
+    problems.add(rotation(object.rotation), || (path().key("rotation"), Written(object.rotation)));
+    if let (Some(shape), Some(count)) = (registry.shape(&object.kind), object.tessellation) {
+        problems.add(tessellation(shape, count), || (path().key("tessellation"), count));
+    }
+    if let Some(id) = &object.reflection_model {
+        problems.add(reflection_model(registry, id), || (path().key("reflection_model"), quoted(id)));
+    }
+    if let Some(id) = &object.shading_model {
+        problems.add(shading_model(registry, id), || (path().key("shading_model"), quoted(id)));
+    }
+    let model = scene.model_of(object);
+    for (name, value) in &object.material.0 {
+        problems.add(material_parameter(registry, model, name, value), || {
+            (path().key("material").key(name.clone()), written(value))
+        });
+    }
+    problems.0
+}
+
+/// A parameter as scene files write it.
+fn written(value: &Value) -> String {
+    match value {
+        Value::Number(v) => v.to_string(),
+        Value::Integer(v) => v.to_string(),
+        Value::Colour([r, g, b]) => format!("[{r}, {g}, {b}]"),
+        Value::Choice(v) => quoted(v),
+    }
+}
+
+/// Lights, objects and the observer keep apart (CA AR4, AR10, AR15). Linear in the number of things:
+/// positions are looked up, not compared pairwise. What is not finite coincides with nothing.
+fn coincidences(scene: &Scene) -> Vec<Problem> {
+    // Adding 0 makes −0 and 0 the same bits.
+    let bits = |p: Vec3| p.is_finite().then(|| (p + Vec3::ZERO).to_array().map(f32::to_bits));
+    let at = |list: &'static str, i: usize| Path::root().key(list).index(i).key("position");
+    let mut problems = Vec::new();
+    let mut lights = HashMap::new();
+    let observer = bits(scene.observer.position);
+    for (i, light) in scene.lights.iter().enumerate() {
+        let Some((p, key)) = light.position.and_then(|p| Some((p, bits(p)?))) else { continue };
+        lights.entry(key).or_insert(i);
+        if Some(key) == observer {
+            let rule = "the observer is there; a light must not be where the observer is";
+            problems.push(Problem::value(at("lights", i), Written(p), rule));
+        }
+    }
+    for (i, object) in scene.objects.iter().enumerate() {
+        let Some(key) = bits(object.position) else { continue };
+        let there: Cow<'_, str> = match lights.get(&key) {
+            Some(light) => format!("lights[{light}] is there; an object must not be where a light is").into(),
+            None if Some(key) == observer => {
+                "the observer is there; an object must not be where the observer is".into()
+            }
+            None => continue,
+        };
+        problems.push(Problem::value(at("objects", i), Written(object.position), there));
+    }
+    problems
+}
+
+impl Light {
+    /// Makes it a light of another type: gains and loses position, direction and parameters as that
+    /// type has them. Intensity is kept, unless its unit changes.
+    pub fn set_type(&mut self, to: &LightEntry, registry: &Registry, room: SceneSize) {
+        let old = registry.light(&self.kind).map(|l| l.declaration);
+        let new = to.declaration;
+        let centre = Vec3::new(room.width / 2.0, room.height * 0.8, room.depth / 2.0);
+        self.position = new.has_position.then(|| self.position.unwrap_or(centre));
+        self.direction = new.has_direction.then(|| self.direction.unwrap_or(Vec3::NEG_Y));
+        let mut parameters = Values::default();
+        for p in new.parameters {
+            if let Some(value) = self.parameters.0.get(p.name).filter(|v| p.allows(v)) {
+                parameters.set(p.name, value.clone());
+            }
+        }
+        self.parameters = parameters;
+        if old.is_none_or(|o| o.unit != new.unit) {
+            self.intensity = new.default_intensity;
+        }
+        new.id.clone_into(&mut self.kind);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn messages(s: &Scene) -> Vec<String> {
+        scene(s, &Registry::builtin()).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn the_default_scene_is_valid() {
+        assert_eq!(messages(&Scene::default()), [""; 0]);
+    }
+
+    #[test]
+    fn every_problem_is_found_at_once() {
+        let mut s = Scene::default();
+        s.scene_size.height = 0.0;
+        s.scene_size.width = 101.0;
+        s.observer.field_of_view = 180.0;
+        s.observer.direction = Vec3::ZERO;
+        s.objects[0].size = -1.0;
+        s.objects[0].material.set("k_d", Value::Number(0.2));
+        s.objects[0].tessellation = Some(0);
+        s.lights[0].intensity = f32::NAN;
+        s.display.exposure = 17.0;
+        let found = messages(&s).join("\n");
+        for expected in [
+            "scene_size.height is 0, but the height of the room must be greater than 0 and at most 100 m",
+            "scene_size.width is 101, but the width of the room",
+            "observer.field_of_view is 180, but the field of view must be between 1 and 170 degrees",
+            "observer.direction is [0, 0, 0], but a direction must not be zero",
+            "objects[0].size is -1, but a size must be greater than 0",
+            "objects[0].material.k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1",
+            "objects[0].tessellation is 0, but the tessellation of a sphere must be a whole number between",
+            "lights[0].intensity is NaN, but an intensity must be at least 0",
+            "display.exposure is 17, but the exposure must be between -16 and 16 EV",
+        ] {
+            assert!(found.contains(expected), "{expected}\nis not in\n{found}");
+        }
+    }
+
+    #[test]
+    fn positions_are_in_the_room_with_its_far_faces_but_not_its_near_ones() {
+        let room = SceneSize { height: 1.0, width: 2.0, depth: 3.0 };
+        assert_eq!(position(room, Vec3::new(2.0, 1.0, 3.0)), Ok(()));
+        for outside in [
+            Vec3::new(0.0, 0.5, 1.0),
+            Vec3::new(2.1, 0.5, 1.0),
+            Vec3::new(1.0, 1.5, 1.0),
+            Vec3::new(1.0, 0.5, f32::INFINITY),
+            Vec3::NAN,
+        ] {
+            assert!(position(room, outside).is_err(), "{outside}");
+        }
+    }
+
+    #[test]
+    fn nothing_may_be_where_another_kind_of_thing_is() {
+        let mut s = Scene::default();
+        s.objects.push(Object { position: s.observer.position, ..Object::default() });
+        s.objects.push(Object { position: Vec3::new(7.5, 8.0, 9.0), ..Object::default() });
+        s.lights.push(Light { position: Some(s.observer.position), ..Light::default() });
+        let found = messages(&s);
+        assert_eq!(
+            found,
+            [
+                "lights[1].position is [5, 5, 9.5], but the observer is there; a light must not be where the observer is",
+                "objects[1].position is [5, 5, 9.5], but lights[1] is there; an object must not be where a light is",
+                "objects[2].position is [7.5, 8, 9], but lights[0] is there; an object must not be where a light is",
+            ]
+        );
+        // Two objects may share a place, and so may two lights: the CA does not forbid it.
+        let s = Scene {
+            objects: vec![Object::default(); 2],
+            lights: vec![Light::default(); 2],
+            ..Scene::default()
+        };
+        assert_eq!(messages(&s), [""; 0]);
+    }
+
+    #[test]
+    fn lights_have_what_their_type_has() {
+        let mut s = Scene::default();
+        s.lights = vec![
+            Light { kind: "spot".into(), direction: None, ..Light::default() },
+            Light { kind: "ambient".into(), ..Light::default() },
+            Light { kind: "spott".into(), ..Light::default() },
+        ];
+        s.lights[1].parameters.set("cone_angle", Value::Number(20.0));
+        assert_eq!(
+            messages(&s),
+            [
+                "lights[0].direction is missing; a spot light needs one",
+                "lights[1].position is given, but an ambient light has no position",
+                "lights[1].cone_angle is given, but an ambient light has no cone_angle",
+                "lights[2].type is \"spott\", but the light type must be \"point\", \"spot\", \"directional\" or \
+                 \"ambient\"; did you mean \"spot\"?",
+            ]
+        );
+    }
+
+    #[test]
+    fn changing_the_type_of_a_light_keeps_the_scene_valid() {
+        let registry = Registry::builtin();
+        let mut s = Scene::default();
+        for from in registry.lights() {
+            for to in registry.lights() {
+                s.lights[0].set_type(from, &registry, s.scene_size);
+                for p in from.declaration.parameters {
+                    s.lights[0].parameters.set(p.name, p.default_value());
+                }
+                s.lights[0].set_type(to, &registry, s.scene_size);
+                assert_eq!(messages(&s), [""; 0]);
+            }
+        }
+    }
+
+    #[test]
+    fn extreme_directions_are_refused_because_they_cannot_be_normalised() {
+        assert_eq!(direction(Vec3::new(0.0, -3.0, 0.0)), Ok(()));
+        for d in [Vec3::splat(1e-30), Vec3::splat(1e30), Vec3::splat(f32::INFINITY), Vec3::NAN] {
+            assert!(direction(d).is_err_and(|rule| rule.contains("too long or too short")), "{d}");
+        }
+    }
+
+    #[test]
+    fn suggestions_forgive_case_separators_and_slips() {
+        let known = || ["scene_size", "lights", "objects"].map(|k| (k, k)).into_iter();
+        assert_eq!(nearest("sceneSize", known()), Some("scene_size"));
+        assert_eq!(nearest("lihgts", known()), Some("lights"));
+        assert_eq!(nearest("object", known()), Some("objects"));
+        assert_eq!(nearest("banana", known()), None);
+        assert_eq!(nearest(&"l".repeat(1 << 20), known()), None);
+    }
+}

@@ -1,1 +1,378 @@
-//! Placeholder.
+//! What can be wrong with a scene, and how it is said: file, line, column, path, value, rule.
+
+use std::{borrow::Cow, fmt, io, path::Path as FilePath};
+
+use serde::{Serialize, Serializer};
+
+use super::load::{MAX_FILE_BYTES, Missing};
+
+/// A place in a text. Both count from 1; columns count characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+pub struct Place {
+    /// The line.
+    pub line: usize,
+    /// The character in the line.
+    pub column: usize,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.line, self.column)
+    }
+}
+
+/// One step on the way to a value in a scene.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Segment {
+    /// Into an object, by key.
+    Key(Cow<'static, str>),
+    /// Into a list, counted from 0.
+    Index(usize),
+}
+
+/// Where in a scene a value is: `objects[0].material.k_d`. Empty for the scene itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Path(Vec<Segment>);
+
+impl Path {
+    /// The scene itself.
+    #[must_use]
+    pub fn root() -> Self {
+        Self::default()
+    }
+
+    /// The value under a key.
+    #[must_use]
+    pub fn key(&self, key: impl Into<Cow<'static, str>>) -> Self {
+        let mut path = self.clone();
+        path.0.push(Segment::Key(key.into()));
+        path
+    }
+
+    /// The entry of a list.
+    #[must_use]
+    pub fn index(&self, index: usize) -> Self {
+        let mut path = self.clone();
+        path.0.push(Segment::Index(index));
+        path
+    }
+
+    /// The steps from the scene to the value.
+    #[must_use]
+    pub fn segments(&self) -> &[Segment] {
+        &self.0
+    }
+
+    /// Every path on the way to this one, from the scene itself to this one.
+    pub fn ancestors(&self) -> impl Iterator<Item = Self> + '_ {
+        (0..=self.0.len()).map(|n| Self(self.0[..n].to_vec()))
+    }
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, segment) in self.0.iter().enumerate() {
+            match segment {
+                Segment::Index(index) => write!(f, "[{index}]")?,
+                Segment::Key(key) if is_plain(key) => {
+                    if i > 0 {
+                        f.write_str(".")?;
+                    }
+                    f.write_str(key)?;
+                }
+                Segment::Key(key) => write!(f, "[{}]", quoted(key))?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Serialize for Path {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// Whether a key can stand in a path without quotes.
+fn is_plain(key: &str) -> bool {
+    !key.is_empty() && key.len() <= 60 && key.chars().all(|c| c.is_alphanumeric() || "_-$".contains(c))
+}
+
+/// A text in double quotes, with control characters escaped, and shortened: for messages.
+#[must_use]
+pub fn quoted(text: &str) -> String {
+    shortened(&format!("{text:?}"))
+}
+
+/// The beginning of a text that is too long for a message, on one line.
+#[must_use]
+pub fn shortened(text: &str) -> String {
+    /// What still reads well within a sentence.
+    const LONGEST: usize = 60;
+    let flat = |c: char| if c.is_control() { ' ' } else { c };
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => text[..end].chars().map(flat).chain(['…']).collect(),
+        None => text.chars().map(flat).collect(),
+    }
+}
+
+/// One thing that is wrong with a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// Where in the file, if the scene came from one.
+    pub place: Option<Place>,
+    /// Where in the scene.
+    pub path: Path,
+    /// The value as it is written, if a value breaks a rule.
+    pub found: Option<String>,
+    /// The rule that it breaks, as the end of "k_d is 0.2, but …"; without a value the whole predicate:
+    /// "is missing; …".
+    pub rule: String,
+}
+
+impl Problem {
+    /// A value that breaks a rule.
+    #[must_use]
+    pub fn value(path: Path, found: impl fmt::Display, rule: impl Into<String>) -> Self {
+        Self { place: None, path, found: Some(found.to_string()), rule: rule.into() }
+    }
+
+    /// Something that is not about a value: a missing field, an unknown key.
+    #[must_use]
+    pub fn about(path: Path, predicate: impl Into<String>) -> Self {
+        Self { place: None, path, found: None, rule: predicate.into() }
+    }
+
+    /// The predicate without place and path: "is 0.2, but the diffuse coefficient must be between 0.5
+    /// and 1".
+    #[must_use]
+    pub fn message(&self) -> String {
+        match &self.found {
+            Some(found) => format!("is {found}, but {}", self.rule),
+            None => self.rule.clone(),
+        }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(place) = self.place {
+            write!(f, "{place}: ")?;
+        }
+        if self.path.segments().is_empty() {
+            write!(f, "the scene {}", self.message())
+        } else {
+            write!(f, "{} {}", self.path, self.message())
+        }
+    }
+}
+
+impl Serialize for Problem {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        /// What programs read.
+        #[derive(Serialize)]
+        struct Record<'a> {
+            line: Option<usize>,
+            column: Option<usize>,
+            path: Option<&'a Path>,
+            value: Option<&'a str>,
+            message: String,
+        }
+        Record {
+            line: self.place.map(|p| p.line),
+            column: self.place.map(|p| p.column),
+            path: Some(&self.path),
+            value: self.found.as_deref(),
+            message: self.to_string_without_place(),
+        }
+        .serialize(serializer)
+    }
+}
+
+impl Problem {
+    /// Path and message, without the place.
+    fn to_string_without_place(&self) -> String {
+        Self { place: None, ..self.clone() }.to_string()
+    }
+}
+
+/// Why a scene could not be read. [`fmt::Display`] gives one line per problem, each with the name of
+/// the file.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// There is no such file.
+    #[error("{name}: there is no such file{}", .hint.as_deref().unwrap_or(""))]
+    NotFound {
+        /// The file.
+        name: String,
+        /// What there is instead.
+        hint: Option<String>,
+    },
+    /// The path leads to a folder.
+    #[error("{name} is a folder; a scene is a single JSON file{}", .hint.as_deref().unwrap_or(""))]
+    Folder {
+        /// The folder.
+        name: String,
+        /// Which scenes are in it.
+        hint: Option<String>,
+    },
+    /// The operating system does not let this user read it.
+    #[error("{name}: no permission to read this file")]
+    PermissionDenied {
+        /// The file.
+        name: String,
+    },
+    /// Larger than any scene can be.
+    #[error("{name} is larger than {} MiB, which no scene is; it was not read", MAX_FILE_BYTES >> 20)]
+    TooLarge {
+        /// The file.
+        name: String,
+    },
+    /// Another failure of the operating system.
+    #[error("{name} could not be read: {source}")]
+    Io {
+        /// The file.
+        name: String,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// Nothing but white space.
+    #[error("{name} is empty. Load the default scene?")]
+    Empty {
+        /// The file.
+        name: String,
+    },
+    /// Not text in UTF-8.
+    #[error("{name}:{place}: not UTF-8 text: {what}")]
+    NotUtf8 {
+        /// The file.
+        name: String,
+        /// Where the first wrong byte is.
+        place: Place,
+        /// What it is, as far as one can tell.
+        what: String,
+    },
+    /// Not JSON.
+    #[error("{name}:{place}: not JSON: {what}")]
+    Syntax {
+        /// The file.
+        name: String,
+        /// Where reading stopped.
+        place: Place,
+        /// What was expected.
+        what: String,
+    },
+    /// JSON, but not a valid scene. Every problem is here, in the order of the file.
+    #[error("{}", lines(.name, .problems))]
+    Invalid {
+        /// The file.
+        name: String,
+        /// At least one.
+        problems: Vec<Problem>,
+    },
+    /// Parts are missing for which there are defaults, and these were declined (R3).
+    #[error("{name}: {}", declined(.missing))]
+    Missing {
+        /// The file.
+        name: String,
+        /// At least one.
+        missing: Vec<Missing>,
+    },
+}
+
+impl LoadError {
+    /// An error of the operating system while a file was opened or read.
+    #[must_use]
+    pub fn from_io(path: &FilePath, name: &str, source: io::Error) -> Self {
+        let name = name.to_owned();
+        match source.kind() {
+            io::ErrorKind::NotFound => Self::NotFound { hint: similar_file(path), name },
+            io::ErrorKind::PermissionDenied => Self::PermissionDenied { name },
+            io::ErrorKind::IsADirectory => Self::Folder { hint: scenes_within(path), name },
+            _ => Self::Io { name, source },
+        }
+    }
+
+    /// The error that a path leads to a folder.
+    #[must_use]
+    pub fn folder(path: &FilePath, name: &str) -> Self {
+        Self::Folder { name: name.to_owned(), hint: scenes_within(path) }
+    }
+
+    /// The problems as data: those of an invalid scene, or the error itself as the only one.
+    #[must_use]
+    pub fn problems(&self) -> Vec<Problem> {
+        match self {
+            Self::Invalid { problems, .. } => problems.clone(),
+            Self::NotUtf8 { place, what, .. } => vec![Problem {
+                place: Some(*place),
+                ..Problem::about(Path::root(), format!("is not UTF-8 text: {what}"))
+            }],
+            Self::Syntax { place, what, .. } => vec![Problem {
+                place: Some(*place),
+                ..Problem::about(Path::root(), format!("is not JSON: {what}"))
+            }],
+            Self::Missing { missing, .. } => missing.iter().map(Missing::problem).collect(),
+            Self::NotFound { .. } => vec![Problem::about(Path::root(), "could not be read: there is no such file")],
+            Self::Folder { .. } => vec![Problem::about(Path::root(), "could not be read: it is a folder")],
+            Self::PermissionDenied { .. } => {
+                vec![Problem::about(Path::root(), "could not be read: no permission")]
+            }
+            Self::TooLarge { .. } => {
+                vec![Problem::about(Path::root(), format!("is larger than {} MiB", MAX_FILE_BYTES >> 20))]
+            }
+            Self::Io { source, .. } => {
+                vec![Problem::about(Path::root(), format!("could not be read: {source}"))]
+            }
+            Self::Empty { .. } => vec![Problem::about(Path::root(), "is empty")],
+        }
+    }
+}
+
+/// One line per problem.
+fn lines(name: &str, problems: &[Problem]) -> String {
+    let line = |p: &Problem| match p.place {
+        Some(_) => format!("{name}:{p}"),
+        None => format!("{name}: {p}"),
+    };
+    problems.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// What is missing and how to say yes.
+fn declined(missing: &[Missing]) -> String {
+    let parts: Vec<_> = missing.iter().map(ToString::to_string).collect();
+    let verb = if missing.len() == 1 { "is" } else { "are" };
+    format!(
+        "{} {verb} missing; --use-defaults takes the defaults, --no-defaults refuses them",
+        super::check::listed(&parts, "and")
+    )
+}
+
+/// ". Did you mean scenes/room.json?" if a file with a similar name is there.
+fn similar_file(path: &FilePath) -> Option<String> {
+    let wanted = path.file_name()?.to_str()?.to_lowercase();
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(FilePath::new("."));
+    // A folder can be huge; a hint is not worth more than a glance at it.
+    let nearest = std::fs::read_dir(folder)
+        .ok()?
+        .take(1000)
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .map(|name| (strsim::jaro_winkler(&wanted, &name.to_lowercase()), name))
+        .filter(|(likeness, _)| *likeness > 0.85)
+        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!(". Did you mean {}?", path.with_file_name(nearest.1).display()))
+}
+
+/// "; it holds a.json, b.json".
+fn scenes_within(path: &FilePath) -> Option<String> {
+    let mut names: Vec<_> = std::fs::read_dir(path)
+        .ok()?
+        .take(1000)
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter(|name| name.ends_with(".json") && !name.ends_with(".schema.json"))
+        .collect();
+    names.sort();
+    let more = if names.len() > 5 { " and more" } else { "" };
+    names.truncate(5);
+    (!names.is_empty()).then(|| format!("; this one holds {}{more}", names.join(", ")))
+}

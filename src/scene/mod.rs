@@ -13,9 +13,11 @@ use crate::{
 
 pub mod check;
 pub mod error;
-pub mod format;
+mod format;
 pub mod load;
+mod read;
 pub mod save;
+pub mod schema;
 pub mod spawn;
 
 /// Largest legal extent of a scene in any direction, metres (CA `MAX_HEIGHT`, `MAX_WIDTH`, `MAX_DEPTH`).

@@ -1,1 +1,411 @@
-//! Placeholder.
+//! Writing scene files: readable, in one order, and never half.
+
+use std::{
+    fs, io,
+    io::Write as _,
+    path::{Path, PathBuf},
+};
+
+use jsonc_parser::{
+    ast::Value as Ast,
+    common::Ranged,
+    {CollectOptions, ParseOptions, parse_to_ast},
+};
+use serde::Serialize;
+use serde_json::ser::Formatter;
+
+use super::{
+    Scene, check,
+    error::Problem,
+    format::SceneFile,
+    load::{MAX_FILE_BYTES, Stamp},
+    schema,
+};
+use crate::registry::Registry;
+
+/// What the writer expects to find where it writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expected {
+    /// Nothing: a new file.
+    Nothing,
+    /// What was read or written last.
+    Unchanged(Stamp),
+    /// Anything: the user was asked.
+    Anything,
+}
+
+/// Why a scene could not be written. Nothing is changed then: the old file is still there, whole.
+#[derive(Debug, thiserror::Error)]
+pub enum SaveError {
+    /// The scene breaks rules, so that it could not be read again.
+    #[error("{} was not written: the scene has problems:\n{}", .path.display(), lines(.problems))]
+    Invalid {
+        /// The file.
+        path: PathBuf,
+        /// At least one.
+        problems: Vec<Problem>,
+    },
+    /// A new file was to be written where there is one.
+    #[error("{} exists already; it was not overwritten", .path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Someone else wrote the file since it was read.
+    #[error("{} changed on disk since it was read; it was not overwritten", .path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file was deleted or moved since it was read.
+    #[error("{} is no longer there; it was deleted or moved since it was read", .path.display())]
+    Gone {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file is protected.
+    #[error("{} is read-only; it was not overwritten", .path.display())]
+    ReadOnly {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The path leads to a folder.
+    #[error("{} is a folder; name a file", .path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder of the file does not exist.
+    #[error("{} was not written: there is no folder {}", .path.display(), .folder.display())]
+    NoFolder {
+        /// The file.
+        path: PathBuf,
+        /// The missing folder.
+        folder: PathBuf,
+    },
+    /// A failure of the operating system: no permission, no space.
+    #[error("{} was not written: {source}", .path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+fn lines(problems: &[Problem]) -> String {
+    problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}
+
+/// The text of a scene file: the sections in the order of the CA, short values on one line, numbers
+/// as short as they can be read back exactly. `schema` is what `$schema` says, if anything.
+///
+/// Only valid scenes can be read back; [`write()`] checks, this function does not.
+#[must_use]
+pub fn to_json(scene: &Scene, schema: Option<&str>, registry: &Registry) -> String {
+    let mut compact = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut compact, ShortNumbers);
+    // Writing to memory, with text as keys, cannot fail.
+    let _ = SceneFile::new(scene, schema, registry).serialize(&mut serializer);
+    let compact = String::from_utf8_lossy(&compact);
+    pretty(&compact).unwrap_or_else(|| compact.into_owned())
+}
+
+/// Writes a scene, all or nothing: to a temporary file in the same folder, which then takes the place
+/// of the old one. Links are followed, permissions kept, and so is the `$schema` of the old file; a new
+/// file refers to [`schema::FILE_NAME`] if that is in its folder. Returns the stamp to expect next time.
+///
+/// # Errors
+/// [`SaveError`]; the old file is then untouched.
+pub fn write(
+    path: &Path,
+    scene: &Scene,
+    registry: &Registry,
+    expected: Expected,
+) -> Result<Stamp, SaveError> {
+    let shown = || path.to_owned();
+    let problems = check::scene(scene, registry);
+    if !problems.is_empty() {
+        return Err(SaveError::Invalid { path: shown(), problems });
+    }
+    let io = |source| SaveError::Io { path: shown(), source };
+    let target = follow(path).map_err(io)?;
+    let folder = match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    if !folder.is_dir() {
+        return Err(SaveError::NoFolder { path: shown(), folder: folder.to_owned() });
+    }
+    let old = on_disk(&target, path, expected)?;
+    let beside = folder.join(schema::FILE_NAME).is_file().then(|| format!("./{}", schema::FILE_NAME));
+    let reference = match &old {
+        Some(old) => old.schema.clone(),
+        None => beside,
+    };
+    let text = to_json(scene, reference.as_deref(), registry);
+
+    let mut builder = tempfile::Builder::new();
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let prefix = format!(".{name}.");
+    builder.prefix(&prefix).suffix(".tmp");
+    #[cfg(unix)]
+    if old.is_none() {
+        use std::os::unix::fs::PermissionsExt as _;
+        // As any program makes a new file; the umask of the user takes away from it.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut temporary = builder.tempfile_in(folder).map_err(io)?;
+    temporary.write_all(text.as_bytes()).map_err(io)?;
+    if let Some(old) = &old {
+        temporary.as_file().set_permissions(old.permissions.clone()).map_err(io)?;
+    }
+    temporary.as_file().sync_all().map_err(io)?;
+    if expected == Expected::Nothing {
+        temporary.persist_noclobber(&target).map_err(|e| match e.error.kind() {
+            io::ErrorKind::AlreadyExists => SaveError::Exists { path: shown() },
+            _ => io(e.error),
+        })?;
+    } else {
+        // Look again: between the first look and here lies the writing.
+        on_disk(&target, path, expected)?;
+        temporary.persist(&target).map_err(|e| io(e.error))?;
+    }
+    // The new name is safe once the folder is on disk too. Not every file system can do this, and the
+    // file itself is whole either way.
+    #[cfg(unix)]
+    if let Ok(folder) = fs::File::open(folder) {
+        let _ = folder.sync_all();
+    }
+    Ok(Stamp::of(text.as_bytes()))
+}
+
+/// What is worth keeping of the file that is overwritten.
+struct Old {
+    permissions: fs::Permissions,
+    schema: Option<String>,
+}
+
+/// Looks at what is there and compares it with what is expected.
+fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Old>, SaveError> {
+    let shown = || path.to_owned();
+    let io = |source| SaveError::Io { path: shown(), source };
+    let metadata = match fs::metadata(target) {
+        Ok(metadata) => metadata,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            return match expected {
+                Expected::Unchanged(_) => Err(SaveError::Gone { path: shown() }),
+                Expected::Nothing | Expected::Anything => Ok(None),
+            };
+        }
+        Err(e) => return Err(io(e)),
+    };
+    if metadata.is_dir() {
+        return Err(SaveError::Folder { path: shown() });
+    }
+    if expected == Expected::Nothing {
+        return Err(SaveError::Exists { path: shown() });
+    }
+    if metadata.permissions().readonly() {
+        return Err(SaveError::ReadOnly { path: shown() });
+    }
+    let bytes = if metadata.len() <= MAX_FILE_BYTES { fs::read(target).map_err(io)? } else { Vec::new() };
+    if let Expected::Unchanged(stamp) = expected
+        && stamp != Stamp::of(&bytes)
+    {
+        return Err(SaveError::Changed { path: shown() });
+    }
+    Ok(Some(Old { permissions: metadata.permissions(), schema: schema_of(&bytes) }))
+}
+
+/// What the `$schema` of a scene file says.
+fn schema_of(bytes: &[u8]) -> Option<String> {
+    /// All that is of interest here.
+    #[derive(serde::Deserialize)]
+    struct Head {
+        #[serde(rename = "$schema")]
+        schema: Option<String>,
+    }
+    serde_json::from_slice::<Head>(bytes).ok()?.schema
+}
+
+/// Where a path leads, through links, whether there is a file at the end or not.
+fn follow(path: &Path) -> io::Result<PathBuf> {
+    let mut at = path.to_owned();
+    // As many as Linux follows.
+    for _ in 0..40 {
+        match fs::read_link(&at) {
+            Ok(target) => at = at.parent().unwrap_or(Path::new("")).join(target),
+            // Not a link, or nothing there.
+            Err(_) => return Ok(at),
+        }
+    }
+    Err(io::Error::other("too many links, each leading to the next"))
+}
+
+/// Compact JSON with the shortest numbers that are read back exactly, and whole ones without `.0`.
+struct ShortNumbers;
+
+impl Formatter for ShortNumbers {
+    fn write_f32<W: ?Sized + io::Write>(&mut self, writer: &mut W, value: f32) -> io::Result<()> {
+        if value != 0.0 && !(1e-6..1e15).contains(&value.abs()) {
+            write!(writer, "{value:e}")
+        } else {
+            write!(writer, "{value}")
+        }
+    }
+}
+
+/// Lines are not longer than this, where they can be broken.
+const LINE_WIDTH: usize = 110;
+
+/// Lays JSON out: what fits on a line stands on one, lists of objects have a line per entry at least.
+fn pretty(compact: &str) -> Option<String> {
+    let strict = ParseOptions { allow_comments: false, ..ParseOptions::default() };
+    let value = parse_to_ast(compact, &CollectOptions::default(), &strict).ok()?.value?;
+    let mut out = String::with_capacity(2 * compact.len());
+    lay_out(&value, compact, 0, 0, &mut out);
+    out.push('\n');
+    Some(out)
+}
+
+/// Writes a value; the cursor is at `column`, and broken lines are indented by `depth` steps.
+fn lay_out(value: &Ast, text: &str, depth: usize, column: usize, out: &mut String) {
+    let has_objects =
+        matches!(value, Ast::Array(a) if a.elements.iter().any(|e| matches!(e, Ast::Object(_))));
+    // One place for the comma that may follow.
+    if depth > 0 && !has_objects && column + width(value, text) < LINE_WIDTH {
+        return lay_flat(value, text, out);
+    }
+    let indent = |out: &mut String, depth: usize| {
+        out.push('\n');
+        out.extend(std::iter::repeat_n("  ", depth));
+    };
+    match value {
+        Ast::Object(object) => {
+            out.push('{');
+            for (i, property) in object.properties.iter().enumerate() {
+                if i > 0 {
+                    out.push(',');
+                }
+                indent(out, depth + 1);
+                let name = name_text(property, text);
+                out.push_str(name);
+                out.push_str(": ");
+                let column = 2 * (depth + 1) + name.chars().count() + 2;
+                lay_out(&property.value, text, depth + 1, column, out);
+            }
+            indent(out, depth);
+            out.push('}');
+        }
+        Ast::Array(array) => {
+            out.push('[');
+            for (i, element) in array.elements.iter().enumerate() {
+                if i > 0 {
+                    out.push(',');
+                }
+                indent(out, depth + 1);
+                lay_out(element, text, depth + 1, 2 * (depth + 1), out);
+            }
+            indent(out, depth);
+            out.push(']');
+        }
+        scalar => out.push_str(scalar.text(text)),
+    }
+}
+
+/// The name of a property as it is written, in quotes.
+fn name_text<'t>(property: &jsonc_parser::ast::ObjectProp, text: &'t str) -> &'t str {
+    property.name.text(text)
+}
+
+/// The width of a value on one line.
+fn width(value: &Ast, text: &str) -> usize {
+    match value {
+        Ast::Object(o) if o.properties.is_empty() => 2,
+        Ast::Object(o) => {
+            let fields = o.properties.iter();
+            2 + fields
+                .map(|p| name_text(p, text).chars().count() + 2 + width(&p.value, text) + 2)
+                .sum::<usize>()
+        }
+        Ast::Array(a) => {
+            a.elements.iter().map(|e| width(e, text)).sum::<usize>() + 2 * a.elements.len().max(1)
+        }
+        scalar => scalar.text(text).chars().count(),
+    }
+}
+
+/// Writes a value on one line.
+fn lay_flat(value: &Ast, text: &str, out: &mut String) {
+    match value {
+        Ast::Object(o) if o.properties.is_empty() => out.push_str("{}"),
+        Ast::Object(o) => {
+            for (i, property) in o.properties.iter().enumerate() {
+                out.push_str(if i == 0 { "{ " } else { ", " });
+                out.push_str(name_text(property, text));
+                out.push_str(": ");
+                lay_flat(&property.value, text, out);
+            }
+            out.push_str(" }");
+        }
+        Ast::Array(a) => {
+            out.push('[');
+            for (i, element) in a.elements.iter().enumerate() {
+                if i > 0 {
+                    out.push_str(", ");
+                }
+                lay_flat(element, text, out);
+            }
+            out.push(']');
+        }
+        scalar => out.push_str(scalar.text(text)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_saved_scene_reads_like_one_written_by_hand() {
+        let text = to_json(&Scene::default(), Some("./scene.schema.json"), &Registry::builtin());
+        assert_eq!(
+            text,
+            r#"{
+  "$schema": "./scene.schema.json",
+  "name": "Default scene",
+  "description": "One white point light, one matte sphere: the scene to start from.",
+  "scene_size": { "height": 10, "width": 10, "depth": 10 },
+  "reflection_model": "lambert",
+  "shading_model": "gouraud",
+  "lights": [
+    { "type": "point", "position": [7.5, 8, 9], "colour": [255, 255, 255], "intensity": 20 }
+  ],
+  "observer": { "position": [5, 5, 9.5], "direction": [0, 0, -1], "field_of_view": 45 },
+  "objects": [
+    { "type": "sphere", "position": [5, 5, 5], "size": 2 }
+  ]
+}
+"#
+        );
+    }
+
+    #[test]
+    fn numbers_are_as_short_as_they_can_be_and_read_back_exactly() {
+        for (v, expected) in [
+            (0.1, "0.1"),
+            (2.0, "2"),
+            (-0.0, "-0"),
+            (f32::MAX, "3.4028235e38"),
+            (f32::MIN_POSITIVE, "1.1754944e-38"),
+            (1.0 / 3.0, "0.33333334"),
+        ] {
+            let mut text = Vec::new();
+            ShortNumbers.write_f32(&mut text, v).expect("memory takes all");
+            let text = String::from_utf8(text).expect("numbers are ASCII");
+            assert_eq!(text, expected);
+            assert_eq!(text.parse::<f32>().map(f32::to_bits), Ok(v.to_bits()));
+        }
+    }
+}

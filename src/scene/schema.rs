@@ -1,0 +1,245 @@
+//! The JSON Schema of scene files, for editors: the types of [`format`](super::format) plus what the
+//! registry knows.
+
+use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
+use serde_json::{Map, Value as Json, json};
+
+use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile};
+use crate::{
+    light::MAX_LIGHTS,
+    optics::{colour::Encoding, tone::ToneMapping},
+    reflection::parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
+    registry::Registry,
+};
+
+/// The file name of the schema beside the shipped scenes; what their `$schema` says.
+pub const FILE_NAME: &str = "scene.schema.json";
+
+/// The JSON Schema (draft 2020-12) of scene files.
+///
+/// A schema can say less than [`check`](super::check): it knows nothing of the size of the room that a
+/// position must be in, nor of things that coincide.
+#[must_use]
+pub fn schema(registry: &Registry) -> Json {
+    let settings = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);
+    let generator = SchemaGenerator::new(settings);
+    let mut schema = generator_root::<SceneFile<'static>>(generator);
+    tidy(&mut schema);
+
+    let models = || registry.models().iter().map(|m| &m.declaration).map(|d| (d.id, d.name, d.summary));
+    let modes = || registry.modes().iter().map(|m| &m.declaration).map(|d| (d.id, d.name, d.summary));
+    let scene = &mut schema["properties"];
+    choose(&mut scene["reflection_model"], models());
+    choose(&mut scene["shading_model"], modes());
+    scene["reflection_model"]["default"] = super::DEFAULT_REFLECTION_MODEL.into();
+    scene["shading_model"]["default"] = super::DEFAULT_SHADING_MODEL.into();
+    let tones = ToneMapping::ALL.map(|t| (t.id(), t.name(), ""));
+    choose(&mut scene["display"]["properties"]["tone_mapping"], tones.into_iter());
+    let encodings = Encoding::ALL.map(|e| (e.id(), e.id(), ""));
+    choose(&mut scene["display"]["properties"]["encoding"], encodings.into_iter());
+    place(&mut scene["observer"]["properties"]["position"]);
+    lights(&mut scene["lights"], registry);
+    objects(&mut scene["objects"], registry);
+    let fields = &mut scene["objects"]["items"]["properties"];
+    choose(&mut fields["reflection_model"], models());
+    choose(&mut fields["shading_model"], modes());
+    schema
+}
+
+/// The schema as it is shipped and printed, with a line break at the end.
+#[must_use]
+pub fn text(registry: &Registry) -> String {
+    format!("{:#}\n", schema(registry))
+}
+
+/// The schema of a type as plain JSON.
+fn generator_root<T: JsonSchema>(generator: SchemaGenerator) -> Json {
+    generator.into_root_schema_for::<T>().to_value()
+}
+
+/// Optional fields may be absent, but not `null`; and the formats of numbers are ours alone.
+fn tidy(schema: &mut Json) {
+    match schema {
+        Json::Object(map) => {
+            if let Some(Json::Array(types)) = map.get_mut("type") {
+                types.retain(|t| t != "null");
+                if let [only] = types.as_slice() {
+                    let only = only.clone();
+                    map.insert("type".to_owned(), only);
+                }
+            }
+            if let Some(Json::Array(choices)) = map.get_mut("anyOf") {
+                choices.retain(|c| c["type"] != "null");
+                if let [Json::Object(only)] = choices.as_slice() {
+                    let only = only.clone();
+                    map.remove("anyOf");
+                    for (key, value) in only {
+                        map.entry(key).or_insert(value);
+                    }
+                }
+            }
+            if map.get("format").is_some_and(Json::is_string) {
+                map.remove("format");
+            }
+            // Documentation comments are wrapped where the source is; editors wrap by themselves.
+            if let Some(Json::String(text)) = map.get_mut("description") {
+                *text = text.replace('\n', " ");
+            }
+            map.values_mut().for_each(tidy);
+        }
+        Json::Array(items) => items.iter_mut().for_each(tidy),
+        _ => {}
+    }
+}
+
+/// One of several ids; editors show the names and summaries beside them.
+fn choose<'a>(field: &mut Json, choices: impl Iterator<Item = (&'a str, &'a str, &'a str)>) {
+    let (mut ids, mut told) = (Vec::new(), Vec::new());
+    for (id, name, summary) in choices {
+        ids.push(Json::from(id));
+        told.push(Json::from(if summary.is_empty() { name.to_owned() } else { format!("{name}: {summary}") }));
+    }
+    field["enum"] = ids.into();
+    field["enumDescriptions"] = told.into();
+}
+
+/// A position: inside the largest legal room.
+fn place(field: &mut Json) {
+    field["items"]["exclusiveMinimum"] = 0.into();
+    field["items"]["maximum"] = number(MAX_DIMENSION);
+}
+
+/// The lights: one variant per type, told apart by `type`.
+fn lights(list: &mut Json, registry: &Registry) {
+    list["minItems"] = 1.into();
+    list["maxItems"] = MAX_LIGHTS.into();
+    let light = &mut list["items"];
+    let declarations = || registry.lights().iter().map(|l| l.declaration);
+    let fields = &mut light["properties"];
+    choose(&mut fields["type"], declarations().map(|d| (d.id, d.name, d.summary)));
+    place(&mut fields["position"]);
+    for p in declarations().flat_map(|d| d.parameters) {
+        fields[p.name] = parameter(p);
+    }
+    let kinds = declarations().map(|d| {
+        let mut required = Vec::new();
+        let mut properties = Map::new();
+        for (field, has) in [("position", d.has_position), ("direction", d.has_direction)] {
+            if has {
+                required.push(field);
+            } else {
+                properties.insert(field.to_owned(), false.into());
+            }
+        }
+        for other in declarations().flat_map(|o| o.parameters) {
+            if !d.parameters.iter().any(|p| p.name == other.name) {
+                properties.insert(other.name.to_owned(), false.into());
+            }
+        }
+        let intensity = json!({
+            "description": format!("How bright it is, {}.", if d.unit == "cd" { "candela (cd)" } else { "lux (lx)" }),
+            "default": number(d.default_intensity),
+        });
+        properties.insert("intensity".to_owned(), intensity);
+        json!({
+            "if": { "properties": { "type": { "const": d.id } }, "required": ["type"] },
+            "then": { "required": required, "properties": properties },
+        })
+    });
+    light["allOf"] = kinds.collect::<Vec<_>>().into();
+    list["items"]["defaultSnippets"] = json!([{
+        "label": "point light",
+        "body": { "type": "point", "position": [5, 9, 5], "colour": [255, 255, 255], "intensity": 20 },
+    }]);
+}
+
+/// The objects.
+fn objects(list: &mut Json, registry: &Registry) {
+    list["minItems"] = 1.into();
+    list["maxItems"] = MAX_OBJECTS.into();
+    let object = &mut list["items"];
+    let declarations = || registry.shapes().iter().map(|s| s.declaration);
+    let fields = &mut object["properties"];
+    choose(&mut fields["type"], declarations().map(|d| (d.id, d.name, d.summary)));
+    place(&mut fields["position"]);
+    let mut parameters = Map::new();
+    for p in registry.material_parameters() {
+        let mut field = parameter(p);
+        let models = registry.models().iter().filter(|m| m.parameter(p.name).is_some());
+        let names: Vec<_> = models.map(|m| m.declaration.name).collect();
+        let help = format!("{} Used by: {}.", p.help, names.join(", "));
+        field["description"] = help.into();
+        parameters.insert(p.name.to_owned(), field);
+    }
+    fields["material"]["properties"] = parameters.into();
+    fields["material"]["additionalProperties"] = false.into();
+    let kinds = declarations().map(|d| {
+        json!({
+            "if": { "properties": { "type": { "const": d.id } }, "required": ["type"] },
+            "then": { "properties": { "tessellation": {
+                "minimum": d.tessellation.start(),
+                "maximum": d.tessellation.end(),
+                "default": d.default_tessellation,
+                "description": d.tessellation_help,
+            } } },
+        })
+    });
+    object["allOf"] = kinds.collect::<Vec<_>>().into();
+    object["defaultSnippets"] = json!([{
+        "label": "sphere",
+        "body": { "type": "sphere", "position": [5, 5, 5], "size": 2, "material": { "base_colour": [255, 255, 255] } },
+    }]);
+}
+
+/// A declared parameter.
+fn parameter(p: &Parameter) -> Json {
+    let unit = if p.unit.is_empty() { String::new() } else { format!(", {}", p.unit) };
+    let mut field = match &p.kind {
+        ParameterKind::Number { min, max, .. } if *min == ABOVE_ZERO => {
+            json!({ "type": "number", "exclusiveMinimum": 0, "maximum": number(*max) })
+        }
+        ParameterKind::Number { min, max, .. } => {
+            json!({ "type": "number", "minimum": number(*min), "maximum": number(*max) })
+        }
+        ParameterKind::Integer { min, max, .. } => {
+            let mut field = json!({ "type": "integer", "minimum": min });
+            if let Some(max) = max {
+                field["maximum"] = (*max).into();
+            }
+            field
+        }
+        ParameterKind::Colour { .. } => json!({
+            "type": "array",
+            "items": { "type": "integer", "minimum": 0, "maximum": 255 },
+            "minItems": 3,
+            "maxItems": 3,
+        }),
+        ParameterKind::Choice { options, .. } => {
+            let mut field = json!({ "type": "string" });
+            choose(&mut field, options.iter().map(|(id, name)| (*id, *name, "")));
+            field
+        }
+    };
+    field["title"] = format!("{} ({}{unit})", p.label, p.symbol).into();
+    field["description"] = p.help.into();
+    field["default"] = value(&p.default_value());
+    field
+}
+
+/// The value of a parameter.
+pub(crate) fn value(value: &Value) -> Json {
+    match value {
+        Value::Number(v) => number(*v),
+        Value::Integer(v) => (*v).into(),
+        Value::Colour(rgb) => json!(rgb),
+        Value::Choice(v) => v.as_ref().into(),
+    }
+}
+
+/// The number that a person would write: 0.1, and not its nearest 32-bit neighbour in 64 bits.
+pub(crate) fn number(v: f32) -> Json {
+    if v.fract() == 0.0 && v.abs() < 1e9 {
+        return (v as i64).into();
+    }
+    v.to_string().parse::<f64>().ok().and_then(serde_json::Number::from_f64).map_or(Json::Null, Json::Number)
+}
