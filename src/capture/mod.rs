@@ -1,1 +1,3 @@
-//! Placeholder.
+//! Rendering without a window; PNG files.
+
+pub mod png;
