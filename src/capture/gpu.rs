@@ -111,7 +111,7 @@ pub fn wgpu_settings() -> WgpuSettings {
 
 /// The device of this process. All renderers without a window share it: making one takes longer than
 /// drawing a picture.
-fn device() -> Result<RenderResources, GpuError> {
+pub(super) fn device() -> Result<RenderResources, GpuError> {
     static DEVICE: OnceLock<Option<RenderResources>> = OnceLock::new();
     DEVICE
         .get_or_init(|| {

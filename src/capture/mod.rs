@@ -1,3 +1,5 @@
-//! Rendering without a window.
+//! Rendering without a window; PNG files.
 
+pub mod evaluate;
 pub mod gpu;
+pub mod png;
