@@ -167,6 +167,20 @@ impl GpuRenderer {
     /// # Errors
     /// [`GpuError::NoAdapter`] when there is no driver.
     pub fn new(width: u32, height: u32, samples: u8, output: Output) -> Result<Self, GpuError> {
+        Self::extended(width, height, samples, output, |_| {})
+    }
+
+    /// As [`new`](Self::new), with more models, modes, lights or shapes registered by `extend`.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn extended(
+        width: u32,
+        height: u32,
+        samples: u8,
+        output: Output,
+        extend: impl FnOnce(&mut App),
+    ) -> Result<Self, GpuError> {
         let resources = device()?;
         let mut app = App::new();
         app.add_plugins(
@@ -187,6 +201,7 @@ impl GpuRenderer {
                 .disable::<LogPlugin>(),
         )
         .add_plugins(ScenePlugin);
+        extend(&mut app);
 
         let mut image = Image::new_target_texture(width, height, output.format(), None);
         image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
