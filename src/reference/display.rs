@@ -58,8 +58,7 @@ impl Encoder {
     }
 
     fn encode(&self, x: f32) -> u8 {
-        // Also true of NaN.
-        if !(x > 0.0) {
+        if x.is_nan() || x <= 0.0 {
             return 0;
         }
         if x >= 1.0 {

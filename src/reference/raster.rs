@@ -346,10 +346,8 @@ impl<const S: usize> Tile<S> {
                 if visible {
                     let varying = triangle.varying(here.map(|e| (e as f64 * per_area) as f32));
                     let colour = (mode.pixel)(lighting, &varying, triangle.face_normal);
-                    for s in 0..S {
-                        if covered[s] {
-                            self.colour[pixel][s] = colour;
-                        }
+                    for (sample, _) in self.colour[pixel].iter_mut().zip(covered).filter(|(_, c)| *c) {
+                        *sample = colour;
                     }
                 }
             }
