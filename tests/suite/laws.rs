@@ -175,8 +175,8 @@ fn light_may_go_backwards_where_that_is_declared_and_somewhere_it_may_not_where_
 }
 
 /// The fraction of light from direction `v` that leaves the surface in any direction, largest channel:
-/// `∫ f_r cos θ dω`, by the midpoint rule over the half sphere of half vectors or of directions,
-/// whichever the integrand is gathered in. `rows` squared times four evaluations.
+/// `∫ f_r cos θ dω` by the midpoint rule in polar coordinates around the mirror direction, with `rows`
+/// steps of the polar angle and twice as many of the azimuth.
 fn albedo(surface: &dyn Surface, v: Vec3, frame: &Frame, rows: usize) -> f32 {
     let mut sum = Vec3::ZERO;
     // Polar coordinates around the mirror direction, spaced cubically, so that narrow lobes are
