@@ -15,6 +15,10 @@
 //!
 //! Kinds of objects, lights, models and modes are looked up in the registry. A scene that was checked
 //! names only known ones; an object or light of an unknown kind is left out.
+//!
+//! A mode of [`Stage::Vertex`] or [`Stage::Pixel`] is asked once per vertex, which polygons share: the
+//! face normal and centre of its [`Corner`] are then the vertex's own normal and position. A mode of
+//! [`Stage::Polygon`] is asked once per polygon, at its centre.
 
 use std::collections::HashMap;
 

@@ -235,12 +235,14 @@ impl Triangle {
             scaled = std::array::from_fn(|i| weights[i] * self.inverse_w[i]);
             sum = scaled.iter().sum();
         }
-        let [a, b, c] = scaled.map(|s| s / sum);
+        // From the first corner on: what is the same at all three stays exactly that.
+        let (b, c) = (scaled[1] / sum, scaled[2] / sum);
         let [p, q, r] = &self.varyings;
+        let between = |p: Vec3, q: Vec3, r: Vec3| p + (q - p) * b + (r - p) * c;
         Varying {
-            position: p.position * a + q.position * b + r.position * c,
-            normal: p.normal * a + q.normal * b + r.normal * c,
-            colour: p.colour * a + q.colour * b + r.colour * c,
+            position: between(p.position, q.position, r.position),
+            normal: between(p.normal, q.normal, r.normal),
+            colour: between(p.colour, q.colour, r.colour),
         }
     }
 }
@@ -344,10 +346,8 @@ impl<const S: usize> Tile<S> {
                 if visible {
                     let varying = triangle.varying(here.map(|e| (e as f64 * per_area) as f32));
                     let colour = (mode.pixel)(lighting, &varying, triangle.face_normal);
-                    for s in 0..S {
-                        if covered[s] {
-                            self.colour[pixel][s] = colour;
-                        }
+                    for (sample, _) in self.colour[pixel].iter_mut().zip(covered).filter(|(_, c)| *c) {
+                        *sample = colour;
                     }
                 }
             }

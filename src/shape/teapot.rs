@@ -157,7 +157,7 @@ impl ObjectType for Teapot {
         glyph: "☕",
         tessellation_help: "Polygons along each side of each of the 32 Bézier patches.",
         tessellation: 2..=32,
-        default_tessellation: 8,
+        default_tessellation: 10,
     };
 
     fn mesh(tessellation: u32) -> PolygonMesh {

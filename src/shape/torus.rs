@@ -22,7 +22,7 @@ impl ObjectType for Torus {
         glyph: "◎",
         tessellation_help: "Segments around the tube; twice as many go around the ring.",
         tessellation: 3..=128,
-        default_tessellation: 24,
+        default_tessellation: 32,
     };
 
     fn mesh(tessellation: u32) -> PolygonMesh {
