@@ -12,8 +12,8 @@ use crate::{
     observer::camera::follow_scene,
     optics::TermSelection,
     reflection::swap::{self, ComposedShaders, ShapeMeshes},
-    registry::register_builtin,
-    scene::spawn::{CurrentScene, LightSource, SceneEntities, absorb, reconcile},
+    registry::{Registry, register_builtin},
+    scene::spawn::{CurrentScene, SceneEntities, absorb, reconcile},
 };
 
 /// The order of everything that the lab does in a frame. Systems are ordered through these sets only.
@@ -79,23 +79,16 @@ impl Plugin for ScenePlugin {
 fn upload_lights(
     scene: Res<CurrentScene>,
     terms: Res<ShownTerms>,
-    entities: Res<SceneEntities>,
-    registry: Res<crate::registry::Registry>,
+    registry: Res<Registry>,
     buffer: Res<IlluminationBuffer>,
-    lights: Query<&LightSource>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
     mut last: Local<Vec<u8>>,
 ) {
-    if !scene.is_changed() && !terms.is_changed() && !entities.is_changed() && !last.is_empty() {
+    if !scene.is_changed() && !terms.is_changed() && !last.is_empty() {
         return;
     }
     let display = &scene.0.display;
-    let records: Vec<_> = entities
-        .lights
-        .iter()
-        .filter_map(|e| lights.get(*e).ok())
-        .map(|l| record(&l.0, &registry, display.encoding))
-        .collect();
+    let records: Vec<_> = scene.0.lights.iter().map(|l| record(l, &registry, display.encoding)).collect();
     let bytes = illumination_bytes(&records, terms.0, display);
     if *last != bytes {
         if let Some(mut buffer) = buffers.get_mut(&buffer.0) {

@@ -44,6 +44,9 @@ pub struct SceneEntities {
     pub objects: Vec<Entity>,
     /// The observer.
     pub observer: Option<Entity>,
+    /// The scene that the entities stood for when the two were last made equal. What differs from it
+    /// in the scene was edited there, what differs in the entities was edited there.
+    mirrored: Option<Scene>,
 }
 
 /// The transform of an object: unit mesh → size → rotation → position.
@@ -89,6 +92,9 @@ pub fn reconcile(
     objects: Query<&LitObject>,
     eyes: Query<&Eye>,
 ) {
+    let mirrored = entities.mirrored.replace(scene.0.clone());
+    let mirrored_light = |i: usize| mirrored.as_ref().and_then(|s| s.lights.get(i));
+    let mirrored_object = |i: usize| mirrored.as_ref().and_then(|s| s.objects.get(i));
     let Scene { lights: wanted_lights, objects: wanted_objects, observer, .. } = &scene.0;
 
     let keep = wanted_lights.len().min(entities.lights.len());
@@ -97,7 +103,7 @@ pub fn reconcile(
     }
     for (i, light) in wanted_lights.iter().enumerate() {
         let current = entities.lights.get(i).and_then(|e| lights.get(*e).ok());
-        if current.map(|c| &c.0) == Some(light) {
+        if current.is_some() && mirrored_light(i) == Some(light) {
             continue;
         }
         let old_kind = current.map(|c| c.0.kind.as_str());
@@ -130,7 +136,7 @@ pub fn reconcile(
     }
     for (i, object) in wanted_objects.iter().enumerate() {
         let current = entities.objects.get(i).and_then(|e| objects.get(*e).ok());
-        if current.map(|c| &c.0) == Some(object) {
+        if current.is_some() && mirrored_object(i) == Some(object) {
             continue;
         }
         let parts =
@@ -151,7 +157,7 @@ pub fn reconcile(
 
     match entities.observer.filter(|e| eyes.contains(*e)) {
         Some(e) => {
-            if eyes.get(e).is_ok_and(|eye| eye.0 != *observer) {
+            if mirrored.is_none_or(|s| s.observer != *observer) {
                 commands.entity(e).insert((Eye(*observer), observer_transform(observer)));
             }
         }
@@ -166,15 +172,11 @@ pub fn reconcile(
 /// values. What [`reconcile`] wrote itself compares equal and changes nothing.
 pub fn absorb(
     mut scene: ResMut<CurrentScene>,
-    entities: Res<SceneEntities>,
+    mut entities: ResMut<SceneEntities>,
     lights: Query<(Ref<LightSource>, Ref<Transform>)>,
     objects: Query<(Ref<LitObject>, Ref<Transform>)>,
     eyes: Query<(Ref<Eye>, Ref<Transform>)>,
 ) {
-    if scene.is_changed() {
-        // The entities follow first; what they were is no longer wanted.
-        return;
-    }
     let mut next = None;
     for (i, entity) in entities.lights.iter().enumerate() {
         let Ok((source, transform)) = lights.get(*entity) else { continue };
@@ -220,6 +222,7 @@ pub fn absorb(
         }
     }
     if let Some(next) = next {
+        entities.mirrored = Some(next.clone());
         scene.0 = next;
     }
 }

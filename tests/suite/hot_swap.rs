@@ -108,18 +108,18 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
     let light = world.resource::<SceneEntities>().lights[0];
     world.get_mut::<LightSource>(light).expect("the light is an entity").0.colour = [0, 0, 255];
     let blue = frame(&mut renderer);
-    assert_ne!(before, blue);
+    assert!(before != blue, "the colour shows");
 
     let world = renderer.app().world_mut();
     world.get_mut::<bevy::prelude::Transform>(light).expect("lights have a place").translation.x = 3.0;
     let moved = frame(&mut renderer);
-    assert_ne!(blue, moved);
+    assert!(blue != moved, "the place shows");
 
     let world = renderer.app().world_mut();
     let object = world.resource::<SceneEntities>().objects[0];
     world.get_mut::<LitObject>(object).expect("the object is an entity").0.kind = "cube".to_owned();
     let cube = frame(&mut renderer);
-    assert_ne!(moved, cube);
+    assert!(moved != cube, "the shape shows");
 
     let scene = &renderer.app().world().resource::<lights_camera_models::scene::spawn::CurrentScene>().0;
     assert_eq!(scene.lights[0].colour, [0, 0, 255]);
