@@ -1,0 +1,137 @@
+//! What several tests need.
+
+use std::{
+    fs,
+    io::Write as _,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+};
+
+use lights_camera_models::{
+    registry::Registry,
+    scene::{
+        Scene,
+        load::{self, Defaults},
+        save,
+    },
+};
+use serde_json::{Value, json};
+
+/// The folder of the package.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The shipped scenes.
+pub fn shipped_scenes() -> Vec<PathBuf> {
+    let mut scenes: Vec<_> = fs::read_dir(root().join("scenes"))
+        .expect("the folder scenes is there")
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "json"))
+        .filter(|path| !path.to_string_lossy().ends_with(".schema.json"))
+        .collect();
+    scenes.sort();
+    assert!(!scenes.is_empty());
+    scenes
+}
+
+/// A scene that gives every field, as JSON to break.
+pub fn full_scene() -> Value {
+    json!({
+        "name": "Everything",
+        "description": "Gives every field.",
+        "scene_size": { "height": 10, "width": 20, "depth": 30.5 },
+        "reflection_model": "phong",
+        "shading_model": "phong",
+        "lights": [
+            { "type": "point", "name": "lamp", "position": [1, 2, 3], "colour": [255, 250, 240], "intensity": 20 },
+            { "type": "spot", "position": [2, 2, 3], "direction": [0, -1, 0], "cone_angle": 20, "penumbra": 0.5 },
+            { "type": "directional", "direction": [0, -1, -1], "intensity": 2.5 },
+            { "type": "ambient", "intensity": 0.1 }
+        ],
+        "observer": { "position": [5, 5, 9.5], "direction": [0, 0, -1], "field_of_view": 45 },
+        "objects": [
+            { "type": "sphere", "name": "ball", "position": [5, 5, 5], "size": 2, "rotation": [0, 45, 0],
+              "tessellation": 20, "reflection_model": "blinn_phong", "shading_model": "flat",
+              "material": { "base_colour": [200, 100, 50], "specular_colour": [255, 255, 255], "k_a": 0.1,
+                            "k_d": 0.8, "k_s": 0.5, "alpha": 32, "wrap_exponent": 1.5 } },
+            { "type": "cube", "position": [8, 5, 5] }
+        ],
+        "display": { "tone_mapping": "aces", "exposure": -1.5, "encoding": "srgb" }
+    })
+}
+
+/// The full scene with one change.
+pub fn changed(change: impl FnOnce(&mut Value)) -> String {
+    let mut scene = full_scene();
+    change(&mut scene);
+    format!("{scene:#}")
+}
+
+/// What reading a text says; empty if it is a valid scene.
+pub fn said(text: &str) -> String {
+    said_of_bytes(text.as_bytes())
+}
+
+/// What reading bytes says; empty if they are a valid scene.
+pub fn said_of_bytes(bytes: &[u8]) -> String {
+    match load::from_bytes(bytes, "scene.json", &Registry::builtin(), Defaults::Refuse) {
+        Ok(_) => String::new(),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// Reads a valid scene.
+pub fn read(text: &str) -> Scene {
+    match load::from_text(text, "scene.json", &Registry::builtin(), Defaults::Refuse) {
+        Ok(loaded) => loaded.scene,
+        Err(error) => panic!("{error}\n{text}"),
+    }
+}
+
+/// The text of a scene file.
+pub fn written(scene: &Scene) -> String {
+    save::to_json(scene, None, &Registry::builtin())
+}
+
+/// What a run of the program gave.
+pub struct Run {
+    pub status: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl From<Output> for Run {
+    fn from(output: Output) -> Self {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("output is UTF-8");
+        let run = Self { status: output.status.code(), out: text(output.stdout), err: text(output.stderr) };
+        assert!(!run.err.contains("panicked"), "{}", run.err);
+        run
+    }
+}
+
+/// Runs the program in a folder, with an input.
+pub fn lcm_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Run {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lcm"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("piped");
+    let input = input.to_vec();
+    let feeder = std::thread::spawn(move || {
+        // The program may end without reading everything.
+        let _ = stdin.write_all(&input);
+    });
+    let output = child.wait_with_output().expect("the program ends");
+    feeder.join().expect("no panic");
+    output.into()
+}
+
+/// Runs the program.
+pub fn lcm(arguments: &[&str], input: &str) -> Run {
+    lcm_in(root(), arguments, input.as_bytes())
+}
