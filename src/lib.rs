@@ -19,6 +19,7 @@
 //! - [`capture`]: rendering without a window, PNG files.
 //! - [`panel`]: the window.
 //! - [`app`]: the plugins and the order of the systems.
+//! - [`cli`]: the command line.
 
 pub mod optics;
 
@@ -38,3 +39,4 @@ pub mod panel;
 pub mod reference;
 
 pub mod app;
+pub mod cli;

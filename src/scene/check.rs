@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     light::{LightEntry, MAX_LIGHTS},
+    optics::{colour::Encoding, tone::ToneMapping},
     reflection::parameter::{Parameter, ParameterKind, Value, Values},
     registry::Registry,
     shape::ShapeEntry,
@@ -124,7 +125,7 @@ pub fn parameter(parameter: &Parameter, value: &Value) -> Rule {
 }
 
 /// The rule of [`parameter`].
-pub(super) fn parameter_rule(parameter: &Parameter) -> String {
+pub(crate) fn parameter_rule(parameter: &Parameter) -> String {
     format!("the {} must be {}{}", parameter.label, parameter.rule(), unit(parameter))
 }
 
@@ -181,6 +182,16 @@ pub fn light_type(registry: &Registry, id: &str) -> Rule {
 /// The id of an object type.
 pub fn object_type(registry: &Registry, id: &str) -> Rule {
     one_of("the object type", id, registry.shapes().iter().map(|s| (s.declaration.id, s.declaration.name)))
+}
+
+/// The id of a tone mapping.
+pub fn tone_mapping(id: &str) -> Rule {
+    one_of("the tone mapping", id, ToneMapping::ALL.into_iter().map(|t| (t.id(), t.name())))
+}
+
+/// The id of an encoding.
+pub fn encoding(id: &str) -> Rule {
+    one_of("the encoding", id, Encoding::ALL.into_iter().map(|e| (e.id(), e.id())))
 }
 
 /// How many lights a scene has.
@@ -274,8 +285,7 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     problems.add(reflection_model(registry, &scene.reflection_model), || {
         id("reflection_model", &scene.reflection_model)
     });
-    problems
-        .add(shading_model(registry, &scene.shading_model), || id("shading_model", &scene.shading_model));
+    problems.add(shading_model(registry, &scene.shading_model), || id("shading_model", &scene.shading_model));
 
     let count = |n: usize, what: &str| match n {
         0 => "empty".to_owned(),
@@ -555,12 +565,14 @@ mod tests {
 
     #[test]
     fn lights_have_what_their_type_has() {
-        let mut s = Scene::default();
-        s.lights = vec![
-            Light { kind: "spot".into(), direction: None, ..Light::default() },
-            Light { kind: "ambient".into(), ..Light::default() },
-            Light { kind: "spott".into(), ..Light::default() },
-        ];
+        let mut s = Scene {
+            lights: vec![
+                Light { kind: "spot".into(), direction: None, ..Light::default() },
+                Light { kind: "ambient".into(), ..Light::default() },
+                Light { kind: "spott".into(), ..Light::default() },
+            ],
+            ..Scene::default()
+        };
         s.lights[1].parameters.set("cone_angle", Value::Number(20.0));
         assert_eq!(
             messages(&s),

@@ -313,7 +313,9 @@ impl LoadError {
                 ..Problem::about(Path::root(), format!("is not JSON: {what}"))
             }],
             Self::Missing { missing, .. } => missing.iter().map(Missing::problem).collect(),
-            Self::NotFound { .. } => vec![Problem::about(Path::root(), "could not be read: there is no such file")],
+            Self::NotFound { .. } => {
+                vec![Problem::about(Path::root(), "could not be read: there is no such file")]
+            }
             Self::Folder { .. } => vec![Problem::about(Path::root(), "could not be read: it is a folder")],
             Self::PermissionDenied { .. } => {
                 vec![Problem::about(Path::root(), "could not be read: no permission")]

@@ -269,7 +269,8 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
             .map_or("where a value was expected".to_owned(), |(_, ours)| format!("within {ours}"));
         return (text.len(), format!("the file ends {within}; it seems to be cut off"));
     }
-    let line_start: usize = text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
+    let line_start: usize =
+        text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
     let mut at = (line_start + error.column().saturating_sub(1)).min(text.len());
     while !text.is_char_boundary(at) {
         at -= 1;
@@ -322,9 +323,14 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
                 format!("expected the end of the file after the scene, not {}", shown(found, word))
             }
             "invalid number" => format!("{} is not a number as JSON writes them", shown(found, word)),
-            "expected ident" => format!("{word} is not JSON; only true, false and null stand without quotes"),
+            "expected ident" => {
+                at = start;
+                format!("{word} is not JSON; only true, false and null stand without quotes")
+            }
             s if s.starts_with("control character") => {
-                "a line break or control character within a text; end the text with \" or write \\n".to_owned()
+                at += rest.find(char::is_control).unwrap_or_default();
+                "a line break or control character within a text; end the text with \" or write \\n"
+                    .to_owned()
             }
             s if s.starts_with("expected") => format!("{s}, not {}", shown(found, word)),
             s => s.to_owned(),

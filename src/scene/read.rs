@@ -144,7 +144,10 @@ pub(super) fn scene(
     problems.sort_by_key(|(at, _)| *at);
     let problems = problems
         .into_iter()
-        .map(|(at, problem)| Problem { place: Some(problem.place.unwrap_or_else(|| lines.place(at))), ..problem })
+        .map(|(at, problem)| Problem {
+            place: Some(problem.place.unwrap_or_else(|| lines.place(at))),
+            ..problem
+        })
         .collect();
     Err(LoadError::Invalid { name: name.to_owned(), problems })
 }
@@ -223,7 +226,8 @@ impl Reader<'_> {
         match fields.get("observer") {
             None => self.lacking(&fields, "observer", "a scene needs one observer"),
             Some(Ast::Array(list)) => {
-                let predicate = format!("is a list of {}, but a scene has exactly one observer", list.elements.len());
+                let predicate =
+                    format!("is a list of {}, but a scene has exactly one observer", list.elements.len());
                 self.report(list.start(), Problem::about(path.key("observer"), predicate));
             }
             Some(value) => scene.observer = self.observer(value),
@@ -350,9 +354,9 @@ impl Reader<'_> {
                 Some(shape) => check::tessellation_rule(shape),
                 None => "the tessellation must be a whole number".to_owned(),
             };
-            object.tessellation = self
-                .integer(value, &path, "tessellation", &rule)
-                .and_then(|count| u32::try_from(count).map_err(|_| self.wrong(value, &path, "tessellation", &rule)).ok());
+            object.tessellation = self.integer(value, &path, "tessellation", &rule).and_then(|count| {
+                u32::try_from(count).map_err(|_| self.wrong(value, &path, "tessellation", &rule)).ok()
+            });
         }
         for (key, to) in
             [("reflection_model", &mut object.reflection_model), ("shading_model", &mut object.shading_model)]
@@ -391,12 +395,10 @@ impl Reader<'_> {
         let path = Path::root().key("display");
         let mut display = Display::default();
         let Some(fields) = self.fields(value, path.clone(), DISPLAY_KEYS, "display") else { return display };
-        let tones = ToneMapping::ALL.map(|t| (t.id(), t.name()));
-        if let Some(id) = self.choice(&fields, "tone_mapping", "the tone mapping", &tones) {
+        if let Some(id) = self.choice(&fields, "tone_mapping", check::tone_mapping) {
             display.tone_mapping = ToneMapping::from_id(&id).unwrap_or_default();
         }
-        let encodings = Encoding::ALL.map(|e| (e.id(), e.id()));
-        if let Some(id) = self.choice(&fields, "encoding", "the encoding", &encodings) {
+        if let Some(id) = self.choice(&fields, "encoding", check::encoding) {
             display.encoding = Encoding::ALL.into_iter().find(|e| e.id() == id).unwrap_or_default();
         }
         if let Some(value) = fields.get("exposure") {
@@ -460,7 +462,8 @@ impl Reader<'_> {
             self.report(value.start(), Problem::value(path, self.describe(value), rule));
             return None;
         };
-        let mut fields: Vec<(&'static str, &'b ObjectProp<'a>)> = Vec::with_capacity(object.properties.len().min(16));
+        let mut fields: Vec<(&'static str, &'b ObjectProp<'a>)> =
+            Vec::with_capacity(object.properties.len().min(16));
         for property in &object.properties {
             let written = property.name.as_str();
             match canonical(written, known) {
@@ -493,7 +496,8 @@ impl Reader<'_> {
             "; it is a parameter of the material: write it in \"material\"".to_owned()
         } else {
             let others = OTHER_WORDS.iter().copied().filter(|(_, key)| known.contains(key));
-            let labels = self.registry.material_parameters().flat_map(|p| [(p.label, p.name), (p.symbol, p.name)]);
+            let labels =
+                self.registry.material_parameters().flat_map(|p| [(p.label, p.name), (p.symbol, p.name)]);
             let labels = labels.filter(|_| what == "a material");
             let spelling = written.replace("color", "colour");
             match check::nearest(&spelling, known.iter().map(|k| (*k, *k)).chain(others).chain(labels)) {
@@ -516,13 +520,11 @@ impl Reader<'_> {
         &mut self,
         fields: &Fields,
         key: &'static str,
-        what: &str,
-        known: &[(&'static str, &'static str)],
+        check: fn(&str) -> check::Rule,
     ) -> Option<String> {
         let value = fields.get(key)?;
-        let rule = rule_of(check::one_of(what, "", known.iter().copied()));
-        let id = self.string(value, &fields.path, key, &rule)?;
-        if let Err(rule) = check::one_of(what, &id, known.iter().copied()) {
+        let id = self.string(value, &fields.path, key, &rule_of(check("")))?;
+        if let Err(rule) = check(&id) {
             self.wrong(value, &fields.path, key, &rule);
             return None;
         }
@@ -576,7 +578,10 @@ impl Reader<'_> {
                 Some(number) => vector[i] = number,
                 None => {
                     let found = self.describe(element);
-                    self.report_only(element.start(), Problem::value(path.key(key).index(i), found, rule.clone()));
+                    self.report_only(
+                        element.start(),
+                        Problem::value(path.key(key).index(i), found, rule.clone()),
+                    );
                     self.reported.insert(path.key(key));
                 }
             }
@@ -737,7 +742,8 @@ fn locate<'b, 'a>(root: &'b Ast<'a>, path: &Path) -> (usize, Option<&'b Ast<'a>>
             (Segment::Key(key), Ast::Object(object)) => {
                 let same = |p: &&ObjectProp| {
                     let written = p.name.as_str();
-                    written == key || (written.contains("color") && written.replace("color", "colour") == *key)
+                    written == key
+                        || (written.contains("color") && written.replace("color", "colour") == *key)
                 };
                 object.properties.iter().find(same).map(|p| &p.value)
             }

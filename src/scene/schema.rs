@@ -97,7 +97,11 @@ fn choose<'a>(field: &mut Json, choices: impl Iterator<Item = (&'a str, &'a str,
     let (mut ids, mut told) = (Vec::new(), Vec::new());
     for (id, name, summary) in choices {
         ids.push(Json::from(id));
-        told.push(Json::from(if summary.is_empty() { name.to_owned() } else { format!("{name}: {summary}") }));
+        told.push(Json::from(if summary.is_empty() {
+            name.to_owned()
+        } else {
+            format!("{name}: {summary}")
+        }));
     }
     field["enum"] = ids.into();
     field["enumDescriptions"] = told.into();

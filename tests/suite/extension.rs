@@ -18,7 +18,7 @@ use lights_camera_models::{
     shape::{self, ObjectType, PolygonMesh, mesh::Polygon},
 };
 
-use crate::support::{close_up, compare};
+use crate::pictures::{close_up, compare};
 
 const BANDS: Parameter = Parameter {
     name: "bands",

@@ -13,7 +13,7 @@ use lights_camera_models::{
     scene::Scene,
 };
 
-use crate::support::{Difference, close_up, compare};
+use crate::pictures::{Difference, close_up, compare};
 
 const SIZE: u32 = 96;
 

@@ -12,7 +12,7 @@ use lights_camera_models::{
     },
 };
 
-use crate::support::close_up;
+use crate::pictures::close_up;
 
 const SIZE: u32 = 48;
 

@@ -1,91 +1,137 @@
-//! What several tests share.
+//! What several tests need.
 
-use glam::{Vec3, Vec4};
-use lights_camera_models::{
-    reference,
-    scene::{Light, Object, Observer, Scene},
+use std::{
+    fs,
+    io::Write as _,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
 };
 
-/// A scene with one object that fills much of the picture and one light beside the observer.
-pub fn close_up(shape: &str, light: &str) -> Scene {
-    let mut scene = Scene {
-        lights: vec![Light {
-            kind: light.to_owned(),
-            position: matches!(light, "point" | "spot").then_some(Vec3::new(6.6, 6.9, 8.4)),
-            direction: matches!(light, "directional" | "spot").then_some(Vec3::new(-0.5, -0.55, -1.0)),
-            colour: [255, 240, 200],
-            intensity: if matches!(light, "point" | "spot") { 9.0 } else { 0.8 },
-            ..Light::default()
-        }],
-        observer: Observer { position: Vec3::new(5.0, 5.2, 8.8), direction: Vec3::new(0.02, -0.05, -1.0), field_of_view: 40.0 },
-        objects: vec![Object {
-            kind: shape.to_owned(),
-            size: 2.4,
-            rotation: Vec3::new(25.0, 35.0, 5.0),
-            ..Object::default()
-        }],
-        ..Scene::default()
-    };
-    scene.objects[0].material.set("base_colour", lights_camera_models::reflection::parameter::Value::Colour([220, 120, 60]));
-    scene
+use lights_camera_models::{
+    registry::Registry,
+    scene::{
+        Scene,
+        load::{self, Defaults},
+        save,
+    },
+};
+use serde_json::{Value, json};
+
+/// The folder of the package.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// How two linear pictures differ.
-#[derive(Debug, Default, Clone, Copy)]
-pub struct Difference {
-    /// Pixels that an object covers in the first picture.
-    pub covered: usize,
-    /// Pixels that differ by more than the tolerance, but lie at a silhouette or between their
-    /// neighbours: coverage.
-    pub edges: usize,
-    /// Pixels that differ otherwise.
-    pub wrong: usize,
-    /// The largest relative difference of a pixel that is no edge.
-    pub worst: f32,
+/// The shipped scenes.
+pub fn shipped_scenes() -> Vec<PathBuf> {
+    let mut scenes: Vec<_> = fs::read_dir(root().join("scenes"))
+        .expect("the folder scenes is there")
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "json"))
+        .filter(|path| !path.to_string_lossy().ends_with(".schema.json"))
+        .collect();
+    scenes.sort();
+    assert!(!scenes.is_empty());
+    scenes
 }
 
-/// Compares a picture of the GPU with one of the CPU renderer. A pixel agrees when it is within
-/// `tolerance` relative (to its value, or to 0.001 where it is darker) beyond what half a step of the
-/// 1/256-pixel grid, to which hardware may or may not snap corners, can do at the local contrast; where
-/// it does not, it counts as an edge when the background shows beside it or each channel lies between
-/// those of its neighbours in the CPU's picture, else as wrong.
-pub fn compare(gpu: &[Vec3], cpu: &reference::Picture, background: Vec3, tolerance: f32) -> Difference {
-    let (w, h) = (cpu.width as i32, cpu.height as i32);
-    let at = |x: i32, y: i32| {
-        let p: Vec4 = cpu.pixels[(y.clamp(0, h - 1) * w + x.clamp(0, w - 1)) as usize];
-        p.truncate() + (1.0 - p.w) * background
-    };
-    let mut difference = Difference::default();
-    for y in 0..h {
-        for x in 0..w {
-            let (g, c) = (gpu[(y * w + x) as usize], at(x, y));
-            let covered = cpu.pixels[(y * w + x) as usize].w > 0.0;
-            difference.covered += usize::from(covered);
-            let (mut low, mut high) = (c, c);
-            let mut silhouette = false;
-            for (dx, dy) in [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)] {
-                let n = at(x + dx, y + dy);
-                let neighbour = (y + dy).clamp(0, h - 1) * w + (x + dx).clamp(0, w - 1);
-                silhouette |= (cpu.pixels[neighbour as usize].w > 0.0) != covered;
-                low = low.min(n);
-                high = high.max(n);
-            }
-            let grid = (high - low) / 256.0;
-            let error = (((g - c).abs() - grid) / c.abs().max(Vec3::splat(1e-3))).max_element().max(0.0);
-            if error <= tolerance {
-                difference.worst = difference.worst.max(error);
-                continue;
-            }
-            // Colour is evaluated at the pixel's centre even where that lies outside the triangle, so at
-            // an edge it may overshoot a little.
-            let slack = (high * tolerance + 0.1 * (high - low)).max(Vec3::splat(1e-5));
-            if silhouette || (g.cmpge(low - slack).all() && g.cmple(high + slack).all()) {
-                difference.edges += 1;
-            } else {
-                difference.wrong += 1;
-                difference.worst = difference.worst.max(error);
-            }
-        }
+/// A scene that gives every field, as JSON to break.
+pub fn full_scene() -> Value {
+    json!({
+        "name": "Everything",
+        "description": "Gives every field.",
+        "scene_size": { "height": 10, "width": 20, "depth": 30.5 },
+        "reflection_model": "phong",
+        "shading_model": "phong",
+        "lights": [
+            { "type": "point", "name": "lamp", "position": [1, 2, 3], "colour": [255, 250, 240], "intensity": 20 },
+            { "type": "spot", "position": [2, 2, 3], "direction": [0, -1, 0], "cone_angle": 20, "penumbra": 0.5 },
+            { "type": "directional", "direction": [0, -1, -1], "intensity": 2.5 },
+            { "type": "ambient", "intensity": 0.1 }
+        ],
+        "observer": { "position": [5, 5, 9.5], "direction": [0, 0, -1], "field_of_view": 45 },
+        "objects": [
+            { "type": "sphere", "name": "ball", "position": [5, 5, 5], "size": 2, "rotation": [0, 45, 0],
+              "tessellation": 20, "reflection_model": "blinn_phong", "shading_model": "flat",
+              "material": { "base_colour": [200, 100, 50], "specular_colour": [255, 255, 255], "k_a": 0.1,
+                            "k_d": 0.8, "k_s": 0.5, "alpha": 32, "wrap_exponent": 1.5 } },
+            { "type": "cube", "position": [8, 5, 5] }
+        ],
+        "display": { "tone_mapping": "aces", "exposure": -1.5, "encoding": "srgb" }
+    })
+}
+
+/// The full scene with one change.
+pub fn changed(change: impl FnOnce(&mut Value)) -> String {
+    let mut scene = full_scene();
+    change(&mut scene);
+    format!("{scene:#}")
+}
+
+/// What reading a text says; empty if it is a valid scene.
+pub fn said(text: &str) -> String {
+    said_of_bytes(text.as_bytes())
+}
+
+/// What reading bytes says; empty if they are a valid scene.
+pub fn said_of_bytes(bytes: &[u8]) -> String {
+    match load::from_bytes(bytes, "scene.json", &Registry::builtin(), Defaults::Refuse) {
+        Ok(_) => String::new(),
+        Err(error) => error.to_string(),
     }
-    difference
+}
+
+/// Reads a valid scene.
+pub fn read(text: &str) -> Scene {
+    match load::from_text(text, "scene.json", &Registry::builtin(), Defaults::Refuse) {
+        Ok(loaded) => loaded.scene,
+        Err(error) => panic!("{error}\n{text}"),
+    }
+}
+
+/// The text of a scene file.
+pub fn written(scene: &Scene) -> String {
+    save::to_json(scene, None, &Registry::builtin())
+}
+
+/// What a run of the program gave.
+pub struct Run {
+    pub status: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl From<Output> for Run {
+    fn from(output: Output) -> Self {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("output is UTF-8");
+        let run = Self { status: output.status.code(), out: text(output.stdout), err: text(output.stderr) };
+        assert!(!run.err.contains("panicked"), "{}", run.err);
+        run
+    }
+}
+
+/// Runs the program in a folder, with an input.
+pub fn lcm_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Run {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lcm"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("piped");
+    let input = input.to_vec();
+    let feeder = std::thread::spawn(move || {
+        // The program may end without reading everything.
+        let _ = stdin.write_all(&input);
+    });
+    let output = child.wait_with_output().expect("the program ends");
+    feeder.join().expect("no panic");
+    output.into()
+}
+
+/// Runs the program.
+pub fn lcm(arguments: &[&str], input: &str) -> Run {
+    lcm_in(root(), arguments, input.as_bytes())
 }

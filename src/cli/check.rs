@@ -1,0 +1,81 @@
+//! `lcm check`: everything that is wrong with scenes.
+
+use std::{fmt::Write as _, path::PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{Failure, Options, Outcome, complain, print, scenes::Source};
+use crate::{
+    registry::Registry,
+    scene::{error::Problem, load::Defaults},
+};
+
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// The scenes; - is standard input
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// The result for one scene, for programs.
+#[derive(Serialize)]
+struct Report {
+    file: String,
+    valid: bool,
+    problems: Vec<Problem>,
+}
+
+pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
+    // A check does not ask: what is missing is a finding, unless defaults are welcome.
+    let defaults = match options.defaults() {
+        Defaults::Ask => Defaults::Refuse,
+        answered => answered,
+    };
+    let mut reports = Vec::new();
+    let mut told = String::new();
+    let mut invalid = 0;
+    for path in &arguments.scenes {
+        let source = Source::of(Some(path));
+        let mut problems = Vec::new();
+        match source.read(registry, defaults) {
+            Ok(loaded) => {
+                let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+                // Writing to a String cannot fail.
+                let _ = writeln!(
+                    told,
+                    "{}: valid: {}, {}",
+                    source.name(),
+                    counted(loaded.scene.lights.len(), "light"),
+                    counted(loaded.scene.objects.len(), "object"),
+                );
+            }
+            Err(error) => {
+                invalid += 1;
+                problems = error.problems();
+                if !arguments.json {
+                    complain(&error);
+                }
+            }
+        }
+        reports.push(Report { file: source.name(), valid: problems.is_empty(), problems });
+    }
+    if arguments.json {
+        let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
+        print(&format!("{json}\n"))?;
+    } else if !options.quiet {
+        print(&told)?;
+    }
+    match invalid {
+        0 => Ok(()),
+        _ if arguments.json || reports.len() == 1 => Err(Failure::Invalid(String::new())),
+        n => Err(Failure::Invalid(format!(
+            "{n} of {} {} invalid",
+            arguments.scenes.len(),
+            if n == 1 { "scene is" } else { "scenes are" }
+        ))),
+    }
+}

@@ -1,0 +1,201 @@
+//! `lcm evaluate`: the BRDF of a model at given angles, for plots and comparisons.
+
+use std::{
+    io::{self, BufWriter, Write as _},
+    str::FromStr,
+};
+
+use clap::{Args, ValueEnum};
+use glam::{DVec3, Vec3};
+
+use super::{
+    Failure, Outcome,
+    angles::{self, Column},
+};
+use crate::{
+    optics::{Frame, colour::Encoding},
+    reflection::{
+        ModelEntry, brdf,
+        parameter::{Parameter, ParameterKind, Value, Values},
+    },
+    registry::Registry,
+    scene::{
+        check::{self, nearest},
+        error::quoted,
+    },
+};
+
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// The id of the model, as `lcm models` lists it
+    model: String,
+    #[command(flatten)]
+    set: Settings,
+    /// What evaluates
+    #[arg(long, value_enum, default_value_t = Machine::Cpu)]
+    on: Machine,
+}
+
+/// Parameters of a model on the command line.
+#[derive(Args, Debug)]
+pub(super) struct Settings {
+    /// Set a parameter of the model, e.g. k_d=0.7 or base_colour=255,128,0; can be repeated
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    settings: Vec<Setting>,
+}
+
+/// Who evaluates a model.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Machine {
+    /// The Rust functions
+    Cpu,
+}
+
+/// One `NAME=VALUE`.
+#[derive(Clone, Debug)]
+struct Setting {
+    name: String,
+    value: String,
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("it must be NAME=VALUE, e.g. k_d=0.7")?;
+        Ok(Self { name: name.trim().to_owned(), value: value.trim().to_owned() })
+    }
+}
+
+/// The columns that are read. Angles beyond 90° are below the surface, where the BRDF is 0.
+const COLUMNS: [Column; 4] = [
+    Column { name: "theta_i", range: Some((0.0, 180.0)) },
+    Column { name: "phi_i", range: None },
+    Column { name: "theta_o", range: Some((0.0, 180.0)) },
+    Column { name: "phi_o", range: None },
+];
+
+pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
+    let model = find(registry, &arguments.model)?;
+    let values = arguments.set.values(model)?;
+    let surface = model.instantiate(&values, Encoding::Srgb);
+    let Machine::Cpu = arguments.on;
+    let rows = angles::from_stdin(&COLUMNS)?;
+    let frame = Frame { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
+    let mut out = BufWriter::new(io::stdout().lock());
+    writeln!(out, "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b")?;
+    for row in &rows {
+        let [theta_i, phi_i, theta_o, phi_o] = row.numbers;
+        let f = brdf(surface.as_ref(), direction(theta_i, phi_i), direction(theta_o, phi_o), &frame);
+        writeln!(out, "{},{},{},{}", row.text.join(","), f.x, f.y, f.z)?;
+    }
+    Ok(out.flush()?)
+}
+
+/// The unit vector of spherical angles in degrees, in the local frame: the normal is +z, the tangent
+/// +x. Calculated in 64 bits, so that 90° is not a hair above the surface.
+fn direction(theta: f64, phi: f64) -> Vec3 {
+    let (sin_theta, cos_theta) = theta.to_radians().sin_cos();
+    let (sin_phi, cos_phi) = phi.rem_euclid(360.0).to_radians().sin_cos();
+    // cos 90° is not exactly zero in binary.
+    let z = if theta == 90.0 { 0.0 } else { cos_theta };
+    DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, z).as_vec3()
+}
+
+/// The model of that id.
+pub(super) fn find<'a>(registry: &'a Registry, id: &str) -> Result<&'a ModelEntry, Failure> {
+    check::reflection_model(registry, id)
+        .map_err(|rule| Failure::Usage(format!("MODEL is {}, but {rule}", quoted(id))))?;
+    registry.model(id).ok_or_else(|| Failure::Usage(format!("there is no model {}", quoted(id))))
+}
+
+impl Settings {
+    /// The values for a model.
+    pub(super) fn values(&self, model: &ModelEntry) -> Result<Values, Failure> {
+        let mut values = Values::default();
+        let mut problems = Vec::new();
+        for Setting { name, value } in &self.settings {
+            match setting(model, name, value) {
+                Ok((name, value)) => values.set(name, value),
+                Err(problem) => problems.push(problem),
+            }
+        }
+        if problems.is_empty() { Ok(values) } else { Err(Failure::Usage(problems.join("\nerror: "))) }
+    }
+}
+
+/// One parameter of a model, checked.
+fn setting(model: &ModelEntry, name: &str, written: &str) -> Result<(&'static str, Value), String> {
+    let spelling = name.replace("color", "colour");
+    let Some(parameter) = model.parameter(&spelling) else {
+        let names: Vec<_> = model.parameters.iter().map(|p| p.name).collect();
+        let known = model.parameters.iter().flat_map(|p| [p.name, p.label, p.symbol].map(|s| (s, p.name)));
+        let hint = nearest(&spelling, known).map_or_else(
+            || format!("it has {}", check::listed(&names, "and")),
+            |n| format!("did you mean {n}?"),
+        );
+        return Err(format!(
+            "--set {name}={written}: {} has no parameter {name}; {hint}",
+            model.declaration.id
+        ));
+    };
+    parse(parameter, written)
+        .ok_or_else(|| check::parameter_rule(parameter))
+        .and_then(|value| check::parameter(parameter, &value).map(|()| (parameter.name, value)))
+        .map_err(|rule| format!("--set {name}={written}: {name} is {written}, but {rule}"))
+}
+
+/// A value as the command line writes it.
+fn parse(parameter: &Parameter, written: &str) -> Option<Value> {
+    match parameter.kind {
+        ParameterKind::Number { .. } => written.parse().ok().map(Value::Number),
+        ParameterKind::Integer { .. } => written.parse().ok().map(Value::Integer),
+        ParameterKind::Colour { .. } => {
+            let channels: Option<Vec<u8>> = written.split(',').map(|c| c.trim().parse().ok()).collect();
+            channels?.try_into().ok().map(Value::Colour)
+        }
+        ParameterKind::Choice { .. } => Some(Value::Choice(written.to_owned().into())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_become_unit_vectors_around_the_normal() {
+        for (theta, phi, expected) in [
+            (0.0, 77.0, Vec3::Z),
+            (90.0, 0.0, Vec3::X),
+            (90.0, 90.0, Vec3::Y),
+            (90.0, -270.0, Vec3::Y),
+            (180.0, 0.0, Vec3::NEG_Z),
+        ] {
+            assert!((direction(theta, phi) - expected).length() < 1e-6, "{theta} {phi}");
+        }
+        assert_eq!(direction(90.0, 33.0).z, 0.0);
+    }
+
+    #[test]
+    fn settings_are_checked_like_scene_files() {
+        let registry = Registry::builtin();
+        let phong = find(&registry, "phong").expect("built in");
+        assert_eq!(
+            setting(phong, "base_color", "255,128,0"),
+            Ok(("base_colour", Value::Colour([255, 128, 0])))
+        );
+        assert_eq!(setting(phong, "alpha", "8"), Ok(("alpha", Value::Integer(8))));
+        for (name, value, expected) in [
+            ("k_d", "0.2", "k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1"),
+            ("k_d", "nan", "must be between 0.5 and 1"),
+            ("kd", "0.7", "did you mean k_d?"),
+            ("shininess", "3", "did you mean alpha?"),
+            ("base_colour", "1,2", "three whole numbers from 0 to 255"),
+            ("base_colour", "1,2,256", "three whole numbers from 0 to 255"),
+            ("banana", "1", "it has base_colour, specular_colour"),
+        ] {
+            let said = setting(phong, name, value).err().unwrap_or_default();
+            assert!(said.contains(expected), "{name}={value}: {said}");
+        }
+    }
+}

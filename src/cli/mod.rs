@@ -1,0 +1,244 @@
+//! The command line: what `lcm` understands, and how it answers.
+//!
+//! Results go to standard output, errors to standard error, one line each. The exit status says what
+//! kind of error it was: see [`Failure`]. Nothing heavy happens here: a renderer or a window is started
+//! by the command that needs it.
+
+use std::{
+    fmt,
+    io::{self, IsTerminal as _, Write},
+    path::PathBuf,
+    process::ExitCode,
+};
+
+use clap::{Args, Parser, Subcommand, error::ErrorKind};
+
+use crate::{registry::Registry, scene::load::Defaults};
+
+mod angles;
+mod check;
+mod evaluate;
+mod models;
+mod new;
+mod render;
+mod scenes;
+mod view;
+
+pub use view::ViewOptions;
+
+/// A laboratory for the equations that light a surface: see, compare, edit and trust reflection models.
+///
+/// Without a command, opens the window; without a scene, the default scene.
+#[derive(Parser, Debug)]
+#[command(name = "lcm", version, args_conflicts_with_subcommands = true, after_help = EXIT_STATUS)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    view: view::Arguments,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// Explained below every help.
+const EXIT_STATUS: &str = "Exit status: 0 done; 1 a scene or an input is invalid; 2 wrong usage; \
+                           3 no renderer or no display; 4 could not write.";
+
+/// What holds for every command.
+#[derive(Args, Clone, Copy, Debug)]
+struct Options {
+    /// Use the defaults when a scene lacks scene size, reflection model or shading model
+    #[arg(long, global = true, conflicts_with = "no_defaults")]
+    use_defaults: bool,
+    /// Refuse a scene that lacks scene size, reflection model or shading model
+    #[arg(long, global = true)]
+    no_defaults: bool,
+    /// Say nothing but results and errors
+    #[arg(long, short, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Say more of what is done
+    #[arg(long, short, global = true)]
+    verbose: bool,
+}
+
+impl Options {
+    /// The answer to missing parts, as far as the flags give one.
+    fn defaults(self) -> Defaults {
+        match (self.use_defaults, self.no_defaults) {
+            (true, _) => Defaults::Use,
+            (_, true) => Defaults::Refuse,
+            _ => Defaults::Ask,
+        }
+    }
+
+    /// Tells of something that was done, unless the user wants quiet.
+    fn tell(self, what: impl fmt::Display) {
+        if !self.quiet {
+            complain(what);
+        }
+    }
+
+    /// Tells of a detail, if the user wants details.
+    fn detail(self, what: impl fmt::Display) {
+        if self.verbose {
+            complain(what);
+        }
+    }
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// Open the window (what `lcm` alone does too)
+    View(view::Arguments),
+    /// Render scenes to PNG files
+    Render(render::Arguments),
+    /// Check scenes and print everything that is wrong with them
+    Check(check::Arguments),
+    /// Write the default scene to a new file
+    New {
+        /// The file to write
+        file: PathBuf,
+    },
+    /// List the reflection models with their laws and parameters
+    Models {
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Evaluate the BRDF of a model: angles from standard input, values to standard output, as CSV
+    Evaluate(evaluate::Arguments),
+    /// Print the JSON Schema of scene files
+    Schema,
+}
+
+/// Why a command did not do what it was asked.
+#[derive(Debug)]
+pub enum Failure {
+    /// A scene or an input is invalid: exit status 1. One line per problem.
+    Invalid(String),
+    /// The command line makes no sense: exit status 2.
+    Usage(String),
+    /// There is no renderer or no display: exit status 3.
+    NoRenderer(String),
+    /// A result could not be written: exit status 4.
+    Write(String),
+    /// Whoever read the output has read enough: not an error.
+    Closed,
+}
+
+impl From<io::Error> for Failure {
+    /// An error on standard output.
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Self::Closed,
+            _ => Self::Write(format!("standard output: {error}")),
+        }
+    }
+}
+
+impl Failure {
+    /// The exit status.
+    #[must_use]
+    pub fn status(&self) -> u8 {
+        match self {
+            Self::Closed => 0,
+            Self::Invalid(_) => 1,
+            Self::Usage(_) => 2,
+            Self::NoRenderer(_) => 3,
+            Self::Write(_) => 4,
+        }
+    }
+}
+
+/// What a command does.
+type Outcome = Result<(), Failure>;
+
+/// Runs the command line of this process.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are results; clap sends them to standard output.
+            let status = match error.kind() {
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => 0,
+                _ => 2,
+            };
+            // Nobody is left to tell if this fails.
+            let _ = error.print();
+            return ExitCode::from(status);
+        }
+    };
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            match &failure {
+                Failure::Closed => {}
+                Failure::Usage(what) => complain(format_args!("error: {what}")),
+                // The problems are told already, as a result.
+                Failure::Invalid(what) if what.is_empty() => {}
+                Failure::Invalid(what) | Failure::NoRenderer(what) | Failure::Write(what) => complain(what),
+            }
+            ExitCode::from(failure.status())
+        }
+    }
+}
+
+fn run(cli: Cli) -> Outcome {
+    let options = cli.options;
+    let registry = Registry::builtin();
+    match cli.command {
+        None => view::run(cli.view, options, &registry),
+        Some(Command::View(arguments)) => view::run(arguments, options, &registry),
+        Some(Command::Render(arguments)) => render::run(&arguments, options, &registry),
+        Some(Command::Check(arguments)) => check::run(&arguments, options, &registry),
+        Some(Command::New { file }) => new::run(&file, options, &registry),
+        Some(Command::Models { json }) => models::run(json, &registry),
+        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &registry),
+        Some(Command::Schema) => print(&crate::scene::schema::text(&registry)),
+    }
+}
+
+/// Writes a result to standard output.
+fn print(text: &str) -> Outcome {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    Ok(out.flush()?)
+}
+
+/// Writes a line to standard error. That nobody reads it is no reason to panic.
+fn complain(what: impl fmt::Display) {
+    let _ = writeln!(io::stderr().lock(), "{what}");
+}
+
+/// Asks a yes-or-no question on the terminal; no terminal, no yes. Anything but y or yes is a no.
+fn ask(question: &str) -> Option<bool> {
+    if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
+        return None;
+    }
+    let mut err = io::stderr().lock();
+    write!(err, "{question} [y/N] ").and_then(|()| err.flush()).ok()?;
+    let mut answer = String::new();
+    io::stdin().read_line(&mut answer).ok()?;
+    Some(matches!(answer.trim().to_lowercase().as_str(), "y" | "yes"))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn the_declaration_of_the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_scene_alone_opens_the_window() {
+        let cli = Cli::try_parse_from(["lcm", "room.json", "--exit-after", "3"]).expect("valid");
+        assert!(cli.command.is_none());
+        let cli = Cli::try_parse_from(["lcm", "render", "room.json", "--use-defaults"]).expect("valid");
+        assert!(cli.options.use_defaults && matches!(cli.command, Some(Command::Render(_))));
+    }
+}

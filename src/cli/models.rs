@@ -1,0 +1,121 @@
+//! `lcm models`: what there is to choose from.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value as Json, json};
+
+use super::{Outcome, print};
+use crate::{
+    reflection::{
+        ModelEntry, Term,
+        parameter::{ABOVE_ZERO, Parameter, ParameterKind},
+    },
+    registry::Registry,
+    scene::schema::{number, value},
+};
+
+pub(super) fn run(as_json: bool, registry: &Registry) -> Outcome {
+    if as_json {
+        let models: Vec<_> = registry.models().iter().map(model).collect();
+        return print(&format!("{:#}\n", Json::from(models)));
+    }
+    print(&table(registry))
+}
+
+/// A model as programs read it.
+fn model(entry: &ModelEntry) -> Json {
+    let d = entry.declaration;
+    let laws = |kept: bool| -> Vec<_> {
+        d.laws.list().into_iter().filter(|(_, k)| *k == kept).map(|(name, _)| name).collect()
+    };
+    let term = |t: Term| match t {
+        Term::Total => "total",
+        Term::Ambient => "ambient",
+        Term::Diffuse => "diffuse",
+        Term::Specular => "specular",
+    };
+    let equation: Vec<_> =
+        d.equation.iter().map(|part| json!({ "term": term(part.term), "text": part.text })).collect();
+    json!({
+        "id": d.id,
+        "name": d.name,
+        "family": d.family.name(),
+        "author": d.author,
+        "source": d.source,
+        "summary": d.summary,
+        "equation": equation,
+        "laws": { "kept": laws(true), "broken": laws(false) },
+        "parameters": entry.parameters.iter().map(parameter).collect::<Vec<_>>(),
+    })
+}
+
+/// A parameter as programs read it.
+fn parameter(p: &Parameter) -> Json {
+    let mut json = json!({
+        "name": p.name,
+        "symbol": p.symbol,
+        "label": p.label,
+        "unit": p.unit,
+        "help": p.help,
+        "default": value(&p.default_value()),
+        "range": p.rule(),
+    });
+    match &p.kind {
+        ParameterKind::Number { min, max, .. } => {
+            json["type"] = "number".into();
+            if *min == ABOVE_ZERO {
+                json["above"] = 0.into();
+            } else {
+                json["min"] = number(*min);
+            }
+            json["max"] = number(*max);
+        }
+        ParameterKind::Integer { min, max, .. } => {
+            json["type"] = "integer".into();
+            json["min"] = (*min).into();
+            json["max"] = (*max).into();
+        }
+        ParameterKind::Colour { .. } => json["type"] = "colour".into(),
+        ParameterKind::Choice { options, .. } => {
+            json["type"] = "choice".into();
+            json["choices"] = options.iter().map(|(id, _)| *id).collect::<Vec<_>>().into();
+        }
+    }
+    json
+}
+
+/// The models as people read them.
+fn table(registry: &Registry) -> String {
+    let mut text = String::new();
+    let longest = |of: fn(&ModelEntry) -> &str| {
+        registry.models().iter().map(|m| of(m).chars().count()).max().unwrap_or_default()
+    };
+    let ids = longest(|m| m.declaration.id);
+    let names = longest(|m| m.declaration.name);
+    let mut family = None;
+    for m in registry.models() {
+        let d = m.declaration;
+        if family.replace(d.family) != Some(d.family) {
+            let gap = if text.is_empty() { "" } else { "\n" };
+            // Writing to a String cannot fail; here and below.
+            let _ = writeln!(text, "{gap}{}", d.family.name());
+        }
+        let _ = writeln!(text, "  {:ids$}  {:names$}  {}", d.id, d.name, d.author);
+        let laws =
+            d.laws.list().map(|(name, kept)| if kept { name.to_owned() } else { format!("not {name}") });
+        let _ = writeln!(text, "  {:ids$}  {}", "", laws.join(", "));
+        for p in m.parameters {
+            let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
+            let _ = writeln!(
+                text,
+                "  {:ids$}    {} ({}){unit}: {}, default {}",
+                "",
+                p.name,
+                p.label,
+                p.rule(),
+                p.default_value()
+            );
+        }
+    }
+    text
+}

@@ -1,0 +1,19 @@
+//! `lcm new`: the default scene as a file to start from.
+
+use std::path::Path;
+
+use super::{Failure, Options, Outcome};
+use crate::{
+    registry::Registry,
+    scene::{
+        Scene,
+        save::{self, Expected},
+    },
+};
+
+pub(super) fn run(file: &Path, options: Options, registry: &Registry) -> Outcome {
+    save::write(file, &Scene::default(), registry, Expected::Nothing)
+        .map_err(|error| Failure::Write(error.to_string()))?;
+    options.tell(format_args!("wrote {}", file.display()));
+    Ok(())
+}

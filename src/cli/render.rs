@@ -1,0 +1,409 @@
+//! `lcm render`: scenes to PNG files.
+
+use std::{
+    collections::HashMap,
+    fs,
+    io::IsTerminal as _,
+    path::{Path, PathBuf},
+    str::FromStr,
+};
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{Failure, Options, Outcome, scenes::Source};
+use crate::{
+    capture::{
+        gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
+        png,
+    },
+    optics::{TermSelection, tone::ToneMapping},
+    reference,
+    registry::Registry,
+    scene::{Scene, check, error::quoted},
+};
+
+/// Where pictures go when nothing else is said (CA `RENDERS_DIR`).
+const RENDERS_DIR: &str = "renders";
+
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// The scenes; - is standard input; none is the default scene
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// The PNG file, or the folder for renders of several scenes
+    #[arg(long, short, value_name = "FILE|FOLDER")]
+    output: Option<PathBuf>,
+    /// The size of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720")]
+    size: Size,
+    /// Who renders: `auto` is a hardware GPU if there is one, and the CPU otherwise
+    #[arg(long, value_enum, default_value_t = Renderer::Auto)]
+    renderer: Renderer,
+    /// Samples per pixel
+    #[arg(long, default_value = "4", value_parser = samples)]
+    samples: u32,
+    /// Use this reflection model for every object
+    #[arg(long, value_name = "ID")]
+    reflection: Option<String>,
+    /// Use this shading model for every object
+    #[arg(long, value_name = "ID")]
+    shading: Option<String>,
+    /// Use this tone mapping
+    #[arg(long, value_name = "NAME")]
+    tone_mapping: Option<String>,
+    /// Use this exposure
+    #[arg(long, value_name = "EV", allow_hyphen_values = true)]
+    exposure: Option<f32>,
+    /// Show one term of the equation alone
+    #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
+    term: TermSelection,
+}
+
+/// Who renders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Renderer {
+    /// A hardware GPU if there is one, and the CPU otherwise
+    Auto,
+    /// The GPU, software Vulkan included
+    Gpu,
+    /// Our own CPU code
+    Cpu,
+}
+
+/// The size of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Size {
+    width: u32,
+    height: u32,
+}
+
+/// The longest side of a picture, pixels: what graphics hardware commonly draws.
+const MAX_SIDE: u32 = 16_384;
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=MAX_SIDE).contains(n));
+        text.split_once(['x', 'X', '×'])
+            .and_then(|(w, h)| Some(Self { width: side(w)?, height: side(h)? }))
+            .ok_or_else(|| {
+                format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE}, e.g. 800x600")
+            })
+    }
+}
+
+fn samples(text: &str) -> Result<u32, String> {
+    match text {
+        "1" => Ok(1),
+        "4" => Ok(4),
+        _ => Err("it must be 1 or 4".to_owned()),
+    }
+}
+
+fn term(text: &str) -> Result<TermSelection, String> {
+    TermSelection::ALL.into_iter().find(|t| t.id() == text).ok_or_else(|| {
+        let known = TermSelection::ALL.map(TermSelection::id);
+        let hint = check::nearest(text, known.map(|k| (k, k)).into_iter())
+            .map_or_else(String::new, |k| format!("; did you mean {k}?"));
+        format!("it must be {}{hint}", check::listed(&known, "or"))
+    })
+}
+
+/// One picture to make.
+pub(super) struct Job<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) source: &'a Source,
+    pub(super) file: &'a Path,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) samples: u32,
+    pub(super) terms: TermSelection,
+}
+
+pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
+    let sources: Vec<_> = match arguments.scenes.as_slice() {
+        [] => vec![Source::Default],
+        scenes => scenes.iter().map(|s| Source::of(Some(s))).collect(),
+    };
+    if sources.iter().filter(|s| **s == Source::Stdin).count() > 1 {
+        return Err(Failure::Usage("- can be given once: standard input holds one scene".to_owned()));
+    }
+    let changes = Changes::new(arguments, registry)?;
+    let files = files(&sources, arguments.output.as_deref())?;
+
+    // All scenes are read before the first is rendered: what is wrong with the last one is said at once.
+    let mut scenes = Vec::with_capacity(sources.len());
+    let mut problems = Vec::new();
+    for source in &sources {
+        match source.open(registry, options) {
+            Ok(scene) => scenes.push(changes.apply(scene)),
+            Err(Failure::Invalid(problem)) => problems.push(problem),
+            Err(other) => return Err(other),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(Failure::Invalid(problems.join("\n")));
+    }
+
+    let bar = progress(scenes.len(), options);
+    let mut painter = Painter::new(arguments.renderer)?;
+    for ((scene, source), file) in scenes.iter().zip(&sources).zip(&files) {
+        bar.set_message(source.name());
+        let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
+        if let Some(folder) = folder {
+            fs::create_dir_all(folder).map_err(|e| {
+                Failure::Write(format!("the folder {} could not be made: {e}", folder.display()))
+            })?;
+        }
+        let Size { width, height } = arguments.size;
+        painter.draw(
+            &Job { scene, source, file, width, height, samples: arguments.samples, terms: arguments.term },
+            registry,
+        )?;
+        bar.inc(1);
+        if bar.is_hidden() {
+            options.tell(format_args!("wrote {}", file.display()));
+        } else {
+            bar.println(format!("wrote {}", file.display()));
+        }
+    }
+    bar.finish_and_clear();
+    Ok(())
+}
+
+/// Makes pictures, one after the other, with the renderer that was asked for.
+struct Painter {
+    gpu: bool,
+    /// The renderer of the last picture, with its size and samples: the next picture likely has the same.
+    last: Option<((u32, u32, u32), GpuRenderer)>,
+}
+
+impl Painter {
+    fn new(renderer: Renderer) -> Result<Self, Failure> {
+        let gpu = match renderer {
+            Renderer::Cpu => false,
+            Renderer::Gpu => {
+                find_adapter().map_err(|e| Failure::NoRenderer(e.to_string()))?;
+                true
+            }
+            // Asking the driver takes longer than drawing a picture; the device nodes tell at once that
+            // there is nothing to ask.
+            Renderer::Auto => may_have_hardware() && find_adapter().is_ok_and(|a| !a.software),
+        };
+        Ok(Self { gpu, last: None })
+    }
+
+    /// Makes one picture.
+    fn draw(&mut self, job: &Job, registry: &Registry) -> Outcome {
+        let rgb8 = if self.gpu { self.on_gpu(job)? } else { on_cpu(job, registry) };
+        let renderer = if self.gpu { "GPU" } else { "CPU" };
+        let facts = [
+            ("Software", concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION"))),
+            ("Title", job.scene.name.as_deref().unwrap_or_default()),
+            ("Source", &job.source.name()),
+            ("Reflection model", &job.scene.reflection_model),
+            ("Shading model", &job.scene.shading_model),
+            ("Renderer", renderer),
+        ];
+        png::write(job.file, job.width, job.height, &rgb8, &facts)
+            .map_err(|e| Failure::Write(format!("{} could not be written: {e}", job.file.display())))
+    }
+
+    fn on_gpu(&mut self, job: &Job) -> Result<Vec<u8>, Failure> {
+        let key = (job.width, job.height, job.samples);
+        let failed = |e: GpuError| Failure::NoRenderer(format!("{}: {e}", job.file.display()));
+        let renderer = match &mut self.last {
+            Some((last, renderer)) if *last == key => renderer,
+            slot => {
+                let samples = if job.samples == 4 { 4 } else { 1 };
+                let renderer = GpuRenderer::new(job.width, job.height, samples, gpu::Output::Display).map_err(failed)?;
+                &mut slot.insert((key, renderer)).1
+            }
+        };
+        renderer.set_scene(job.scene.clone());
+        renderer.set_terms(job.terms);
+        renderer.settle().map_err(failed)?;
+        renderer.read_rgb8().map_err(failed)
+    }
+}
+
+fn on_cpu(job: &Job, registry: &Registry) -> Vec<u8> {
+    let settings =
+        reference::Settings { width: job.width, height: job.height, samples: job.samples, terms: job.terms };
+    reference::render_rgb8(job.scene, registry, &settings)
+}
+
+/// A bar where it helps: several scenes, a terminal, and nobody who wants quiet.
+fn progress(count: usize, options: Options) -> ProgressBar {
+    if count < 2 || options.quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(count as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// What the command line changes in every scene.
+struct Changes {
+    reflection: Option<String>,
+    shading: Option<String>,
+    tone_mapping: Option<ToneMapping>,
+    exposure: Option<f32>,
+}
+
+impl Changes {
+    fn new(arguments: &Arguments, registry: &Registry) -> Result<Self, Failure> {
+        let usage = |flag: &str, value: &str, rule: String| {
+            Failure::Usage(format!("--{flag} is {}, but {rule}", quoted(value)))
+        };
+        if let Some(id) = &arguments.reflection {
+            check::reflection_model(registry, id).map_err(|rule| usage("reflection", id, rule))?;
+        }
+        if let Some(id) = &arguments.shading {
+            check::shading_model(registry, id).map_err(|rule| usage("shading", id, rule))?;
+        }
+        if let Some(ev) = arguments.exposure {
+            check::exposure(ev).map_err(|rule| usage("exposure", &ev.to_string(), rule))?;
+        }
+        let tone_mapping = match &arguments.tone_mapping {
+            None => None,
+            Some(id) => {
+                check::tone_mapping(id).map_err(|rule| usage("tone-mapping", id, rule))?;
+                ToneMapping::from_id(id)
+            }
+        };
+        Ok(Self {
+            reflection: arguments.reflection.clone(),
+            shading: arguments.shading.clone(),
+            tone_mapping,
+            exposure: arguments.exposure,
+        })
+    }
+
+    /// The scene with the changes. A model on the command line is for every object, also for those
+    /// that name their own: the point is to see the whole scene with it.
+    fn apply(&self, mut scene: Scene) -> Scene {
+        if let Some(id) = &self.reflection {
+            scene.reflection_model.clone_from(id);
+            scene.objects.iter_mut().for_each(|o| o.reflection_model = None);
+        }
+        if let Some(id) = &self.shading {
+            scene.shading_model.clone_from(id);
+            scene.objects.iter_mut().for_each(|o| o.shading_model = None);
+        }
+        scene.display.tone_mapping = self.tone_mapping.unwrap_or(scene.display.tone_mapping);
+        scene.display.exposure = self.exposure.unwrap_or(scene.display.exposure);
+        scene
+    }
+}
+
+/// The file for each scene.
+fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
+    let folder = match output {
+        None => Path::new(RENDERS_DIR),
+        Some(path) => match (kind(path)?, sources) {
+            (Output::File, [_]) => return Ok(vec![path.to_owned()]),
+            (Output::File, _) => {
+                return Err(Failure::Usage(format!(
+                    "-o {} is one file, but there are {} scenes; name a folder",
+                    path.display(),
+                    sources.len()
+                )));
+            }
+            (Output::Folder, _) => path,
+        },
+    };
+    let mut files = Vec::with_capacity(sources.len());
+    let mut taken: HashMap<PathBuf, String> = HashMap::new();
+    for source in sources {
+        let file = folder.join(format!("{}.png", source.stem()));
+        if let Some(other) = taken.insert(file.clone(), source.name()) {
+            return Err(Failure::Usage(format!(
+                "{other} and {} would both be written to {}; render them one by one with -o FILE",
+                source.name(),
+                file.display()
+            )));
+        }
+        files.push(file);
+    }
+    Ok(files)
+}
+
+/// What `-o` means.
+#[derive(Debug, PartialEq, Eq)]
+enum Output {
+    File,
+    Folder,
+}
+
+/// A path that ends in `.png` is a file, unless there is a folder of that name; other picture formats
+/// are a misunderstanding; everything else is a folder.
+fn kind(path: &Path) -> Result<Output, Failure> {
+    if path.is_dir() {
+        return Ok(Output::Folder);
+    }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match extension.as_str() {
+        "png" => Ok(Output::File),
+        "jpg" | "jpeg" | "gif" | "bmp" | "tif" | "tiff" | "webp" | "exr" | "hdr" | "ppm" | "tga" | "svg"
+        | "pdf" => {
+            let png = path.with_extension("png");
+            Err(Failure::Usage(format!(
+                "-o {}: only PNG files are written; did you mean {}?",
+                path.display(),
+                png.display()
+            )))
+        }
+        _ if path.is_file() => Err(Failure::Usage(format!(
+            "-o {} is a file, but not a PNG file; name a PNG file or a folder",
+            path.display()
+        ))),
+        _ => Ok(Output::Folder),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(names: &[&str], output: Option<&str>) -> Result<Vec<String>, String> {
+        let sources: Vec<_> = names.iter().map(|n| Source::of(Some(Path::new(n)))).collect();
+        match files(&sources, output.map(Path::new)) {
+            Ok(files) => Ok(files.iter().map(|f| f.display().to_string()).collect()),
+            Err(Failure::Usage(what)) => Err(what),
+            Err(other) => Err(format!("{other:?}")),
+        }
+    }
+
+    #[test]
+    fn pictures_are_named_after_their_scenes() {
+        assert_eq!(named(&["scenes/room.json"], None), Ok(vec!["renders/room.png".to_owned()]));
+        assert_eq!(named(&["-"], None), Ok(vec!["renders/stdin.png".to_owned()]));
+        assert_eq!(named(&["a/room.json"], Some("x/y.PNG")), Ok(vec!["x/y.PNG".to_owned()]));
+        assert_eq!(
+            named(&["a.json", "b.json"], Some("out")),
+            Ok(vec!["out/a.png".to_owned(), "out/b.png".to_owned()])
+        );
+        assert_eq!(files(&[Source::Default], None).ok(), Some(vec![PathBuf::from("renders/default.png")]));
+    }
+
+    #[test]
+    fn ambiguous_names_are_refused() {
+        let said = |names: &[&str], output| named(names, output).err().unwrap_or_default();
+        assert!(said(&["a.json", "b.json"], Some("x.png")).contains("is one file, but there are 2 scenes"));
+        assert!(said(&["a/x.json", "b/x.json"], None).contains("would both be written to renders/x.png"));
+        assert!(said(&["a.json"], Some("x.jpg")).contains("did you mean x.png?"));
+    }
+
+    #[test]
+    fn sizes_have_two_sides() {
+        assert_eq!("800x600".parse(), Ok(Size { width: 800, height: 600 }));
+        for wrong in ["800", "0x5", "5x-1", "x", "axb", "99999x1", ""] {
+            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Where commands get their scenes from: a file, standard input, or none for the default scene; and
+//! the questions that reading may raise.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use super::{Failure, Options, ask};
+use crate::{
+    registry::Registry,
+    scene::{
+        Scene,
+        check::listed,
+        error::LoadError,
+        load::{self, Defaults, Loaded, Missing, Stamp},
+    },
+};
+
+/// Where a scene comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    /// No scene was named.
+    Default,
+    /// `-`.
+    Stdin,
+    /// A file.
+    File(PathBuf),
+}
+
+impl Source {
+    /// The source that an argument names.
+    pub(super) fn of(argument: Option<&Path>) -> Self {
+        match argument {
+            None => Self::Default,
+            Some(path) if path == Path::new("-") => Self::Stdin,
+            Some(path) => Self::File(path.to_owned()),
+        }
+    }
+
+    /// What pictures of the scene are called.
+    pub(super) fn stem(&self) -> String {
+        match self {
+            Self::Default => "default".to_owned(),
+            Self::Stdin => "stdin".to_owned(),
+            Self::File(path) => path
+                .file_stem()
+                .map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned()),
+        }
+    }
+
+    /// What messages call it.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Default => "the default scene".to_owned(),
+            Self::Stdin => load::STDIN.to_owned(),
+            Self::File(path) => path.display().to_string(),
+        }
+    }
+
+    /// Reads it as it is: no questions.
+    pub(super) fn read(&self, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
+        match self {
+            Self::Default => {
+                Ok(Loaded { scene: Scene::default(), missing: Vec::new(), stamp: Stamp::of(&[]) })
+            }
+            Self::Stdin => load::reader(io::stdin().lock(), load::STDIN, registry, defaults),
+            Self::File(path) => load::file(path, registry, defaults),
+        }
+    }
+
+    /// Reads it, and asks what there is to ask.
+    pub(super) fn open(&self, registry: &Registry, options: Options) -> Result<Scene, Failure> {
+        let invalid = |e: LoadError| Failure::Invalid(e.to_string());
+        match self.read(registry, options.defaults()) {
+            Ok(Loaded { scene, missing, .. }) if missing.is_empty() => Ok(scene),
+            Ok(Loaded { scene, missing, .. }) => {
+                let name = self.name();
+                let yes = match options.defaults() {
+                    Defaults::Use => true,
+                    Defaults::Refuse => false,
+                    Defaults::Ask => ask(&format!("{name}: missing: {}. Use the defaults?", parts(&missing)))
+                        .unwrap_or(false),
+                };
+                if !yes {
+                    return Err(invalid(LoadError::Missing { name, missing }));
+                }
+                options.detail(format_args!("{name}: missing: {}; defaults used", parts(&missing)));
+                Ok(scene)
+            }
+            Err(error @ LoadError::Empty { .. }) => {
+                let yes = match options.defaults() {
+                    Defaults::Use => true,
+                    Defaults::Refuse => false,
+                    Defaults::Ask => ask(&error.to_string()).unwrap_or(false),
+                };
+                if yes {
+                    return Ok(Scene::default());
+                }
+                Err(Failure::Invalid(format!("{error} --use-defaults says yes")))
+            }
+            Err(error) => Err(invalid(error)),
+        }
+    }
+}
+
+/// The missing parts in one line.
+fn parts(missing: &[Missing]) -> String {
+    listed(&missing.iter().map(ToString::to_string).collect::<Vec<_>>(), "and")
+}

@@ -1,0 +1,234 @@
+//! The command line as users see it: output, messages, exit status.
+
+use std::{
+    fs,
+    io::Read as _,
+    process::{Command, Stdio},
+};
+
+use serde_json::Value;
+
+use crate::support::{Run, changed, full_scene, lcm, lcm_in, root};
+
+/// Asserts the status and one line on standard error that contains a text.
+fn refused(run: &Run, status: i32, expected: &str) {
+    assert_eq!(run.status, Some(status), "{}", run.err);
+    assert!(run.err.contains(expected), "{}\nnot: {expected}", run.err);
+    assert_eq!(run.out, "");
+}
+
+#[test]
+fn help_and_version_are_results() {
+    for arguments in [&["--help"][..], &["render", "--help"], &["--version"]] {
+        let run = lcm(arguments, "");
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+        assert!(!run.out.is_empty());
+    }
+    assert!(lcm(&["--help"], "").out.contains("Exit status: 0 done"));
+}
+
+#[test]
+fn wrong_usage_has_status_2() {
+    for (arguments, expected) in [
+        (&["check"][..], "required"),
+        (&["render", "--size", "800"], "WIDTHxHEIGHT in pixels"),
+        (&["render", "--samples", "3"], "1 or 4"),
+        (&["render", "--renderer", "x"], "auto, gpu, cpu"),
+        (&["render", "--term", "specualr"], "did you mean specular?"),
+        (&["render", "--reflection", "fong"], "--reflection is \"fong\", but the reflection model must be"),
+        (&["render", "--shading", "x"], "--shading is \"x\", but the shading model must be"),
+        (&["render", "--tone-mapping", "acess"], "did you mean \"aces\"?"),
+        (
+            &["render", "--exposure", "17"],
+            "--exposure is \"17\", but the exposure must be between -16 and 16 EV",
+        ),
+        (&["render", "--exposure", "-17"], "the exposure must be between -16 and 16 EV"),
+        (&["render", "a.json", "b.json", "-o", "x.png"], "-o x.png is one file, but there are 2 scenes"),
+        (&["render", "a/x.json", "b/x.json"], "would both be written to renders/x.png"),
+        (&["render", "-o", "x.jpg"], "only PNG files are written; did you mean x.png?"),
+        (&["render", "-", "-"], "- can be given once"),
+        (&["view", "--exit-after", "0"], "0 is not in 1.."),
+        (&["--use-defaults", "--no-defaults", "check", "x"], "cannot be used with"),
+        (&["rendr"], "did you mean lcm render?"),
+        (&["evaluate", "fong"], "did you mean \"phong\"?"),
+        (
+            &["evaluate", "phong", "--set", "k_d=0.2"],
+            "k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1",
+        ),
+        (&["evaluate", "phong", "--set", "kd=0.7"], "phong has no parameter kd; did you mean k_d?"),
+        (&["evaluate", "phong", "--set", "k_d"], "it must be NAME=VALUE"),
+    ] {
+        refused(&lcm(arguments, ""), 2, expected);
+    }
+}
+
+#[test]
+fn check_reports_each_scene() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("good.json"), full_scene().to_string()).expect("written");
+    let bad = changed(|s| {
+        s["lights"][0]["intensity"] = (-1).into();
+        s["objects"][0]["size"] = 0.into();
+    });
+    fs::write(folder.path().join("bad.json"), &bad).expect("written");
+    let run = lcm_in(folder.path(), &["check", "good.json", "bad.json"], b"");
+    assert_eq!(run.status, Some(1));
+    assert_eq!(run.out, "good.json: valid: 4 lights, 2 objects\n");
+    let lines: Vec<_> = run.err.lines().collect();
+    assert_eq!(lines.len(), 3, "{}", run.err);
+    assert!(lines[0].starts_with("bad.json:") && lines[0].contains(": lights[0].intensity is -1, but"));
+    assert!(lines[1].starts_with("bad.json:") && lines[1].contains(": objects[0].size is 0, but"));
+    assert_eq!(lines[2], "1 of 2 scenes is invalid");
+    let run = lcm_in(folder.path(), &["check", "--quiet", "good.json"], b"");
+    assert_eq!((run.status, run.out.as_str(), run.err.as_str()), (Some(0), "", ""));
+}
+
+#[test]
+fn check_speaks_json() {
+    let bad = changed(|s| s["lights"][0]["intensity"] = (-1).into());
+    let run = lcm(&["check", "--json", "-"], &bad);
+    assert_eq!((run.status, run.err.as_str()), (Some(1), ""));
+    let report: Value = serde_json::from_str(&run.out).expect("JSON");
+    let problem = &report[0]["problems"][0];
+    assert_eq!(report[0]["file"], "standard input");
+    assert_eq!(problem["path"], "lights[0].intensity");
+    assert_eq!(problem["value"], "-1");
+    assert_eq!(problem["message"], "lights[0].intensity is -1, but an intensity must be at least 0");
+    let line = bad.lines().position(|l| l.contains("\"intensity\": -1")).expect("there") + 1;
+    assert_eq!(problem["line"], line);
+    assert!(problem["column"].as_u64().is_some_and(|c| c > 1));
+}
+
+#[test]
+fn missing_parts_need_an_answer() {
+    let text = changed(|s| drop(s.as_object_mut().expect("an object").remove("shading_model")));
+    for arguments in [&["check", "-"][..], &["check", "-", "--no-defaults"], &["render", "-"]] {
+        let run = lcm(arguments, &text);
+        refused(
+            &run,
+            1,
+            "standard input: shading_model (default: gouraud) is missing; --use-defaults takes the defaults, --no-defaults",
+        );
+        assert_eq!(run.err.lines().count(), 1);
+    }
+    assert_eq!(lcm(&["check", "-", "--use-defaults"], &text).status, Some(0));
+    refused(
+        &lcm(&["render", "-"], ""),
+        1,
+        "standard input is empty. Load the default scene? --use-defaults says yes",
+    );
+}
+
+#[test]
+fn render_says_everything_that_is_wrong_with_all_scenes() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("a.json"), "{").expect("written");
+    fs::write(folder.path().join("b.json"), "[]").expect("written");
+    let run = lcm_in(folder.path(), &["render", "a.json", "b.json", "c.json"], b"");
+    refused(&run, 1, "a.json:1:2: not JSON");
+    assert!(
+        run.err.contains("b.json:1:1: the scene is []") && run.err.contains("c.json: there is no such file")
+    );
+    assert!(!folder.path().join("renders").exists());
+}
+
+#[test]
+fn new_writes_the_default_scene_and_overwrites_nothing() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let run = lcm_in(folder.path(), &["new", "a.json"], b"");
+    assert_eq!((run.status, run.err.as_str()), (Some(0), "wrote a.json\n"));
+    assert_eq!(lcm_in(folder.path(), &["check", "a.json"], b"").status, Some(0));
+    refused(
+        &lcm_in(folder.path(), &["new", "a.json"], b""),
+        4,
+        "a.json exists already; it was not overwritten",
+    );
+    refused(&lcm_in(folder.path(), &["new", "x/a.json"], b""), 4, "there is no folder x");
+    refused(&lcm_in(folder.path(), &["new", "."], b""), 4, "is a folder; name a file");
+}
+
+#[test]
+fn models_are_listed_for_people_and_programs() {
+    let table = lcm(&["models"], "").out;
+    for expected in [
+        "Basic",
+        "mod_lambert",
+        "Modified Lambert",
+        "not energy conserving",
+        "k_d (diffuse coefficient): between 0.5 and 1, default 0.8",
+    ] {
+        assert!(table.contains(expected), "{table}");
+    }
+    let models: Value = serde_json::from_str(&lcm(&["models", "--json"], "").out).expect("JSON");
+    let phong = models.as_array().expect("a list").iter().find(|m| m["id"] == "phong").expect("there");
+    assert_eq!(phong["name"], "Phong");
+    assert_eq!(phong["laws"]["kept"], serde_json::json!(["non-negative"]));
+    assert_eq!(phong["laws"]["broken"], serde_json::json!(["reciprocal", "energy conserving"]));
+    let k_d =
+        phong["parameters"].as_array().expect("a list").iter().find(|p| p["name"] == "k_d").expect("there");
+    assert_eq!(
+        (k_d["min"].as_f64(), k_d["max"].as_f64(), k_d["default"].as_f64()),
+        (Some(0.5), Some(1.0), Some(0.8))
+    );
+    assert_eq!(k_d["type"], "number");
+}
+
+#[test]
+fn evaluate_gives_the_brdf_of_lambert() {
+    let run = lcm(
+        &["evaluate", "lambert", "--set", "base_colour=255,188,0"],
+        "theta_i,phi_i,theta_o,phi_o\n0,0,0,0\n 60 ,10,30.50,270\n95,0,0,0\n0,0,90,0\n",
+    );
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let lines: Vec<_> = run.out.lines().collect();
+    assert_eq!(lines[0], "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b");
+    assert!(lines[2].starts_with("60,10,30.50,270,"), "{}", lines[2]);
+    for line in &lines[1..3] {
+        let f: Vec<f32> = line.split(',').skip(4).map(|v| v.parse().expect("a number")).collect();
+        assert!((f[0] - std::f32::consts::FRAC_1_PI).abs() < 1e-6, "{line}");
+        assert!((f[1] - 0.502_886 * std::f32::consts::FRAC_1_PI).abs() < 1e-5, "{line}");
+        assert_eq!(f[2], 0.0);
+    }
+    assert_eq!(&lines[3..], ["95,0,0,0,0,0,0", "0,0,90,0,0,0,0"], "nothing below the surface");
+}
+
+#[test]
+fn evaluate_reports_every_bad_line() {
+    let run = lcm(&["evaluate", "phong"], "theta_i,phi_i,theta_o,phi_o\n0,0,0\n-1,0,x,0\n");
+    refused(
+        &run,
+        1,
+        "standard input:2: there are 3 columns, but there must be 4: theta_i,phi_i,theta_o,phi_o",
+    );
+    assert!(run.err.contains("standard input:3: theta_i is \"-1\", but it must be between 0 and 180"));
+    assert!(run.err.contains("standard input:3: theta_o is \"x\", but it must be a finite number"));
+    refused(
+        &lcm(&["evaluate", "phong"], "0,0,0,0\n"),
+        1,
+        "standard input:1: the header is \"0,0,0,0\", but it must be theta_i",
+    );
+    refused(&lcm(&["evaluate", "phong"], ""), 1, "standard input is empty");
+    refused(&lcm_in(root(), &["evaluate", "phong"], b"theta\xFF"), 1, "not UTF-8");
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    for arguments in [&["schema"][..], &["models", "--json"], &["evaluate", "lambert"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_lcm"))
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("started");
+        // Closes the reading end before anything is written.
+        drop(child.stdout.take());
+        let mut stdin = child.stdin.take().expect("piped");
+        let table = format!("theta_i,phi_i,theta_o,phi_o\n{}", "1,2,3,4\n".repeat(20_000));
+        let _ = std::io::Write::write_all(&mut stdin, table.as_bytes());
+        drop(stdin);
+        let mut said = String::new();
+        child.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+        assert_eq!((child.wait().expect("ended").code(), said.as_str()), (Some(0), ""), "{arguments:?}");
+    }
+}

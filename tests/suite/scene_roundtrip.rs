@@ -1,0 +1,211 @@
+//! Reading what was written gives the same scene.
+
+use std::{fs, time::Instant};
+
+use glam::Vec3;
+use lights_camera_models::{
+    optics::{colour::Encoding, tone::ToneMapping},
+    reflection::parameter::{Parameter, ParameterKind, Value, Values},
+    registry::Registry,
+    scene::{Display, Light, Object, Observer, Scene, SceneSize, check, load, load::Defaults},
+};
+use proptest::prelude::*;
+
+use crate::support::{full_scene, read, shipped_scenes, written};
+
+#[test]
+fn the_default_scene_comes_back() {
+    assert_eq!(read(&written(&Scene::default())), Scene::default());
+}
+
+#[test]
+fn writing_again_changes_nothing() {
+    let once = written(&read(&full_scene().to_string()));
+    assert_eq!(written(&read(&once)), once);
+}
+
+#[test]
+fn parameters_of_other_models_are_kept() {
+    let mut scene = Scene::default();
+    scene.objects[0].material.set("alpha", Value::Integer(7));
+    scene.objects[0].material.set("wrap_exponent", Value::Number(1.5));
+    assert_eq!(scene.reflection_model, "lambert");
+    assert_eq!(read(&written(&scene)), scene);
+}
+
+#[test]
+fn shipped_scenes_are_valid_complete_and_survive_writing() {
+    for path in shipped_scenes() {
+        let loaded = load::file(&path, &Registry::builtin(), Defaults::Refuse);
+        let scene = loaded.unwrap_or_else(|e| panic!("{e}")).scene;
+        assert_eq!(read(&written(&scene)), scene, "{}", path.display());
+        let text = fs::read_to_string(&path).expect("readable");
+        assert!(text.contains("\"$schema\": \"./scene.schema.json\""), "{}", path.display());
+    }
+}
+
+#[test]
+fn ten_thousand_objects_are_read_and_written_quickly() {
+    let objects = (0..10_000).map(|i| {
+        let position = Vec3::new(1.0 + (i % 8) as f32, 1.0 + (i % 7) as f32, 1.0 + i as f32 * 1e-4);
+        let mut object = Object { position, name: Some(format!("object {i}")), ..Object::default() };
+        object.material.set("k_d", Value::Number(0.5 + (i as f32) * 5e-5));
+        object.material.set("base_colour", Value::Colour([(i % 256) as u8, 1, 2]));
+        object
+    });
+    let scene = Scene { objects: objects.collect(), ..Scene::default() };
+    let start = Instant::now();
+    let text = written(&scene);
+    let back = read(&text);
+    let took = start.elapsed();
+    assert_eq!(back, scene);
+    assert!(took.as_secs_f32() < 1.0, "{took:?}");
+}
+
+/// A finite number, often an awkward one.
+fn number(min: f32, max: f32) -> impl Strategy<Value = f32> {
+    prop_oneof![4 => min..=max, 1 => Just(min), 1 => Just(max), 1 => (min..=max).prop_map(f32::round).prop_map(move |v| v.clamp(min, max))]
+}
+
+fn position() -> impl Strategy<Value = Vec3> {
+    (number(1e-3, 1.0), number(1e-3, 1.0), number(1e-3, 1.0)).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+}
+
+fn vector() -> impl Strategy<Value = Vec3> {
+    let n = || prop_oneof![-1e3f32..1e3, -1e-3f32..1e-3, Just(0.0)];
+    (n(), n(), n()).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+}
+
+fn direction() -> impl Strategy<Value = Vec3> {
+    vector().prop_map(|v| if check::direction(v).is_ok() { v } else { Vec3::NEG_Z })
+}
+
+fn parameter(p: &'static Parameter) -> BoxedStrategy<Value> {
+    match p.kind {
+        ParameterKind::Number { min, max, .. } => number(min, max).prop_map(Value::Number).boxed(),
+        ParameterKind::Integer { min, max, .. } => {
+            (min..=max.unwrap_or(i64::MAX)).prop_map(Value::Integer).boxed()
+        }
+        ParameterKind::Colour { .. } => any::<[u8; 3]>().prop_map(Value::Colour).boxed(),
+        ParameterKind::Choice { options, .. } => {
+            prop::sample::select(options).prop_map(|(id, _)| Value::Choice(id.into())).boxed()
+        }
+    }
+}
+
+/// Some of the parameters, with legal values.
+fn values(parameters: Vec<&'static Parameter>) -> impl Strategy<Value = Values> {
+    let each: Vec<_> = parameters
+        .into_iter()
+        .map(|p| prop::option::of(parameter(p)).prop_map(move |v| v.map(|v| (p.name, v))))
+        .collect();
+    each.prop_map(|set| {
+        let mut values = Values::default();
+        for (name, value) in set.into_iter().flatten() {
+            values.set(name, value);
+        }
+        values
+    })
+}
+
+fn light() -> impl Strategy<Value = Light> {
+    let kinds = Registry::builtin().lights().to_vec();
+    prop::sample::select(kinds).prop_flat_map(|entry| {
+        let d = entry.declaration;
+        let name = prop::option::of("\\PC{0,20}");
+        let intensity = prop_oneof![number(0.0, 1e3), Just(f32::MAX), Just(f32::MIN_POSITIVE)];
+        (name, position(), direction(), any::<[u8; 3]>(), intensity, values(d.parameters.iter().collect()))
+            .prop_map(move |(name, p, direction, colour, intensity, parameters)| Light {
+                kind: d.id.to_owned(),
+                name,
+                // Apart from where objects and the observer are.
+                position: d.has_position.then_some(p + Vec3::X * 4.0),
+                direction: d.has_direction.then_some(direction),
+                colour,
+                intensity,
+                parameters,
+            })
+    })
+}
+
+fn object() -> impl Strategy<Value = Object> {
+    let registry = Registry::builtin();
+    let shapes = registry.shapes().to_vec();
+    let models: Vec<_> = registry.models().iter().map(|m| m.declaration.id.to_owned()).collect();
+    let modes: Vec<_> = registry.modes().iter().map(|m| m.declaration.id.to_owned()).collect();
+    let material: Vec<_> = registry.material_parameters().collect();
+    prop::sample::select(shapes).prop_flat_map(move |shape| {
+        (
+            prop::option::of("\\PC{0,20}"),
+            position(),
+            prop_oneof![number(1e-30, 1e3), Just(f32::MAX), Just(f32::MIN_POSITIVE)],
+            vector(),
+            prop::option::of(shape.declaration.tessellation.clone()),
+            prop::option::of(prop::sample::select(models.clone())),
+            prop::option::of(prop::sample::select(modes.clone())),
+            values(material.clone()),
+        )
+            .prop_map(
+                move |(
+                    name,
+                    position,
+                    size,
+                    rotation,
+                    tessellation,
+                    reflection_model,
+                    shading_model,
+                    material,
+                )| Object {
+                    kind: shape.declaration.id.to_owned(),
+                    name,
+                    position,
+                    size,
+                    rotation,
+                    tessellation,
+                    reflection_model,
+                    shading_model,
+                    material,
+                },
+            )
+    })
+}
+
+prop_compose! {
+    fn scene()(
+        name in prop::option::of("[\\PC\\n\\t\\\\\"]{0,20}"),
+        description in prop::option::of(any::<String>()),
+        size in (number(9.0, 100.0), number(9.0, 100.0), number(9.0, 100.0)),
+        lights in prop::collection::vec(light(), 1..5),
+        objects in prop::collection::vec(object(), 1..5),
+        eye in position(),
+        direction in direction(),
+        field_of_view in number(1.0, 170.0),
+        reflection in prop::sample::select(Registry::builtin().models().to_vec()),
+        shading in prop::sample::select(Registry::builtin().modes().to_vec()),
+        tone_mapping in prop::sample::select(&ToneMapping::ALL[..]),
+        encoding in prop::sample::select(&Encoding::ALL[..]),
+        exposure in number(-16.0, 16.0),
+    ) -> Scene {
+        Scene {
+            name,
+            description,
+            scene_size: SceneSize { height: size.0, width: size.1, depth: size.2 },
+            reflection_model: reflection.declaration.id.to_owned(),
+            shading_model: shading.declaration.id.to_owned(),
+            lights,
+            observer: Observer { position: eye + Vec3::Y * 4.0, direction, field_of_view },
+            objects,
+            display: Display { tone_mapping, exposure, encoding },
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_valid_scene_comes_back_as_it_was(scene in scene()) {
+        prop_assert_eq!(check::scene(&scene, &Registry::builtin()), vec![]);
+        prop_assert_eq!(read(&written(&scene)), scene);
+    }
+}
