@@ -1,1 +1,6 @@
-//! Placeholder.
+//! The window: panels around the picture.
+
+pub mod files;
+pub mod limits;
+pub mod settings;
+pub mod state;
