@@ -11,7 +11,7 @@ use bevy::ecs::{message::Message, resource::Resource};
 use bevy_egui::egui;
 use glam::{Quat, Vec3};
 
-use super::{limits, settings::Settings};
+use super::{PanelInfo, limits, settings::Settings};
 use crate::{
     light::MAX_LIGHTS,
     optics::TermSelection,
@@ -74,6 +74,8 @@ pub struct Lab {
     /// Whether keys may steer the picture: no field has the focus and no question is open; written by
     /// the panels.
     pub keyboard_free: bool,
+    /// The panels that there are, for the menus; written when they are shown.
+    pub panels: Vec<PanelInfo>,
     /// The part whose name is being typed in the tree.
     pub renaming: Option<Selection>,
     /// The document as it is in the file.
@@ -517,6 +519,7 @@ impl Lab {
             picture_rect: egui::Rect::NOTHING,
             pointer_in_picture: false,
             keyboard_free: true,
+            panels: Vec::new(),
             renaming: None,
             after_save: None,
             slot_use: Vec::new(),

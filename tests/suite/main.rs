@@ -1,0 +1,3 @@
+//! All integration tests, one binary: it links Bevy once.
+
+mod panels;
