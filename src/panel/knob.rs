@@ -79,7 +79,6 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     let focused = ui.memory(|m| m.has_focus(id));
     // The arrow keys turn the value; taken before the text field sees them.
     let mut step = 0.0;
-    let mut escape = false;
     if focused {
         ui.input_mut(|i| {
             for (key, sign) in [(Key::ArrowUp, 1.0), (Key::ArrowDown, -1.0)] {
@@ -89,7 +88,6 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
                     }
                 }
             }
-            escape = i.key_pressed(Key::Escape);
         });
     }
 
@@ -144,9 +142,10 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
             d.text = number(v);
         }
     }
+    // egui itself takes the focus away at Escape.
+    let escape = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape));
     if escape && let Some(d) = draft.take() {
         out = Some(d.before).filter(|v| *v != value && limits.allows(*v));
-        ui.memory_mut(|m| m.surrender_focus(id));
     } else if response.lost_focus() && draft.as_ref().is_some_and(|d| problem(&d.text).is_none()) {
         draft = None;
     }

@@ -234,7 +234,9 @@ pub fn show(
     dialogs: &mut Dialogs,
 ) -> Vec<Effect> {
     let ctx = ui.ctx().clone();
-    theme::apply(&ctx, &lab.view);
+    if !theme::apply(&ctx, &lab.view) {
+        return Vec::new();
+    }
     let style = ctx.global_style();
     ui.set_style(style);
     lab.panels = panels.list();

@@ -219,13 +219,15 @@ pub fn install_fonts(ctx: &Context) {
     ctx.set_fonts(fonts);
 }
 
-/// Makes egui look as the view asks. Cheap when nothing changed.
-pub fn apply(ctx: &Context, view: &View) {
+/// Makes egui look as the view asks. Cheap when nothing changed. The fonts arrive with the next pass:
+/// until then it answers `false`, and nothing can be shown.
+#[must_use]
+pub fn apply(ctx: &Context, view: &View) -> bool {
     let id = egui::Id::new("lab theme");
     let wanted = (view.theme == ThemeChoice::Dark, view.large_type);
     let before: Option<(bool, bool)> = ctx.data(|d| d.get_temp(id));
     if before == Some(wanted) {
-        return;
+        return true;
     }
     if before.is_none() {
         install_fonts(ctx);
@@ -234,6 +236,10 @@ pub fn apply(ctx: &Context, view: &View) {
     let theme = if wanted.0 { egui::Theme::Dark } else { egui::Theme::Light };
     ctx.set_theme(theme);
     ctx.set_style_of(theme, style(&Palette::of(view), scale(view)));
+    if before.is_none() {
+        ctx.request_repaint();
+    }
+    before.is_some()
 }
 
 fn style(p: &Palette, scale: f32) -> egui::Style {

@@ -148,8 +148,8 @@ impl Bench {
 
     fn key(&mut self, key: Key, modifiers: Modifiers) {
         let event = |pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
-        self.frame(vec![event(true)]);
-        self.frame(vec![event(false)]);
+        self.frame(vec![Event::ModifiersChanged(modifiers), event(true)]);
+        self.frame(vec![event(false), Event::ModifiersChanged(Modifiers::NONE)]);
         self.settle();
     }
 
@@ -165,7 +165,11 @@ impl Bench {
         let at = self.field(label).rect.center();
         self.click_at(at, PointerButton::Primary);
         self.key(Key::A, Modifiers::COMMAND | Modifiers::CTRL);
-        self.frame(vec![Event::Text(text.to_owned())]);
+        if text.is_empty() {
+            self.key(Key::Backspace, Modifiers::NONE);
+        } else {
+            self.frame(vec![Event::Text(text.to_owned())]);
+        }
         self.settle();
     }
 
@@ -275,6 +279,8 @@ fn sliders_are_dragged_and_a_double_click_sets_the_default() {
         pressed,
         modifiers: Modifiers::NONE,
     };
+    // Long enough for the click before not to count.
+    (0..6).for_each(|_| bench.settle());
     for _ in 0..2 {
         bench.frame(vec![press(true)]);
         bench.frame(vec![press(false)]);
@@ -694,7 +700,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         ("open-dialog", (1280.0, 720.0), |b| b.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL)),
         ("rename", (1280.0, 720.0), |b| b.key(Key::F2, Modifiers::NONE)),
     ];
-    let only = std::env::var("LCM_PANEL_ONLY").ok();
+    let only = std::env::var("LCM_PANEL_ONLY").ok().filter(|o| !o.is_empty());
     for (name, (width, height), setup) in states {
         if only.as_ref().is_some_and(|o| !o.split(',').any(|o| o == *name)) {
             continue;
