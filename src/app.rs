@@ -97,8 +97,3 @@ fn upload_lights(
         *last = bytes;
     }
 }
-
-/// Opens the window.
-pub fn view(_options: crate::cli::ViewOptions) -> Result<(), crate::cli::Failure> {
-    Ok(())
-}

@@ -73,9 +73,9 @@ pub enum Renderer {
 
 /// The size of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Size {
-    width: u32,
-    height: u32,
+pub(super) struct Size {
+    pub(super) width: u32,
+    pub(super) height: u32,
 }
 
 /// The longest side of a picture, pixels: what graphics hardware commonly draws.

@@ -15,10 +15,7 @@ use glam::Vec3;
 
 use crate::{
     observer::{camera::PictureCamera, rotation},
-    panel::{
-        Lab, Selection,
-        state::{Action, Edit, Severity},
-    },
+    panel::state::{Action, Edit, Lab, Selection, Severity},
     registry::Registry,
     scene::{Observer, Scene, check, spawn::CurrentScene},
 };

@@ -8,6 +8,7 @@ use bevy::{
     gizmos::{
         config::{GizmoConfig, GizmoConfigGroup, GizmoConfigStore},
         gizmos::Gizmos,
+        primitives::dim3::GizmoPrimitive3d,
     },
     math::{Isometry3d, primitives::Cuboid},
     reflect::Reflect,
@@ -18,7 +19,7 @@ use glam::{Quat, Vec3};
 use crate::{
     app::LabSystems,
     observer::{camera::PictureCamera, rotation as look_along},
-    panel::{Lab, Selection},
+    panel::state::{Lab, Selection},
     registry::Registry,
     scene::{
         Light, Object, Observer, Scene,

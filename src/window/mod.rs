@@ -4,7 +4,6 @@
 //! operating system. Frames are drawn only when something changes.
 
 use std::{
-    path::PathBuf,
     sync::{Arc, Mutex},
     time::{Duration, Instant},
 };
@@ -41,8 +40,9 @@ use crate::{
     cli::{Failure, ViewOptions},
     observer::camera::{PictureCamera, picture_camera},
     panel::{
-        Action, Effect, Lab, LabEffect, PanelPlugin,
+        PanelPlugin,
         files::{load_settings, run as run_files},
+        state::{Action, Effect, Lab, LabEffect},
     },
     registry::Registry,
     scene::spawn::CurrentScene,

@@ -13,7 +13,7 @@ use glam::Vec2;
 
 use crate::{
     observer::camera::PictureCamera,
-    panel::{Action, Lab, Selection},
+    panel::state::{Action, Lab, Selection},
     registry::Registry,
     scene::spawn::{CurrentScene, LitObject, SceneEntities},
 };

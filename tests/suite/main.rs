@@ -6,6 +6,7 @@ mod extension;
 mod gpu_parity;
 mod hot_swap;
 mod laws;
+mod panels;
 mod pictures;
 mod reference_renderer;
 mod saving;
