@@ -269,6 +269,8 @@ fn style(p: &Palette, scale: f32) -> egui::Style {
     s.tooltip_width = 40.0 * unit;
     s.menu_width = 36.0 * unit;
     s.scroll = egui::style::ScrollStyle::thin();
+    // Fading the edges would falsify the colours of what lies there.
+    s.scroll.fade.strength = 0.0;
     style.interaction.tooltip_delay = 0.35;
     style.interaction.selectable_labels = false;
     style.animation_time = 0.08;

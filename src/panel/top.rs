@@ -109,7 +109,9 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.weak(keys));
         });
     };
-    egui::MenuBar::new().ui(ui, |ui| {
+    ui.scope(|ui| {
+        egui::containers::menu::menu_style(ui.style_mut());
+        ui.spacing_mut().item_spacing.x = 2.0;
         ui.menu_button("File", |ui| {
             item(ui, "New default scene", Action::New, actions);
             item(ui, "Open…", Action::OpenDialog, actions);

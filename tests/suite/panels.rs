@@ -240,10 +240,10 @@ fn typing_an_illegal_value_shows_the_rule_and_leaves_the_scene_alone() {
 fn positions_stay_in_the_room() {
     let mut bench = Bench::new(Lab::default());
     let before = bench.lab.scene.clone();
-    bench.type_into("position of the centre x", "11");
+    bench.type_into("position x", "11");
     assert_eq!(bench.lab.scene, before);
     assert!(bench.says("greater than 0 and at most 10"));
-    bench.type_into("position of the centre x", "3.5");
+    bench.type_into("position x", "3.5");
     assert_eq!(bench.lab.scene.objects[0].position.x, 3.5);
 }
 
@@ -659,7 +659,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
                 help: String::new(),
             });
             b.lab.status.shaders = Shaders::Stale;
-            b.type_into("position of the centre x", "12");
+            b.type_into("position x", "12");
         }),
         ("knob-error", (1280.0, 900.0), |b| {
             b.apply(Action::Edit(Edit::Model("phong".to_owned())));
