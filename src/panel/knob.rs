@@ -471,7 +471,7 @@ pub fn colour_knob(
         let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
         let (label, hex) = head(ui, caption, |ui| {
             unit(ui, "");
-            hex_field(ui, id.with("hex"), caption.label, value, 64.0 * scale)
+            hex_field(ui, id.with("hex"), caption.label, value, 72.0 * scale)
         });
         out = hex.0;
         let mut hot = label.hovered();
