@@ -75,12 +75,13 @@ fn key_list(ui: &mut Ui, lab: &Lab, registry: &Registry) {
     let mut right = Vec::new();
     let mut count = 0;
     for group in groups {
-        if count < half {
+        let size = rows.iter().filter(|r| r.0 == group).count();
+        if count + size / 2 <= half {
             left.push(group)
         } else {
             right.push(group)
         }
-        count += rows.iter().filter(|r| r.0 == group).count();
+        count += size;
     }
     ui.spacing_mut().interact_size.y = 20.0 * theme::scale_here(ui);
     ui.columns_const(|[a, b]| {

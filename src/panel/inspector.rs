@@ -598,9 +598,9 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     section(ui, "Room", true, |ui| {
         let size = s.scene_size;
         let caption = Caption {
-            label: "width, height, depth: x, y, z",
+            label: "size",
             unit: "m",
-            help: "One corner of the room is the origin; everything stands in it.",
+            help: "Width along x, height along y, depth along z. One corner of the room is the origin; everything stands in it.",
             ..Caption::default()
         };
         let limits = [0, 1, 2].map(|axis| lab.dimension_limits(axis, registry));

@@ -322,7 +322,6 @@ fn style(p: &Palette, scale: f32) -> egui::Style {
 }
 
 /// The margins inside a panel.
-#[must_use]
 pub fn panel_frame(p: &Palette, margin: Vec2) -> egui::Frame {
     egui::Frame::new().fill(p.panel).inner_margin(Margin::symmetric(margin.x as i8, margin.y as i8))
 }
