@@ -157,7 +157,7 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
             ui.separator();
             ui.label(theme::small(
                 ui,
-                "↑ ↓ Enter choose · Esc closes · 1–9 choose the numbered models from the picture",
+                "↑ ↓ Enter choose · Esc closes · 1–9 choose the numbered ones without this list",
             ));
         });
     ui.data_mut(|d| d.insert_temp(row_id, row));

@@ -20,11 +20,12 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_width(640.0 * scale)
+        .default_width((720.0 * scale).min(screen.width() - 80.0))
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(screen.center())
         .show(ctx, |ui| {
             ScrollArea::vertical()
+                .min_scrolled_height(screen.height() - 140.0)
                 .max_height(screen.height() - 140.0)
                 .show(ui, |ui| key_list(ui, lab, registry));
         });
@@ -74,13 +75,15 @@ fn key_list(ui: &mut Ui, lab: &Lab, registry: &Registry) {
     let mut right = Vec::new();
     let mut count = 0;
     for group in groups {
-        if count < half {
+        let size = rows.iter().filter(|r| r.0 == group).count();
+        if count + size / 2 <= half {
             left.push(group)
         } else {
             right.push(group)
         }
-        count += rows.iter().filter(|r| r.0 == group).count();
+        count += size;
     }
+    ui.spacing_mut().interact_size.y = 20.0 * theme::scale_here(ui);
     ui.columns_const(|[a, b]| {
         for (ui, groups) in [(a, left), (b, right)] {
             for group in groups {

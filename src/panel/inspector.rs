@@ -69,7 +69,7 @@ fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
     ui.add_space(4.0);
     let heading = theme::strong(ui, title);
     ui.scope(|ui| {
-        ui.spacing_mut().indent = 0.0;
+        ui.spacing_mut().indent = 16.0 * theme::scale_here(ui);
         ui.visuals_mut().indent_has_left_vline = false;
         CollapsingHeader::new(heading).id_salt(title).default_open(open).show_unindented(ui, |ui| {
             ui.add_space(2.0);
@@ -138,7 +138,7 @@ fn text_field(
     let edit = TextEdit::singleline(&mut text)
         .id(id)
         .font(style)
-        .hint_text(RichText::new(hint).color(if heading { palette.text } else { palette.weak }))
+        .hint_text(if heading { RichText::new(hint).heading() } else { RichText::new(hint) })
         .desired_width(width - 14.0 * scale)
         .frame(
             egui::Frame::new()
@@ -185,7 +185,64 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
     let set = |field: ObjectField| Action::Edit(Edit::Object(i, field));
     header(ui, lab, registry, Selection::Object(i), object.name.as_deref(), actions);
 
-    section(ui, "Shape and place", true, |ui| {
+    let caption = Caption {
+        label: "position",
+        unit: "m",
+        help: "Where the centre is; y is up, the origin is a corner of the room.",
+        ..Caption::default()
+    };
+    if let Some(p) =
+        knob::vector_knob(ui, "position", &caption, object.position, &position_limits(lab.scene.scene_size))
+    {
+        actions.push(set(ObjectField::Position(p)));
+    }
+    let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
+    let size_limits = limits::object_size(lab.scene.scene_size);
+    let default = f64::from(crate::scene::DEFAULT_SIZE);
+    if let Some(v) =
+        knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
+    {
+        actions.push(set(ObjectField::Size(v as f32)));
+    }
+
+    let model = registry.model(lab.scene.model_of(object));
+    let mode = registry.mode(lab.scene.mode_of(object));
+    section(ui, "Reflection", true, |ui| {
+        if let Some(model) = model {
+            model_header(ui, model);
+            equation(ui, lab, registry, model, actions);
+        }
+        if let Some(mode) = mode {
+            stage(ui, mode);
+        }
+    });
+
+    section(ui, "Material", true, |ui| {
+        let Some(model) = model else {
+            ui.label("The reflection model of this object is not known here; choose another one.");
+            return;
+        };
+        for p in model.parameters {
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), None) {
+                actions.push(set(ObjectField::Material(p.name, v)));
+            }
+        }
+        let unused: Vec<_> = registry
+            .material_parameters()
+            .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
+            .collect();
+        if !unused.is_empty() {
+            let reason = format!("not used by {}", model.declaration.name);
+            ui.add_space(4.0);
+            ui.label(theme::small(ui, format!("Set, but {reason}: kept for models that do")));
+            ui.add_space(2.0);
+            for p in unused {
+                knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
+            }
+        }
+    });
+
+    section(ui, "Shape", true, |ui| {
         let kinds: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
         let names: Vec<_> = kinds.iter().map(|d| d.name).collect();
         let chosen = kinds.iter().position(|d| d.id == object.kind);
@@ -193,29 +250,6 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
         let caption = Caption { label: "type", help, ..Caption::default() };
         if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
             actions.push(set(ObjectField::Kind(kinds[k].id.to_owned())));
-        }
-        let caption = Caption {
-            label: "position of the centre",
-            unit: "m",
-            help: "Where the centre is; y is up, the origin is a corner of the room.",
-            ..Caption::default()
-        };
-        if let Some(p) = knob::vector_knob(
-            ui,
-            "position",
-            &caption,
-            object.position,
-            &position_limits(lab.scene.scene_size),
-        ) {
-            actions.push(set(ObjectField::Position(p)));
-        }
-        let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
-        let size_limits = limits::object_size(lab.scene.scene_size);
-        let default = f64::from(crate::scene::DEFAULT_SIZE);
-        if let Some(v) =
-            knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
-        {
-            actions.push(set(ObjectField::Size(v as f32)));
         }
         let caption = Caption {
             label: "rotation",
@@ -248,83 +282,56 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
         }
     });
 
-    let model = registry.model(lab.scene.model_of(object));
-    let mode = registry.mode(lab.scene.mode_of(object));
-    section(ui, "Reflection and shading", true, |ui| {
-        if let Some(model) = model {
-            model_header(ui, model);
-            equation(ui, lab, registry, model, actions);
-        }
-        if let Some(mode) = mode {
-            stage(ui, mode);
-        }
-        let scene_model = registry.model(&lab.scene.reflection_model).map_or("–", |m| m.declaration.name);
-        let of_scene = format!("as the scene: {scene_model}");
-        let options: Vec<&str> = std::iter::once(of_scene.as_str())
-            .chain(registry.models().iter().map(|m| m.declaration.name))
-            .collect();
-        let chosen = object.reflection_model.as_ref().map_or(Some(0), |id| {
-            registry.models().iter().position(|m| m.declaration.id == id).map(|k| k + 1)
-        });
-        let caption = Caption {
-            label: "reflection",
-            help: "The reflection model of this object: the scene’s, or its own.",
-            ..Caption::default()
-        };
-        if let Some(k) = knob::choice_knob(ui, "model", &caption, chosen.unwrap_or(usize::MAX), &options) {
-            let id = k.checked_sub(1).map(|k| registry.models()[k].declaration.id.to_owned());
-            actions.push(set(ObjectField::Model(id)));
-        }
-        let scene_mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
-        let of_scene = format!("as the scene: {scene_mode}");
-        let options: Vec<&str> = std::iter::once(of_scene.as_str())
-            .chain(registry.modes().iter().map(|m| m.declaration.name))
-            .collect();
-        let chosen = object.shading_model.as_ref().map_or(Some(0), |id| {
-            registry.modes().iter().position(|m| m.declaration.id == id).map(|k| k + 1)
-        });
-        let caption = Caption {
-            label: "shading",
-            help: "Where on this object the reflection model is evaluated: as the scene says, or its own way.",
-            ..Caption::default()
-        };
-        if let Some(k) = knob::choice_knob(ui, "mode", &caption, chosen.unwrap_or(usize::MAX), &options) {
-            let id = k.checked_sub(1).map(|k| registry.modes()[k].declaration.id.to_owned());
-            actions.push(set(ObjectField::Mode(id)));
-        }
-    });
-
-    section(ui, "Material", true, |ui| {
-        let Some(model) = model else {
-            ui.label("The reflection model of this object is not known here; choose another one.");
-            return;
-        };
-        for p in model.parameters {
-            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), None) {
-                actions.push(set(ObjectField::Material(p.name, v)));
+    section(
+        ui,
+        "Its own model and shading",
+        object.reflection_model.is_some() || object.shading_model.is_some(),
+        |ui| {
+            let scene_model =
+                registry.model(&lab.scene.reflection_model).map_or("–", |m| m.declaration.name);
+            let of_scene = format!("as the scene: {scene_model}");
+            let options: Vec<&str> = std::iter::once(of_scene.as_str())
+                .chain(registry.models().iter().map(|m| m.declaration.name))
+                .collect();
+            let chosen = object.reflection_model.as_ref().map_or(Some(0), |id| {
+                registry.models().iter().position(|m| m.declaration.id == id).map(|k| k + 1)
+            });
+            let caption = Caption {
+                label: "reflection",
+                help: "The reflection model of this object: the scene’s, or its own.",
+                ..Caption::default()
+            };
+            if let Some(k) = knob::choice_knob(ui, "model", &caption, chosen.unwrap_or(usize::MAX), &options)
+            {
+                let id = k.checked_sub(1).map(|k| registry.models()[k].declaration.id.to_owned());
+                actions.push(set(ObjectField::Model(id)));
             }
-        }
-        let unused: Vec<_> = registry
-            .material_parameters()
-            .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
-            .collect();
-        if !unused.is_empty() {
-            let reason = format!("not used by {}", model.declaration.name);
-            ui.add_space(4.0);
-            ui.label(theme::small(ui, format!("Set, but {reason}: kept for models that do")));
-            ui.add_space(2.0);
-            for p in unused {
-                knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
+            let scene_mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
+            let of_scene = format!("as the scene: {scene_mode}");
+            let options: Vec<&str> = std::iter::once(of_scene.as_str())
+                .chain(registry.modes().iter().map(|m| m.declaration.name))
+                .collect();
+            let chosen = object.shading_model.as_ref().map_or(Some(0), |id| {
+                registry.modes().iter().position(|m| m.declaration.id == id).map(|k| k + 1)
+            });
+            let caption = Caption {
+                label: "shading",
+                help: "Where on this object the reflection model is evaluated: as the scene says, or its own way.",
+                ..Caption::default()
+            };
+            if let Some(k) = knob::choice_knob(ui, "mode", &caption, chosen.unwrap_or(usize::MAX), &options) {
+                let id = k.checked_sub(1).map(|k| registry.modes()[k].declaration.id.to_owned());
+                actions.push(set(ObjectField::Mode(id)));
             }
-        }
-    });
+        },
+    );
 }
 
 /// Name, author and year of a model; the whole story is the tooltip.
 fn model_header(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
     let palette = Palette::here(ui);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(d.name).heading());
         ui.label(theme::small(ui, d.author));
     })
@@ -356,6 +363,7 @@ fn equation(ui: &mut Ui, lab: &Lab, registry: &Registry, model: &ModelEntry, act
     let has = |term: Term| d.equation.iter().any(|p: &EquationPart| p.term == term);
     if has(Term::Total) {
         ui.horizontal(|ui| {
+            ui.set_min_height(30.0 * theme::scale_here(ui));
             ui.label(theme::small(ui, "show"));
             let options =
                 [TermSelection::All, TermSelection::Ambient, TermSelection::Diffuse, TermSelection::Specular];
@@ -590,9 +598,9 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     section(ui, "Room", true, |ui| {
         let size = s.scene_size;
         let caption = Caption {
-            label: "width, height, depth: x, y, z",
+            label: "size",
             unit: "m",
-            help: "One corner of the room is the origin; everything stands in it.",
+            help: "Width along x, height along y, depth along z. One corner of the room is the origin; everything stands in it.",
             ..Caption::default()
         };
         let limits = [0, 1, 2].map(|axis| lab.dimension_limits(axis, registry));

@@ -148,6 +148,11 @@ pub fn pressed(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Actio
             if (typing || popup) && !binding.while_typing() {
                 return true;
             }
+            // With the focus in a panel, Delete is the panel's: nobody means to remove the object that
+            // a slider belongs to.
+            if *key == Key::Delete && focused.is_some() {
+                return true;
+            }
             // With the focus in a panel, Tab moves it on.
             if *key == Key::Tab {
                 if focused.is_some() {

@@ -370,7 +370,7 @@ fn capitalised(text: &str) -> String {
 /// The sentence under a field that holds something illegal.
 fn complaint(ui: &mut Ui, error: &str, kept: &str) {
     let palette = Palette::here(ui);
-    let text = format!("{} — the picture keeps {kept}", capitalised(error));
+    let text = format!("{error} — the picture keeps {kept}");
     let label = egui::Label::new(egui::RichText::new(text).small().color(palette.error)).wrap();
     let response = ui.add(label);
     response.scroll_to_me(None);
@@ -434,7 +434,7 @@ pub fn number_knob(
             });
         }
         if let Some(error) = &field.error {
-            complaint(ui, error, &number(value));
+            complaint(ui, &capitalised(error), &number(value));
         }
         ui.add_space(6.0 * scale);
     });
@@ -470,8 +470,8 @@ pub fn colour_knob(
         let rule = "three whole numbers from 0 to 255: red, green, blue";
         let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
         let (label, hex) = head(ui, caption, |ui| {
-            unit(ui, caption.unit);
-            hex_field(ui, id.with("hex"), caption.label, value, 64.0 * scale)
+            unit(ui, "");
+            hex_field(ui, id.with("hex"), caption.label, value, 72.0 * scale)
         });
         out = hex.0;
         let mut hot = label.hovered();
@@ -511,13 +511,14 @@ pub fn colour_knob(
                 }
                 errors = errors.take().or(f.error);
             }
+            unit(ui, caption.unit);
         });
         if hot && !caption.symbol.is_empty() {
             maths::highlight(ui.ctx(), caption.symbol);
         }
         if let Some(error) = errors {
             let [r, g, b] = value;
-            complaint(ui, &error, &format!("{r}, {g}, {b}"));
+            complaint(ui, &capitalised(&error), &format!("{r}, {g}, {b}"));
         }
         ui.add_space(6.0 * scale);
     });
@@ -692,20 +693,26 @@ pub fn named_vector_knob(
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let scale = theme::scale_here(ui);
-        let label = ui.label(theme::small(ui, caption.label));
         let rules: Vec<_> = (0..3).map(|i| format!("{}: {}", letters[i], limits[i].rule())).collect();
-        label.on_hover_ui(|ui| {
-            ui.set_max_width(300.0 * scale);
-            ui.label(caption.help);
-            for rule in &rules {
-                ui.label(theme::small(ui, rule));
-            }
-        });
         let mut error = None;
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0 * scale;
-            let room = ui.available_width() - (3.0 * 18.0 + 22.0 + 8.0) * scale;
-            let width = (room / 3.0 - 2.0 * scale).clamp(40.0 * scale, 96.0 * scale).floor();
+            let font = TextStyle::Body.resolve(ui.style());
+            let colour = Palette::here(ui).text;
+            let galley = ui.painter().layout_no_wrap(caption.label.to_owned(), font, colour);
+            let column = galley.size().x.max(54.0 * scale);
+            let (rect, label) = ui.allocate_exact_size(vec2(column, 22.0 * scale), Sense::hover());
+            ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, colour);
+            label.on_hover_ui(|ui| {
+                ui.set_max_width(300.0 * scale);
+                ui.label(caption.help);
+                for rule in &rules {
+                    ui.label(theme::small(ui, rule));
+                }
+            });
+            // Three letters, three fields, the unit, and the gaps between the seven.
+            let room = ui.available_width() - (3.0 * 14.0 + 18.0 + 6.0 * 4.0) * scale;
+            let width = (room / 3.0).clamp(36.0 * scale, 96.0 * scale).floor();
             for axis in 0..3 {
                 let component = f64::from(value.to_array()[axis]);
                 let name = format!("{} {}", caption.label, letters[axis]);

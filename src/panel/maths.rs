@@ -46,6 +46,17 @@ impl Atom {
             _ => None,
         }
     }
+
+    /// The symbol that is the power of the atom, if the power is one: the `α` of `(N·H)^α`.
+    #[must_use]
+    pub fn power(&self) -> Option<String> {
+        match self {
+            Self::Symbol { sup, .. } | Self::Upright { sup, .. } if sup.chars().all(char::is_alphabetic) => {
+                Some(sup.clone()).filter(|s| s.chars().count() == 1)
+            }
+            _ => None,
+        }
+    }
 }
 
 /// Splits an equation into atoms.
@@ -259,6 +270,7 @@ pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Opti
     struct Placed {
         laid: Laid,
         symbol: Option<String>,
+        power: Option<String>,
         x: f32,
         line: usize,
         part: usize,
@@ -305,7 +317,14 @@ pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Opti
                 }
             }
             let advance = laid.width;
-            word.push(Placed { laid, symbol: atom.symbol(), x: word_width, line: 0, part });
+            word.push(Placed {
+                laid,
+                symbol: atom.symbol(),
+                power: atom.power(),
+                x: word_width,
+                line: 0,
+                part,
+            });
             word_width += advance;
         }
         flush(&mut word, &mut word_width, &mut x, &mut line, hang);
@@ -329,21 +348,30 @@ pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Opti
     for (i, p) in placed.iter().enumerate() {
         let baseline = pos2(rect.left() + p.x, rect.top() + line_height * (p.line as f32 + 0.68));
         let colour = palette.term_text(parts[p.part].term);
-        if let Some(symbol) = &p.symbol {
-            let cell = Rect::from_min_size(
-                pos2(baseline.x - 1.0, rect.top() + line_height * p.line as f32 + 2.0),
-                vec2(p.laid.width + 2.0, line_height - 4.0),
-            );
-            let meaning = name(symbol);
-            if let Some(meaning) = &meaning {
-                let id = response.id.with(i);
-                let here = ui.interact(cell, id, Sense::hover());
-                if here.hovered() {
-                    highlight(ui.ctx(), symbol);
-                }
-                here.on_hover_text(meaning);
+        let line = rect.top() + line_height * p.line as f32;
+        let raised = p.laid.pieces.last().filter(|_| p.power.is_some());
+        let base_width = raised.map_or(p.laid.width, |piece| piece.offset.x);
+        let base = Rect::from_min_size(
+            pos2(baseline.x - 1.0, line + 2.0),
+            vec2(base_width + 2.0, line_height - 4.0),
+        );
+        let power = raised.map(|piece| {
+            let width = piece.galley.size().x + 3.0;
+            Rect::from_min_size(
+                pos2(baseline.x + piece.offset.x - 1.0, line + 1.0),
+                vec2(width, 0.62 * line_height),
+            )
+        });
+        let cells = [(p.symbol.as_ref(), Some(base)), (p.power.as_ref(), power)];
+        for (k, (symbol, cell)) in cells.into_iter().enumerate() {
+            let (Some(symbol), Some(cell)) = (symbol, cell) else { continue };
+            let Some(meaning) = name(symbol) else { continue };
+            let here = ui.interact(cell, response.id.with((i, k)), Sense::hover());
+            if here.hovered() {
+                highlight(ui.ctx(), symbol);
             }
-            if meaning.is_some() && marked.as_ref().is_some_and(|m| same_symbol(m, symbol)) {
+            here.on_hover_text(meaning);
+            if marked.as_ref().is_some_and(|m| same_symbol(m, symbol)) {
                 painter.rect_filled(cell, 3.0, palette.chosen);
                 painter.hline(cell.x_range(), cell.bottom() - 1.0, Stroke::new(1.5, palette.accent));
             }

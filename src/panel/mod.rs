@@ -264,7 +264,7 @@ pub fn show(
     }
     if lab.view.left_open {
         let most = 0.35 * whole.width();
-        let panel = egui::Panel::left("left")
+        let panel = egui::Panel::left(Id::new(("left", lab.view.large_type)))
             .frame(theme::panel_frame(&palette, vec2(0.0, 4.0)))
             .default_size((sizes.0 * scale).min(most))
             .size_range((120.0 * scale).min(most)..=most);
@@ -277,7 +277,7 @@ pub fn show(
     }
     if lab.view.right_open {
         let most = 0.45 * whole.width();
-        let panel = egui::Panel::right("right")
+        let panel = egui::Panel::right(Id::new(("right", lab.view.large_type)))
             .frame(Frame::new().fill(palette.panel).inner_margin(Margin {
                 left: 12,
                 right: 4,
@@ -330,7 +330,7 @@ fn bottom(
     actions: &mut Vec<Action>,
 ) {
     let most = 0.6 * whole.height();
-    let strip = egui::Panel::bottom("bottom")
+    let strip = egui::Panel::bottom(Id::new(("bottom", lab.view.large_type)))
         .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
         .resizable(true)
         .default_size((*height * scale).min(most))

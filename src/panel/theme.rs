@@ -269,6 +269,8 @@ fn style(p: &Palette, scale: f32) -> egui::Style {
     s.tooltip_width = 40.0 * unit;
     s.menu_width = 36.0 * unit;
     s.scroll = egui::style::ScrollStyle::thin();
+    // Fading the edges would falsify the colours of what lies there.
+    s.scroll.fade.strength = 0.0;
     style.interaction.tooltip_delay = 0.35;
     style.interaction.selectable_labels = false;
     style.animation_time = 0.08;
@@ -320,7 +322,6 @@ fn style(p: &Palette, scale: f32) -> egui::Style {
 }
 
 /// The margins inside a panel.
-#[must_use]
 pub fn panel_frame(p: &Palette, margin: Vec2) -> egui::Frame {
     egui::Frame::new().fill(p.panel).inner_margin(Margin::symmetric(margin.x as i8, margin.y as i8))
 }

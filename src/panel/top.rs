@@ -92,6 +92,9 @@ fn document(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     }
 }
 
+/// Room for the longest entry and its key, points.
+const MENU_WIDTH: f32 = 232.0;
+
 fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions: &mut Vec<Action>) {
     let item = |ui: &mut Ui, text: &str, action: Action, actions: &mut Vec<Action>| {
         let keys = RichText::new(keys::keys_of(table, &action)).color(Palette::here(ui).weak);
@@ -109,8 +112,13 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.weak(keys));
         });
     };
-    egui::MenuBar::new().ui(ui, |ui| {
+    ui.scope(|ui| {
+        egui::containers::menu::menu_style(ui.style_mut());
+        let scale = theme::scale_here(ui);
+        ui.spacing_mut().item_spacing.x = 0.0;
+        ui.spacing_mut().button_padding = vec2(7.0, 3.0) * scale;
         ui.menu_button("File", |ui| {
+            ui.set_width(MENU_WIDTH * scale);
             item(ui, "New default scene", Action::New, actions);
             item(ui, "Open…", Action::OpenDialog, actions);
             ui.menu_button("Open recent", |ui| {
@@ -140,6 +148,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             item(ui, "Quit", Action::Quit, actions);
         });
         ui.menu_button("Edit", |ui| {
+            ui.set_width(MENU_WIDTH * scale);
             ui.menu_button("Add a light", |ui| {
                 for light in registry.lights() {
                     let d = light.declaration;
@@ -167,6 +176,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             });
         });
         ui.menu_button("View", |ui| {
+            ui.set_width(MENU_WIDTH * scale);
             item(ui, "Home: the observer’s view", Action::HomeView, actions);
             item(ui, "Look at what is selected", Action::FocusSelection, actions);
             item(ui, "Put the observer here", Action::ObserverFromView, actions);
@@ -221,6 +231,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             );
         });
         ui.menu_button("Help", |ui| {
+            ui.set_width(MENU_WIDTH * scale);
             item(ui, "Keys and mouse", Action::View(ViewChange::Keys(!lab.view.keys_open)), actions);
             item(ui, "About", Action::View(ViewChange::About(true)), actions);
         });
@@ -264,6 +275,14 @@ pub fn segmented(
             ui.horizontal(|ui| {
                 for (i, option) in options.iter().enumerate() {
                     let on = chosen == Some(i);
+                    // As wide as when chosen, so that nothing moves when the choice does.
+                    let bold = egui::FontId::new(
+                        egui::TextStyle::Button.resolve(ui.style()).size,
+                        theme::semibold(),
+                    );
+                    let width =
+                        ui.painter().layout_no_wrap((*option).to_owned(), bold, palette.text).size().x;
+                    let width = width + 2.0 * ui.spacing().button_padding.x;
                     let colour = if on { palette.text } else { palette.weak };
                     let text = RichText::new(*option).color(colour);
                     let text = if on { text.family(theme::semibold()) } else { text };
@@ -272,7 +291,7 @@ pub fn segmented(
                         .fill(fill)
                         .stroke(egui::Stroke::NONE)
                         .corner_radius(4.0)
-                        .min_size(vec2(0.0, 22.0 * scale));
+                        .min_size(vec2(width, 22.0 * scale));
                     let response = ui.add(button);
                     response.widget_info(|| {
                         WidgetInfo::selected(WidgetType::RadioButton, true, on, format!("{name}: {option}"))

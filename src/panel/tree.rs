@@ -247,6 +247,9 @@ fn part_row(
     if response.clicked() {
         actions.push(Action::Select(part));
     }
+    if nested && response.has_focus() && ui.input(|i| i.key_pressed(Key::Delete)) {
+        actions.push(Action::Remove(part));
+    }
     if nested && response.double_clicked() {
         actions.push(Action::BeginRename(part));
     }

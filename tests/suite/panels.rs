@@ -240,10 +240,10 @@ fn typing_an_illegal_value_shows_the_rule_and_leaves_the_scene_alone() {
 fn positions_stay_in_the_room() {
     let mut bench = Bench::new(Lab::default());
     let before = bench.lab.scene.clone();
-    bench.type_into("position of the centre x", "11");
+    bench.type_into("position x", "11");
     assert_eq!(bench.lab.scene, before);
     assert!(bench.says("greater than 0 and at most 10"));
-    bench.type_into("position of the centre x", "3.5");
+    bench.type_into("position x", "3.5");
     assert_eq!(bench.lab.scene.objects[0].position.x, 3.5);
 }
 
@@ -470,6 +470,19 @@ fn keys_choose_the_shading_but_not_while_typing() {
 }
 
 #[test]
+fn delete_removes_the_selection_but_not_from_within_a_knob() {
+    let mut bench = Bench::with_model("phong");
+    bench.apply(Action::AddObject("cube".to_owned()));
+    let slider = bench.tree.iter().find(|s| s.role == accesskit::Role::Slider).map(|s| s.rect.center());
+    bench.click_at(slider.unwrap_or_default(), PointerButton::Primary);
+    bench.key(Key::Delete, Modifiers::NONE);
+    assert_eq!(bench.lab.scene.objects.len(), 2);
+    bench.key(Key::Escape, Modifiers::NONE);
+    bench.key(Key::Delete, Modifiers::NONE);
+    assert_eq!(bench.lab.scene.objects.len(), 1);
+}
+
+#[test]
 fn tab_goes_through_the_objects_and_takes_no_focus() {
     let mut bench = Bench::new(Lab::default());
     bench.apply(Action::AddObject("cube".to_owned()));
@@ -563,7 +576,6 @@ fn everything_that_can_be_operated_has_a_name() {
                     | Role::SpinButton
                     | Role::RadioButton
             );
-            // Two numbers are the widths of two panels: egui's own handles.
             assert!(!operated || !seen.label.trim().is_empty(), "{selection:?}: {seen:?}");
         }
     }
@@ -659,7 +671,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
                 help: String::new(),
             });
             b.lab.status.shaders = Shaders::Stale;
-            b.type_into("position of the centre x", "12");
+            b.type_into("position x", "12");
         }),
         ("knob-error", (1280.0, 900.0), |b| {
             b.apply(Action::Edit(Edit::Model("phong".to_owned())));
