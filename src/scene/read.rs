@@ -724,7 +724,13 @@ fn hexadecimal(text: &str) -> Option<[u8; 3]> {
 fn describe(value: &Ast, text: &str) -> String {
     let written = value.text(text);
     match value {
-        Ast::Array(list) if written.len() > 40 || written.contains('\n') => {
+        Ast::Array(list) => {
+            let short = list.elements.len() <= 4;
+            let scalar = |e: &Ast| !matches!(e, Ast::Array(_) | Ast::Object(_));
+            if short && list.elements.iter().all(scalar) {
+                let elements: Vec<_> = list.elements.iter().map(|e| shortened(e.text(text))).collect();
+                return format!("[{}]", elements.join(", "));
+            }
             format!("a list of {}", list.elements.len())
         }
         Ast::Object(AstObject { properties, .. }) if properties.is_empty() => "{}".to_owned(),
