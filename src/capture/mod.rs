@@ -1,1 +1,5 @@
-//! Placeholder.
+//! Rendering without a window; PNG files.
+
+pub mod evaluate;
+pub mod gpu;
+pub mod png;

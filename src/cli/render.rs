@@ -13,7 +13,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{Failure, Options, Outcome, scenes::Source};
 use crate::{
+    capture::{
+        gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
+        png,
+    },
     optics::{TermSelection, tone::ToneMapping},
+    reference,
     registry::Registry,
     scene::{Scene, check, error::quoted},
 };
@@ -30,7 +35,7 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
     /// The size of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "800x600")]
+    #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: Size,
     /// Who renders: `auto` is a hardware GPU if there is one, and the CPU otherwise
     #[arg(long, value_enum, default_value_t = Renderer::Auto)]
@@ -109,11 +114,11 @@ fn term(text: &str) -> Result<TermSelection, String> {
 /// One picture to make.
 pub(super) struct Job<'a> {
     pub(super) scene: &'a Scene,
+    pub(super) source: &'a Source,
     pub(super) file: &'a Path,
     pub(super) width: u32,
     pub(super) height: u32,
     pub(super) samples: u32,
-    pub(super) renderer: Renderer,
     pub(super) terms: TermSelection,
 }
 
@@ -143,6 +148,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     }
 
     let bar = progress(scenes.len(), options);
+    let mut painter = Painter::new(arguments.renderer)?;
     for ((scene, source), file) in scenes.iter().zip(&sources).zip(&files) {
         bar.set_message(source.name());
         let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
@@ -152,16 +158,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
             })?;
         }
         let Size { width, height } = arguments.size;
-        draw(
-            &Job {
-                scene,
-                file,
-                width,
-                height,
-                samples: arguments.samples,
-                renderer: arguments.renderer,
-                terms: arguments.term,
-            },
+        painter.draw(
+            &Job { scene, source, file, width, height, samples: arguments.samples, terms: arguments.term },
             registry,
         )?;
         bar.inc(1);
@@ -175,10 +173,66 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     Ok(())
 }
 
-/// Makes one picture.
-fn draw(job: &Job, registry: &Registry) -> Outcome {
-    let _ = (registry, job.scene, job.width, job.height, job.samples, job.renderer, job.terms);
-    Err(Failure::NoRenderer(format!("{}: this build has no renderer", job.file.display())))
+/// Makes pictures, one after the other, with the renderer that was asked for.
+struct Painter {
+    gpu: bool,
+    /// The renderer of the last picture, with its size and samples: the next picture likely has the same.
+    last: Option<((u32, u32, u32), GpuRenderer)>,
+}
+
+impl Painter {
+    fn new(renderer: Renderer) -> Result<Self, Failure> {
+        let gpu = match renderer {
+            Renderer::Cpu => false,
+            Renderer::Gpu => {
+                find_adapter().map_err(|e| Failure::NoRenderer(e.to_string()))?;
+                true
+            }
+            // Asking the driver takes longer than drawing a picture; the device nodes tell at once that
+            // there is nothing to ask.
+            Renderer::Auto => may_have_hardware() && find_adapter().is_ok_and(|a| !a.software),
+        };
+        Ok(Self { gpu, last: None })
+    }
+
+    /// Makes one picture.
+    fn draw(&mut self, job: &Job, registry: &Registry) -> Outcome {
+        let rgb8 = if self.gpu { self.on_gpu(job)? } else { on_cpu(job, registry) };
+        let renderer = if self.gpu { "GPU" } else { "CPU" };
+        let facts = [
+            ("Software", concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION"))),
+            ("Title", job.scene.name.as_deref().unwrap_or_default()),
+            ("Source", &job.source.name()),
+            ("Reflection model", &job.scene.reflection_model),
+            ("Shading model", &job.scene.shading_model),
+            ("Renderer", renderer),
+        ];
+        png::write(job.file, job.width, job.height, &rgb8, &facts)
+            .map_err(|e| Failure::Write(format!("{} could not be written: {e}", job.file.display())))
+    }
+
+    fn on_gpu(&mut self, job: &Job) -> Result<Vec<u8>, Failure> {
+        let key = (job.width, job.height, job.samples);
+        let failed = |e: GpuError| Failure::NoRenderer(format!("{}: {e}", job.file.display()));
+        let renderer = match &mut self.last {
+            Some((last, renderer)) if *last == key => renderer,
+            slot => {
+                let samples = if job.samples == 4 { 4 } else { 1 };
+                let renderer = GpuRenderer::new(job.width, job.height, samples, gpu::Output::Display).map_err(failed)?;
+                &mut slot.insert((key, renderer)).1
+            }
+        };
+        renderer.set_scene(job.scene.clone());
+        renderer.set_terms(job.terms);
+        renderer.settle().map_err(failed)?;
+        renderer.read_rgb8().map_err(failed)
+    }
+}
+
+fn on_cpu(job: &Job, registry: &Registry) -> Vec<u8> {
+    let settings =
+        reference::Settings { width: job.width, height: job.height, samples: job.samples, terms: job.terms };
+    reference::render_rgb8(job.scene, registry, &settings)
 }
 
 /// A bar where it helps: several scenes, a terminal, and nobody who wants quiet.

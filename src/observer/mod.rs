@@ -1,5 +1,7 @@
 //! The observer: placing the camera.
 
+pub mod camera;
+
 use glam::{Mat3, Mat4, Quat, Vec3};
 
 use crate::scene::Observer;

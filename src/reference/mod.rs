@@ -1,1 +1,366 @@
-//! Placeholder.
+//! The CPU renderer: the picture of a scene from the Rust functions alone.
+//!
+//! It shares no code with the shaders, so that the two are witnesses of each other, and needs neither
+//! a window nor a graphics card. It follows the rules of graphics hardware (corners snapped to 1/256
+//! pixel, top-left rule, perspective-correct interpolation, the standard four samples, colour once per
+//! pixel and triangle), so that the two give the same picture up to rounding.
+//!
+//! ```
+//! use lights_camera_models::{reference, registry::Registry, scene::Scene};
+//! let settings = reference::Settings { width: 64, height: 36, ..Default::default() };
+//! let picture = reference::render(&Scene::default(), &Registry::builtin(), &settings);
+//! let rgb = picture.to_rgb8(&Scene::default().display);
+//! assert_eq!(rgb.len(), 64 * 36 * 3);
+//! ```
+//!
+//! Kinds of objects, lights, models and modes are looked up in the registry. A scene that was checked
+//! names only known ones; an object or light of an unknown kind is left out.
+//!
+//! A mode of [`Stage::Vertex`] or [`Stage::Pixel`] is asked once per vertex, which polygons share: the
+//! face normal and centre of its [`Corner`] are then the vertex's own normal and position. A mode of
+//! [`Stage::Polygon`] is asked once per polygon, at its centre.
+
+use std::collections::HashMap;
+
+use glam::{EulerRot, Mat3, Mat4, Vec3, Vec4};
+use rayon::prelude::*;
+
+use crate::{
+    observer::clip_from_room,
+    optics::TermSelection,
+    reflection::Surface,
+    registry::Registry,
+    scene::{Display, Object, Scene},
+    shading::{Corner, Lighting, ModeEntry, Stage, Varying},
+    shape::PolygonMesh,
+};
+
+mod display;
+mod lighting;
+mod raster;
+
+use display::Developer;
+pub use display::{BACKGROUND, encode8};
+use lighting::Lights;
+use raster::{Placed, Screen, TILE, Tile, Triangle, set_up};
+
+/// What a picture is made of, beside the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Samples per pixel: 4, the standard positions, or 1, the pixel's centre. Other numbers above 1
+    /// count as 4.
+    pub samples: u32,
+    /// Which terms of the equation are calculated.
+    pub terms: TermSelection,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { width: 1280, height: 720, samples: 4, terms: TermSelection::All }
+    }
+}
+
+/// A picture of light: linear, before exposure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Row by row from the top: red, green and blue of the objects' light (linear Rec. 709, the mean
+    /// over the pixel's samples), and the fraction of samples that objects cover. The rest is
+    /// [`BACKGROUND`].
+    pub pixels: Vec<Vec4>,
+}
+
+impl Picture {
+    /// Light and coverage of a pixel.
+    #[must_use]
+    pub fn pixel(&self, x: u32, y: u32) -> Vec4 {
+        self.pixels[y as usize * self.width as usize + x as usize]
+    }
+
+    /// The picture as a display shows it: exposure, tone mapping, sRGB encoding, eight bits; red,
+    /// green, blue, row by row from the top.
+    #[must_use]
+    pub fn to_rgb8(&self, display: &Display) -> Vec<u8> {
+        let developer = Developer::new(display);
+        let mut out = vec![0; self.pixels.len() * 3];
+        out.par_chunks_mut(3 * 4096).zip(self.pixels.par_chunks(4096)).for_each(|(out, pixels)| {
+            for (out, &pixel) in out.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
+                *out = developer.develop(pixel);
+            }
+        });
+        out
+    }
+}
+
+/// Renders a scene to light.
+#[must_use]
+pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Picture {
+    let pixels = draw(scene, registry, settings, Vec4::ZERO, |pixel| pixel);
+    Picture { width: settings.width, height: settings.height, pixels }
+}
+
+/// Renders a scene to what its display settings show: the same bytes as [`render`] and
+/// [`Picture::to_rgb8`], without ever holding the whole picture in floating point.
+#[must_use]
+pub fn render_rgb8(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<u8> {
+    let developer = Developer::new(&scene.display);
+    let background = developer.develop(Vec4::ZERO);
+    draw(scene, registry, settings, background, |pixel| developer.develop(pixel)).into_flattened()
+}
+
+/// A mesh with its normals, made once for all objects of its kind and tessellation.
+struct Prepared {
+    mesh: PolygonMesh,
+    polygon_normals: Vec<Vec3>,
+    polygon_centres: Vec<Vec3>,
+    vertex_normals: Vec<Vec3>,
+    /// Largest distance of a vertex from the origin.
+    radius: f32,
+}
+
+impl Prepared {
+    fn new(mesh: PolygonMesh) -> Self {
+        Self {
+            polygon_normals: mesh.polygon_normals(),
+            polygon_centres: mesh.polygon_centres(),
+            vertex_normals: mesh.vertex_normals(),
+            radius: mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max),
+            mesh,
+        }
+    }
+}
+
+/// An object with everything that drawing it needs.
+struct Draw<'a> {
+    object: &'a Object,
+    shape: &'a Prepared,
+    mode: &'a ModeEntry,
+    surface: Box<dyn Surface>,
+}
+
+/// Polygons that are held at a time: bounds the memory of scenes of any size.
+const POLYGONS_PER_BATCH: usize = 1 << 16;
+/// Vertices or polygons that one task shades at least.
+const SHADED_PER_TASK: usize = 256;
+
+/// Draws a scene: `background` where nothing is, and what `finish` makes of the light elsewhere.
+fn draw<T: Copy + Send + Sync>(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    background: T,
+    finish: impl Fn(Vec4) -> T + Sync,
+) -> Vec<T> {
+    if settings.samples > 1 {
+        draw_sampled::<4, T>(scene, registry, settings, background, finish)
+    } else {
+        draw_sampled::<1, T>(scene, registry, settings, background, finish)
+    }
+}
+
+fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    background: T,
+    finish: impl Fn(Vec4) -> T + Sync,
+) -> Vec<T> {
+    let (width, height) = (settings.width as usize, settings.height as usize);
+    let mut out = vec![background; width * height];
+    if out.is_empty() {
+        return out;
+    }
+    let screen = Screen::new(width, height, S);
+    let lights = Lights::new(scene, registry, settings.terms);
+    let shapes = prepare(scene, registry);
+    let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
+    let frustum = raster::frustum(&clip_from_room);
+
+    let seen: Vec<_> = scene
+        .objects
+        .iter()
+        .filter_map(|object| {
+            let shape = shapes.get(&key(object, registry)?)?;
+            let radius = shape.radius * object.size;
+            let hidden = frustum.iter().any(|plane| plane.dot(object.position.extend(1.0)) < -radius);
+            (!hidden).then_some((object, shape))
+        })
+        .collect();
+
+    let mut tiles: Vec<Option<Tile<S>>> = (0..screen.tiles()).map(|_| None).collect();
+    let mut rest = &seen[..];
+    while !rest.is_empty() {
+        let mut polygons = 0;
+        let within = rest
+            .iter()
+            .take_while(|(_, shape)| {
+                polygons += shape.mesh.polygons.len();
+                polygons <= POLYGONS_PER_BATCH
+            })
+            .count();
+        let (batch, later) = rest.split_at(within.max(1));
+        rest = later;
+
+        let draws: Vec<Draw> = batch
+            .iter()
+            .filter_map(|&(object, shape)| {
+                Some(Draw {
+                    object,
+                    shape,
+                    mode: registry.mode(scene.mode_of(object))?,
+                    surface: registry
+                        .model(scene.model_of(object))?
+                        .instantiate(&object.material, scene.display.encoding),
+                })
+            })
+            .collect();
+        let triangles: Vec<Vec<Triangle>> =
+            draws.par_iter().map(|draw| triangles(draw, &lights, &clip_from_room, &screen)).collect();
+        let bins = bin(&triangles, &screen);
+
+        // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them
+        // in memory, and laid into the picture when all are.
+        let finished: Vec<(usize, Vec<T>)> = tiles
+            .par_iter_mut()
+            .zip(&bins)
+            .enumerate()
+            .filter_map(|(i, (tile, bin))| {
+                for &(object, triangle) in bin {
+                    let draw = &draws[object as usize];
+                    let triangle = &triangles[object as usize][triangle as usize];
+                    let lighting = lights.on(&*draw.surface);
+                    let tile = tile.get_or_insert_with(Tile::new);
+                    tile.draw(triangle, draw.mode, &lighting, origin(i, &screen), &screen);
+                }
+                if !rest.is_empty() {
+                    return None;
+                }
+                Some((i, tile.take()?.resolve().map(&finish).collect()))
+            })
+            .collect();
+        for (i, pixels) in finished {
+            let [left, top] = origin(i, &screen);
+            let columns = TILE.min(width - left);
+            for (row, pixels) in pixels.chunks_exact(TILE).take(height - top).enumerate() {
+                let start = (top + row) * width + left;
+                out[start..start + columns].copy_from_slice(&pixels[..columns]);
+            }
+        }
+    }
+    out
+}
+
+/// The first pixel of a tile.
+fn origin(tile: usize, screen: &Screen) -> [usize; 2] {
+    [(tile % screen.tiles_across()) * TILE, (tile / screen.tiles_across()) * TILE]
+}
+
+/// Under which an object's mesh is kept.
+fn key(object: &Object, registry: &Registry) -> Option<(&'static str, u32)> {
+    let entry = registry.shape(&object.kind)?;
+    Some((entry.declaration.id, entry.tessellation(object.tessellation)))
+}
+
+/// The meshes that a scene needs, each once.
+fn prepare(scene: &Scene, registry: &Registry) -> HashMap<(&'static str, u32), Prepared> {
+    let mut wanted: Vec<_> = scene.objects.iter().filter_map(|object| key(object, registry)).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    wanted
+        .into_par_iter()
+        .filter_map(|key| Some((key, Prepared::new(registry.shape(key.0)?.mesh(key.1)))))
+        .collect()
+}
+
+/// The rotation of an object: about x first, then y, then z of the room, degrees.
+fn rotation(degrees: Vec3) -> Mat3 {
+    let r = degrees.map(f32::to_radians);
+    Mat3::from_euler(EulerRot::ZYX, r.z, r.y, r.x)
+}
+
+/// The triangles of an object that may be seen, shaded as far as its mode does at corners.
+fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Screen) -> Vec<Triangle> {
+    let Draw { object, shape, mode, surface } = draw;
+    let mesh = &shape.mesh;
+    let rotation = rotation(object.rotation);
+    let room = |p: Vec3| rotation * (p * object.size) + object.position;
+    let lighting = lights.on(&**surface);
+
+    let positions: Vec<Vec3> = mesh.positions.iter().map(|&p| room(p)).collect();
+    let placed: Vec<Placed> =
+        positions.iter().map(|p| Placed::new(*clip_from_room * p.extend(1.0), screen)).collect();
+
+    let visible: Vec<(u32, [u32; 3])> = mesh
+        .polygons
+        .iter()
+        .enumerate()
+        .flat_map(|(i, polygon)| {
+            let corners = polygon.corners();
+            polygon.triangles().iter().map(move |t| (i as u32, t.map(|c| corners[c])))
+        })
+        .filter(|(_, t)| Placed::may_be_seen(t.map(|c| &placed[c as usize]), screen))
+        .collect();
+
+    // What corners carry is calculated once per polygon or once per vertex, and only where needed.
+    let per_polygon = mode.declaration.stage == Stage::Polygon;
+    let mut needed: Vec<u32> = if per_polygon {
+        visible.iter().map(|(polygon, _)| *polygon).collect()
+    } else {
+        visible.iter().flat_map(|(_, t)| *t).collect()
+    };
+    needed.sort_unstable();
+    needed.dedup();
+    let shaded: Vec<Varying> = needed
+        .par_iter()
+        .with_min_len(SHADED_PER_TASK)
+        .map(|&i| {
+            let i = i as usize;
+            let corner = if per_polygon {
+                let (normal, centre) = (rotation * shape.polygon_normals[i], room(shape.polygon_centres[i]));
+                Corner { position: centre, normal, face_normal: normal, face_centre: centre }
+            } else {
+                let (normal, position) = (rotation * shape.vertex_normals[i], positions[i]);
+                Corner { position, normal, face_normal: normal, face_centre: position }
+            };
+            (mode.vertex)(&lighting as &dyn Lighting, &corner)
+        })
+        .collect();
+    let mut place = vec![0u32; if per_polygon { mesh.polygons.len() } else { mesh.positions.len() }];
+    for (at, &i) in needed.iter().enumerate() {
+        place[i as usize] = at as u32;
+    }
+
+    let mut out = Vec::with_capacity(visible.len());
+    for (polygon, corners) in visible {
+        let varyings = corners.map(|c| {
+            let shaded = shaded[place[if per_polygon { polygon } else { c } as usize] as usize];
+            Varying { position: positions[c as usize], ..shaded }
+        });
+        let placed = corners.map(|c| &placed[c as usize]);
+        set_up(placed, varyings, screen, &mut |triangle| out.push(triangle));
+    }
+    out
+}
+
+/// For each tile the triangles that may touch it, in the order of drawing: object, triangle.
+fn bin(triangles: &[Vec<Triangle>], screen: &Screen) -> Vec<Vec<(u32, u32)>> {
+    let mut bins = vec![Vec::new(); screen.tiles()];
+    for (object, triangles) in triangles.iter().enumerate() {
+        for (i, triangle) in triangles.iter().enumerate() {
+            let Some([left, right, top, bottom]) = triangle.bounds(screen) else { continue };
+            for row in top / TILE..=bottom / TILE {
+                for column in left / TILE..=right / TILE {
+                    bins[row * screen.tiles_across() + column].push((object as u32, i as u32));
+                }
+            }
+        }
+    }
+    bins
+}

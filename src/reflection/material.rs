@@ -1,13 +1,208 @@
-//! Placeholder.
-use super::ReflectionModel;
-use bevy::app::App;
-/// Placeholder.
+//! The Material implementation, generic over the model (rule 3): one Material type per model.
+//!
+//! A material carries the parameters of one object in a uniform block whose layout follows from the
+//! declaration, the shared buffer of lights, and the composed shader of its model and shading mode,
+//! which is part of the pipeline key.
+
+use std::{collections::HashMap, marker::PhantomData};
+
+use bevy::{
+    asset::{Asset, Assets, Handle},
+    ecs::{
+        change_detection::Mut,
+        resource::Resource,
+        world::{EntityWorldMut, World},
+    },
+    mesh::{Mesh, MeshVertexAttribute, MeshVertexBufferLayoutRef},
+    pbr::{Material, MaterialPipeline, MaterialPipelineKey, MaterialPlugin, MeshMaterial3d},
+    prelude::App,
+    reflect::TypePath,
+    render::{
+        render_resource::{
+            AsBindGroup, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError, VertexFormat,
+        },
+        storage::ShaderBuffer,
+    },
+    shader::Shader,
+};
+use glam::Vec4;
+
+use super::{ReflectionModel, parameter::BLOCK_BYTES};
+
+/// The normal of the polygon (DD8), on meshes for modes that calculate per polygon.
+pub const FACE_NORMAL: MeshVertexAttribute =
+    MeshVertexAttribute::new("FaceNormal", 0x4c43_4d01, VertexFormat::Float32x3);
+/// The centre of the polygon, on meshes for modes that calculate per polygon.
+pub const FACE_CENTRE: MeshVertexAttribute =
+    MeshVertexAttribute::new("FaceCentre", 0x4c43_4d02, VertexFormat::Float32x3);
+
+/// The uniform block of any model: [`BLOCK_BYTES`] bytes, laid out as
+/// [`layout`](super::parameter::layout) says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, ShaderType)]
+pub struct ParameterBlock {
+    values: [Vec4; BLOCK_BYTES / 16],
+}
+
+impl From<[u8; BLOCK_BYTES]> for ParameterBlock {
+    fn from(bytes: [u8; BLOCK_BYTES]) -> Self {
+        let mut block = Self::default();
+        for (value, chunk) in block.values.iter_mut().zip(bytes.chunks_exact(16)) {
+            let at = |i: usize| f32::from_le_bytes([chunk[i], chunk[i + 1], chunk[i + 2], chunk[i + 3]]);
+            *value = Vec4::new(at(0), at(4), at(8), at(12));
+        }
+        block
+    }
+}
+
+/// What is the same for all model types: everything a material holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ingredients {
+    /// The parameters of the object.
+    pub parameters: ParameterBlock,
+    /// The lights of the scene, shared by all materials.
+    pub illumination: Handle<ShaderBuffer>,
+    /// The composed shader of model and mode.
+    pub shader: Handle<Shader>,
+    /// Whether the mesh carries [`FACE_NORMAL`] and [`FACE_CENTRE`].
+    pub faces: bool,
+}
+
+/// The material of objects under the model `M`.
+#[derive(Asset, AsBindGroup, Clone, Debug)]
+#[bind_group_data(PipelineKey)]
+pub struct ModelMaterial<M: ReflectionModel> {
+    #[uniform(0)]
+    parameters: ParameterBlock,
+    #[storage(1, read_only)]
+    illumination: Handle<ShaderBuffer>,
+    shader: Handle<Shader>,
+    faces: bool,
+    model: PhantomData<fn() -> M>,
+}
+
+/// What tells pipelines of one model type apart.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct PipelineKey {
+    shader: Handle<Shader>,
+    faces: bool,
+}
+
+impl<M: ReflectionModel> From<&ModelMaterial<M>> for PipelineKey {
+    fn from(material: &ModelMaterial<M>) -> Self {
+        Self { shader: material.shader.clone(), faces: material.faces }
+    }
+}
+
+impl<M: ReflectionModel> From<Ingredients> for ModelMaterial<M> {
+    fn from(i: Ingredients) -> Self {
+        Self {
+            parameters: i.parameters,
+            illumination: i.illumination,
+            shader: i.shader,
+            faces: i.faces,
+            model: PhantomData,
+        }
+    }
+}
+
+// By hand, so that authors of models need not know Bevy's reflection.
+impl<M: ReflectionModel> TypePath for ModelMaterial<M> {
+    fn type_path() -> &'static str {
+        std::any::type_name::<Self>()
+    }
+
+    fn short_type_path() -> &'static str {
+        std::any::type_name::<Self>()
+    }
+}
+
+impl<M: ReflectionModel> Material for ModelMaterial<M> {
+    // Objects neither shadow nor light each other (AB5, AB6), so no depth-only passes.
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+
+    fn specialize(
+        _pipeline: &MaterialPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        layout: &MeshVertexBufferLayoutRef,
+        key: MaterialPipelineKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        let mut attributes =
+            vec![Mesh::ATTRIBUTE_POSITION.at_shader_location(0), Mesh::ATTRIBUTE_NORMAL.at_shader_location(1)];
+        if key.bind_group_data.faces {
+            attributes.push(FACE_NORMAL.at_shader_location(2));
+            attributes.push(FACE_CENTRE.at_shader_location(3));
+            descriptor.vertex.shader_defs.push("FACES".into());
+        }
+        descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
+        descriptor.vertex.shader = key.bind_group_data.shader.clone();
+        descriptor.vertex.entry_point = Some("vertex".into());
+        if let Some(fragment) = descriptor.fragment.as_mut() {
+            if key.bind_group_data.faces {
+                fragment.shader_defs.push("FACES".into());
+            }
+            fragment.shader = key.bind_group_data.shader;
+            fragment.entry_point = Some("fragment".into());
+        }
+        Ok(())
+    }
+}
+
+/// Puts a material of some model type on an entity, or takes it off: the same two calls for every
+/// model, looked up by id.
+#[derive(Clone, Copy)]
+pub struct Attachment {
+    /// Puts the material on; where the entity has one of this type already, changes it.
+    pub attach: fn(&mut EntityWorldMut, Ingredients),
+    /// Takes the material off.
+    pub detach: fn(&mut EntityWorldMut),
+}
+
+/// The [`Attachment`] of every registered model, by id.
+#[derive(Default, Resource)]
+pub struct Attachments(pub HashMap<&'static str, Attachment>);
+
+/// Makes Material types known to the renderer.
 pub trait MaterialApp {
-    /// Placeholder.
+    /// Makes the Material type of the model `M` known.
     fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self;
 }
+
 impl MaterialApp for App {
     fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self {
+        if !self.is_plugin_added::<MaterialPlugin<ModelMaterial<M>>>() {
+            self.add_plugins(MaterialPlugin::<ModelMaterial<M>>::default());
+        }
+        self.init_resource::<Attachments>();
+        let attachment = Attachment { attach: attach::<M>, detach: detach::<M> };
+        self.world_mut().resource_mut::<Attachments>().0.insert(M::DECLARATION.id, attachment);
         self
     }
+}
+
+fn attach<M: ReflectionModel>(entity: &mut EntityWorldMut, ingredients: Ingredients) {
+    let current = entity.get::<MeshMaterial3d<ModelMaterial<M>>>().map(|m| m.0.clone());
+    let handle = entity.world_scope(|world: &mut World| {
+        world.resource_scope(|_, mut materials: Mut<Assets<ModelMaterial<M>>>| match current {
+            Some(handle) => {
+                if let Some(mut material) = materials.get_mut(&handle) {
+                    *material = ingredients.into();
+                }
+                None
+            }
+            None => Some(materials.add(ModelMaterial::<M>::from(ingredients))),
+        })
+    });
+    if let Some(handle) = handle {
+        entity.insert(MeshMaterial3d(handle));
+    }
+}
+
+fn detach<M: ReflectionModel>(entity: &mut EntityWorldMut) {
+    entity.remove::<MeshMaterial3d<ModelMaterial<M>>>();
 }

@@ -1,1 +1,192 @@
-//! Placeholder.
+//! Exchanging models, modes, parameters and shapes at run time: the frame after the choice shows the
+//! new one, and no frame is without the object.
+
+use std::collections::HashMap;
+
+use bevy::{
+    asset::{Assets, Handle, RenderAssetUsages},
+    ecs::prelude::*,
+    mesh::{Indices, Mesh, Mesh3d, PrimitiveTopology},
+    shader::Shader,
+};
+
+use super::{
+    material::{Attachments, FACE_CENTRE, FACE_NORMAL, Ingredients},
+    parameter::pack,
+};
+use crate::{
+    light::buffer::IlluminationBuffer,
+    optics::colour::Encoding,
+    registry::Registry,
+    scene::spawn::{CurrentScene, LitObject},
+    shader::compose::{Sources, compose},
+    shading::Stage,
+    shape::PolygonMesh,
+};
+
+/// The composed shaders by model and mode, made when first needed.
+#[derive(Default, Resource)]
+pub struct ComposedShaders {
+    sources: Sources,
+    handles: HashMap<(&'static str, &'static str), Handle<Shader>>,
+}
+
+impl ComposedShaders {
+    /// The shader of a model and a mode.
+    fn get(
+        &mut self,
+        model: &super::ModelEntry,
+        mode: &crate::shading::ModeEntry,
+        registry: &Registry,
+        shaders: &mut Assets<Shader>,
+    ) -> Handle<Shader> {
+        let key = (model.declaration.id, mode.declaration.id);
+        self.handles
+            .entry(key)
+            .or_insert_with(|| {
+                let composed = compose(&self.sources, model, mode, registry.lights());
+                shaders.add(Shader::from_wgsl(composed.text, format!("composed/{}/{}.wgsl", key.0, key.1)))
+            })
+            .clone()
+    }
+}
+
+/// The meshes by object type and tessellation: with shared vertices for modes that interpolate, with
+/// the vertices of each polygon apart for modes that calculate per polygon. Both are made together, so
+/// that changing the mode finds its mesh ready.
+#[derive(Default, Resource)]
+pub struct ShapeMeshes(HashMap<(&'static str, u32), MeshPair>);
+
+#[derive(Clone)]
+struct MeshPair {
+    shared: Handle<Mesh>,
+    faces: Handle<Mesh>,
+}
+
+/// The mesh for modes that interpolate over shared vertices.
+#[must_use]
+pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
+    let indices = mesh
+        .polygons
+        .iter()
+        .flat_map(|p| p.triangles().iter().flatten().map(|&i| p.corners()[i]))
+        .collect::<Vec<_>>();
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&mesh.positions))
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&mesh.vertex_normals()))
+        .with_inserted_indices(Indices::U32(indices))
+}
+
+/// The mesh for modes that calculate per polygon: no vertex is shared, and each knows its polygon.
+#[must_use]
+pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
+    let vertex_normals = mesh.vertex_normals();
+    let mut positions = Vec::new();
+    let mut normals = Vec::new();
+    let mut face_normals = Vec::new();
+    let mut face_centres = Vec::new();
+    let mut indices = Vec::new();
+    for ((polygon, normal), centre) in mesh.polygons.iter().zip(mesh.polygon_normals()).zip(mesh.polygon_centres()) {
+        let first = positions.len() as u32;
+        for &corner in polygon.corners() {
+            positions.push(mesh.positions[corner as usize]);
+            normals.push(vertex_normals[corner as usize]);
+            face_normals.push(normal);
+            face_centres.push(centre);
+        }
+        indices.extend(polygon.triangles().iter().flatten().map(|&i| first + i as u32));
+    }
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&positions))
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&normals))
+        .with_inserted_attribute(FACE_NORMAL, arrays(&face_normals))
+        .with_inserted_attribute(FACE_CENTRE, arrays(&face_centres))
+        .with_inserted_indices(Indices::U32(indices))
+}
+
+fn arrays(vectors: &[glam::Vec3]) -> Vec<[f32; 3]> {
+    vectors.iter().map(|v| v.to_array()).collect()
+}
+
+/// What an object is drawn with at present.
+#[derive(Clone, Component, Debug, PartialEq)]
+pub struct Drawn {
+    model: String,
+    mode: String,
+    encoding: Encoding,
+}
+
+/// Gives every object whose shape, model, mode or parameters changed its mesh and its material. Exclusive, so that
+/// mesh and material change in one step.
+pub fn swap(world: &mut World) {
+    let pending = {
+        let scene = world.resource_ref::<CurrentScene>();
+        let scene_changed = scene.is_changed();
+        let mut pending = Vec::new();
+        let mut query = world.query::<(Entity, Ref<LitObject>, Option<&Drawn>)>();
+        let scene = &world.resource::<CurrentScene>().0;
+        for (entity, object, drawn) in query.iter(world) {
+            let now = || Drawn {
+                model: scene.model_of(&object.0).to_owned(),
+                mode: scene.mode_of(&object.0).to_owned(),
+                encoding: scene.display.encoding,
+            };
+            if object.is_changed() || drawn.is_none() || (scene_changed && drawn != Some(&now())) {
+                pending.push((entity, object.0.clone(), now()));
+            }
+        }
+        pending
+    };
+    if pending.is_empty() {
+        return;
+    }
+    let registry = world.resource::<Registry>().clone();
+    let illumination = world.resource::<IlluminationBuffer>().0.clone();
+    for (entity, object, now) in pending {
+        // The checker refuses scenes with unknown ids; should one come from elsewhere, the object
+        // keeps what it has.
+        let (Some(model), Some(mode), Some(shape)) =
+            (registry.model(&now.model), registry.mode(&now.mode), registry.shape(&object.kind))
+        else {
+            continue;
+        };
+        let tessellation = shape.tessellation(object.tessellation);
+        let pair = world.resource_scope(|world, mut meshes: Mut<ShapeMeshes>| {
+            meshes
+                .0
+                .entry((shape.declaration.id, tessellation))
+                .or_insert_with(|| {
+                    let mesh = shape.mesh(tessellation);
+                    let mut assets = world.resource_mut::<Assets<Mesh>>();
+                    MeshPair { shared: assets.add(shared_mesh(&mesh)), faces: assets.add(face_mesh(&mesh)) }
+                })
+                .clone()
+        });
+        let shader = world.resource_scope(|world, mut composed: Mut<ComposedShaders>| {
+            composed.get(model, mode, &registry, &mut world.resource_mut::<Assets<Shader>>())
+        });
+        let faces = mode.declaration.stage == Stage::Polygon;
+        let ingredients = Ingredients {
+            parameters: pack(model.parameters, &object.material, now.encoding).into(),
+            illumination: illumination.clone(),
+            shader,
+            faces,
+        };
+        let attachments = world.resource::<Attachments>();
+        let old = world
+            .get::<Drawn>(entity)
+            .filter(|d| d.model != now.model)
+            .and_then(|d| attachments.0.get(d.model.as_str()).copied());
+        let Some(new) = attachments.0.get(now.model.as_str()).copied() else { continue };
+        let Ok(mut entity) = world.get_entity_mut(entity) else { continue };
+        if let Some(old) = old {
+            (old.detach)(&mut entity);
+        }
+        (new.attach)(&mut entity, ingredients);
+        let mesh = if faces { pair.faces } else { pair.shared };
+        if entity.get::<Mesh3d>().map(|m| &m.0) != Some(&mesh) {
+            entity.insert(Mesh3d(mesh));
+        }
+        entity.insert(now);
+    }
+}

@@ -1,1 +1,253 @@
-//! Placeholder.
+//! The scene as entities: every light, every object and the observer is an entity with components
+//! of its own.
+//!
+//! [`CurrentScene`] and the entities mirror each other. Replacing or editing the scene changes only
+//! the entities that differ (so a reload leaves the rest alone); changing a component of an entity
+//! changes the scene. Either way the picture follows in the next frame.
+
+use bevy::{
+    camera::visibility::Visibility,
+    ecs::prelude::*,
+    log::warn,
+    transform::components::Transform,
+};
+use glam::{EulerRot, Quat, Vec3};
+
+use super::{Light, Object, Observer, Scene};
+use crate::{observer, registry::Registry};
+
+/// The scene that is shown.
+#[derive(Clone, Debug, Default, PartialEq, Resource)]
+pub struct CurrentScene(pub Scene);
+
+/// A light of the scene. Its type's marker component stands beside it.
+#[derive(Clone, Component, Debug, PartialEq)]
+#[require(Transform, Visibility)]
+pub struct LightSource(pub Light);
+
+/// An object of the scene.
+#[derive(Clone, Component, Debug, PartialEq)]
+#[require(Transform, Visibility)]
+pub struct LitObject(pub Object);
+
+/// The observer of the scene.
+#[derive(Clone, Component, Debug, PartialEq)]
+#[require(Transform)]
+pub struct Eye(pub Observer);
+
+/// Which entity stands for which part of the scene, in the scene's order.
+#[derive(Debug, Default, Resource)]
+pub struct SceneEntities {
+    /// The lights.
+    pub lights: Vec<Entity>,
+    /// The objects.
+    pub objects: Vec<Entity>,
+    /// The observer.
+    pub observer: Option<Entity>,
+    /// The scene that the entities stood for when the two were last made equal. What differs from it
+    /// in the scene was edited there, what differs in the entities was edited there.
+    mirrored: Option<Scene>,
+}
+
+/// The transform of an object: unit mesh → size → rotation → position.
+#[must_use]
+pub fn object_transform(object: &Object) -> Transform {
+    Transform { translation: object.position, rotation: rotation(object.rotation), scale: Vec3::splat(object.size) }
+}
+
+/// The rotation of Euler angles in degrees: about the room's x first, then y, then z.
+#[must_use]
+pub fn rotation(degrees: Vec3) -> Quat {
+    let r = degrees.map(f32::to_radians);
+    Quat::from_euler(EulerRot::ZYX, r.z, r.y, r.x)
+}
+
+/// The Euler angles in degrees of a rotation, the inverse of [`rotation`].
+#[must_use]
+pub fn euler_degrees(rotation: Quat) -> Vec3 {
+    let (z, y, x) = rotation.to_euler(EulerRot::ZYX);
+    Vec3::new(x, y, z).map(f32::to_degrees)
+}
+
+fn observer_transform(observer: &Observer) -> Transform {
+    Transform::from_translation(observer.position).with_rotation(observer::rotation(observer.direction))
+}
+
+fn light_transform(light: &Light) -> Transform {
+    Transform::from_translation(light.position.unwrap_or(Vec3::ZERO))
+}
+
+fn label(name: Option<&String>, kind: &str, index: usize) -> Name {
+    Name::new(name.cloned().unwrap_or_else(|| format!("{kind} {}", index + 1)))
+}
+
+/// Makes the entities equal to the scene. Runs when [`CurrentScene`] changed; touches only what
+/// differs.
+pub fn reconcile(
+    mut commands: Commands,
+    scene: Res<CurrentScene>,
+    registry: Res<Registry>,
+    mut entities: ResMut<SceneEntities>,
+    lights: Query<&LightSource>,
+    objects: Query<&LitObject>,
+    eyes: Query<&Eye>,
+) {
+    let mirrored = entities.mirrored.replace(scene.0.clone());
+    let mirrored_light = |i: usize| mirrored.as_ref().and_then(|s| s.lights.get(i));
+    let mirrored_object = |i: usize| mirrored.as_ref().and_then(|s| s.objects.get(i));
+    let Scene { lights: wanted_lights, objects: wanted_objects, observer, .. } = &scene.0;
+
+    let keep = wanted_lights.len().min(entities.lights.len());
+    for extra in entities.lights.split_off(keep) {
+        commands.entity(extra).try_despawn();
+    }
+    for (i, light) in wanted_lights.iter().enumerate() {
+        let current = entities.lights.get(i).and_then(|e| lights.get(*e).ok());
+        if current.is_some() && mirrored_light(i) == Some(light) {
+            continue;
+        }
+        let old_kind = current.map(|c| c.0.kind.as_str());
+        let mut entity = match entities.lights.get(i) {
+            Some(e) if current.is_some() => commands.entity(*e),
+            _ => {
+                let e = commands.spawn_empty();
+                match entities.lights.get_mut(i) {
+                    Some(slot) => *slot = e.id(),
+                    None => entities.lights.push(e.id()),
+                }
+                e
+            }
+        };
+        entity.insert((LightSource(light.clone()), light_transform(light), label(light.name.as_ref(), &light.kind, i)));
+        if old_kind != Some(light.kind.as_str()) {
+            if let Some(old) = old_kind.and_then(|k| registry.light(k)) {
+                (old.unmark)(&mut entity);
+            }
+            match registry.light(&light.kind) {
+                Some(entry) => (entry.mark)(&mut entity),
+                None => warn!("light {i} has the unknown type `{}` and gives no light", light.kind),
+            }
+        }
+    }
+
+    let keep = wanted_objects.len().min(entities.objects.len());
+    for extra in entities.objects.split_off(keep) {
+        commands.entity(extra).try_despawn();
+    }
+    for (i, object) in wanted_objects.iter().enumerate() {
+        let current = entities.objects.get(i).and_then(|e| objects.get(*e).ok());
+        if current.is_some() && mirrored_object(i) == Some(object) {
+            continue;
+        }
+        let parts =
+            (LitObject(object.clone()), object_transform(object), label(object.name.as_ref(), &object.kind, i));
+        match entities.objects.get_mut(i) {
+            Some(e) if current.is_some() => {
+                commands.entity(*e).insert(parts);
+            }
+            slot => {
+                let e = commands.spawn(parts).id();
+                match slot {
+                    Some(slot) => *slot = e,
+                    None => entities.objects.push(e),
+                }
+            }
+        }
+    }
+
+    match entities.observer.filter(|e| eyes.contains(*e)) {
+        Some(e) => {
+            if mirrored.is_none_or(|s| s.observer != *observer) {
+                commands.entity(e).insert((Eye(*observer), observer_transform(observer)));
+            }
+        }
+        None => {
+            let e = commands.spawn((Eye(*observer), observer_transform(observer), Name::new("Observer"))).id();
+            entities.observer = Some(e);
+        }
+    }
+}
+
+/// Takes over what others changed in the entities: components and transforms become the scene's
+/// values. What [`reconcile`] wrote itself compares equal and changes nothing.
+pub fn absorb(
+    mut scene: ResMut<CurrentScene>,
+    mut entities: ResMut<SceneEntities>,
+    lights: Query<(Ref<LightSource>, Ref<Transform>)>,
+    objects: Query<(Ref<LitObject>, Ref<Transform>)>,
+    eyes: Query<(Ref<Eye>, Ref<Transform>)>,
+) {
+    let mut next = None;
+    for (i, entity) in entities.lights.iter().enumerate() {
+        let Ok((source, transform)) = lights.get(*entity) else { continue };
+        if !source.is_changed() && !transform.is_changed() {
+            continue;
+        }
+        let mut light = source.0.clone();
+        if transform.translation != light_transform(&light).translation && light.position.is_some() {
+            light.position = Some(transform.translation);
+        }
+        if scene.0.lights.get(i) != Some(&light) {
+            put(&mut next, &scene.0, |s| s.lights.get_mut(i).map(|l| *l = light));
+        }
+    }
+    for (i, entity) in entities.objects.iter().enumerate() {
+        let Ok((lit, transform)) = objects.get(*entity) else { continue };
+        if !lit.is_changed() && !transform.is_changed() {
+            continue;
+        }
+        let mut object = lit.0.clone();
+        if !lit.is_changed() && *transform != object_transform(&object) {
+            object.position = transform.translation;
+            object.rotation = euler_degrees(transform.rotation);
+            object.size = transform.scale.max_element();
+        }
+        if scene.0.objects.get(i) != Some(&object) {
+            put(&mut next, &scene.0, |s| s.objects.get_mut(i).map(|o| *o = object));
+        }
+    }
+    if let Some((eye, transform)) = entities.observer.and_then(|e| eyes.get(e).ok())
+        && (eye.is_changed() || transform.is_changed())
+    {
+        let mut observer = eye.0;
+        if !eye.is_changed() && *transform != observer_transform(&observer) {
+            observer.position = transform.translation;
+            observer.direction = transform.rotation * Vec3::NEG_Z;
+        }
+        if scene.0.observer != observer {
+            put(&mut next, &scene.0, |s| {
+                s.observer = observer;
+                Some(())
+            });
+        }
+    }
+    if let Some(next) = next {
+        entities.mirrored = Some(next.clone());
+        scene.0 = next;
+    }
+}
+
+/// Edits a copy of the scene that is made at the first edit.
+fn put(next: &mut Option<Scene>, scene: &Scene, edit: impl FnOnce(&mut Scene) -> Option<()>) {
+    let _ = edit(next.get_or_insert_with(|| scene.clone()));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotations_turn_about_x_first() {
+        let r = rotation(Vec3::new(90.0, 90.0, 0.0));
+        // y → z about x, then z → x about y.
+        assert!((r * Vec3::Y - Vec3::X).length() < 1e-6);
+    }
+
+    #[test]
+    fn euler_angles_and_rotations_are_inverse() {
+        for degrees in [Vec3::ZERO, Vec3::new(10.0, 20.0, 30.0), Vec3::new(-70.0, 45.0, 170.0)] {
+            let back = euler_degrees(rotation(degrees));
+            assert!((back - degrees).length() < 1e-3, "{degrees} came back as {back}");
+        }
+    }
+}

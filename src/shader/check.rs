@@ -1,1 +1,125 @@
-//! Placeholder.
+//! Checking composed sources with naga, and telling authors in their own file's terms what is wrong.
+
+use std::fmt;
+
+use naga::{
+    Module,
+    front::wgsl,
+    valid::{Capabilities, ValidationFlags, Validator},
+};
+
+use super::compose::Composed;
+
+/// What is wrong with a shader, located in the author's file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShaderProblem {
+    /// Path below `assets/shaders/`.
+    pub file: String,
+    /// Line in that file, from 1.
+    pub line: usize,
+    /// Column, from 1.
+    pub column: usize,
+    /// The line itself.
+    pub source: String,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl fmt::Display for ShaderProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.message)
+    }
+}
+
+impl std::error::Error for ShaderProblem {}
+
+/// Parses and validates a composed source that has no imports left.
+///
+/// # Errors
+/// The first problem, located in the author's file.
+pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
+    let module = wgsl::parse_str(&composed.text).map_err(|error| {
+        let place = error.location(&composed.text).map(|l| (l.line_number as usize, l.line_position as usize));
+        locate(composed, place, error.message().to_owned())
+    })?;
+    Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).map_err(|error| {
+        let place = error.location(&composed.text).map(|l| (l.line_number as usize, l.line_position as usize));
+        // The outermost message only says that some function is invalid; the innermost says why.
+        let mut message = error.as_inner().to_string();
+        let mut source = std::error::Error::source(error.as_inner());
+        while let Some(inner) = source {
+            message = format!("{message}: {inner}");
+            source = inner.source();
+        }
+        locate(composed, place, message)
+    })?;
+    Ok(module)
+}
+
+fn locate(composed: &Composed, place: Option<(usize, usize)>, message: String) -> Box<ShaderProblem> {
+    let (line, column) = place.unwrap_or((1, 1));
+    let (file, file_line) = composed.map.locate(line).unwrap_or(("(composed)", line));
+    Box::new(ShaderProblem {
+        file: file.to_owned(),
+        line: file_line,
+        column,
+        source: composed.text.lines().nth(line.saturating_sub(1)).unwrap_or_default().to_owned(),
+        message,
+    })
+}
+
+/// The byte offsets of the members of a struct in a module, by name; `None` when there is no such
+/// struct.
+#[must_use]
+pub fn struct_layout(module: &Module, name: &str) -> Option<Vec<(String, usize)>> {
+    module.types.iter().find_map(|(_, ty)| match &ty.inner {
+        naga::TypeInner::Struct { members, .. } if ty.name.as_deref() == Some(name) => {
+            Some(members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize)).collect())
+        }
+        _ => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        light::buffer::{ILLUMINATION_LAYOUT, LIGHT_LAYOUT},
+        reflection::parameter::layout,
+        registry::Registry,
+        shader::compose::{LIGHTS, Sources, TERMS, compose_evaluation},
+    };
+
+    #[test]
+    fn every_model_is_valid_and_its_parameters_lie_where_rust_puts_them() {
+        for model in Registry::builtin().models() {
+            let module = validate(&compose_evaluation(&Sources::default(), model)).expect("valid WGSL");
+            let rust: Vec<_> = layout(model.parameters).into_iter().map(|(n, _, at)| (n.to_owned(), at)).collect();
+            assert_eq!(struct_layout(&module, "Parameters"), Some(rust), "{}", model.declaration.id);
+        }
+    }
+
+    #[test]
+    fn lights_lie_where_rust_puts_them() {
+        let module = wgsl::parse_str(&format!("{}{}", TERMS.text, LIGHTS.text)).expect("valid WGSL");
+        let owned = |layout: &[(&str, usize)]| layout.iter().map(|(n, at)| ((*n).to_owned(), *at)).collect::<Vec<_>>();
+        assert_eq!(struct_layout(&module, "Light"), Some(owned(&LIGHT_LAYOUT)));
+        assert_eq!(struct_layout(&module, "Illumination"), Some(owned(&ILLUMINATION_LAYOUT)));
+        // The wrong twin: without the padding that vec3 wants, the layouts differ.
+        let packed = wgsl::parse_str("struct Light { position: vec3<f32>, kind: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, parameters: vec4<f32> }")
+            .expect("valid WGSL");
+        assert_ne!(struct_layout(&packed, "Light"), Some(owned(&LIGHT_LAYOUT)));
+    }
+
+    #[test]
+    fn problems_name_the_authors_file_and_line() {
+        let registry = Registry::builtin();
+        let mut sources = Sources::default();
+        sources.edit("reflection/lambert.wgsl", "// mine\nfn response(l: vec3<f32>) -> Terms { return 1.0; }\n");
+        let problem = validate(&compose_evaluation(&sources, &registry.models()[0])).expect_err("broken");
+        assert_eq!((problem.file.as_str(), problem.line), ("reflection/lambert.wgsl", 2), "{problem}");
+        sources.edit("reflection/lambert.wgsl", "fn f( {");
+        let problem = validate(&compose_evaluation(&sources, &registry.models()[0])).expect_err("broken");
+        assert_eq!((problem.file.as_str(), problem.line), ("reflection/lambert.wgsl", 1), "{problem}");
+    }
+}

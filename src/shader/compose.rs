@@ -1,1 +1,192 @@
-//! Placeholder.
+//! Joining the shader sources: pure text to text.
+//!
+//! One composed source holds, in this order: terms, the light record, the parameters of the model
+//! (generated from its declaration), the wrapper with the bindings, the model, the light types, the
+//! dispatch over light types (generated), the light loop, the shading mode and the entry points. A
+//! [`LineMap`] leads from a line of the composed text back to the author's file.
+
+use std::{collections::HashMap, fmt::Write as _};
+
+use super::{Source, wgsl};
+use crate::{light::LightEntry, reflection::ModelEntry, reflection::parameter, shading::ModeEntry};
+
+/// The shared sources: (path, text) of everything that is not a model, a light or a mode.
+pub const TERMS: Source = wgsl!("terms.wgsl");
+/// The light record.
+pub const LIGHTS: Source = wgsl!("lights.wgsl");
+/// The light loop.
+pub const LOOP: Source = wgsl!("loop.wgsl");
+/// What goes into and out of a shading mode.
+pub const SHADING: Source = wgsl!("shading.wgsl");
+/// The wrapper for the renderer: bindings and entry points.
+pub const WRAPPER: Source = wgsl!("wrapper.wgsl");
+
+/// Where the text of a source comes from: edited copies by path, else the built-in one.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    edited: HashMap<String, String>,
+}
+
+impl Sources {
+    /// The current text of a source.
+    #[must_use]
+    pub fn text<'a>(&'a self, source: &'a Source) -> &'a str {
+        self.edited.get(source.path).map_or(source.text, String::as_str)
+    }
+
+    /// Replaces the text of a source by path.
+    pub fn edit(&mut self, path: impl Into<String>, text: impl Into<String>) {
+        self.edited.insert(path.into(), text.into());
+    }
+}
+
+/// Leads from lines of a composed source back to files.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LineMap {
+    /// First line (from 1) of each piece in the composed text, and the path of its file.
+    pieces: Vec<(usize, String)>,
+}
+
+impl LineMap {
+    /// The file and line (from 1) that a line (from 1) of the composed text came from.
+    #[must_use]
+    pub fn locate(&self, line: usize) -> Option<(&str, usize)> {
+        let (first, path) = self.pieces.iter().rev().find(|(first, _)| *first <= line)?;
+        Some((path, line - first + 1))
+    }
+}
+
+/// A composed source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Composed {
+    /// The WGSL text.
+    pub text: String,
+    /// Where each line came from.
+    pub map: LineMap,
+}
+
+/// Builds a composed source piece by piece.
+#[derive(Default)]
+struct Composer {
+    text: String,
+    lines: usize,
+    map: LineMap,
+}
+
+impl Composer {
+    fn push(&mut self, path: &str, text: &str) {
+        self.map.pieces.push((self.lines + 1, path.to_owned()));
+        self.text.push_str(text);
+        self.lines += text.matches('\n').count();
+        if !text.ends_with('\n') {
+            self.text.push('\n');
+            self.lines += 1;
+        }
+    }
+
+    fn finish(self) -> Composed {
+        Composed { text: self.text, map: self.map }
+    }
+}
+
+/// The WGSL struct `Parameters` of a model. A model without parameters gets an unused field, since
+/// WGSL has no empty structs.
+#[must_use]
+pub fn parameter_struct(parameters: &[parameter::Parameter]) -> String {
+    let mut text = String::from("struct Parameters {\n");
+    for (name, kind, _) in parameter::layout(parameters) {
+        let _ = writeln!(text, "    {name}: {kind},");
+    }
+    if parameters.is_empty() {
+        text.push_str("    unused: f32,\n");
+    }
+    text.push_str("}\n");
+    text
+}
+
+/// The function that hands a light to its type, by the index of the type in the registry.
+#[must_use]
+pub fn light_dispatch(lights: &[LightEntry]) -> String {
+    let mut text = String::from("fn incident(light: Light, p: vec3<f32>) -> Incident {\n    switch light.kind {\n");
+    for (i, light) in lights.iter().enumerate() {
+        let _ = writeln!(text, "        case {i}u: {{ return incident_{}(light, p); }}", light.declaration.id);
+    }
+    text.push_str("        default: { return Incident(vec3(0.0), 0.0, 0u); }\n    }\n}\n");
+    text
+}
+
+/// The complete source for drawing with a model and a mode under the given light types.
+#[must_use]
+pub fn compose(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[LightEntry]) -> Composed {
+    let mut c = Composer::default();
+    let source = |c: &mut Composer, s: &Source| c.push(s.path, sources.text(s));
+    source(&mut c, &TERMS);
+    source(&mut c, &LIGHTS);
+    source(&mut c, &SHADING);
+    c.push("(parameters)", &parameter_struct(model.parameters));
+    source(&mut c, &model.declaration.wgsl);
+    for light in lights {
+        source(&mut c, &light.declaration.wgsl);
+    }
+    c.push("(light types)", &light_dispatch(lights));
+    source(&mut c, &LOOP);
+    source(&mut c, &mode.declaration.wgsl);
+    source(&mut c, &WRAPPER);
+    c.finish()
+}
+
+/// The source for evaluating a model alone in a compute pass: directions in, terms out.
+#[must_use]
+pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
+    let mut c = Composer::default();
+    c.push(TERMS.path, sources.text(&TERMS));
+    c.push("(parameters)", &parameter_struct(model.parameters));
+    c.push(model.declaration.wgsl.path, sources.text(&model.declaration.wgsl));
+    c.push(EVALUATE.path, sources.text(&EVALUATE));
+    c.finish()
+}
+
+/// The entry point of [`compose_evaluation`].
+pub const EVALUATE: Source = wgsl!("evaluate.wgsl");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::Registry;
+
+    #[test]
+    fn every_line_leads_back_to_its_file() {
+        let registry = Registry::builtin();
+        for model in registry.models() {
+            for mode in registry.modes() {
+                let composed = compose(&Sources::default(), model, mode, registry.lights());
+                let pieces = [TERMS, LOOP, WRAPPER, model.declaration.wgsl, mode.declaration.wgsl];
+                for (i, line) in composed.text.lines().enumerate() {
+                    let (path, at) = composed.map.locate(i + 1).expect("every line has a place");
+                    if let Some(source) = pieces.iter().find(|s| s.path == path) {
+                        assert_eq!(source.text.lines().nth(at - 1), Some(line), "{path}:{at}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_edited_source_replaces_the_built_in_one() {
+        let registry = Registry::builtin();
+        let mut sources = Sources::default();
+        sources.edit("loop.wgsl", "// edited");
+        let composed = compose(&sources, &registry.models()[0], &registry.modes()[0], registry.lights());
+        assert!(composed.text.contains("// edited"));
+        assert!(!composed.text.contains("fn illuminate"));
+    }
+
+    #[test]
+    fn every_light_type_is_dispatched_by_its_index() {
+        let registry = Registry::builtin();
+        let text = light_dispatch(registry.lights());
+        for (i, light) in registry.lights().iter().enumerate() {
+            assert!(text.contains(&format!("case {i}u: {{ return incident_{}(", light.declaration.id)));
+        }
+    }
+}

@@ -1,6 +1,13 @@
-use super::{Declaration, ObjectType, PolygonMesh};
+use std::collections::HashMap;
 
-/// Placeholder.
+use glam::{UVec3, Vec3};
+
+use super::{Declaration, ObjectType, PolygonMesh, mesh::Polygon};
+
+/// **Cube** of edge 1, each face cut into n × n squares.
+///
+/// Vertices on edges and corners belong to two and three faces at once, so their normals (DD9) point
+/// between the faces: Gouraud and Phong shading round the outermost row of squares off.
 #[derive(Clone, Copy, Debug)]
 pub struct Cube;
 
@@ -8,14 +15,72 @@ impl ObjectType for Cube {
     const DECLARATION: Declaration = Declaration {
         id: "cube",
         name: "Cube",
-        summary: "",
-        glyph: "●",
-        tessellation_help: "",
+        summary: "Plane faces and sharp edges: shows what averaged vertex normals do to an edge.",
+        glyph: "■",
+        tessellation_help: "Squares along each edge.",
         tessellation: 1..=64,
         default_tessellation: 16,
     };
 
-    fn mesh(_tessellation: u32) -> PolygonMesh {
-        PolygonMesh::default()
+    fn mesh(tessellation: u32) -> PolygonMesh {
+        let n = tessellation.max(1);
+        let mut mesh = PolygonMesh::default();
+        // Vertices are known by their place on a lattice, so neighbouring faces find each other's.
+        let mut known: HashMap<UVec3, u32> = HashMap::new();
+        for axis in 0..3 {
+            for high in [false, true] {
+                let mut vertex = |u: u32, v: u32| {
+                    let mut place = UVec3::ZERO;
+                    place[axis] = if high { n } else { 0 };
+                    place[(axis + 1) % 3] = u;
+                    place[(axis + 2) % 3] = v;
+                    *known.entry(place).or_insert_with(|| {
+                        mesh.positions.push(place.as_vec3() / n as f32 - Vec3::splat(0.5));
+                        (mesh.positions.len() - 1) as u32
+                    })
+                };
+                let mut squares = Vec::with_capacity((n * n) as usize);
+                for u in 0..n {
+                    for v in 0..n {
+                        let [a, b, c, d] =
+                            [vertex(u, v), vertex(u + 1, v), vertex(u + 1, v + 1), vertex(u, v + 1)];
+                        // Axes in cyclic order turn anticlockwise seen from the axis' positive end.
+                        squares.push(if high {
+                            Polygon::quad(a, b, c, d)
+                        } else {
+                            Polygon::quad(a, d, c, b)
+                        });
+                    }
+                }
+                mesh.polygons.append(&mut squares);
+            }
+        }
+        mesh
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_share_the_vertices_of_their_edges() {
+        for n in [1, 2, 5] {
+            let mesh = Cube::mesh(n);
+            assert_eq!(mesh.positions.len() as u32, 6 * n * n + 2);
+            assert_eq!(mesh.polygons.len() as u32, 6 * n * n);
+        }
+    }
+
+    #[test]
+    fn corners_look_along_the_diagonal_and_the_middle_of_a_face_along_its_axis() {
+        let mesh = Cube::mesh(4);
+        let normals = mesh.vertex_normals();
+        let at = |p: Vec3| {
+            mesh.positions.iter().position(|q| *q == p).map(|i| normals[i]).expect("there is a vertex")
+        };
+        assert!((at(Vec3::splat(0.5)) - Vec3::splat(1.0).normalize()).length() < 1e-6);
+        assert!((at(Vec3::new(0.0, 0.5, 0.0)) - Vec3::Y).length() < 1e-6);
+        assert!((at(Vec3::new(0.0, 0.5, 0.5)) - Vec3::new(0.0, 1.0, 1.0).normalize()).length() < 1e-6);
     }
 }

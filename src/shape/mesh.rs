@@ -8,7 +8,7 @@ use crate::shading::normals::{polygon_centre, polygon_normal, vertex_normals};
 /// need.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PolygonMesh {
-    /// The vertices; each place in space occurs once.
+    /// The vertices; each place of a surface occurs once.
     pub positions: Vec<Vec3>,
     /// Corners of each polygon, counter-clockwise seen from outside.
     pub polygons: Vec<Polygon>,
@@ -102,6 +102,36 @@ impl PolygonMesh {
     pub fn vertex_normals(&self) -> Vec<Vec3> {
         let normals = self.polygon_normals();
         vertex_normals(self.positions.len(), self.polygons.iter().zip(normals).map(|(p, n)| (p.corners(), n)))
+    }
+
+    /// Appends a surface made of loops of vertices, one row after the other, with a quadrilateral
+    /// between each four neighbours. Seen from outside, rows follow each other downward and each goes
+    /// from left to right. A row of one point is a pole, where triangles meet. With `ring` the last row
+    /// is joined to the first.
+    ///
+    /// # Panics
+    /// If rows that are not poles differ in length, or a row is empty: a mistake of the shape's author.
+    pub fn append_loops(&mut self, rows: &[Vec<Vec3>], ring: bool) {
+        let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+        let mut starts = Vec::with_capacity(rows.len());
+        for row in rows {
+            assert!(row.len() == columns || row.len() == 1, "rows must be loops of one length, or poles");
+            starts.push(self.positions.len());
+            self.positions.extend_from_slice(row);
+        }
+        let index = |row: usize, column: usize| (starts[row] + column % rows[row].len()) as u32;
+        let pairs = if ring { rows.len() } else { rows.len().saturating_sub(1) };
+        for row in 0..pairs {
+            let below = (row + 1) % rows.len();
+            for column in 0..columns {
+                self.polygons.push(Polygon::quad(
+                    index(row, column),
+                    index(below, column),
+                    index(below, column + 1),
+                    index(row, column + 1),
+                ));
+            }
+        }
     }
 
     /// Moves and scales the vertices so that the largest extent is 1 and the bounding box is centred

@@ -1,6 +1,13 @@
+use std::f32::consts::{PI, TAU};
+
+use glam::Vec3;
+
 use super::{Declaration, ObjectType, PolygonMesh};
 
-/// Placeholder.
+/// **Sphere**, cut along parallels and meridians; its poles lie on the y axis.
+///
+/// All vertices lie on the sphere of diameter 1, so the polygons cut the corners: the finer the
+/// tessellation, the closer the vertex normals (DD9) come to the position divided by the radius.
 #[derive(Clone, Copy, Debug)]
 pub struct Sphere;
 
@@ -8,14 +15,59 @@ impl ObjectType for Sphere {
     const DECLARATION: Declaration = Declaration {
         id: "sphere",
         name: "Sphere",
-        summary: "",
+        summary: "Has every normal once: shows a whole reflection model at one glance.",
         glyph: "●",
-        tessellation_help: "",
-        tessellation: 1..=64,
-        default_tessellation: 16,
+        tessellation_help: "Bands from pole to pole; twice as many segments go around.",
+        tessellation: 2..=256,
+        default_tessellation: 32,
     };
 
-    fn mesh(_tessellation: u32) -> PolygonMesh {
-        PolygonMesh::default()
+    fn mesh(tessellation: u32) -> PolygonMesh {
+        let bands = tessellation.max(2) as usize;
+        let segments = 2 * bands;
+        let mut rows = vec![vec![Vec3::Y * 0.5]];
+        for band in 1..bands {
+            let polar = PI * band as f32 / bands as f32;
+            let (radius, y) = (0.5 * polar.sin(), 0.5 * polar.cos());
+            rows.push(
+                (0..segments)
+                    .map(|segment| {
+                        let (sin, cos) = (TAU * segment as f32 / segments as f32).sin_cos();
+                        Vec3::new(radius * cos, y, -radius * sin)
+                    })
+                    .collect(),
+            );
+        }
+        rows.push(vec![Vec3::Y * -0.5]);
+        let mut mesh = PolygonMesh::default();
+        mesh.append_loops(&rows, false);
+        mesh
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest angle in radians between a vertex normal and the sphere's own.
+    fn worst(tessellation: u32) -> f32 {
+        let mesh = Sphere::mesh(tessellation);
+        let normals = mesh.vertex_normals();
+        mesh.positions.iter().zip(normals).map(|(p, n)| (p.normalize() - n).length()).fold(0.0, f32::max)
+    }
+
+    #[test]
+    fn vertex_and_polygon_counts_are_those_of_parallels_and_meridians() {
+        let mesh = Sphere::mesh(8);
+        assert_eq!(mesh.positions.len(), 7 * 16 + 2);
+        assert_eq!(mesh.polygons.len(), 8 * 16);
+        assert_eq!(mesh.polygons.iter().filter(|p| p.corners().len() == 3).count(), 2 * 16);
+    }
+
+    #[test]
+    fn vertex_normals_approach_those_of_the_sphere() {
+        let (coarse, fine) = (worst(8), worst(64));
+        assert!(fine < 0.01, "{fine}");
+        assert!(coarse > 4.0 * fine, "{coarse} {fine}");
     }
 }

@@ -1,6 +1,13 @@
-//! The integration tests: modules of one binary, because linking Bevy takes long.
+//! The integration tests, in one binary: linking Bevy once is enough.
+#![allow(missing_docs, clippy::unwrap_used)]
 
 mod command_line;
+mod extension;
+mod gpu_parity;
+mod hot_swap;
+mod laws;
+mod pictures;
+mod reference_renderer;
 mod saving;
 mod scene_errors;
 mod scene_roundtrip;

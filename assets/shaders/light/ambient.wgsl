@@ -1,1 +1,4 @@
-// placeholder
+// Ambient light: the same from everywhere.
+fn incident_ambient(light: Light, p: vec3<f32>) -> Incident {
+    return Incident(vec3(0.0), light.intensity, 1u);
+}

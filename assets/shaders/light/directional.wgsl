@@ -1,1 +1,4 @@
-// placeholder
+// Directional light: one direction and one illuminance everywhere.
+fn incident_directional(light: Light, p: vec3<f32>) -> Incident {
+    return Incident(-light.direction, light.intensity, 0u);
+}

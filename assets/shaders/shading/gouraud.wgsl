@@ -1,1 +1,9 @@
-// placeholder
+// Gouraud shading (H. Gouraud 1971, DD9): colour calculated at the vertices, interpolated.
+
+fn shade_vertex(corner: Corner) -> Varying {
+    return Varying(corner.position, corner.normal, illuminate(corner.position, corner.normal), vec3(0.0));
+}
+
+fn shade_pixel(passed: Varying) -> vec3<f32> {
+    return passed.colour;
+}

@@ -1,0 +1,21 @@
+// Evaluates a model for a list of direction pairs in a compute pass: the local frame has the normal
+// along +z and the tangent along +x.
+
+struct Pair {
+    l: vec3<f32>,
+    v: vec3<f32>,
+}
+
+@group(0) @binding(0) var<uniform> parameters: Parameters;
+@group(0) @binding(1) var<storage, read> pairs: array<Pair>;
+@group(0) @binding(2) var<storage, read_write> answers: array<Terms>;
+
+@compute @workgroup_size(64)
+fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&pairs) {
+        return;
+    }
+    let pair = pairs[id.x];
+    let frame = Frame(vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
+    answers[id.x] = response(pair.l, pair.v, frame, parameters);
+}

@@ -1,0 +1,47 @@
+// The light record and the light loop. Which model answers, the loop does not know; which type a
+// light has, only the generated `incident` knows.
+
+// Must equal `MAX_LIGHTS` in src/light/mod.rs (a test compares the layouts).
+const MAX_LIGHTS: u32 = 256u;
+
+const TERM_ALL: u32 = 0u;
+const TERM_AMBIENT: u32 = 1u;
+const TERM_DIFFUSE: u32 = 2u;
+const TERM_SPECULAR: u32 = 3u;
+
+// One light, the twin of `LightRecord` in src/light/mod.rs.
+struct Light {
+    position: vec3<f32>,
+    kind: u32,
+    direction: vec3<f32>,
+    intensity: f32,
+    colour: vec3<f32>,
+    parameters: vec4<f32>,
+}
+
+// All lights of the scene, and how the picture is to be shown.
+struct Illumination {
+    count: u32,
+    terms: u32,
+    exposure: f32,
+    gamma_naive: u32,
+    lights: array<Light, MAX_LIGHTS>,
+}
+
+// The light that arrives at a point from one light: from the direction l, or, where `everywhere` is
+// not zero, from all directions alike.
+struct Incident {
+    l: vec3<f32>,
+    intensity: f32,
+    everywhere: u32,
+}
+
+// The terms that are shown, added up.
+fn select_terms(terms: Terms, selection: u32) -> vec3<f32> {
+    switch selection {
+        case TERM_AMBIENT: { return terms.ambient; }
+        case TERM_DIFFUSE: { return terms.diffuse; }
+        case TERM_SPECULAR: { return terms.specular; }
+        default: { return terms.ambient + terms.diffuse + terms.specular; }
+    }
+}

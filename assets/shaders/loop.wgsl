@@ -1,0 +1,19 @@
+// The light loop: the colour of a point with a unit normal under all lights, linear, before
+// exposure. `illumination`, `parameters` and `observer_position` come from the wrapper.
+fn illuminate(position: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let v = unit_or_zero(observer_position() - position);
+    let frame = frame_from_normal(normal);
+    var colour = vec3(0.0);
+    for (var i = 0u; i < min(illumination.count, MAX_LIGHTS); i++) {
+        let light = illumination.lights[i];
+        let arriving = incident(light, position);
+        var terms: Terms;
+        if arriving.everywhere != 0u {
+            terms = Terms(ambient_response(v, frame, parameters), vec3(0.0), vec3(0.0));
+        } else {
+            terms = response(arriving.l, v, frame, parameters);
+        }
+        colour += select_terms(terms, illumination.terms) * arriving.intensity * light.colour;
+    }
+    return colour;
+}

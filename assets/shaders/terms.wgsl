@@ -1,0 +1,81 @@
+// The vocabulary of every reflection model, the twin of `src/optics/`: the same function names,
+// written separately on purpose. No bindings, no state.
+
+const PI: f32 = 3.14159265358979;
+
+// The local frame of a surface point: normal, tangent, bitangent.
+struct Frame {
+    n: vec3<f32>,
+    t: vec3<f32>,
+    b: vec3<f32>,
+}
+
+// The response of a model to one light of unit intensity, split into the terms of the equation.
+struct Terms {
+    ambient: vec3<f32>,
+    diffuse: vec3<f32>,
+    specular: vec3<f32>,
+}
+
+// T. Duff et al. (2017), Building an Orthonormal Basis, Revisited.
+fn frame_from_normal(n: vec3<f32>) -> Frame {
+    let s = select(-1.0, 1.0, n.z >= 0.0);
+    let a = -1.0 / (s + n.z);
+    let c = n.x * n.y * a;
+    return Frame(n, vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x), vec3(c, s + n.y * n.y * a, -n.y));
+}
+
+// The vector at length 1, or zero where it has no direction.
+fn unit_or_zero(x: vec3<f32>) -> vec3<f32> {
+    let squared = dot(x, x);
+    return select(vec3(0.0), x * inverseSqrt(max(squared, 1e-37)), squared > 1e-37);
+}
+
+// x^p for x ≥ 0, with 0^0 = 1 as in the equations; WGSL's pow leaves that undefined.
+fn power(x: f32, p: f32) -> f32 {
+    if p == 0.0 {
+        return 1.0;
+    }
+    if x <= 0.0 {
+        return 0.0;
+    }
+    return pow(x, p);
+}
+
+// The mirror direction R = 2(N·L)N − L.
+fn mirror(l: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
+    return 2.0 * dot(n, l) * n - l;
+}
+
+// The half vector H = (L + V)/|L + V| (J. Blinn 1977); zero where L and V are opposite.
+fn half_vector(l: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
+    return unit_or_zero(l + v);
+}
+
+// Squared distances below (1 mm)² count as (1 mm)²: the guard against division by zero.
+const MINIMUM_DISTANCE_SQUARED: f32 = 1e-6;
+
+// 1/d² (CA DD7).
+fn inverse_square(to_light: vec3<f32>) -> f32 {
+    return 1.0 / max(dot(to_light, to_light), MINIMUM_DISTANCE_SQUARED);
+}
+
+// The profile of a spotlight: 1 inside, 0 outside, Hermite's cubic of the cosine between.
+// cone_angle: half angle in degrees; penumbra: the fraction of it over which the light fades.
+fn cone(cos_angle: f32, cone_angle: f32, penumbra: f32) -> f32 {
+    let cos_outer = cos(radians(cone_angle));
+    let cos_inner = cos(radians(cone_angle * (1.0 - penumbra)));
+    if cos_inner - cos_outer < 1e-6 {
+        return select(0.0, 1.0, cos_angle >= cos_outer);
+    }
+    let t = clamp((cos_angle - cos_outer) / (cos_inner - cos_outer), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// sRGB-encoded [0, 1] to linear light (IEC 61966-2-1).
+fn srgb_decode(encoded: f32) -> f32 {
+    if encoded <= 0.04045 {
+        return encoded / 12.92;
+    }
+    return pow((encoded + 0.055) / 1.055, 2.4);
+}

@@ -1,0 +1,62 @@
+// The one file that knows the renderer: bindings, vertex attributes, entry points.
+#import bevy_pbr::mesh_functions
+#import bevy_pbr::mesh_view_bindings::view
+#import bevy_pbr::view_transformations::position_world_to_clip
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> parameters: Parameters;
+@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
+
+struct VertexIn {
+    @builtin(instance_index) instance_index: u32,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+#ifdef FACES
+    @location(2) face_normal: vec3<f32>,
+    @location(3) face_centre: vec3<f32>,
+#endif
+}
+
+struct Stages {
+    @builtin(position) clip_position: vec4<f32>,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) colour: vec3<f32>,
+    @location(3) offset: vec3<f32>,
+}
+
+fn observer_position() -> vec3<f32> {
+    return view.world_position;
+}
+
+@vertex
+fn vertex(in: VertexIn) -> Stages {
+    let room_from_local = mesh_functions::get_world_from_local(in.instance_index);
+    let centre = room_from_local[3].xyz;
+    var corner: Corner;
+    corner.position = (room_from_local * vec4(in.position, 1.0)).xyz;
+    // Objects are scaled alike in all directions, so normals turn as positions do.
+    corner.normal = unit_or_zero((room_from_local * vec4(in.normal, 0.0)).xyz);
+#ifdef FACES
+    corner.face_normal = unit_or_zero((room_from_local * vec4(in.face_normal, 0.0)).xyz);
+    corner.face_centre = (room_from_local * vec4(in.face_centre, 1.0)).xyz;
+#endif
+    let passed = shade_vertex(corner);
+    var out: Stages;
+    out.clip_position = position_world_to_clip(corner.position);
+    out.position = passed.position;
+    out.normal = passed.normal;
+    out.colour = passed.colour;
+    out.offset = (room_from_local * vec4(in.position, 0.0)).xyz;
+    return out;
+}
+
+@fragment
+fn fragment(in: Stages) -> @location(0) vec4<f32> {
+    let linear = shade_pixel(Varying(in.position, in.normal, in.colour, in.offset)) * illumination.exposure;
+    if illumination.gamma_naive != 0u {
+        // The display encodes what it gets; decoding first undoes that, and the numbers stand as they are.
+        let c = clamp(linear, vec3(0.0), vec3(1.0));
+        return vec4(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b), 1.0);
+    }
+    return vec4(linear, 1.0);
+}

@@ -1,0 +1,174 @@
+//! From linear light to eight bits.
+
+use std::sync::LazyLock;
+
+use glam::{Vec3, Vec4};
+
+use crate::{
+    optics::{
+        colour::{Encoding, srgb_decode, srgb_encode},
+        tone::exposure_factor,
+    },
+    scene::Display,
+};
+
+/// What is seen where no object is: a neutral grey, sRGB. It is not light of the scene, so exposure
+/// does not change it; tone mapping does.
+pub const BACKGROUND: [u8; 3] = [46, 46, 46];
+
+/// Encodes to eight bits without a power per channel, and yet to the very code that
+/// `round(255 · srgb_encode(x))` gives.
+struct Encoder {
+    /// The smallest number that each code stands for.
+    threshold: [f32; 256],
+    /// The code of the smallest number that begins with the same bits, from [`FIRST`](Self::FIRST) on.
+    start: Vec<u8>,
+}
+
+static ENCODER: LazyLock<Encoder> = LazyLock::new(Encoder::new);
+
+impl Encoder {
+    /// Bits that are dropped: sign, exponent and seven bits of mantissa remain, so that hardly a slot
+    /// contains more than one threshold.
+    const SHIFT: u32 = 16;
+    /// The slot of 2⁻¹². Numbers below take the slow path of at most one step.
+    const FIRST: u32 = ((127 - 12) << 23) >> Self::SHIFT;
+
+    fn exact(x: f32) -> u8 {
+        (255.0 * srgb_encode(x.clamp(0.0, 1.0))).round() as u8
+    }
+
+    fn new() -> Self {
+        let mut threshold = [0.0; 256];
+        for code in 1..=255u8 {
+            // The inverse function misses the threshold by a few of the last bits at most.
+            let mut x = srgb_decode((f32::from(code) - 0.5) / 255.0);
+            while Self::exact(x) >= code {
+                x = x.next_down();
+            }
+            while Self::exact(x) < code {
+                x = x.next_up();
+            }
+            threshold[usize::from(code)] = x;
+        }
+        let last = 1.0f32.to_bits() >> Self::SHIFT;
+        let start =
+            (Self::FIRST..=last).map(|slot| Self::exact(f32::from_bits(slot << Self::SHIFT))).collect();
+        Self { threshold, start }
+    }
+
+    fn encode(&self, x: f32) -> u8 {
+        if x.is_nan() || x <= 0.0 {
+            return 0;
+        }
+        if x >= 1.0 {
+            return 255;
+        }
+        let slot = x.to_bits() >> Self::SHIFT;
+        let mut code = match slot.checked_sub(Self::FIRST) {
+            Some(i) => self.start[i as usize],
+            None => 0,
+        };
+        while code < 255 && x >= self.threshold[usize::from(code) + 1] {
+            code += 1;
+        }
+        code
+    }
+}
+
+/// The sRGB code of a linear number: `round(255 · srgb_encode(clamp(x, 0, 1)))`, exactly, for every
+/// number; 0 for NaN.
+#[must_use]
+pub fn encode8(x: f32) -> u8 {
+    ENCODER.encode(x)
+}
+
+/// The steps from a pixel of light to a pixel on the display, with what is the same for all pixels
+/// calculated once.
+pub(super) struct Developer {
+    display: Display,
+    exposure: f32,
+    background: Vec3,
+    encoder: &'static Encoder,
+}
+
+impl Developer {
+    pub(super) fn new(display: &Display) -> Self {
+        Self {
+            display: *display,
+            exposure: exposure_factor(display.exposure),
+            background: display.encoding.decode(BACKGROUND),
+            encoder: &ENCODER,
+        }
+    }
+
+    /// Light of objects, and the fraction of the pixel that they cover, to sRGB.
+    pub(super) fn develop(&self, pixel: Vec4) -> [u8; 3] {
+        let mut c = pixel.truncate() * self.exposure + (1.0 - pixel.w) * self.background;
+        if self.display.encoding == Encoding::Off {
+            // Encoding follows and must give back the number itself.
+            c = c.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_decode);
+        }
+        let c = self.display.tone_mapping.map(c);
+        [self.encoder.encode(c.x), self.encoder.encode(c.y), self.encoder.encode(c.z)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::tone::ToneMapping;
+
+    #[test]
+    fn thresholds_lie_where_the_formula_goes_from_one_code_to_the_next() {
+        for code in 1..=255 {
+            let mut x = ENCODER.threshold[code];
+            for _ in 0..64 {
+                x = x.next_down();
+            }
+            for _ in 0..128 {
+                assert_eq!(encode8(x), Encoder::exact(x), "{x}");
+                x = x.next_up();
+            }
+        }
+        // A wrong twin, thresholds in the middle of the codes' linear values, is told apart.
+        let between =
+            |code: u8| 0.5 * (Encoding::Srgb.decode([code; 3]).x + Encoding::Srgb.decode([code - 1; 3]).x);
+        assert!((1..=255).any(|code| (between(code) - ENCODER.threshold[usize::from(code)]).abs() > 1e-6));
+    }
+
+    #[test]
+    fn the_table_gives_the_code_of_the_formula_for_every_number_from_0_to_1() {
+        use rayon::prelude::*;
+        (0..=1.0f32.to_bits()).into_par_iter().for_each(|bits| {
+            let x = f32::from_bits(bits);
+            assert_eq!(encode8(x), Encoder::exact(x), "{x}");
+        });
+    }
+
+    #[test]
+    fn what_is_no_light_is_clipped() {
+        for (x, code) in [(-1.0, 0), (f32::NAN, 0), (f32::INFINITY, 255), (2.0, 255), (-0.0, 0), (1e-40, 0)] {
+            assert_eq!(encode8(x), code, "{x}");
+        }
+    }
+
+    #[test]
+    fn exposure_changes_light_but_not_the_background() {
+        for encoding in Encoding::ALL {
+            for exposure in [-3.0, 0.0, 3.0] {
+                let display = Display { exposure, encoding, tone_mapping: ToneMapping::None };
+                assert_eq!(Developer::new(&display).develop(Vec4::ZERO), BACKGROUND);
+            }
+        }
+        let bright = Display { exposure: 1.0, ..Display::default() };
+        let pixel = Vec4::new(0.1, 0.2, 0.3, 1.0);
+        assert_eq!(Developer::new(&bright).develop(pixel), [0.2, 0.4, 0.6].map(encode8));
+    }
+
+    #[test]
+    fn without_encoding_numbers_go_to_the_display_as_they_are() {
+        let display = Display { encoding: Encoding::Off, ..Display::default() };
+        assert_eq!(Developer::new(&display).develop(Vec4::new(0.0, 0.5, 2.0, 1.0)), [0, 128, 255]);
+    }
+}

@@ -1,0 +1,86 @@
+//! The light loop: the sum over all lights, the same for every model.
+
+use glam::Vec3;
+
+use crate::{
+    light::{Incident, LightRecord},
+    optics::{Frame, TermSelection},
+    reflection::Surface,
+    registry::Registry,
+    scene::{Light, Scene},
+    shading::Lighting,
+};
+
+/// Light of an arbitrary model is kept within these bounds, so that interpolating and adding it gives
+/// no infinity and no NaN.
+const BRIGHTEST: f32 = 1e30;
+
+/// All lights of a scene, ready for calculation.
+pub(super) struct Lights {
+    lights: Vec<(fn(&LightRecord, Vec3) -> Incident, LightRecord)>,
+    observer: Vec3,
+    terms: TermSelection,
+}
+
+/// A light as calculation sees it; `None` for a type that the registry does not know.
+fn record(light: &Light, scene: &Scene, registry: &Registry) -> Option<LightRecord> {
+    let entry = registry.light(&light.kind)?;
+    Some(LightRecord {
+        kind: registry.light_index(&light.kind)?,
+        position: light.position.unwrap_or_default(),
+        direction: light.direction.unwrap_or_default().normalize_or_zero(),
+        colour: scene.display.encoding.decode(light.colour),
+        intensity: light.intensity,
+        parameters: entry.numbers(&light.parameters),
+    })
+}
+
+impl Lights {
+    pub(super) fn new(scene: &Scene, registry: &Registry, terms: TermSelection) -> Self {
+        let lights = scene
+            .lights
+            .iter()
+            .filter_map(|light| {
+                Some((registry.light(&light.kind)?.incident, record(light, scene, registry)?))
+            })
+            .collect();
+        Self { lights, observer: scene.observer.position, terms }
+    }
+
+    /// The lights as they shine on one surface.
+    pub(super) fn on<'a>(&'a self, surface: &'a dyn Surface) -> LightsOn<'a> {
+        LightsOn { lights: self, surface }
+    }
+}
+
+/// The lights of a scene and the surface that they shine on.
+pub(super) struct LightsOn<'a> {
+    lights: &'a Lights,
+    surface: &'a dyn Surface,
+}
+
+impl Lighting for LightsOn<'_> {
+    fn colour(&self, position: Vec3, normal: Vec3) -> Vec3 {
+        let v = (self.lights.observer - position).normalize_or_zero();
+        let frame = Frame::from_normal(normal);
+        let terms = self.lights.terms;
+        let mut sum = Vec3::ZERO;
+        for (incident, light) in &self.lights.lights {
+            match incident(light, position) {
+                Incident::From { l, intensity } => {
+                    // Outside a cone there is nothing to ask the model.
+                    if intensity != 0.0 {
+                        let response = self.surface.response(l, v, &frame).select(terms);
+                        sum += response * intensity * light.colour;
+                    }
+                }
+                Incident::Everywhere { intensity } => {
+                    if matches!(terms, TermSelection::All | TermSelection::Ambient) {
+                        sum += self.surface.ambient_response(v, &frame) * intensity * light.colour;
+                    }
+                }
+            }
+        }
+        sum.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
+    }
+}

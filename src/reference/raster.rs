@@ -1,0 +1,496 @@
+//! Triangles to pixels, by the rules of graphics hardware: corners snapped to 1/256 pixel, exact edge
+//! functions in whole numbers, the top-left rule, so that triangles that share an edge leave no gap
+//! between them and hit no sample twice.
+
+use glam::{Mat4, Vec3, Vec4};
+
+use crate::shading::{Lighting, ModeEntry, Varying};
+
+/// Steps per pixel of the grid that corners are snapped to.
+pub(super) const SUBPIXEL: i64 = 256;
+/// Edge of a tile in pixels.
+pub(super) const TILE: usize = 32;
+/// How far from the picture's middle corners may lie before the triangle is clipped, in pixels.
+/// Bounds the products of the edge functions well within 64 bits.
+const GUARD: f32 = 32_768.0;
+
+/// Sample positions within a pixel, in 1/256: the centre, or the standard four (Vulkan 1.3,
+/// *Standard Sample Locations*).
+pub(super) const fn positions<const S: usize>() -> [[i64; 2]; S] {
+    const FOUR: [[i64; 2]; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];
+    let mut out = [[128, 128]; S];
+    if S == 4 {
+        let mut i = 0;
+        while i < S {
+            out[i] = FOUR[i];
+            i += 1;
+        }
+    }
+    out
+}
+
+/// The size of the picture, as far as placing needs it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Screen {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    /// Distance of the sample positions' grid lines, and the first line, in 1/256 pixel.
+    grid: (i64, i64),
+    /// The planes that a visible point lies on the positive side of: near, and far beyond the four
+    /// sides of the picture.
+    planes: [Vec4; 5],
+}
+
+impl Screen {
+    pub(super) fn new(width: usize, height: usize, samples: usize) -> Self {
+        let x = 2.0 * GUARD / width as f32;
+        let y = 2.0 * GUARD / height as f32;
+        let planes = [
+            Vec4::new(0.0, 0.0, -1.0, 1.0),
+            Vec4::new(1.0, 0.0, 0.0, x),
+            Vec4::new(-1.0, 0.0, 0.0, x),
+            Vec4::new(0.0, 1.0, 0.0, y),
+            Vec4::new(0.0, -1.0, 0.0, y),
+        ];
+        Self { width, height, grid: if samples == 4 { (64, 32) } else { (256, 128) }, planes }
+    }
+
+    pub(super) fn tiles_across(&self) -> usize {
+        self.width.div_ceil(TILE)
+    }
+
+    pub(super) fn tiles(&self) -> usize {
+        self.tiles_across() * self.height.div_ceil(TILE)
+    }
+
+    /// Where a point in front of the eye lies, in 1/256 pixel, y down.
+    fn snap(&self, clip: Vec4) -> [i64; 2] {
+        let x = (0.5 + 0.5 * clip.x / clip.w) * self.width as f32;
+        let y = (0.5 - 0.5 * clip.y / clip.w) * self.height as f32;
+        [x, y].map(|c| (c * SUBPIXEL as f32).round_ties_even() as i64)
+    }
+
+    /// Whether any column and any row of sample positions lies within a box.
+    fn holds_samples(&self, low: [i64; 2], high: [i64; 2]) -> bool {
+        let (step, first) = self.grid;
+        (0..2).all(|axis| {
+            let line = (low[axis] - first + step - 1).div_euclid(step) * step + first;
+            line <= high[axis]
+        })
+    }
+}
+
+/// The five side planes of what the picture shows, in room coordinates, normalised: a point at a
+/// negative distance is not seen.
+pub(super) fn frustum(clip_from_room: &Mat4) -> [Vec4; 5] {
+    let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_room.row(row));
+    [w - z, w + x, w - x, w + y, w - y].map(|plane| plane / plane.truncate().length())
+}
+
+/// A corner in clip space and on the screen. A corner that cannot be projected as it is (behind the
+/// near plane, or far outside) makes its triangles take the way through the clipper.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    pub(super) clip: Vec4,
+    screen: Option<[i64; 2]>,
+    /// One bit for each side of the picture that it lies beyond.
+    beyond: u8,
+}
+
+impl Placed {
+    pub(super) fn new(clip: Vec4, screen: &Screen) -> Self {
+        let inside = screen.planes.iter().all(|plane| plane.dot(clip) >= 0.0);
+        let beyond = u8::from(clip.z > clip.w)
+            | u8::from(clip.x < -clip.w) << 1
+            | u8::from(clip.x > clip.w) << 2
+            | u8::from(clip.y < -clip.w) << 3
+            | u8::from(clip.y > clip.w) << 4;
+        Self { clip, screen: (inside && clip.w > 0.0).then(|| screen.snap(clip)), beyond }
+    }
+
+    /// Whether a triangle can cover any sample. Never wrong when it says no.
+    pub(super) fn may_be_seen(corners: [&Self; 3], screen: &Screen) -> bool {
+        let [a, b, c] = corners;
+        if a.beyond & b.beyond & c.beyond != 0 {
+            return false;
+        }
+        match (a.screen, b.screen, c.screen) {
+            (Some(a), Some(b), Some(c)) => {
+                let low = [a[0].min(b[0]).min(c[0]), a[1].min(b[1]).min(c[1])];
+                let high = [a[0].max(b[0]).max(c[0]), a[1].max(b[1]).max(c[1])];
+                doubled_area(a, b, c) < 0 && screen.holds_samples(low, high)
+            }
+            _ => true,
+        }
+    }
+}
+
+/// Twice the signed area; negative when the corners run anticlockwise as seen, y pointing down.
+fn doubled_area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// A triangle on the screen, corners clockwise as seen.
+#[derive(Clone, Debug)]
+pub(super) struct Triangle {
+    corners: [[i64; 2]; 3],
+    area: i64,
+    /// `1 / w` at the corners: linear on the screen; the greater, the nearer.
+    inverse_w: [f32; 3],
+    varyings: [Varying; 3],
+    face_normal: Vec3,
+}
+
+/// Calls `emit` for the visible triangles that a triangle becomes: itself, what clipping leaves of it,
+/// or nothing.
+pub(super) fn set_up(
+    placed: [&Placed; 3],
+    varyings: [Varying; 3],
+    screen: &Screen,
+    emit: &mut impl FnMut(Triangle),
+) {
+    let [a, b, c] = varyings.map(|v| v.position);
+    let face_normal = (b - a).cross(c - a).normalize_or_zero();
+    let mut one = |corners: [[i64; 2]; 3], w: [f32; 3], varyings: [Varying; 3]| {
+        let area = -doubled_area(corners[0], corners[1], corners[2]);
+        if area > 0 {
+            emit(Triangle {
+                corners: [corners[0], corners[2], corners[1]],
+                area,
+                inverse_w: [1.0 / w[0], 1.0 / w[2], 1.0 / w[1]],
+                varyings: [varyings[0], varyings[2], varyings[1]],
+                face_normal,
+            });
+        }
+    };
+    if let [Some(p), Some(q), Some(r)] = placed.map(|p| p.screen) {
+        one([p, q, r], placed.map(|p| p.clip.w), varyings);
+        return;
+    }
+    let mut polygon: Vec<(Vec4, Varying)> = placed.iter().map(|p| p.clip).zip(varyings).collect();
+    for plane in screen.planes {
+        polygon = clip(&polygon, plane);
+    }
+    // A fan around the first corner.
+    for i in 1..polygon.len().saturating_sub(1) {
+        let fan = [&polygon[0], &polygon[i], &polygon[i + 1]];
+        if fan.iter().all(|corner| corner.0.w > 0.0) {
+            one(fan.map(|c| screen.snap(c.0)), fan.map(|c| c.0.w), fan.map(|c| c.1));
+        }
+    }
+}
+
+/// The part of a convex polygon on the positive side of a plane (I. Sutherland and G. Hodgman 1974,
+/// *Reentrant Polygon Clipping*).
+fn clip(polygon: &[(Vec4, Varying)], plane: Vec4) -> Vec<(Vec4, Varying)> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (i, &to) in polygon.iter().enumerate() {
+        let from = polygon[(i + polygon.len() - 1) % polygon.len()];
+        let (d_from, d_to) = (plane.dot(from.0), plane.dot(to.0));
+        if (d_from >= 0.0) != (d_to >= 0.0) {
+            // Always from the inner to the outer corner: both neighbours of an edge get the same point.
+            let (inner, outer, d_inner, d_outer) =
+                if d_from >= 0.0 { (from, to, d_from, d_to) } else { (to, from, d_to, d_from) };
+            let t = d_inner / (d_inner - d_outer);
+            kept.push((inner.0.lerp(outer.0, t), mix(&inner.1, &outer.1, t)));
+        }
+        if d_to >= 0.0 {
+            kept.push(to);
+        }
+    }
+    kept
+}
+
+fn mix(a: &Varying, b: &Varying, t: f32) -> Varying {
+    Varying {
+        position: a.position.lerp(b.position, t),
+        normal: a.normal.lerp(b.normal, t),
+        colour: a.colour.lerp(b.colour, t),
+    }
+}
+
+impl Triangle {
+    /// The pixels that it may touch: first and last column, first and last row; `None` if it lies
+    /// outside the picture.
+    pub(super) fn bounds(&self, screen: &Screen) -> Option<[usize; 4]> {
+        let range = |axis: usize, size: usize| {
+            let values = self.corners.map(|c| c[axis]);
+            let low = values.iter().min()?.div_euclid(SUBPIXEL).max(0);
+            let high = values.iter().max()?.div_euclid(SUBPIXEL).min(size as i64 - 1);
+            (low <= high).then_some((low as usize, high as usize))
+        };
+        let (left, right) = range(0, screen.width)?;
+        let (top, bottom) = range(1, screen.height)?;
+        Some([left, right, top, bottom])
+    }
+
+    /// What is interpolated, with perspective correction, at the point with the given weights of the
+    /// corners on the screen.
+    fn varying(&self, mut weights: [f32; 3]) -> Varying {
+        let mut scaled: [f32; 3] = std::array::from_fn(|i| weights[i] * self.inverse_w[i]);
+        let mut sum: f32 = scaled.iter().sum();
+        if sum < 1e-3 * self.inverse_w.iter().copied().fold(f32::INFINITY, f32::min) {
+            // The pixel's centre lies outside the triangle and beyond its horizon: stay within.
+            weights = weights.map(|w| w.clamp(0.0, 1.0));
+            scaled = std::array::from_fn(|i| weights[i] * self.inverse_w[i]);
+            sum = scaled.iter().sum();
+        }
+        // From the first corner on: what is the same at all three stays exactly that.
+        let (b, c) = (scaled[1] / sum, scaled[2] / sum);
+        let [p, q, r] = &self.varyings;
+        let between = |p: Vec3, q: Vec3, r: Vec3| p + (q - p) * b + (r - p) * c;
+        Varying {
+            position: between(p.position, q.position, r.position),
+            normal: between(p.normal, q.normal, r.normal),
+            colour: between(p.colour, q.colour, r.colour),
+        }
+    }
+}
+
+/// The samples of one tile of the picture.
+pub(super) struct Tile<const S: usize> {
+    /// Nearest `1 / w` so far; 0 where nothing is.
+    nearness: Vec<[f32; S]>,
+    colour: Vec<[Vec3; S]>,
+}
+
+impl<const S: usize> Tile<S> {
+    pub(super) fn new() -> Self {
+        Self { nearness: vec![[0.0; S]; TILE * TILE], colour: vec![[Vec3::ZERO; S]; TILE * TILE] }
+    }
+
+    /// Draws the part of a triangle that lies in the tile whose first pixel is `origin`. The colour is
+    /// calculated at the pixel's centre, once for all its samples.
+    pub(super) fn draw(
+        &mut self,
+        triangle: &Triangle,
+        mode: &ModeEntry,
+        lighting: &dyn Lighting,
+        origin: [usize; 2],
+        screen: &Screen,
+    ) {
+        let samples = const { positions::<S>() };
+        let Some([left, right, top, bottom]) = triangle.bounds(screen) else { return };
+        let (left, right) = (left.max(origin[0]), right.min(origin[0] + TILE - 1));
+        let (top, bottom) = (top.max(origin[1]), bottom.min(origin[1] + TILE - 1));
+        if left > right || top > bottom {
+            return;
+        }
+        // The edge opposite to corner i; its function is twice the area that the point spans with it,
+        // and so the weight of that corner. A point on an edge belongs to the triangle if it is a left
+        // or a top edge.
+        let edges: [([i64; 2], [i64; 2], i64); 3] = std::array::from_fn(|i| {
+            let (a, b) = (triangle.corners[(i + 1) % 3], triangle.corners[(i + 2) % 3]);
+            let d = [b[0] - a[0], b[1] - a[1]];
+            let inclusive = d[1] < 0 || (d[1] == 0 && d[0] > 0);
+            (a, d, if inclusive { 0 } else { -1 })
+        });
+        let offsets: [[i64; S]; 3] = std::array::from_fn(|e| {
+            let d = edges[e].1;
+            samples.map(|s| d[0] * (s[1] - 128) - d[1] * (s[0] - 128))
+        });
+        // What the edge functions reach at most at any sample of a pixel, beyond its centre.
+        let most: [i64; 3] = std::array::from_fn(|e| offsets[e].iter().copied().max().unwrap_or(0));
+        let step: [i64; 3] = std::array::from_fn(|e| -edges[e].1[1] * SUBPIXEL);
+        let per_area = 1.0 / triangle.area as f64;
+        let w = triangle.inverse_w.map(f64::from);
+        let wide = right - left >= 8;
+
+        for y in top..=bottom {
+            let start: [i64; 3] = std::array::from_fn(|e| {
+                let (a, d, _) = edges[e];
+                let (px, py) = (left as i64 * SUBPIXEL + 128, y as i64 * SUBPIXEL + 128);
+                d[0] * (py - a[1]) - d[1] * (px - a[0])
+            });
+            // The pixels of this row that can have covered samples.
+            let (mut first, mut last) = (0i64, (right - left) as i64);
+            if wide {
+                for e in 0..3 {
+                    let reach = start[e] + most[e];
+                    match step[e] {
+                        0 if reach < 0 => last = -1,
+                        0 => {}
+                        s if s > 0 => first = first.max((-reach + s - 1).div_euclid(s)),
+                        s => last = last.min(reach.div_euclid(-s)),
+                    }
+                }
+            }
+            let mut at: [i64; 3] = std::array::from_fn(|e| start[e] + first * step[e]);
+            for x in first..=last {
+                let here = at;
+                at = std::array::from_fn(|e| at[e] + step[e]);
+                let mut covered = [false; S];
+                let mut any = false;
+                for s in 0..S {
+                    covered[s] = (0..3).all(|e| here[e] + offsets[e][s] + edges[e].2 >= 0);
+                    any |= covered[s];
+                }
+                if !any {
+                    continue;
+                }
+                let pixel = (y - origin[1]) * TILE + left + x as usize - origin[0];
+                let nearness = &mut self.nearness[pixel];
+                let mut visible = false;
+                for s in 0..S {
+                    if covered[s] {
+                        let near: f64 =
+                            (0..3).map(|e| (here[e] + offsets[e][s]) as f64 * per_area * w[e]).sum();
+                        let near = near as f32;
+                        covered[s] = near > nearness[s];
+                        if covered[s] {
+                            nearness[s] = near;
+                            visible = true;
+                        }
+                    }
+                }
+                if visible {
+                    let varying = triangle.varying(here.map(|e| (e as f64 * per_area) as f32));
+                    let colour = (mode.pixel)(lighting, &varying, triangle.face_normal);
+                    for (sample, _) in self.colour[pixel].iter_mut().zip(covered).filter(|(_, c)| *c) {
+                        *sample = colour;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The pixels: the mean of their samples, and the fraction that objects cover.
+    pub(super) fn resolve(&self) -> impl Iterator<Item = Vec4> {
+        let share = 1.0 / S as f32;
+        self.nearness.iter().zip(&self.colour).map(move |(nearness, colour)| {
+            let mut sum = Vec4::ZERO;
+            for s in 0..S {
+                if nearness[s] > 0.0 {
+                    sum += colour[s].extend(1.0);
+                }
+            }
+            sum * share
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn screen() -> Screen {
+        Screen::new(64, 48, 1)
+    }
+
+    /// A triangle at given places on the screen (pixels, y down, clockwise as seen), at distance 1.
+    fn on_screen(corners: [[f64; 2]; 3]) -> Triangle {
+        let corners = corners.map(|c| c.map(|v| (v * 256.0).round() as i64));
+        let area = doubled_area(corners[0], corners[1], corners[2]);
+        Triangle {
+            corners,
+            area,
+            inverse_w: [1.0; 3],
+            varyings: [Varying::default(); 3],
+            face_normal: Vec3::Z,
+        }
+    }
+
+    struct NoLight;
+    impl Lighting for NoLight {
+        fn colour(&self, _position: Vec3, _normal: Vec3) -> Vec3 {
+            Vec3::ONE
+        }
+    }
+
+    fn mode() -> ModeEntry {
+        ModeEntry::of::<crate::shading::Flat>()
+    }
+
+    /// How often each sample of the first tiles is hit.
+    fn hits<const S: usize>(triangles: &[Triangle], screen: &Screen) -> Vec<u32> {
+        let mut counts = vec![0; screen.tiles() * TILE * TILE * S];
+        for triangle in triangles {
+            for tile in 0..screen.tiles() {
+                let origin = [(tile % screen.tiles_across()) * TILE, (tile / screen.tiles_across()) * TILE];
+                let mut drawn = Tile::<S>::new();
+                drawn.draw(triangle, &mode(), &NoLight, origin, screen);
+                for (i, near) in drawn.nearness.iter().flatten().enumerate() {
+                    counts[tile * TILE * TILE * S + i] += u32::from(*near > 0.0);
+                }
+            }
+        }
+        counts
+    }
+
+    #[test]
+    fn a_fan_hits_every_sample_inside_exactly_once() {
+        fn check<const S: usize>() {
+            let screen = Screen::new(64, 64, S);
+            // Corners partly on sample positions, where the top-left rule decides.
+            let ring = [
+                [0.0, 0.0],
+                [20.5, 0.0],
+                [64.0, 0.0],
+                [64.0, 31.5],
+                [64.0, 64.0],
+                [11.25, 64.0],
+                [0.0, 64.0],
+                [0.0, 17.125],
+            ];
+            for centre in [[32.5, 32.5], [31.375, 20.125], [10.123, 50.9]] {
+                let fan: Vec<_> = (0..ring.len())
+                    .map(|i| on_screen([centre, ring[i], ring[(i + 1) % ring.len()]]))
+                    .collect();
+                let counts = hits::<S>(&fan, &screen);
+                assert!(counts.iter().all(|&n| n == 1), "{centre:?}");
+                // The wrong twin: one corner of one triangle a hair aside leaves gaps or hits twice.
+                let mut wrong = fan;
+                wrong[0] = on_screen([[centre[0] + 2.0, centre[1] + 1.0], ring[0], ring[1]]);
+                assert!(hits::<S>(&wrong, &screen).iter().any(|&n| n != 1));
+            }
+        }
+        check::<1>();
+        check::<4>();
+    }
+
+    #[test]
+    fn edges_through_pixel_centres_belong_to_one_side() {
+        // Two triangles of a square whose diagonal and sides run through pixel centres.
+        let square = [[2.5, 2.5], [10.5, 2.5], [10.5, 10.5], [2.5, 10.5]];
+        let two =
+            [on_screen([square[0], square[1], square[2]]), on_screen([square[0], square[2], square[3]])];
+        let counts = hits::<1>(&two, &screen());
+        assert!(counts.iter().all(|&n| n <= 1));
+        // Top and left sides belong, bottom and right ones do not: 8 × 8 of the 9 × 9 centres.
+        assert_eq!(counts.iter().sum::<u32>(), 64);
+    }
+
+    #[test]
+    fn a_huge_triangle_covers_what_a_small_one_in_its_place_covers() {
+        let huge = on_screen([[-30_000.0, -30_000.0], [32_000.0, -30_000.0], [-30_000.0, 32_000.0]]);
+        assert!(hits::<4>(&[huge], &Screen::new(64, 64, 4)).iter().all(|&n| n == 1));
+    }
+
+    #[test]
+    fn clipping_keeps_what_is_in_front_and_interpolates_what_it_cuts() {
+        let behind = Vec4::new(0.0, 0.0, 0.01, -1.0);
+        let corner = |clip: Vec4, red: f32| (clip, Varying { colour: Vec3::X * red, ..Varying::default() });
+        let front = [Vec4::new(-1.0, 0.0, 0.01, 1.0), Vec4::new(1.0, 0.0, 0.01, 1.0)];
+        let polygon = [corner(front[0], 0.0), corner(front[1], 0.0), corner(behind, 1.0)];
+        let near = Vec4::new(0.0, 0.0, -1.0, 1.0);
+        let kept = clip(&polygon, near);
+        assert_eq!(kept.len(), 4);
+        for (clip, varying) in &kept {
+            assert!(near.dot(*clip) >= -1e-6);
+            // Red grows with the way towards the corner behind, and so with 1 − w.
+            assert!((varying.colour.x - 0.5 * (1.0 - clip.w)).abs() < 1e-6);
+        }
+        assert!(clip(&[corner(behind, 0.0); 3], near).is_empty());
+    }
+
+    #[test]
+    fn the_samples_are_one_per_column_and_row_of_the_grid() {
+        let four = positions::<4>();
+        for axis in 0..2 {
+            let mut values = four.map(|s| s[axis]);
+            values.sort_unstable();
+            assert_eq!(values, [32, 96, 160, 224]);
+        }
+        assert_eq!(positions::<1>(), [[128, 128]]);
+    }
+}

@@ -1,0 +1,149 @@
+//! Models and modes are exchanged between two frames, and no frame is without the object.
+
+use glam::Vec3;
+use lights_camera_models::{
+    capture::gpu::{GpuRenderer, Output},
+    optics::colour::BACKGROUND,
+    reflection::parameter::Value,
+    registry::Registry,
+    scene::{
+        Light, Object, Scene,
+        spawn::{LightSource, LitObject, SceneEntities},
+    },
+};
+
+use crate::pictures::close_up;
+
+const SIZE: u32 = 48;
+
+fn renderer() -> GpuRenderer {
+    GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed")
+}
+
+fn frame(renderer: &mut GpuRenderer) -> Vec<u8> {
+    renderer.step();
+    renderer.read_rgb8().expect("the picture can be read")
+}
+
+fn covered(picture: &[u8]) -> usize {
+    picture.chunks_exact(3).filter(|p| *p != BACKGROUND).count()
+}
+
+/// The scene under a model and a mode, scene-wide or on the object.
+fn choose(scene: &Scene, (model, mode): (&str, &str), on_object: bool) -> Scene {
+    let mut scene = scene.clone();
+    if on_object {
+        scene.objects[0].reflection_model = Some(model.to_owned());
+        scene.objects[0].shading_model = Some(mode.to_owned());
+    } else {
+        scene.reflection_model = model.to_owned();
+        scene.shading_model = mode.to_owned();
+    }
+    scene
+}
+
+#[test]
+fn every_ordered_pair_of_model_and_mode_swaps_in_one_frame() {
+    let registry = Registry::builtin();
+    let states: Vec<_> = registry
+        .models()
+        .iter()
+        .flat_map(|m| registry.modes().iter().map(|s| (m.declaration.id, s.declaration.id)))
+        .collect();
+    let mut scene = close_up("torus", "point");
+    scene.objects[0].tessellation = Some(16);
+    scene.objects[0].material.set("k_d", Value::Number(0.6));
+    let mut renderer = renderer();
+
+    let expected: Vec<_> = states
+        .iter()
+        .map(|state| {
+            renderer.set_scene(choose(&scene, *state, false));
+            renderer.settle().expect("the GPU draws");
+            renderer.read_rgb8().expect("the picture can be read")
+        })
+        .collect();
+    for (i, a) in expected.iter().enumerate() {
+        assert!(covered(a) > 300, "{:?} shows nothing", states[i]);
+        for (j, b) in expected.iter().enumerate().skip(i + 1) {
+            assert_ne!(a, b, "{:?} and {:?} look the same, so a swap could not be seen", states[i], states[j]);
+        }
+    }
+    for on_object in [false, true] {
+        for from in 0..states.len() {
+            for to in 0..states.len() {
+                if from == to {
+                    continue;
+                }
+                renderer.set_scene(choose(&scene, states[from], on_object));
+                renderer.step();
+                renderer.set_scene(choose(&scene, states[to], on_object));
+                let shown = frame(&mut renderer);
+                assert!(
+                    shown == expected[to],
+                    "{:?} → {:?}: the next frame shows {}",
+                    states[from],
+                    states[to],
+                    if covered(&shown) == 0 {
+                        "nothing".to_owned()
+                    } else if shown == expected[from] {
+                        "the old picture".to_owned()
+                    } else {
+                        "something else".to_owned()
+                    }
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn changing_a_component_changes_the_next_frame_and_the_scene() {
+    let mut renderer = renderer();
+    renderer.set_scene(close_up("sphere", "point"));
+    renderer.settle().expect("the GPU draws");
+    let before = renderer.read_rgb8().expect("the picture can be read");
+
+    let world = renderer.app().world_mut();
+    let light = world.resource::<SceneEntities>().lights[0];
+    world.get_mut::<LightSource>(light).expect("the light is an entity").0.colour = [0, 0, 255];
+    let blue = frame(&mut renderer);
+    assert!(before != blue, "the colour shows");
+
+    let world = renderer.app().world_mut();
+    world.get_mut::<bevy::prelude::Transform>(light).expect("lights have a place").translation.x = 3.0;
+    let moved = frame(&mut renderer);
+    assert!(blue != moved, "the place shows");
+
+    let world = renderer.app().world_mut();
+    let object = world.resource::<SceneEntities>().objects[0];
+    world.get_mut::<LitObject>(object).expect("the object is an entity").0.kind = "cube".to_owned();
+    let cube = frame(&mut renderer);
+    assert!(moved != cube, "the shape shows");
+
+    let scene = &renderer.app().world().resource::<lights_camera_models::scene::spawn::CurrentScene>().0;
+    assert_eq!(scene.lights[0].colour, [0, 0, 255]);
+    assert_eq!(scene.lights[0].position.map(|p| p.x), Some(3.0));
+    assert_eq!(scene.objects[0].kind, "cube");
+}
+
+#[test]
+fn loading_another_scene_respawns_what_differs_and_keeps_the_rest() {
+    let mut renderer = renderer();
+    let mut scene = close_up("sphere", "point");
+    scene.objects.push(Object { kind: "cube".to_owned(), position: Vec3::new(2.0, 2.0, 2.0), ..Object::default() });
+    renderer.set_scene(scene.clone());
+    renderer.settle().expect("the GPU draws");
+    let first = renderer.app().world().resource::<SceneEntities>().objects[0];
+
+    scene.objects.pop();
+    scene.lights.push(Light { kind: "ambient".to_owned(), position: None, intensity: 0.5, ..Light::default() });
+    renderer.set_scene(scene);
+    renderer.step();
+    let world = renderer.app().world_mut();
+    assert_eq!(world.resource::<SceneEntities>().objects, [first], "the sphere stays the same entity");
+    assert_eq!(world.query::<&LitObject>().iter(world).count(), 1);
+    assert_eq!(world.query::<&LightSource>().iter(world).count(), 2);
+    let ambient = world.query_filtered::<&LightSource, bevy::prelude::With<lights_camera_models::light::Ambient>>();
+    assert_eq!({ ambient }.iter(world).count(), 1, "each type has its marker component");
+}

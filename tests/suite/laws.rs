@@ -1,0 +1,428 @@
+//! The laws of every registered model, over random directions and parameters: asserted where the model
+//! declares them and found broken where it does not.
+
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
+
+use glam::Vec3;
+use lights_camera_models::{
+    optics::{Frame, Terms, colour::Encoding},
+    reflection::{
+        ModelEntry, Surface, brdf,
+        parameter::{Parameter, ParameterKind, Value, Values},
+    },
+    registry::Registry,
+};
+
+const SETS: usize = 60;
+const PAIRS: usize = 200;
+
+/// A small generator of random numbers: the same ones in every run (Marsaglia 2003, xorshift).
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 40) as f32 / (1u64 << 24) as f32
+    }
+
+    /// A unit vector in any direction.
+    fn direction(&mut self) -> Vec3 {
+        let z = 2.0 * self.unit() - 1.0;
+        let (sin, cos) = (TAU * self.unit()).sin_cos();
+        Vec3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z)
+    }
+
+    /// A unit vector on the outer side, up to grazing.
+    fn above(&mut self, frame: &Frame) -> Vec3 {
+        let d = self.direction();
+        let d = if d.dot(frame.n) < 0.0 { -d } else { d };
+        // Every fourth close to grazing.
+        let tilt = if self.unit() < 0.25 { self.unit() * 0.05 } else { 1.0 };
+        let flat = d - d.dot(frame.n) * frame.n;
+        (flat + tilt * d.dot(frame.n) * frame.n).normalize_or(frame.n)
+    }
+
+    /// A legal value; the ends of the range often.
+    fn value(&mut self, parameter: &Parameter) -> Value {
+        let pick = self.unit();
+        let within = self.unit();
+        match &parameter.kind {
+            ParameterKind::Number { min, max, .. } => Value::Number(match pick {
+                p if p < 0.15 => *min,
+                p if p < 0.3 => *max,
+                _ => (min + within * (max - min)).clamp(*min, *max),
+            }),
+            ParameterKind::Integer { min, max, slider_max, .. } => Value::Integer(match pick {
+                p if p < 0.15 => *min,
+                p if p < 0.3 => max.unwrap_or(1_000_000),
+                _ => min + (within * (max.unwrap_or(*slider_max) - min) as f32) as i64,
+            }),
+            ParameterKind::Colour { .. } => Value::Colour(if pick < 0.3 {
+                [255; 3]
+            } else {
+                [0; 3].map(|_: u8| (self.unit() * 255.99) as u8)
+            }),
+            ParameterKind::Choice { options, .. } => {
+                let i = ((within * options.len() as f32) as usize).min(options.len() - 1);
+                Value::Choice(options[i].0.into())
+            }
+        }
+    }
+
+    fn values(&mut self, model: &ModelEntry) -> Values {
+        let mut values = Values::default();
+        for parameter in model.parameters {
+            values.set(parameter.name, self.value(parameter));
+        }
+        values
+    }
+}
+
+/// Every model with its defaults and with random parameters, in the frame of a random normal.
+fn surfaces(seed: u64, mut visit: impl FnMut(&ModelEntry, &Values, &dyn Surface, &Frame, &mut Random)) {
+    for model in Registry::builtin().models() {
+        let mut random = Random(seed);
+        for set in 0..SETS {
+            let values = if set == 0 { Values::default() } else { random.values(model) };
+            let surface = model.instantiate(&values, Encoding::Srgb);
+            let frame = Frame::from_normal(random.direction());
+            visit(model, &values, &*surface, &frame, &mut random);
+        }
+    }
+}
+
+fn is_finite(terms: &Terms) -> bool {
+    terms.ambient.is_finite() && terms.diffuse.is_finite() && terms.specular.is_finite()
+}
+
+#[test]
+fn responses_are_finite_for_all_directions_and_legal_parameters() {
+    surfaces(1, |model, values, surface, frame, random| {
+        let grazing = (frame.t + 1e-7 * frame.n).normalize();
+        let special = [frame.n, -frame.n, frame.t, -frame.t, frame.b, grazing, Vec3::ZERO];
+        for i in 0..PAIRS {
+            let l = special.get(i / 7).copied().unwrap_or_else(|| random.direction());
+            let v = if i < 49 { special[i % 7] } else { random.direction() };
+            let terms = surface.response(l, v, frame);
+            let id = model.declaration.id;
+            assert!(is_finite(&terms), "{id} {values:?} {l} {v}: {terms:?}");
+            assert!(surface.ambient_response(v, frame).is_finite(), "{id} {values:?} {v}");
+            assert!(brdf(surface, l, v, frame).is_finite(), "{id} {values:?} {l} {v}");
+        }
+    });
+}
+
+/// How far a law is broken by a model at worst, over everything: a number that is 0 for models that
+/// keep it exactly.
+fn worst(
+    seed: u64,
+    measure: impl Fn(&dyn Surface, &Frame, &mut Random) -> f32,
+) -> Vec<(&'static str, lights_camera_models::reflection::Laws, f32)> {
+    let mut out: Vec<(&'static str, _, f32)> = Vec::new();
+    surfaces(seed, |model, _, surface, frame, random| {
+        let broken = measure(surface, frame, random);
+        match out.last_mut() {
+            Some((id, _, worst)) if *id == model.declaration.id => *worst = worst.max(broken),
+            _ => out.push((model.declaration.id, model.declaration.laws, broken)),
+        }
+    });
+    out
+}
+
+#[test]
+fn no_light_is_negative_where_that_is_declared_and_somewhere_it_is_where_not() {
+    let results = worst(2, |surface, frame, random| {
+        let mut least = 0.0f32;
+        for _ in 0..PAIRS {
+            let (l, v) = (random.direction(), random.direction());
+            let terms = surface.response(l, v, frame);
+            least = least.min(terms.ambient.min_element()).min(terms.diffuse.min_element());
+            least =
+                least.min(terms.specular.min_element()).min(surface.ambient_response(v, frame).min_element());
+        }
+        -least
+    });
+    for (id, laws, broken) in results {
+        assert_eq!(broken <= 1e-6, laws.non_negative, "{id}: {broken}");
+    }
+}
+
+#[test]
+fn light_may_go_backwards_where_that_is_declared_and_somewhere_it_may_not_where_not() {
+    let results = worst(3, |surface, frame, random| {
+        let mut most = 0.0f32;
+        for _ in 0..PAIRS {
+            let (l, v) = (random.above(frame), random.above(frame));
+            // Cosines so small that rounding decides tell nothing.
+            if frame.n.dot(l) < 0.01 || frame.n.dot(v) < 0.01 {
+                continue;
+            }
+            let (there, back) = (brdf(surface, l, v, frame), brdf(surface, v, l, frame));
+            let scale = there.abs().max(back.abs()).max_element().max(1e-3);
+            most = most.max((there - back).abs().max_element() / scale);
+        }
+        most
+    });
+    for (id, laws, broken) in results {
+        if laws.reciprocal {
+            assert!(broken < 2e-3, "{id}: {broken}");
+        } else {
+            assert!(broken > 0.02, "{id} declares that it is not reciprocal, but differs by {broken} only");
+        }
+    }
+}
+
+/// The fraction of light from direction `v` that leaves the surface in any direction, largest channel:
+/// `∫ f_r cos θ dω` by the midpoint rule in polar coordinates around the mirror direction, with `rows`
+/// steps of the polar angle and twice as many of the azimuth.
+fn albedo(surface: &dyn Surface, v: Vec3, frame: &Frame, rows: usize) -> f32 {
+    let mut sum = Vec3::ZERO;
+    // Polar coordinates around the mirror direction, spaced cubically, so that narrow lobes are
+    // resolved: dω = sin θ dθ dφ, θ = π t³.
+    let axis = Frame::from_normal(2.0 * frame.n.dot(v) * frame.n - v);
+    let columns = 2 * rows;
+    for i in 0..rows {
+        let t = (i as f32 + 0.5) / rows as f32;
+        let theta = PI * t.powi(3);
+        let weight = theta.sin() * PI * 3.0 * t * t / rows as f32 * TAU / columns as f32;
+        for j in 0..columns {
+            let (sin, cos) = (TAU * (j as f32 + 0.5) / columns as f32).sin_cos();
+            let l = theta.cos() * axis.n + theta.sin() * (cos * axis.t + sin * axis.b);
+            if frame.n.dot(l) > 0.0 {
+                // Response is π f_r cos θ.
+                let terms = surface.response(l, v, frame);
+                sum += (terms.diffuse + terms.specular) * weight;
+            }
+        }
+    }
+    (sum / PI).max_element()
+}
+
+#[test]
+fn no_light_is_made_where_that_is_declared_and_somewhere_it_is_where_not() {
+    let results = worst(4, |surface, frame, random| {
+        let mut most = 0.0f32;
+        for i in 0..4 {
+            let theta = FRAC_PI_2 * [0.02, 0.5, 0.95, random.unit() * 0.99][i];
+            let (sin, cos) = theta.sin_cos();
+            let v = cos * frame.n + sin * frame.t;
+            // What a coarse grid finds is checked by a finer one, so that its error is no verdict.
+            let coarse = albedo(surface, v, frame, 48);
+            let found = if coarse > 0.98 { albedo(surface, v, frame, 160) } else { coarse };
+            most = most.max(found);
+        }
+        most
+    });
+    for (id, laws, most) in results {
+        if laws.energy_conserving {
+            assert!(most < 1.01, "{id} reflects {most} of the light");
+        } else {
+            assert!(most > 1.02, "{id} declares that it makes light, but reflects {most} at most");
+        }
+    }
+}
+
+#[test]
+fn the_quadrature_of_the_albedo_is_right() {
+    // Lambert reflects its base colour, whatever the direction; half of it is told apart.
+    let registry = Registry::builtin();
+    let mut values = Values::default();
+    values.set("base_colour", Value::Colour([188; 3]));
+    let lambert = registry.model("lambert").unwrap().instantiate(&values, Encoding::Srgb);
+    let frame = Frame::from_normal(Vec3::new(0.3, -0.5, 0.7).normalize());
+    let expected = Encoding::Srgb.decode([188; 3]).x;
+    for v in [frame.n, (frame.n + 3.0 * frame.t).normalize()] {
+        assert!((albedo(&*lambert, v, &frame, 48) - expected).abs() < 3e-3);
+        assert!((albedo(&*lambert, v, &frame, 160) - expected).abs() < 3e-4);
+    }
+    // Phong's lobe at normal view: E = k_d + 2 k_s / (α + 2), since its response is cos^α without the
+    // further cosine: ∫ cos^α dω / π = 2 / (α + 1).
+    let mut values = Values::default();
+    values.set("alpha", Value::Integer(100));
+    let phong = registry.model("phong").unwrap().instantiate(&values, Encoding::Srgb);
+    let expected = 0.8 + 0.5 * 2.0 / 101.0;
+    assert!((albedo(&*phong, frame.n, &frame, 160) - expected).abs() < 1e-3);
+}
+
+/// The angles of a pair of directions, for writing formulas in another form than the models do.
+struct Angles {
+    /// Polar angle of light and view, and the azimuth between them.
+    l: f64,
+    v: f64,
+    phi: f64,
+}
+
+impl Angles {
+    fn of(l: Vec3, v: Vec3, frame: &Frame) -> Self {
+        let polar = |d: Vec3| {
+            let across = f64::from(d.dot(frame.t)).hypot(f64::from(d.dot(frame.b)));
+            across.atan2(f64::from(d.dot(frame.n)))
+        };
+        let azimuth = |d: Vec3| f64::from(d.dot(frame.b)).atan2(f64::from(d.dot(frame.t)));
+        Self { l: polar(l), v: polar(v), phi: azimuth(l) - azimuth(v) }
+    }
+
+    /// Cosine between the mirror direction of the light and the view, by spherical trigonometry: the
+    /// mirror direction has the light's polar angle and the opposite azimuth.
+    fn mirror(&self) -> f64 {
+        self.l.cos() * self.v.cos() - self.l.sin() * self.v.sin() * self.phi.cos()
+    }
+
+    /// Cosine between the normal and the half vector: the mean of the two cosines over half the length
+    /// of the sum, which is the cosine of half the angle between light and view.
+    fn half(&self) -> f64 {
+        let between = self.l.cos() * self.v.cos() + self.l.sin() * self.v.sin() * self.phi.cos();
+        0.5 * (self.l.cos() + self.v.cos()) / (0.5 * (1.0 + between)).sqrt()
+    }
+}
+
+/// Compares a model with a formula for one channel of white colours; `wrong` must differ somewhere.
+fn against(
+    id: &str,
+    settings: &[(&'static str, Value)],
+    formula: impl Fn(&Angles) -> [f64; 3],
+    wrong: impl Fn(&Angles) -> [f64; 3],
+) {
+    let registry = Registry::builtin();
+    let mut values = Values::default();
+    for (name, value) in settings {
+        values.set(*name, value.clone());
+    }
+    let surface = registry.model(id).unwrap().instantiate(&values, Encoding::Srgb);
+    let mut random = Random(11);
+    let mut told_apart = false;
+    for i in 0..4000 {
+        let frame = Frame::from_normal(random.direction());
+        let (mut l, mut v) = (random.direction(), random.direction());
+        // Normal incidence, the mirror direction, grazing light.
+        match i {
+            0 => l = frame.n,
+            1 => (l, v) = (frame.n, frame.n),
+            2..20 => v = 2.0 * frame.n.dot(l) * frame.n - l,
+            20..30 => l = (frame.t + 1e-3 * frame.n).normalize(),
+            _ => {}
+        }
+        if (l + v).length() < 0.05 {
+            continue;
+        }
+        let terms = surface.response(l, v, &frame);
+        let got = [terms.ambient.x, terms.diffuse.x, terms.specular.x].map(f64::from);
+        let angles = Angles::of(l, v, &frame);
+        let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 2e-5 * (1.0 + b[i].abs()));
+        let expected = formula(&angles);
+        assert!(near(got, expected), "{id}: {got:?} is not {expected:?}");
+        told_apart |= !near(got, wrong(&angles));
+    }
+    assert!(told_apart, "{id}: the wrong twin passes");
+}
+
+#[test]
+fn lambert_is_the_cosine_of_the_incident_angle() {
+    against("lambert", &[], |a| [0.0, a.l.cos().max(0.0), 0.0], |a| [0.0, a.l.cos().abs(), 0.0]);
+}
+
+#[test]
+fn modified_lambert_is_a_power_of_the_wrapped_cosine() {
+    for (k, p) in [(0.5, 2.0), (0.8, 2.0), (0.65, 3.0), (1.0, 1.0)] {
+        let settings = [("k_d", Value::Number(k as f32)), ("wrap_exponent", Value::Number(p as f32))];
+        // 1 − k (1 − cos θ), by the half angle: 1 − 2k sin²(θ/2).
+        let wrapped = |a: &Angles| (1.0 - 2.0 * f64::from(k as f32) * (a.l / 2.0).sin().powi(2)).max(0.0);
+        against(
+            "mod_lambert",
+            &settings,
+            |a| [0.0, wrapped(a).powf(p), 0.0],
+            |a| {
+                // N·L clamped before it is wrapped.
+                [
+                    0.0,
+                    (k * a.l.cos().max(0.0) + 1.0 - k).max(0.0).powf(p) * if k < 1.0 { 1.0 } else { 0.5 },
+                    0.0,
+                ]
+            },
+        );
+    }
+}
+
+#[test]
+fn modified_lambert_without_wrap_and_power_is_lambert() {
+    let registry = Registry::builtin();
+    let model = registry.model("mod_lambert").unwrap();
+    let at = |k: f32, p: f32| {
+        let mut values = Values::default();
+        values.set("k_d", Value::Number(k));
+        values.set("wrap_exponent", Value::Number(p));
+        model.instantiate(&values, Encoding::Srgb)
+    };
+    let lambert = registry.model("lambert").unwrap().instantiate(&Values::default(), Encoding::Srgb);
+    let mut random = Random(5);
+    let mut squared_differs = false;
+    for _ in 0..1000 {
+        let frame = Frame::from_normal(random.direction());
+        let (l, v) = (random.direction(), random.direction());
+        let (a, b) = (at(1.0, 1.0).response(l, v, &frame), lambert.response(l, v, &frame));
+        assert!((a.diffuse - b.diffuse).abs().max_element() < 1e-6);
+        squared_differs |= (at(1.0, 2.0).response(l, v, &frame).diffuse.x - b.diffuse.x).abs() > 0.1;
+    }
+    assert!(squared_differs, "with the square as written it is not Lambert");
+}
+
+/// Coefficients whose f32 values the formulas use as they are.
+const K_A: f32 = 0.25;
+const K_D: f32 = 0.75;
+const K_S: f32 = 0.5;
+
+fn coefficients(alpha: i64) -> [(&'static str, Value); 4] {
+    [
+        ("k_a", Value::Number(K_A)),
+        ("k_d", Value::Number(K_D)),
+        ("k_s", Value::Number(K_S)),
+        ("alpha", Value::Integer(alpha)),
+    ]
+}
+
+fn three_terms(a: &Angles, cosine: f64, alpha: i64, lit: bool) -> [f64; 3] {
+    let specular = if lit { f64::from(K_S) * cosine.max(0.0).powf(alpha as f64) } else { 0.0 };
+    [f64::from(K_A), f64::from(K_D) * a.l.cos().max(0.0), specular]
+}
+
+#[test]
+fn phong_is_a_power_of_the_cosine_to_the_mirror_direction() {
+    for alpha in [0, 1, 5, 32] {
+        against(
+            "phong",
+            &coefficients(alpha),
+            |a| three_terms(a, a.mirror(), alpha, a.l.cos() > 0.0),
+            // No test of the side of the light; and the other highlight.
+            |a| three_terms(a, a.half(), alpha, true),
+        );
+    }
+}
+
+#[test]
+fn blinn_phong_is_a_power_of_the_cosine_to_the_half_vector() {
+    for alpha in [0, 1, 5, 32] {
+        against(
+            "blinn_phong",
+            &coefficients(alpha),
+            |a| three_terms(a, a.half(), alpha, a.l.cos() > 0.0),
+            |a| three_terms(a, a.mirror(), alpha, true),
+        );
+    }
+}
+
+#[test]
+fn the_largest_exponent_leaves_a_highlight_in_the_mirror_direction_alone() {
+    let registry = Registry::builtin();
+    for id in ["phong", "blinn_phong"] {
+        let mut values = Values::default();
+        values.set("alpha", Value::Integer(1_000_000));
+        values.set("k_s", Value::Number(1.0));
+        let surface = registry.model(id).unwrap().instantiate(&values, Encoding::Srgb);
+        let frame = Frame::from_normal(Vec3::Z);
+        assert_eq!(surface.response(Vec3::Z, Vec3::Z, &frame).specular, Vec3::ONE, "{id}");
+        let aside = Vec3::new(0.02, 0.0, 1.0).normalize();
+        assert!(surface.response(aside, Vec3::Z, &frame).specular.x < 1e-6, "{id}");
+    }
+}
