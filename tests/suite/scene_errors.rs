@@ -431,6 +431,19 @@ fn ten_thousand_broken_objects_are_all_reported_and_quickly() {
 }
 
 #[test]
+fn hostile_files_do_not_take_all_memory() {
+    let lights = format!("[{}1]", "1,".repeat(3_000_000));
+    let said_of =
+        said(&full_scene().to_string().replacen("\"lights\":[", &format!("\"lights\":{lights},\"x\":["), 1));
+    assert!(said_of.contains("lights is a list of 3000001, but"), "{}", said_of.len());
+    assert_eq!(said_of.lines().count(), 2);
+    let keys = "\"q\":1,".repeat(1_000_000);
+    let said_of = said(&full_scene().to_string().replacen('{', &format!("{{{keys}"), 1));
+    assert!(said_of.contains("the scene has 800000 more problems, which are not listed"));
+    assert_eq!(said_of.lines().count(), 200_001);
+}
+
+#[test]
 fn problems_are_found_quickly_in_one_huge_line_too() {
     let object = json!({ "type": "cube", "name": "é".repeat(50), "position": [80, 5, 5] });
     let mut scene = full_scene();
