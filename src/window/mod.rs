@@ -43,6 +43,7 @@ use crate::{
         PanelPlugin,
         files::{load_settings, run as run_files},
         state::{Action, Effect, Lab, LabEffect},
+        theme::Palette,
     },
     registry::Registry,
     scene::spawn::CurrentScene,
@@ -225,12 +226,10 @@ fn adapter_facts(adapter: Option<Res<RenderAdapterInfo>>, mut lab: ResMut<Lab>) 
 /// Carries out what the panels asked for.
 fn carry_out(
     mut effects: MessageReader<LabEffect>,
-    mut follow_up: MessageWriter<LabEffect>,
     mut lab: ResMut<Lab>,
     registry: Res<Registry>,
     mut files: ResMut<files::DiskFiles>,
     mut camera: camera::CameraControl,
-    mut clipboard: ResMut<bevy_egui::EguiClipboard>,
     mut exit: MessageWriter<AppExit>,
 ) {
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
@@ -244,21 +243,15 @@ fn carry_out(
                 files.forget(lab.path.as_deref());
                 camera.home();
             }
-            Effect::CopyText(text) => clipboard.set_text(&text),
             Effect::Quit => {
                 exit.write(AppExit::Success);
             }
-            // The dialogs belong to the panels.
-            Effect::PickOpen | Effect::PickSave => {}
+            // The dialogs and the clipboard belong to the panels.
+            Effect::PickOpen | Effect::PickSave | Effect::CopyText(_) => {}
             other => {
                 let more = run_files(&mut lab, &registry, other.clone(), &mut *files);
-                for effect in more.into_iter().rev() {
-                    if effect != other {
-                        pending.push(effect);
-                    } else {
-                        follow_up.write(LabEffect(effect));
-                    }
-                }
+                // What comes back unchanged is nobody's.
+                pending.extend(more.into_iter().rev().filter(|e| *e != other));
             }
         }
     }
@@ -313,7 +306,13 @@ fn fit_viewport(
     if limit.min_element() == 0 {
         return;
     }
+    // In the light theme the surround is light.
+    let grey = Palette::of(&lab.view).surround;
+    let surround = ClearColorConfig::Custom(bevy::color::Color::srgb_u8(grey.r(), grey.g(), grey.b()));
     for mut camera in &mut cameras {
+        if !matches!((camera.clear_color, surround), (ClearColorConfig::Custom(a), ClearColorConfig::Custom(b)) if a == b) {
+            camera.clear_color = surround;
+        }
         let same = camera.viewport.as_ref().is_some_and(|v| v.physical_position == low && v.physical_size == size);
         if !same {
             camera.viewport =
