@@ -40,5 +40,5 @@ pub mod panel;
 pub mod reference;
 
 pub mod app;
-pub mod window;
 pub mod cli;
+pub mod window;

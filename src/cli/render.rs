@@ -218,7 +218,8 @@ impl Painter {
             Some((last, renderer)) if *last == key => renderer,
             slot => {
                 let samples = if job.samples == 4 { 4 } else { 1 };
-                let renderer = GpuRenderer::new(job.width, job.height, samples, gpu::Output::Display).map_err(failed)?;
+                let renderer =
+                    GpuRenderer::new(job.width, job.height, samples, gpu::Output::Display).map_err(failed)?;
                 &mut slot.insert((key, renderer)).1
             }
         };

@@ -117,7 +117,8 @@ fn keep_at_observer(
         if !picture.follows_observer {
             *known = None;
         } else if *known != Some((observer, focus)) {
-            let place = Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
+            let place =
+                Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
             put_at(&mut orbit, &mut transform, place, focus);
             *known = Some((observer, focus));
         }

@@ -6,12 +6,12 @@ use std::{
 };
 
 use bevy::{
-    app::{App, AppExit, Plugin, Update},
+    app::{App, AppExit, Plugin},
     ecs::prelude::*,
     render::view::screenshot::{Screenshot, ScreenshotCaptured},
 };
 
-use crate::{app::LabSystems, capture::png, cli::Failure};
+use crate::{app::{LabFrame, LabSystems}, capture::png, cli::Failure};
 
 /// Exits after so many frames; before, writes the window to a file, if one is given.
 pub(super) struct ExitAfter {
@@ -34,7 +34,7 @@ impl Plugin for ExitAfter {
             file: self.file.clone(),
             failure: self.failure.clone(),
         })
-        .add_systems(Update, count.in_set(LabSystems::Capture));
+        .add_systems(LabFrame, count.in_set(LabSystems::Capture));
     }
 }
 

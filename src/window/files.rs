@@ -68,7 +68,9 @@ impl Files for DiskFiles {
                 self.seen = Some((path.to_owned(), stamp));
                 Saved::Done
             }
-            Err(SaveError::Changed { .. } | SaveError::Exists { .. } | SaveError::Gone { .. }) => Saved::ChangedOnDisk,
+            Err(SaveError::Changed { .. } | SaveError::Exists { .. } | SaveError::Gone { .. }) => {
+                Saved::ChangedOnDisk
+            }
             Err(error) => Saved::Failed(error.to_string()),
         }
     }

@@ -2,11 +2,11 @@
 //! position, direction and cone, the observer when the camera has left it, and what is selected.
 
 use bevy::{
-    app::{App, Plugin, Update},
+    app::{App, Plugin},
     color::{Color, Srgba},
     ecs::prelude::*,
     gizmos::{
-        config::{GizmoConfig, GizmoConfigGroup, GizmoConfigStore},
+        config::{GizmoConfig, GizmoConfigGroup},
         gizmos::Gizmos,
         primitives::dim3::GizmoPrimitive3d,
     },
@@ -17,7 +17,7 @@ use bevy::{
 use glam::{Quat, Vec3};
 
 use crate::{
-    app::LabSystems,
+    app::{LabFrame, LabSystems},
     observer::{camera::PictureCamera, rotation as look_along},
     panel::state::{Lab, Selection},
     registry::Registry,
@@ -42,8 +42,8 @@ impl Plugin for GizmosPlugin {
     fn build(&self, app: &mut App) {
         use bevy::gizmos::AppGizmoBuilder;
         app.insert_gizmo_config(InRoom, config(1.0, 0.0))
-            .insert_gizmo_config(OnTop, config(1.75, -1.0))
-            .add_systems(Update, draw.in_set(LabSystems::Capture));
+            .insert_gizmo_config(OnTop, config(1.5, -1.0))
+            .add_systems(LabFrame, draw.in_set(LabSystems::Capture));
     }
 }
 
@@ -69,12 +69,10 @@ fn draw(
     lab: Res<Lab>,
     scene: Res<CurrentScene>,
     registry: Res<Registry>,
-    store: Res<GizmoConfigStore>,
     cameras: Query<(&Transform, &PictureCamera)>,
     mut room: Gizmos<InRoom>,
     mut top: Gizmos<OnTop>,
 ) {
-    let _ = store;
     let Ok((eye, camera)) = cameras.single() else { return };
     let scene = &scene.0;
     let corner = scene.scene_size.corner();
@@ -144,7 +142,11 @@ fn draw_light(
         if direction.is_none() {
             for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
                 for sign in [-1.0, 1.0] {
-                    gizmos.line(position + axis * sign * mark * 1.5, position + axis * sign * mark * 2.4, colour);
+                    gizmos.line(
+                        position + axis * sign * mark * 1.5,
+                        position + axis * sign * mark * 2.4,
+                        colour,
+                    );
                 }
             }
         }
@@ -193,7 +195,8 @@ fn draw_observer(gizmos: &mut Gizmos<OnTop>, observer: &Observer, selected: bool
 fn draw_selection(gizmos: &mut Gizmos<OnTop>, object: &Object, registry: &Registry) {
     let Some(shape) = registry.shape(&object.kind) else { return };
     // The coarsest mesh has the extent of any other, nearly.
-    let half = half_extent(&shape.mesh(*shape.declaration.tessellation.start())).max(Vec3::splat(0.02)) * 1.04;
+    let half =
+        half_extent(&shape.mesh(*shape.declaration.tessellation.start())).max(Vec3::splat(0.02)) * 1.04;
     let place = object_transform(object);
     for corner in 0..8u32 {
         let sign = Vec3::new(
@@ -203,7 +206,7 @@ fn draw_selection(gizmos: &mut Gizmos<OnTop>, object: &Object, registry: &Regist
         );
         let at = sign * half;
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
-            let inward = at - axis * at * 0.3;
+            let inward = at - axis * at * 0.2;
             gizmos.line(place.transform_point(at), place.transform_point(inward), SELECTED);
         }
     }

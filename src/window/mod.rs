@@ -9,7 +9,7 @@ use std::{
 };
 
 use bevy::{
-    app::{App, AppExit, First, Last, Plugin, PluginGroup, PostUpdate, PreUpdate, Startup, Update},
+    app::{App, AppExit, First, Last, Plugin, PluginGroup, PostUpdate, PreUpdate, Startup},
     asset::AssetPlugin,
     camera::{Camera, Camera2d, CameraOutputMode, ClearColorConfig, Hdr, Viewport, visibility::RenderLayers},
     ecs::prelude::*,
@@ -35,7 +35,7 @@ use bevy_panorbit_camera::PanOrbitCameraPlugin;
 use glam::UVec2;
 
 use crate::{
-    app::{LabSystems, ScenePlugin, ShownTerms},
+    app::{LabFrame, LabSystems, ScenePlugin, ShownTerms},
     capture::gpu::{find_adapter, wgpu_settings},
     cli::{Failure, ViewOptions},
     observer::camera::{PictureCamera, picture_camera},
@@ -170,11 +170,10 @@ impl Plugin for WindowSystemsPlugin {
         .add_systems(Last, end_frame)
         .add_systems(PreUpdate, close_requested)
         .add_systems(
-            Update,
+            LabFrame,
             (
-                (carry_out, lab_to_scene).chain().in_set(LabSystems::Load),
-                scene_to_lab.in_set(LabSystems::Swap),
-                pick::pick.in_set(LabSystems::Capture),
+                (carry_out, pick::pick, lab_to_scene).chain().in_set(LabSystems::Load),
+                scene_to_lab.in_set(LabSystems::Upload),
             ),
         )
         .add_systems(PostUpdate, (fit_viewport, window_title, redraw));
@@ -310,10 +309,12 @@ fn fit_viewport(
     let grey = Palette::of(&lab.view).surround;
     let surround = ClearColorConfig::Custom(bevy::color::Color::srgb_u8(grey.r(), grey.g(), grey.b()));
     for mut camera in &mut cameras {
-        if !matches!((camera.clear_color, surround), (ClearColorConfig::Custom(a), ClearColorConfig::Custom(b)) if a == b) {
+        if !matches!((camera.clear_color, surround), (ClearColorConfig::Custom(a), ClearColorConfig::Custom(b)) if a == b)
+        {
             camera.clear_color = surround;
         }
-        let same = camera.viewport.as_ref().is_some_and(|v| v.physical_position == low && v.physical_size == size);
+        let same =
+            camera.viewport.as_ref().is_some_and(|v| v.physical_position == low && v.physical_size == size);
         if !same {
             camera.viewport =
                 Some(Viewport { physical_position: low, physical_size: size, ..Viewport::default() });
@@ -396,4 +397,3 @@ fn end_frame(mut clock: ResMut<FrameClock>, mut lab: ResMut<Lab>) {
         lab.bypass_change_detection().status.frame_ms = clock.mean;
     }
 }
-

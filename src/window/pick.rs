@@ -63,7 +63,12 @@ pub(super) fn pick(
     }
 }
 
-fn nearest_light(scene: &CurrentScene, camera: &Camera, place: &GlobalTransform, pointer: Vec2) -> Option<usize> {
+fn nearest_light(
+    scene: &CurrentScene,
+    camera: &Camera,
+    place: &GlobalTransform,
+    pointer: Vec2,
+) -> Option<usize> {
     scene
         .0
         .lights
