@@ -73,9 +73,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         0 => Ok(()),
         _ if arguments.json || reports.len() == 1 => Err(Failure::Invalid(String::new())),
         n => Err(Failure::Invalid(format!(
-            "{n} of {} {} invalid",
+            "{n} of {} scenes {} invalid",
             arguments.scenes.len(),
-            if n == 1 { "scene is" } else { "scenes are" }
+            if n == 1 { "is" } else { "are" }
         ))),
     }
 }

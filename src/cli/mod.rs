@@ -30,7 +30,7 @@ pub use view::ViewOptions;
 ///
 /// Without a command, opens the window; without a scene, the default scene.
 #[derive(Parser, Debug)]
-#[command(name = "lcm", version, args_conflicts_with_subcommands = true, after_help = EXIT_STATUS)]
+#[command(name = "lcm", version, override_usage = USAGE, after_help = EXIT_STATUS)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -40,7 +40,9 @@ struct Cli {
     options: Options,
 }
 
-/// Explained below every help.
+/// With or without a command.
+const USAGE: &str = "lcm [OPTIONS] [SCENE]\n       lcm [OPTIONS] <COMMAND>";
+/// Explained below the help.
 const EXIT_STATUS: &str = "Exit status: 0 done; 1 a scene or an input is invalid; 2 wrong usage; \
                            3 no renderer or no display; 4 could not write.";
 
@@ -187,6 +189,9 @@ pub fn main() -> ExitCode {
 fn run(cli: Cli) -> Outcome {
     let options = cli.options;
     let registry = Registry::builtin();
+    if let Some(stray) = cli.view.given().filter(|_| cli.command.is_some()) {
+        return Err(Failure::Usage(format!("{stray} stands before the command; write it behind")));
+    }
     match cli.command {
         None => view::run(cli.view, options, &registry),
         Some(Command::View(arguments)) => view::run(arguments, options, &registry),
@@ -238,7 +243,13 @@ mod tests {
     fn a_scene_alone_opens_the_window() {
         let cli = Cli::try_parse_from(["lcm", "room.json", "--exit-after", "3"]).expect("valid");
         assert!(cli.command.is_none());
-        let cli = Cli::try_parse_from(["lcm", "render", "room.json", "--use-defaults"]).expect("valid");
-        assert!(cli.options.use_defaults && matches!(cli.command, Some(Command::Render(_))));
+        for arguments in [
+            ["lcm", "render", "room.json", "--use-defaults"],
+            ["lcm", "--use-defaults", "render", "room.json"],
+        ] {
+            let cli = Cli::try_parse_from(arguments).expect("valid");
+            assert!(cli.options.use_defaults && matches!(cli.command, Some(Command::Render(_))));
+            assert_eq!(cli.view.given(), None);
+        }
     }
 }

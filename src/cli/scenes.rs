@@ -76,31 +76,31 @@ impl Source {
             Ok(Loaded { scene, missing, .. }) if missing.is_empty() => Ok(scene),
             Ok(Loaded { scene, missing, .. }) => {
                 let name = self.name();
-                let yes = match options.defaults() {
-                    Defaults::Use => true,
-                    Defaults::Refuse => false,
-                    Defaults::Ask => ask(&format!("{name}: missing: {}. Use the defaults?", parts(&missing)))
-                        .unwrap_or(false),
-                };
-                if !yes {
-                    return Err(invalid(LoadError::Missing { name, missing }));
+                let question = format!("{name}: missing: {}. Use the defaults?", parts(&missing));
+                match answer(options, &question) {
+                    None => return Err(invalid(LoadError::Missing { name, missing })),
+                    Some(false) => return Err(Failure::Invalid(format!("{name} was not loaded"))),
+                    Some(true) => {}
                 }
                 options.detail(format_args!("{name}: missing: {}; defaults used", parts(&missing)));
                 Ok(scene)
             }
-            Err(error @ LoadError::Empty { .. }) => {
-                let yes = match options.defaults() {
-                    Defaults::Use => true,
-                    Defaults::Refuse => false,
-                    Defaults::Ask => ask(&error.to_string()).unwrap_or(false),
-                };
-                if yes {
-                    return Ok(Scene::default());
-                }
-                Err(Failure::Invalid(format!("{error} --use-defaults says yes")))
-            }
+            Err(error @ LoadError::Empty { .. }) => match answer(options, &error.to_string()) {
+                None => Err(Failure::Invalid(format!("{error} --use-defaults says yes"))),
+                Some(false) => Err(Failure::Invalid(format!("{} was not loaded", self.name()))),
+                Some(true) => Ok(Scene::default()),
+            },
             Err(error) => Err(invalid(error)),
         }
+    }
+}
+
+/// The answer of the flags, or of the user; nothing if there is nobody to ask, or the flags refuse.
+fn answer(options: Options, question: &str) -> Option<bool> {
+    match options.defaults() {
+        Defaults::Use => Some(true),
+        Defaults::Refuse => None,
+        Defaults::Ask => ask(question),
     }
 }
 

@@ -19,6 +19,16 @@ pub(super) struct Arguments {
     capture: Option<PathBuf>,
 }
 
+impl Arguments {
+    /// What was given, if anything, for messages.
+    pub(super) fn given(&self) -> Option<String> {
+        let scene = self.scene.as_ref().map(|s| s.display().to_string());
+        scene
+            .or_else(|| self.exit_after.map(|_| "--exit-after".to_owned()))
+            .or_else(|| self.capture.as_ref().map(|_| "--capture".to_owned()))
+    }
+}
+
 /// What the window starts with.
 #[derive(Clone, Debug)]
 pub struct ViewOptions {

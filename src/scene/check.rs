@@ -247,8 +247,9 @@ pub fn nearest<'a>(written: &str, candidates: impl Iterator<Item = (&'a str, &'a
     let distance = |candidate: &str| {
         let candidate = plain(candidate);
         let edits = strsim::damerau_levenshtein(&wanted, &candidate);
-        // A third of the letters may differ, and one of two: more is another word.
-        (edits <= candidate.chars().count().max(wanted.chars().count()).max(3) / 3).then_some(edits)
+        // A third of the letters may differ: more is another word.
+        let letters = candidate.chars().count().max(wanted.chars().count());
+        (edits <= (letters + 1) / 3).then_some(edits)
     };
     let near = candidates.filter(|(spelling, _)| !spelling.is_empty());
     near.filter_map(|(spelling, target)| Some((distance(spelling)?, target))).min_by_key(|n| n.0).map(|n| n.1)
@@ -295,22 +296,34 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
         (Path::root().key("lights"), count(scene.lights.len(), "lights"))
     });
     let lights = root.key("lights");
+    let room = plausible(scene.scene_size);
     for (i, l) in scene.lights.iter().enumerate() {
-        problems.0.extend(light_at(l, scene.scene_size, registry, || lights.index(i)));
+        problems.0.extend(light_at(l, room, registry, || lights.index(i)));
     }
-    problems.0.extend(observer(&scene.observer, scene.scene_size));
+    problems.0.extend(observer(&scene.observer, room));
     problems.add(object_count(scene.objects.len()), || {
         (Path::root().key("objects"), count(scene.objects.len(), "objects"))
     });
     let objects = root.key("objects");
     for (i, o) in scene.objects.iter().enumerate() {
-        problems.0.extend(object_at(o, scene, registry, || objects.index(i)));
+        problems.0.extend(object_at(o, scene, room, registry, || objects.index(i)));
     }
     let display = root.key("display").key("exposure");
     let ev = scene.display.exposure;
     problems.add(exposure(ev), || (display, ev.to_string()));
     problems.0.extend(coincidences(scene));
     problems.0
+}
+
+/// The room to judge positions by: an extent that is itself wrong is as large as may be, so that one
+/// mistake is not reported once more for everything in the room.
+fn plausible(mut room: SceneSize) -> SceneSize {
+    for extent in [&mut room.height, &mut room.width, &mut room.depth] {
+        if dimension("", *extent).is_err() {
+            *extent = MAX_DIMENSION;
+        }
+    }
+    room
 }
 
 /// Everything that is wrong with one light; `index` is its place in the list.
@@ -322,7 +335,9 @@ pub fn light(light: &Light, index: usize, room: SceneSize, registry: &Registry) 
 /// Everything that is wrong with one object of a scene, coincidences apart.
 #[must_use]
 pub fn object(object: &Object, index: usize, scene: &Scene, registry: &Registry) -> Vec<Problem> {
-    object_at(object, scene, registry, || Path::root().key("objects").index(index))
+    object_at(object, scene, plausible(scene.scene_size), registry, || {
+        Path::root().key("objects").index(index)
+    })
 }
 
 /// Everything that is wrong with the observer.
@@ -393,12 +408,16 @@ fn presence(kind: &str, field: &str, needed: bool) -> String {
     }
 }
 
-fn object_at(object: &Object, scene: &Scene, registry: &Registry, path: impl Fn() -> Path) -> Vec<Problem> {
+fn object_at(
+    object: &Object,
+    scene: &Scene,
+    room: SceneSize,
+    registry: &Registry,
+    path: impl Fn() -> Path,
+) -> Vec<Problem> {
     let mut problems = Problems(Vec::new());
     problems.add(object_type(registry, &object.kind), || (path().key("type"), quoted(&object.kind)));
-    problems.add(position(scene.scene_size, object.position), || {
-        (path().key("position"), Written(object.position))
-    });
+    problems.add(position(room, object.position), || (path().key("position"), Written(object.position)));
     problems.add(size(object.size), || (path().key("size"), object.size));
     problems.add(rotation(object.rotation), || (path().key("rotation"), Written(object.rotation)));
     if let (Some(shape), Some(count)) = (registry.shape(&object.kind), object.tessellation) {

@@ -132,7 +132,7 @@ struct ObjectFile<'a> {
     shading_model: Option<&'a str>,
     /// The parameters of the reflection model, by name. One material serves every model: what the
     /// current model does not use is kept for the others.
-    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
+    #[schemars(with = "Option<serde_json::Map<String, serde_json::Value>>")]
     #[serde(skip_serializing_if = "Ordered::is_empty")]
     material: Ordered<'a>,
 }

@@ -87,6 +87,10 @@ const OTHER_WORDS: &[(&str, &str)] = &[
 /// So many unknown keys get a suggestion; more would take long in a hostile file.
 const MAX_SUGGESTIONS: usize = 200;
 
+/// So many problems are listed. A scene within the limits of lights and objects that is wrong in every
+/// field has fewer; a hostile file could have millions.
+const MAX_PROBLEMS: usize = 200_000;
+
 /// Reads a scene from JSON whose syntax is checked already.
 pub(super) fn scene(
     text: &str,
@@ -127,6 +131,7 @@ pub(super) fn scene(
         problems: Vec::new(),
         reported: HashSet::new(),
         missing: Vec::new(),
+        unlisted: 0,
         suggestions: 0,
         light_keys: light_keys(registry),
         material_keys: registry.material_parameters().map(|p| p.name).collect(),
@@ -134,7 +139,7 @@ pub(super) fn scene(
     };
     let scene = reader.scene(&root);
     reader.check(&scene, &root);
-    let Reader { mut problems, missing, lines, .. } = reader;
+    let Reader { mut problems, missing, unlisted, lines, .. } = reader;
     if problems.is_empty() {
         return Ok((scene, missing));
     }
@@ -142,6 +147,10 @@ pub(super) fn scene(
         problems.extend(missing.iter().map(|m| (0, m.problem())));
     }
     problems.sort_by_key(|(at, _)| *at);
+    if unlisted > 0 {
+        let more = format!("has {unlisted} more problems, which are not listed");
+        problems.push((text.len(), Problem::about(Path::root(), more)));
+    }
     let problems = problems
         .into_iter()
         .map(|(at, problem)| Problem {
@@ -179,6 +188,8 @@ struct Reader<'a> {
     /// Paths whose values could not be read: what stands in for them is not checked.
     reported: HashSet<Path>,
     missing: Vec<Missing>,
+    /// How many problems there are beyond [`MAX_PROBLEMS`].
+    unlisted: usize,
     suggestions: usize,
     light_keys: Vec<&'static str>,
     material_keys: Vec<&'static str>,
@@ -222,7 +233,7 @@ impl Reader<'_> {
                 }
             }
         }
-        scene.lights = self.list(&fields, "lights", "a scene must have a list of lights", Self::light);
+        scene.lights = self.list(&fields, "lights", check::light_count, Self::light);
         match fields.get("observer") {
             None => self.lacking(&fields, "observer", "a scene needs one observer"),
             Some(Ast::Array(list)) => {
@@ -232,7 +243,7 @@ impl Reader<'_> {
             }
             Some(value) => scene.observer = self.observer(value),
         }
-        scene.objects = self.list(&fields, "objects", "a scene must have a list of objects", Self::object);
+        scene.objects = self.list(&fields, "objects", check::object_count, Self::object);
         if let Some(value) = fields.get("display") {
             scene.display = self.display(value);
         }
@@ -424,28 +435,32 @@ impl Reader<'_> {
         }
     }
 
-    /// The entries of a list of lights or objects.
+    /// The entries of a list of lights or objects. Of a list that is too long, only the length is
+    /// reported: it may be very long.
     fn list<T>(
         &mut self,
         scene: &Fields,
         key: &'static str,
-        rule: &str,
+        count: fn(usize) -> check::Rule,
         mut read: impl FnMut(&mut Self, &Ast, Path) -> T,
     ) -> Vec<T> {
         let path = scene.path.key(key);
         match scene.get(key) {
-            None => {
-                self.lacking(scene, key, rule);
-                Vec::new()
-            }
-            Some(Ast::Array(list)) => {
-                list.elements.iter().enumerate().map(|(i, e)| read(self, e, path.index(i))).collect()
-            }
-            Some(value) => {
-                self.wrong(value, &scene.path, key, rule);
-                Vec::new()
-            }
+            None => self.lacking(scene, key, &format!("a scene must have a list of {key}")),
+            Some(value @ Ast::Array(list)) => match count(list.elements.len()) {
+                Err(rule) => self.wrong(value, &scene.path, key, &rule),
+                Ok(()) => {
+                    return list
+                        .elements
+                        .iter()
+                        .enumerate()
+                        .map(|(i, e)| read(self, e, path.index(i)))
+                        .collect();
+                }
+            },
+            Some(value) => self.wrong(value, &scene.path, key, &format!("a scene must have a list of {key}")),
         }
+        Vec::new()
     }
 
     /// The fields of an object by canonical key. Reports what is not an object, unknown keys, and keys
@@ -647,12 +662,18 @@ impl Reader<'_> {
 
     /// Adds a problem and remembers that its path is not to be checked.
     fn report(&mut self, at: usize, problem: Problem) {
-        self.reported.insert(problem.path.clone());
+        if self.problems.len() < MAX_PROBLEMS {
+            self.reported.insert(problem.path.clone());
+        }
         self.report_only(at, problem);
     }
 
     fn report_only(&mut self, at: usize, problem: Problem) {
-        self.problems.push((at, problem));
+        if self.problems.len() < MAX_PROBLEMS {
+            self.problems.push((at, problem));
+        } else {
+            self.unlisted += 1;
+        }
     }
 
     /// A value as it is written, if it is short, and what it is otherwise.
@@ -670,7 +691,7 @@ impl Reader<'_> {
             if let (Some(value), Some(found)) = (value, &mut problem.found) {
                 *found = self.describe(value);
             }
-            self.problems.push((at, problem));
+            self.report_only(at, problem);
         }
     }
 }
@@ -724,7 +745,13 @@ fn hexadecimal(text: &str) -> Option<[u8; 3]> {
 fn describe(value: &Ast, text: &str) -> String {
     let written = value.text(text);
     match value {
-        Ast::Array(list) if written.len() > 40 || written.contains('\n') => {
+        Ast::Array(list) => {
+            let short = list.elements.len() <= 4;
+            let scalar = |e: &Ast| !matches!(e, Ast::Array(_) | Ast::Object(_));
+            if short && list.elements.iter().all(scalar) {
+                let elements: Vec<_> = list.elements.iter().map(|e| shortened(e.text(text))).collect();
+                return format!("[{}]", elements.join(", "));
+            }
             format!("a list of {}", list.elements.len())
         }
         Ast::Object(AstObject { properties, .. }) if properties.is_empty() => "{}".to_owned(),

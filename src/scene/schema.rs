@@ -1,7 +1,7 @@
 //! The JSON Schema of scene files, for editors: the types of [`format`](super::format) plus what the
 //! registry knows.
 
-use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
+use schemars::{SchemaGenerator, generate::SchemaSettings};
 use serde_json::{Map, Value as Json, json};
 
 use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile};
@@ -23,7 +23,7 @@ pub const FILE_NAME: &str = "scene.schema.json";
 pub fn schema(registry: &Registry) -> Json {
     let settings = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);
     let generator = SchemaGenerator::new(settings);
-    let mut schema = generator_root::<SceneFile<'static>>(generator);
+    let mut schema = generator.into_root_schema_for::<SceneFile<'static>>().to_value();
     tidy(&mut schema);
 
     let models = || registry.models().iter().map(|m| &m.declaration).map(|d| (d.id, d.name, d.summary));
@@ -50,11 +50,6 @@ pub fn schema(registry: &Registry) -> Json {
 #[must_use]
 pub fn text(registry: &Registry) -> String {
     format!("{:#}\n", schema(registry))
-}
-
-/// The schema of a type as plain JSON.
-fn generator_root<T: JsonSchema>(generator: SchemaGenerator) -> Json {
-    generator.into_root_schema_for::<T>().to_value()
 }
 
 /// Optional fields may be absent, but not `null`; and the formats of numbers are ours alone.

@@ -49,6 +49,7 @@ fn wrong_usage_has_status_2() {
         (&["render", "-", "-"], "- can be given once"),
         (&["view", "--exit-after", "0"], "0 is not in 1.."),
         (&["--use-defaults", "--no-defaults", "check", "x"], "cannot be used with"),
+        (&["room.json", "models"], "room.json stands before the command"),
         (&["rendr"], "did you mean lcm render?"),
         (&["evaluate", "fong"], "did you mean \"phong\"?"),
         (
