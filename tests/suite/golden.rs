@@ -170,9 +170,12 @@ fn the_comparison_notices_one_light_moved() {
     for (name, mut scene) in scenes() {
         let right = on_cpu(&scene);
         assert_eq!(SAME_RENDERER.broken(&right, &right), None);
-        let light = scene.lights.iter_mut().rev().find(|l| l.position.is_some() || l.direction.is_some());
-        let light = light.unwrap_or_else(|| panic!("{name} has ambient lights only"));
-        light.position.iter_mut().for_each(|p| p.y += 1.0);
+        // One of the middle: the outer ones of many may lie beside the picture.
+        let middle = scene.lights.len() / 2 + 1;
+        let (before, after) = scene.lights.split_at_mut(middle % scene.lights.len());
+        let mut movable = after.iter_mut().chain(before).filter(|l| l.position.is_some() || l.direction.is_some());
+        let light = movable.next().unwrap_or_else(|| panic!("{name} has ambient lights only"));
+        light.position.iter_mut().for_each(|p| p.y += 2.0);
         light.direction.iter_mut().for_each(|d| *d += Vec3::new(0.1, -0.1, 0.0));
         let wrong = on_cpu(&scene);
         assert!(SAME_RENDERER.broken(&wrong, &right).is_some(), "{name}: a moved light goes unnoticed");
