@@ -3,11 +3,13 @@
 
 mod command_line;
 mod extension;
+mod golden;
 mod gpu_parity;
 mod hot_swap;
 mod laws;
 mod panels;
 mod pictures;
+mod readme;
 mod reference_renderer;
 mod saving;
 mod scene_errors;

@@ -1,0 +1,88 @@
+//! A reflection model from outside the crate, complete: cartoon shading in a few tones.
+//!
+//! `cargo run --release --example toon` draws a teapot with it to `renders/toon.png`. The struct holds
+//! the parameters, `DECLARATION` says what the model is called and claims, `response` is the equation,
+//! and `toon.wgsl` is the same equation for the graphics card. Within the crate the same code would be
+//! `src/reflection/toon.rs` and one line in its `register_builtin`.
+#![allow(clippy::print_stdout, missing_docs)]
+
+use std::{error::Error, path::Path};
+
+use lights_camera_models::{
+    capture::png,
+    optics::{Frame, Terms},
+    parameters,
+    reference::{self, Settings},
+    reflection::{
+        Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+        parameter::{BASE_COLOUR, Parameter, ParameterKind, Value},
+    },
+    registry::{Register, Registry},
+    scene::{Object, Scene},
+    shader::Source,
+};
+use glam::Vec3;
+
+const TONES: Parameter = Parameter {
+    name: "tones",
+    symbol: "n",
+    label: "tones",
+    unit: "",
+    help: "How many tones there are between black and the base colour.",
+    kind: ParameterKind::Integer { min: 1, max: Some(16), slider_max: 8, default: 4 },
+};
+
+parameters! {
+    /// Lambert in a few tones.
+    pub struct Toon {
+        /// Its colour, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// How many tones.
+        tones: number = TONES,
+    }
+}
+
+impl ReflectionModel for Toon {
+    const DECLARATION: Declaration = Declaration {
+        id: "toon",
+        name: "Toon",
+        family: Family::Own,
+        author: "an example",
+        source: "examples/toon.rs",
+        summary: "Lambert in a few tones, as in a cartoon.",
+        equation: &[EquationPart { term: Term::Diffuse, text: "I_d = ceil(n max(0, N·L)) C_b / n" }],
+        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
+        wgsl: Source { path: "toon.wgsl", text: include_str!("toon.wgsl") },
+    };
+
+    fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
+        let tone = (self.tones * frame.n.dot(l).max(0.0)).ceil() / self.tones;
+        Terms { diffuse: tone * self.base_colour, ..Terms::default() }
+    }
+
+    fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
+        self.base_colour
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    // In the window it is `app.add_reflection_model::<Toon>()`: the same call.
+    let mut registry = Registry::builtin();
+    registry.add_reflection_model::<Toon>();
+
+    let mut teapot = Object { kind: "teapot".to_owned(), size: 3.4, ..Object::default() };
+    teapot.material.set("base_colour", Value::Colour([240, 150, 40]));
+    let scene = Scene {
+        reflection_model: "toon".to_owned(),
+        shading_model: "phong".to_owned(),
+        objects: vec![teapot],
+        ..Scene::default()
+    };
+
+    let settings = Settings { width: 640, height: 360, ..Settings::default() };
+    let picture = reference::render_rgb8(&scene, &registry, &settings);
+    let path = Path::new("renders/toon.png");
+    png::write(path, settings.width, settings.height, &picture, &[])?;
+    println!("wrote {}", path.display());
+    Ok(())
+}

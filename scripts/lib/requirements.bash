@@ -1,0 +1,144 @@
+# shellcheck shell=bash
+# What the scripts need from the machine: found if it is there, installed on Debian and Ubuntu if not,
+# and named elsewhere. Sourced by scripts/run and scripts/test.
+#
+# LCM_DRY_RUN=1  prints the commands that would install, and does not run them.
+
+say() {
+    printf '%s\n' "$*" >&2
+}
+
+have() {
+    command -v "$1" >/dev/null 2>&1
+}
+
+# Whether the dynamic linker finds a library. Where there is no cache to ask (musl, macOS), the answer
+# is yes: the program itself says what it misses.
+have_library() {
+    local cache
+    have ldconfig || [[ -x /sbin/ldconfig ]] || return 0
+    cache=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p 2>/dev/null) || return 0
+    [[ -z $cache || $cache == *"$1"* ]]
+}
+
+# Whether some Vulkan driver is installed, for hardware or software.
+have_vulkan_driver() {
+    local folder
+    [[ -n ${VK_ICD_FILENAMES:-}${VK_DRIVER_FILES:-} ]] && return 0
+    for folder in /usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d \
+        "${XDG_DATA_HOME:-${HOME:-/root}/.local/share}/vulkan/icd.d" /run/opengl-driver/share/vulkan/icd.d; do
+        compgen -G "$folder/*.json" >/dev/null && return 0
+    done
+    return 1
+}
+
+# What is missing: parallel lists of Debian packages and of what each is for.
+packages=()
+reasons=()
+
+need() {
+    packages+=("$1")
+    reasons+=("$2")
+}
+
+# Looks for what building needs.
+look_for_build_tools() {
+    if ! have cc; then
+        need gcc "a C linker, which Rust uses"
+        need libc6-dev "the C library to link with"
+    fi
+}
+
+# Looks for what drawing with Vulkan and opening a window needs. macOS has both.
+look_for_graphics() {
+    [[ $(uname -s) == Linux ]] || return 0
+    have_library libvulkan.so.1 || need libvulkan1 "the Vulkan loader"
+    have_vulkan_driver || need mesa-vulkan-drivers "Vulkan drivers, one of which draws in software"
+    have_library libxkbcommon-x11.so.0 || need libxkbcommon-x11-0 "the keyboard in windows"
+    have_library libX11-xcb.so.1 || need libx11-xcb1 "windows under X11"
+    have_library libXcursor.so.1 || need libxcursor1 "the mouse pointer"
+    have_library libXi.so.6 || need libxi6 "mouse and keyboard"
+    have_library libXrandr.so.2 || need libxrandr2 "the size of screens"
+}
+
+# Looks for a virtual screen, which the test of the window draws on.
+look_for_virtual_screen() {
+    [[ $(uname -s) == Linux ]] || return 0
+    have Xvfb || need xvfb "a virtual screen for the test of the window"
+}
+
+run_or_show() {
+    if [[ ${LCM_DRY_RUN:-} == 1 ]]; then
+        say "would run: $*"
+    else
+        "$@" >&2
+    fi
+}
+
+# Installs what is missing, or says what to install.
+install_missing() {
+    ((${#packages[@]})) || return 0
+    local i
+    local as_root=()
+    say "This machine lacks:"
+    for i in "${!packages[@]}"; do
+        say "  ${packages[i]}: ${reasons[i]}"
+    done
+    if ! have apt-get; then
+        say_elsewhere
+        return 0
+    fi
+    if ((EUID != 0)); then
+        if ! have sudo; then
+            say "Installing needs an administrator, and there is no sudo. As root:"
+            say "  apt-get install --no-install-recommends ${packages[*]}"
+            exit 1
+        fi
+        as_root=(sudo)
+    fi
+    say "Installing with apt-get:"
+    run_or_show "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -q
+    run_or_show "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -q -y --no-install-recommends "${packages[@]}"
+}
+
+# The same things under the names of other systems.
+say_elsewhere() {
+    if have dnf; then
+        say "Fedora: sudo dnf install gcc vulkan-loader mesa-vulkan-drivers libxkbcommon-x11 libX11-xcb \\"
+        say "          libXcursor libXi libXrandr xorg-x11-server-Xvfb"
+    elif have pacman; then
+        say "Arch: sudo pacman -S --needed gcc vulkan-icd-loader vulkan-swrast libxkbcommon-x11 libx11 \\"
+        say "        libxcursor libxi libxrandr xorg-server-xvfb"
+    elif have zypper; then
+        say "openSUSE: sudo zypper install gcc libvulkan1 libvulkan_lvp libxkbcommon-x11-0 libX11-xcb1 \\"
+        say "            libXcursor1 libXi6 libXrandr2 xorg-x11-server-Xvfb"
+    elif [[ $(uname -s) == Darwin ]]; then
+        say "macOS: xcode-select --install"
+    else
+        say "Please install the equivalents with the package manager of this system."
+    fi
+    say "Going on without; what cannot be done is said when it is needed."
+}
+
+# Rust installs for a user, not for a machine, so installing it is the user's decision.
+require_rust() {
+    local cargo_home=${CARGO_HOME:-${HOME:-/root}/.cargo}
+    if ! have cargo && [[ -x $cargo_home/bin/cargo ]]; then
+        PATH=$cargo_home/bin:$PATH
+    fi
+    if ! have cargo; then
+        say "Rust is missing. Install it as https://rustup.rs says, then run this again."
+        exit 1
+    fi
+}
+
+# Programs with windows want a private folder; without one Mesa and the window library complain.
+ensure_runtime_folder() {
+    if [[ -z ${XDG_RUNTIME_DIR:-} || ! -d ${XDG_RUNTIME_DIR:-} ]]; then
+        XDG_RUNTIME_DIR=$(mktemp -d "${TMPDIR:-/tmp}/lcm-runtime.XXXXXX")
+        chmod 700 "$XDG_RUNTIME_DIR"
+        export XDG_RUNTIME_DIR
+        trap 'rm -rf "$XDG_RUNTIME_DIR"' EXIT
+    fi
+}

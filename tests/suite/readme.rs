@@ -1,0 +1,90 @@
+//! The tables of the README are those of the registry, and its example is the example.
+
+use std::fs;
+
+use lights_camera_models::registry::Registry;
+
+use crate::support::root;
+
+/// Rows of a table, with a heading.
+fn table(heading: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let heading: Vec<_> = heading.iter().map(|h| (*h).to_owned()).collect();
+    let rule = format!("|{}\n", "---|".repeat(heading.len()));
+    std::iter::once(line(&heading)).chain([rule]).chain(rows.map(|r| line(&r))).collect()
+}
+
+fn code(id: &str) -> String {
+    format!("`{id}`")
+}
+
+/// The text between two markers of the README, by name.
+fn sections() -> Vec<(&'static str, String)> {
+    let registry = Registry::builtin();
+    let models = registry.models().iter().map(|m| {
+        let d = m.declaration;
+        let parameters: Vec<_> = m.parameters.iter().map(|p| code(p.name)).collect();
+        let kept: Vec<_> = d.laws.list().iter().filter(|(_, kept)| *kept).map(|(law, _)| *law).collect();
+        vec![code(d.id), d.name.into(), d.author.into(), d.summary.into(), parameters.join(", "), kept.join(", ")]
+    });
+    let modes = registry.modes().iter().map(|m| {
+        let d = m.declaration;
+        vec![code(d.id), d.name.into(), d.author.into(), d.stage.phrase().into(), d.summary.into()]
+    });
+    let lights = registry.lights().iter().map(|l| {
+        let d = l.declaration;
+        let mut fields = vec![];
+        fields.extend(d.has_position.then(|| code("position")));
+        fields.extend(d.has_direction.then(|| code("direction")));
+        fields.extend(d.parameters.iter().map(|p| code(p.name)));
+        vec![code(d.id), d.summary.into(), format!("`{}`", d.equation), d.unit.into(), fields.join(", ")]
+    });
+    let shapes = registry.shapes().iter().map(|s| {
+        let d = s.declaration;
+        let (from, to) = (d.tessellation.start(), d.tessellation.end());
+        let tessellation = format!("{from}–{to}, default {}", d.default_tessellation);
+        vec![code(d.id), d.summary.into(), tessellation, d.tessellation_help.into()]
+    });
+    let example = |file: &str, language: &str| {
+        let text = fs::read_to_string(root().join("examples").join(file)).expect("the example is there");
+        format!("```{language}\n{text}```\n")
+    };
+    vec![
+        ("models", table(&["id", "name", "author", "what it shows", "parameters", "laws kept"], models)),
+        ("modes", table(&["id", "name", "author", "calculates", "what to look for"], modes)),
+        ("lights", table(&["id", "what it does", "light at a point", "unit", "fields"], lights)),
+        ("shapes", table(&["id", "what it shows", "tessellation", "meaning"], shapes)),
+        ("toon.wgsl", example("toon.wgsl", "wgsl")),
+        ("toon.rs", example("toon.rs", "rust")),
+    ]
+}
+
+#[test]
+fn the_tables_and_the_example_of_the_readme_are_up_to_date() {
+    let path = root().join("README.md");
+    let old = fs::read_to_string(&path).expect("the README is there");
+    let mut text = old.clone();
+    for (name, content) in sections() {
+        let (open, close) = (format!("<!-- {name} -->\n"), format!("<!-- end of {name} -->"));
+        let start = text.find(&open).unwrap_or_else(|| panic!("README.md lacks {open}")) + open.len();
+        let end = text[start..].find(&close).unwrap_or_else(|| panic!("README.md lacks {close}")) + start;
+        text.replace_range(start..end, &format!("\n{content}\n"));
+    }
+    if std::env::var_os("LCM_UPDATE").is_some() {
+        fs::write(&path, &text).expect("README.md can be written");
+    } else {
+        assert!(text == old, "README.md is not up to date; run the tests once with LCM_UPDATE=1");
+    }
+}
+
+#[test]
+fn every_file_that_a_document_points_to_is_there() {
+    for document in ["README.md", "ARCHITECTURE.md", "CREDITS.md", "CHANGELOG.md"] {
+        let text = fs::read_to_string(root().join(document)).expect(document);
+        let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        for target in targets.filter(|t| !t.contains("://") && !t.starts_with('#')) {
+            let file = target.split('#').next().unwrap_or_default();
+            assert!(root().join(file).exists(), "{document} points to {file}, which is not there");
+        }
+    }
+}
