@@ -25,7 +25,14 @@ fn sections() -> Vec<(&'static str, String)> {
         let d = m.declaration;
         let parameters: Vec<_> = m.parameters.iter().map(|p| code(p.name)).collect();
         let kept: Vec<_> = d.laws.list().iter().filter(|(_, kept)| *kept).map(|(law, _)| *law).collect();
-        vec![code(d.id), d.name.into(), d.author.into(), d.summary.into(), parameters.join(", "), kept.join(", ")]
+        vec![
+            code(d.id),
+            d.name.into(),
+            d.author.into(),
+            d.summary.into(),
+            parameters.join(", "),
+            kept.join(", "),
+        ]
     });
     let modes = registry.modes().iter().map(|m| {
         let d = m.declaration;
