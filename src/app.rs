@@ -1,9 +1,12 @@
 //! The plugins and the order of the systems.
 
 use bevy::{
-    app::{App, Plugin, Update},
+    app::{App, MainScheduleOrder, Plugin, Update},
     asset::Assets,
-    ecs::prelude::*,
+    ecs::{
+        prelude::*,
+        schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel},
+    },
     render::storage::ShaderBuffer,
 };
 
@@ -15,6 +18,12 @@ use crate::{
     registry::{Registry, register_builtin},
     scene::spawn::{CurrentScene, SceneEntities, absorb, reconcile},
 };
+
+/// The schedule of everything that the lab does in a frame; runs after Bevy's `Update`. A schedule of
+/// its own, so that two of our systems whose order is left open are an error at start, whatever
+/// Bevy's own systems do.
+#[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct LabFrame;
 
 /// The order of everything that the lab does in a frame. Systems are ordered through these sets only.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,14 +54,23 @@ pub struct ScenePlugin;
 impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
         register_builtin(app);
+        app.world_mut().resource_mut::<MainScheduleOrder>().insert_after(Update, LabFrame);
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()
             .init_resource::<ComposedShaders>()
             .init_resource::<ShapeMeshes>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
+            // Two of our systems that touch the same data must say who comes first.
+            .init_schedule(LabFrame)
+            .edit_schedule(LabFrame, |schedule| {
+                schedule.set_build_settings(ScheduleBuildSettings {
+                    ambiguity_detection: LogLevel::Error,
+                    ..ScheduleBuildSettings::default()
+                });
+            })
             .configure_sets(
-                Update,
+                LabFrame,
                 (
                     LabSystems::Load,
                     LabSystems::Spawn,
@@ -64,7 +82,7 @@ impl Plugin for ScenePlugin {
                     .chain(),
             )
             .add_systems(
-                Update,
+                LabFrame,
                 (
                     reconcile.in_set(LabSystems::Spawn).run_if(resource_changed::<CurrentScene>),
                     absorb.in_set(LabSystems::Edit),
@@ -96,9 +114,4 @@ fn upload_lights(
         }
         *last = bytes;
     }
-}
-
-/// Opens the window.
-pub fn view(_options: crate::cli::ViewOptions) -> Result<(), crate::cli::Failure> {
-    Ok(())
 }

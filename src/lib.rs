@@ -17,8 +17,9 @@
 //! - [`shader`]: WGSL text in, WGSL text out.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
 //! - [`capture`]: rendering without a window, PNG files.
-//! - [`panel`]: the window.
-//! - [`app`]: the plugins and the order of the systems.
+//! - [`panel`]: what the window shows, as functions of a state that return actions.
+//! - [`app`]: the scene plugin and the order of the systems.
+//! - [`window`]: panels, camera and entities in one window.
 //! - [`cli`]: the command line.
 
 pub mod optics;
@@ -40,3 +41,4 @@ pub mod reference;
 
 pub mod app;
 pub mod cli;
+pub mod window;

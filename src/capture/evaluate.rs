@@ -3,9 +3,10 @@
 
 use bevy::render::{
     render_resource::{
-        BindGroupEntry, BindGroupLayoutEntry, BindingType, BufferBindingType, BufferDescriptor, BufferInitDescriptor,
-        BufferUsages, CommandEncoderDescriptor, ComputePassDescriptor, MapMode, PipelineLayoutDescriptor, PollType,
-        RawComputePipelineDescriptor, ShaderModuleDescriptor, ShaderSource, ShaderStages,
+        BindGroupEntry, BindGroupLayoutEntry, BindingType, BufferBindingType, BufferDescriptor,
+        BufferInitDescriptor, BufferUsages, CommandEncoderDescriptor, ComputePassDescriptor, MapMode,
+        PipelineLayoutDescriptor, PollType, RawComputePipelineDescriptor, ShaderModuleDescriptor,
+        ShaderSource, ShaderStages,
     },
     settings::RenderResources,
 };
@@ -44,7 +45,13 @@ pub fn evaluate(
     let limit = device.limits().max_storage_buffer_binding_size as usize / ANSWER_BYTES;
     let mut answers = Vec::with_capacity(pairs.len());
     for chunk in pairs.chunks(limit.min(65_535 * 64)) {
-        answers.extend(run(&device, &queue, &composed.text, &pack(model.parameters, values, encoding), chunk)?);
+        answers.extend(run(
+            &device,
+            &queue,
+            &composed.text,
+            &pack(model.parameters, values, encoding),
+            chunk,
+        )?);
     }
     Ok(answers)
 }
@@ -74,7 +81,12 @@ fn run(
     let input = buffer(&input, BufferUsages::STORAGE);
     let size = (pairs.len() * ANSWER_BYTES) as u64;
     let empty = |usage| {
-        device.create_buffer(&BufferDescriptor { label: Some("answers"), size, usage, mapped_at_creation: false })
+        device.create_buffer(&BufferDescriptor {
+            label: Some("answers"),
+            size,
+            usage,
+            mapped_at_creation: false,
+        })
     };
     let output = empty(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
     let staging = empty(BufferUsages::COPY_DST | BufferUsages::MAP_READ);
@@ -121,7 +133,8 @@ fn run(
     );
     let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor { label: Some("evaluate") });
     {
-        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor { label: Some("evaluate"), timestamp_writes: None });
+        let mut pass = encoder
+            .begin_compute_pass(&ComputePassDescriptor { label: Some("evaluate"), timestamp_writes: None });
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, Some(&*group), &[]);
         pass.dispatch_workgroups(pairs.len().div_ceil(64) as u32, 1, 1);
@@ -133,15 +146,16 @@ fn run(
         let _ = sender.send(result);
     });
     device.poll(PollType::wait_indefinitely()).map_err(|e| GpuError::Copy(e.to_string()))?;
-    receiver
-        .recv()
-        .map_err(|e| GpuError::Copy(e.to_string()))?
-        .map_err(|e| GpuError::Copy(e.to_string()))?;
+    receiver.recv().map_err(|e| GpuError::Copy(e.to_string()))?.map_err(|e| GpuError::Copy(e.to_string()))?;
     let mapped = staging.slice(..).get_mapped_range();
     let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
     let vector = |b: &[u8]| Vec3::new(float(&b[..4]), float(&b[4..8]), float(&b[8..12]));
     Ok(mapped
         .chunks_exact(ANSWER_BYTES)
-        .map(|b| Terms { ambient: vector(&b[..12]), diffuse: vector(&b[16..28]), specular: vector(&b[32..44]) })
+        .map(|b| Terms {
+            ambient: vector(&b[..12]),
+            diffuse: vector(&b[16..28]),
+            specular: vector(&b[32..44]),
+        })
         .collect())
 }

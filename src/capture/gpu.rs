@@ -16,8 +16,9 @@ use bevy::{
         pipelined_rendering::PipelinedRenderingPlugin,
         render_asset::RenderAssets,
         render_resource::{
-            Buffer, BufferDescriptor, BufferUsages, CachedPipelineState, CommandEncoderDescriptor, Extent3d, MapMode, PipelineCache,
-            PollType, TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat, TextureUsages,
+            Buffer, BufferDescriptor, BufferUsages, CachedPipelineState, CommandEncoderDescriptor, Extent3d,
+            MapMode, PipelineCache, PollType, TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat,
+            TextureUsages,
         },
         renderer::{RenderDevice, RenderQueue, initialize_renderer},
         settings::{Backends, RenderCreation, RenderResources, WgpuSettings},
@@ -48,7 +49,9 @@ pub enum GpuError {
     )]
     NoAdapter,
     /// Nothing came out in time.
-    #[error("the GPU renderer gave no picture within {0:?}; run with `--verbose` to see what it was waiting for, or use `--renderer cpu`")]
+    #[error(
+        "the GPU renderer gave no picture within {0:?}; run with `--verbose` to see what it was waiting for, or use `--renderer cpu`"
+    )]
     TimedOut(Duration),
     /// A shader could not be compiled.
     #[error("a shader could not be compiled: {0}")]
@@ -74,8 +77,9 @@ pub fn may_have_hardware() -> bool {
     if !cfg!(target_os = "linux") {
         return true;
     }
-    let render_node = std::fs::read_dir("/dev/dri")
-        .is_ok_and(|mut nodes| nodes.any(|n| n.is_ok_and(|n| n.file_name().to_string_lossy().starts_with("renderD"))));
+    let render_node = std::fs::read_dir("/dev/dri").is_ok_and(|mut nodes| {
+        nodes.any(|n| n.is_ok_and(|n| n.file_name().to_string_lossy().starts_with("renderD")))
+    });
     render_node || Path::new("/dev/nvidiactl").exists() || Path::new("/dev/dxg").exists()
 }
 
@@ -87,7 +91,8 @@ pub fn find_adapter() -> Result<AdapterFacts, GpuError> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends();
     let instance = wgpu::Instance::new(descriptor);
-    let infos: Vec<_> = block_on(instance.enumerate_adapters(backends())).iter().map(wgpu::Adapter::get_info).collect();
+    let infos: Vec<_> =
+        block_on(instance.enumerate_adapters(backends())).iter().map(wgpu::Adapter::get_info).collect();
     infos
         .iter()
         .find(|i| i.device_type != wgpu::DeviceType::Cpu)
@@ -100,7 +105,11 @@ pub fn find_adapter() -> Result<AdapterFacts, GpuError> {
 /// OpenGL as well would print noise on machines without it) and everything elsewhere.
 #[must_use]
 pub fn backends() -> Backends {
-    Backends::from_env().unwrap_or(if cfg!(target_os = "linux") { Backends::VULKAN } else { Backends::PRIMARY })
+    Backends::from_env().unwrap_or(if cfg!(target_os = "linux") {
+        Backends::VULKAN
+    } else {
+        Backends::PRIMARY
+    })
 }
 
 /// The settings of the renderer, for windows and without.
@@ -208,7 +217,8 @@ impl GpuRenderer {
         image.asset_usage = RenderAssetUsages::default();
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(image);
         let samples = if output == Output::Linear { 1 } else { samples };
-        let mut camera = app.world_mut().spawn((picture_camera(samples), RenderTarget::Image(target.clone().into())));
+        let mut camera =
+            app.world_mut().spawn((picture_camera(samples), RenderTarget::Image(target.clone().into())));
         if output == Output::Display {
             camera.insert(Hdr);
         }
@@ -267,7 +277,10 @@ impl GpuRenderer {
         let cache = render_app.world().resource::<PipelineCache>();
         for pipeline in cache.pipelines() {
             if let CachedPipelineState::Err(error) = &pipeline.state
-                && !matches!(error, ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable)
+                && !matches!(
+                    error,
+                    ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable
+                )
             {
                 return Err(GpuError::Shader(error.to_string()));
             }
@@ -297,12 +310,17 @@ impl GpuRenderer {
                 mapped_at_creation: false,
             })
         });
-        let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor { label: Some("read picture") });
+        let mut encoder =
+            device.create_command_encoder(&CommandEncoderDescriptor { label: Some("read picture") });
         encoder.copy_texture_to_buffer(
             image.texture.as_image_copy(),
             TexelCopyBufferInfo {
                 buffer: staging,
-                layout: TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+                layout: TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded),
+                    rows_per_image: None,
+                },
             },
             Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 },
         );

@@ -13,9 +13,10 @@ use super::{
     angles::{self, Column},
 };
 use crate::{
+    capture::evaluate::evaluate,
     optics::{Frame, colour::Encoding},
     reflection::{
-        ModelEntry, brdf,
+        ModelEntry, brdf, brdf_of,
         parameter::{Parameter, ParameterKind, Value, Values},
     },
     registry::Registry,
@@ -49,6 +50,8 @@ pub(super) struct Settings {
 enum Machine {
     /// The Rust functions
     Cpu,
+    /// The WGSL functions, in a compute pass; software Vulkan will do
+    Gpu,
 }
 
 /// One `NAME=VALUE`.
@@ -78,15 +81,30 @@ const COLUMNS: [Column; 4] = [
 pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
     let model = find(registry, &arguments.model)?;
     let values = arguments.set.values(model)?;
-    let surface = model.instantiate(&values, Encoding::Srgb);
-    let Machine::Cpu = arguments.on;
     let rows = angles::from_stdin(&COLUMNS)?;
+    let pairs: Vec<_> = rows
+        .iter()
+        .map(|row| {
+            let [theta_i, phi_i, theta_o, phi_o] = row.numbers;
+            (direction(theta_i, phi_i), direction(theta_o, phi_o))
+        })
+        .collect();
     let frame = Frame { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
+    let brdfs: Vec<Vec3> = match arguments.on {
+        Machine::Cpu => {
+            let surface = model.instantiate(&values, Encoding::Srgb);
+            pairs.iter().map(|(l, v)| brdf(surface.as_ref(), *l, *v, &frame)).collect()
+        }
+        Machine::Gpu => evaluate(model, &values, Encoding::Srgb, &pairs)
+            .map_err(|e| Failure::NoRenderer(e.to_string()))?
+            .into_iter()
+            .zip(&pairs)
+            .map(|(terms, (l, v))| brdf_of(terms, *l, *v, &frame))
+            .collect(),
+    };
     let mut out = BufWriter::new(io::stdout().lock());
     writeln!(out, "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b")?;
-    for row in &rows {
-        let [theta_i, phi_i, theta_o, phi_o] = row.numbers;
-        let f = brdf(surface.as_ref(), direction(theta_i, phi_i), direction(theta_o, phi_o), &frame);
+    for (row, f) in rows.iter().zip(brdfs) {
         writeln!(out, "{},{},{},{}", row.text.join(","), f.x, f.y, f.z)?;
     }
     Ok(out.flush()?)

@@ -73,9 +73,9 @@ pub enum Renderer {
 
 /// The size of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Size {
-    width: u32,
-    height: u32,
+pub(super) struct Size {
+    pub(super) width: u32,
+    pub(super) height: u32,
 }
 
 /// The longest side of a picture, pixels: what graphics hardware commonly draws.
@@ -218,7 +218,8 @@ impl Painter {
             Some((last, renderer)) if *last == key => renderer,
             slot => {
                 let samples = if job.samples == 4 { 4 } else { 1 };
-                let renderer = GpuRenderer::new(job.width, job.height, samples, gpu::Output::Display).map_err(failed)?;
+                let renderer =
+                    GpuRenderer::new(job.width, job.height, samples, gpu::Output::Display).map_err(failed)?;
                 &mut slot.insert((key, renderer)).1
             }
         };

@@ -4,8 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Failure, Options, Outcome, scenes::Source};
-use crate::{registry::Registry, scene::Scene};
+use super::{Failure, Options, Outcome, render::Size, scenes::Source};
+use crate::{
+    registry::Registry,
+    scene::{
+        Scene,
+        error::LoadError,
+        load::{self, Defaults, Stamp},
+    },
+};
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
@@ -17,6 +24,9 @@ pub(super) struct Arguments {
     /// Write the whole window, panels included, to a PNG file before it closes
     #[arg(long, value_name = "FILE", requires = "exit_after")]
     capture: Option<PathBuf>,
+    /// The size of the window in pixels
+    #[arg(long, value_name = "WxH")]
+    size: Option<Size>,
 }
 
 impl Arguments {
@@ -36,6 +46,12 @@ pub struct ViewOptions {
     pub scene: Scene,
     /// The file that it came from, if any.
     pub file: Option<PathBuf>,
+    /// The state of that file when it was read.
+    pub stamp: Option<Stamp>,
+    /// A file that the window must open itself, since there is something to ask first.
+    pub open: Option<PathBuf>,
+    /// The size of the window in pixels; else 1280×720 points.
+    pub size: Option<[u32; 2]>,
     /// Close the window after so many frames.
     pub exit_after: Option<u32>,
     /// Write the whole window to this file before it closes.
@@ -48,17 +64,39 @@ pub struct ViewOptions {
 
 pub(super) fn run(arguments: Arguments, options: Options, registry: &Registry) -> Outcome {
     let source = Source::of(arguments.scene.as_deref());
-    if let Source::File(path) = &source {
-        meant_command(path)?;
-    }
-    let scene = source.open(registry, options)?;
-    let Arguments { exit_after, capture, .. } = arguments;
-    let file = match source {
-        Source::File(path) => Some(path),
-        Source::Default | Source::Stdin => None,
-    };
+    let Arguments { exit_after, capture, size, .. } = arguments;
     let Options { verbose, quiet, .. } = options;
-    crate::app::view(ViewOptions { scene, file, exit_after, capture, verbose, quiet })
+    let mut view = ViewOptions {
+        scene: Scene::default(),
+        file: None,
+        stamp: None,
+        open: None,
+        size: size.map(|s| [s.width, s.height]),
+        exit_after,
+        capture,
+        verbose,
+        quiet,
+    };
+    match source {
+        Source::File(path) => {
+            meant_command(&path)?;
+            match load::file(&path, registry, options.defaults()) {
+                // The window asks what there is to ask, with a dialog.
+                Ok(loaded) if !loaded.missing.is_empty() && options.defaults() == Defaults::Ask => {
+                    view.open = Some(path);
+                }
+                Err(LoadError::Empty { .. }) => view.open = Some(path),
+                Ok(loaded) => {
+                    view.scene = loaded.scene;
+                    view.stamp = Some(loaded.stamp);
+                    view.file = Some(path);
+                }
+                Err(error) => return Err(Failure::Invalid(error.to_string())),
+            }
+        }
+        Source::Default | Source::Stdin => view.scene = source.open(registry, options)?,
+    }
+    crate::window::view(view)
 }
 
 /// `lcm rendr room.json` is not a scene called rendr.

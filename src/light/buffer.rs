@@ -13,11 +13,7 @@ use glam::Vec3;
 
 use super::{LightRecord, MAX_LIGHTS};
 use crate::{
-    optics::{
-        TermSelection,
-        colour::Encoding,
-        tone::exposure_factor,
-    },
+    optics::{TermSelection, colour::Encoding, tone::exposure_factor},
     registry::Registry,
     scene::{Display, Light},
 };

@@ -14,7 +14,7 @@ impl LightType for Directional {
         id: "directional",
         name: "Directional",
         summary: "Light from infinitely far away, as from the sun: one direction and one strength everywhere.",
-        glyph: "⬇",
+        glyph: "↓",
         has_position: false,
         has_direction: true,
         unit: "lx",

@@ -30,7 +30,11 @@ pub fn picture_camera(samples: u8) -> impl Bundle {
         PictureCamera { follows_observer: true },
         Camera3d::default(),
         Camera {
-            clear_color: ClearColorConfig::Custom(Color::srgb_u8(BACKGROUND[0], BACKGROUND[1], BACKGROUND[2])),
+            clear_color: ClearColorConfig::Custom(Color::srgb_u8(
+                BACKGROUND[0],
+                BACKGROUND[1],
+                BACKGROUND[2],
+            )),
             ..Camera::default()
         },
         projection(&Observer::default()),
@@ -69,7 +73,8 @@ pub fn follow_scene(
     let observer = &scene.0.observer;
     for (camera, mut transform, mut lens, mut tone, hdr) in &mut cameras {
         if camera.follows_observer {
-            let wanted = Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
+            let wanted =
+                Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
             if *transform != wanted {
                 *transform = wanted;
             }

@@ -1,1 +1,429 @@
-//! Placeholder.
+//! The window: panels around the picture.
+//!
+//! A panel is a function of the state that returns actions ([`Panel`]); [`show`] lays the panels out,
+//! applies their actions to the [`Lab`] and returns the effects that need files, entities or the
+//! operating system. None of it needs a window.
+//!
+//! **To add one**: write `panel/x.rs` and add its name to [`register_builtin`]; a panel at the bottom
+//! gets a tab and an entry in the menu by itself. From outside the crate: [`PanelApp::add_panel`].
+
+use std::sync::Arc;
+
+use bevy::{
+    app::{App, Plugin},
+    ecs::{
+        message::MessageWriter,
+        resource::Resource,
+        system::{Local, Res, ResMut},
+    },
+};
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{self, Button, Frame, Id, LayerId, Margin, Rect, Ui, UiBuilder, vec2},
+};
+use egui_file_dialog::{DialogState, FileDialog};
+
+use crate::registry::Registry;
+use state::{Action, Effect, Lab, LabEffect, ViewChange};
+use theme::Palette;
+
+pub mod chooser;
+pub mod files;
+pub mod help;
+pub mod icon;
+pub mod inspector;
+pub mod keys;
+pub mod knob;
+pub mod limits;
+pub mod maths;
+pub mod messages;
+pub mod picture;
+pub mod question;
+pub mod settings;
+pub mod state;
+pub mod status;
+pub mod theme;
+pub mod top;
+pub mod tree;
+
+/// The built-in panels, in the order in which they are laid out. The one list.
+pub fn register_builtin(to: &mut Panels) {
+    to.add(top::TopBar);
+    to.add(status::StatusLine);
+    to.add(messages::Messages);
+    to.add(tree::Tree);
+    to.add(inspector::Inspector);
+}
+
+/// Where a panel is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// Across the top.
+    Top,
+    /// At the left; several stand one above the other.
+    Left,
+    /// At the right; several stand one above the other.
+    Right,
+    /// In the strip at the bottom; several are tabs.
+    Bottom,
+    /// The last line.
+    Status,
+}
+
+/// A part of the window: a function of the state that returns actions.
+pub trait Panel: Send + Sync + 'static {
+    /// A name that no other panel has.
+    fn id(&self) -> &'static str;
+    /// What people call it.
+    fn title(&self) -> &'static str;
+    /// Where it is.
+    fn place(&self) -> Place;
+    /// Shows it. What the user does comes back as actions.
+    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action>;
+}
+
+/// What the menus know of a panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PanelInfo {
+    /// See [`Panel::id`].
+    pub id: &'static str,
+    /// See [`Panel::title`].
+    pub title: &'static str,
+    /// See [`Panel::place`].
+    pub place: Place,
+}
+
+/// The panels of the window.
+#[derive(Clone, Default, Resource)]
+pub struct Panels(Vec<Arc<dyn Panel>>);
+
+impl std::fmt::Debug for Panels {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self.0.iter().map(|p| p.id())).finish()
+    }
+}
+
+impl Panels {
+    /// The built-in panels.
+    #[must_use]
+    pub fn builtin() -> Self {
+        let mut panels = Self::default();
+        register_builtin(&mut panels);
+        panels
+    }
+
+    /// Adds a panel; one with the same id is replaced.
+    pub fn add(&mut self, panel: impl Panel) {
+        let panel: Arc<dyn Panel> = Arc::new(panel);
+        match self.0.iter().position(|p| p.id() == panel.id()) {
+            Some(i) => self.0[i] = panel,
+            None => self.0.push(panel),
+        }
+    }
+
+    /// What there is.
+    #[must_use]
+    pub fn list(&self) -> Vec<PanelInfo> {
+        self.0.iter().map(|p| PanelInfo { id: p.id(), title: p.title(), place: p.place() }).collect()
+    }
+
+    fn at(&self, place: Place) -> impl Iterator<Item = &Arc<dyn Panel>> {
+        self.0.iter().filter(move |p| p.place() == place)
+    }
+}
+
+/// Adding panels to an app.
+pub trait PanelApp {
+    /// Adds a panel to the window.
+    fn add_panel(&mut self, panel: impl Panel) -> &mut Self;
+}
+
+impl PanelApp for App {
+    fn add_panel(&mut self, panel: impl Panel) -> &mut Self {
+        self.world_mut().get_resource_or_insert_with(Panels::builtin).add(panel);
+        self
+    }
+}
+
+/// The dialogs that choose files.
+#[derive(Debug)]
+pub struct Dialogs {
+    open: FileDialog,
+    save: FileDialog,
+}
+
+impl Default for Dialogs {
+    fn default() -> Self {
+        let dialog = |title: &str, id: &'static str| {
+            FileDialog::new()
+                .title(title)
+                .id(id)
+                .add_file_filter_extensions("Scenes (*.json)", vec!["json"])
+                .default_file_filter("Scenes (*.json)")
+                .add_save_extension("Scene (*.json)", "json")
+                .default_save_extension("Scene (*.json)")
+                .default_size(vec2(720.0, 440.0))
+                .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
+                .default_file_name("scene.json")
+        };
+        Self { open: dialog("Open a scene", "open dialog"), save: dialog("Save the scene as", "save dialog") }
+    }
+}
+
+impl Dialogs {
+    /// Whether one is open.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        [&self.open, &self.save].into_iter().any(|d| *d.state() == DialogState::Open)
+    }
+
+    fn start(&mut self, effect: &Effect, lab: &Lab) -> bool {
+        let folder = lab.path.as_ref().and_then(|p| p.parent()).filter(|p| p.is_dir());
+        let (dialog, save) = match effect {
+            Effect::PickOpen => (&mut self.open, false),
+            Effect::PickSave => (&mut self.save, true),
+            _ => return false,
+        };
+        if let Some(folder) = folder {
+            dialog.config_mut().initial_directory = folder.to_owned();
+        }
+        if save {
+            let name =
+                lab.path.as_ref().and_then(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned());
+            dialog.config_mut().default_file_name =
+                name.unwrap_or_else(|| format!("{}.json", file_name(&lab.title())));
+            dialog.save_file();
+        } else {
+            dialog.pick_file();
+        }
+        true
+    }
+
+    fn update(&mut self, ctx: &egui::Context, lab: &mut Lab) -> Vec<Action> {
+        let mut actions = Vec::new();
+        self.open.update(ctx);
+        if let Some(path) = self.open.take_picked() {
+            // Whoever got this far was asked about unsaved changes before.
+            actions.push(Action::Open(path));
+        }
+        let was_open = *self.save.state() == DialogState::Open;
+        self.save.update(ctx);
+        if let Some(path) = self.save.take_picked() {
+            actions.push(Action::SaveAs(path));
+        } else if was_open && *self.save.state() == DialogState::Cancelled {
+            lab.not_saved();
+        }
+        actions
+    }
+}
+
+/// A title as the name of a file.
+fn file_name(title: &str) -> String {
+    let plain: String =
+        title.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
+    let name = plain.split('-').filter(|s| !s.is_empty()).collect::<Vec<_>>().join("-");
+    if name.is_empty() { "scene".to_owned() } else { name }
+}
+
+/// Shows the window, applies what the user does, and returns the effects. `ui` covers the window.
+pub fn show(
+    ui: &mut Ui,
+    lab: &mut Lab,
+    registry: &Registry,
+    panels: &Panels,
+    dialogs: &mut Dialogs,
+) -> Vec<Effect> {
+    let ctx = ui.ctx().clone();
+    if !theme::apply(&ctx, &lab.view) {
+        return Vec::new();
+    }
+    let style = ctx.global_style();
+    ui.set_style(style);
+    lab.panels = panels.list();
+    let palette = Palette::of(&lab.view);
+    let scale = theme::scale(&lab.view);
+    let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, lab, registry) };
+    actions.extend(help::show(&ctx, lab, registry));
+    let whole = ui.available_rect_before_wrap();
+
+    for panel in panels.at(Place::Top) {
+        let frame = theme::panel_frame(&palette, vec2(8.0, 4.0));
+        egui::Panel::top(panel.id())
+            .frame(frame)
+            .show(ui, |ui| actions.extend(panel.show(ui, lab, registry)));
+    }
+    for panel in panels.at(Place::Status) {
+        let frame = theme::panel_frame(&palette, vec2(8.0, 2.0));
+        egui::Panel::bottom(panel.id())
+            .frame(frame)
+            .show(ui, |ui| actions.extend(panel.show(ui, lab, registry)));
+    }
+    let mut sizes = (lab.view.left_width, lab.view.right_width, lab.view.bottom_height);
+    if lab.view.bottom_open {
+        bottom(ui, lab, registry, panels, &palette, scale, whole, &mut sizes.2, &mut actions);
+    }
+    if lab.view.left_open {
+        let most = 0.35 * whole.width();
+        let panel = egui::Panel::left(Id::new(("left", lab.view.large_type)))
+            .frame(theme::panel_frame(&palette, vec2(0.0, 4.0)))
+            .default_size((sizes.0 * scale).min(most))
+            .size_range((120.0 * scale).min(most)..=most);
+        let response = panel.show(ui, |ui| {
+            for panel in panels.at(Place::Left) {
+                actions.extend(panel.show(ui, lab, registry));
+            }
+        });
+        sizes.0 = response.response.rect.width() / scale;
+    }
+    if lab.view.right_open {
+        let most = 0.45 * whole.width();
+        let panel = egui::Panel::right(Id::new(("right", lab.view.large_type)))
+            .frame(Frame::new().fill(palette.panel).inner_margin(Margin {
+                left: 12,
+                right: 4,
+                top: 8,
+                bottom: 4,
+            }))
+            .default_size((sizes.1 * scale).min(most))
+            .size_range((300.0 * scale).min(most)..=most);
+        let response = panel.show(ui, |ui| {
+            for panel in panels.at(Place::Right) {
+                actions.extend(panel.show(ui, lab, registry));
+            }
+        });
+        sizes.1 = response.response.rect.width() / scale;
+    }
+    remember_sizes(&ctx, lab, sizes, &mut actions);
+
+    let rect = ui.available_rect_before_wrap();
+    lab.picture_rect = rect;
+    picture::overlays(ui, rect, lab, registry);
+    actions.extend(question::show(&ctx, lab));
+    actions.extend(dialogs.update(&ctx, lab));
+    steering(&ctx, lab, rect, dialogs.is_open());
+
+    let mut effects = Vec::new();
+    for action in actions {
+        effects.extend(lab.apply(action, registry));
+    }
+    effects.retain(|effect| !dialogs.start(effect, lab));
+    for effect in &effects {
+        if let Effect::CopyText(text) = effect {
+            ctx.copy_text(text.clone());
+        }
+    }
+    effects.retain(|effect| !matches!(effect, Effect::CopyText(_)));
+    effects
+}
+
+/// The strip at the bottom. Tabs appear when there is more than one panel.
+#[allow(clippy::too_many_arguments)]
+fn bottom(
+    ui: &mut Ui,
+    lab: &Lab,
+    registry: &Registry,
+    panels: &Panels,
+    palette: &Palette,
+    scale: f32,
+    whole: Rect,
+    height: &mut f32,
+    actions: &mut Vec<Action>,
+) {
+    let most = 0.6 * whole.height();
+    let strip = egui::Panel::bottom(Id::new(("bottom", lab.view.large_type)))
+        .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
+        .resizable(true)
+        .default_size((*height * scale).min(most))
+        .size_range((72.0 * scale).min(most)..=most);
+    let response = strip.show(ui, |ui| {
+        let tabs: Vec<_> = panels.at(Place::Bottom).collect();
+        let shown = tabs.iter().find(|p| p.id() == lab.view.bottom_tab).or(tabs.first());
+        ui.horizontal(|ui| {
+            for panel in &tabs {
+                let on = shown.is_some_and(|s| s.id() == panel.id());
+                let text = theme::strong(ui, panel.title());
+                let text = if on { text } else { text.color(palette.weak) };
+                if tabs.len() == 1 {
+                    ui.label(text);
+                } else if ui.add(Button::selectable(on, text)).clicked() {
+                    actions.push(Action::View(ViewChange::BottomTab(panel.id().to_owned())));
+                }
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if icon::button(ui, icon::Icon::Down, "Fold the strip away (F8)").clicked() {
+                    actions.push(Action::View(ViewChange::Bottom(false)));
+                }
+            });
+        });
+        if let Some(panel) = shown {
+            actions.extend(panel.show(ui, lab, registry));
+        }
+        ui.take_available_height();
+    });
+    *height = response.response.rect.height() / scale;
+}
+
+/// Sizes that the user dragged are kept, once the dragging is over.
+fn remember_sizes(ctx: &egui::Context, lab: &Lab, sizes: (f32, f32, f32), actions: &mut Vec<Action>) {
+    let v = &lab.view;
+    let moved = [(sizes.0, v.left_width), (sizes.1, v.right_width), (sizes.2, v.bottom_height)]
+        .iter()
+        .any(|(a, b)| (a - b).abs() > 1.0);
+    let dragged = Id::new("panel dragged");
+    if ctx.input(|i| i.pointer.any_down()) && ctx.dragged_id().is_some() && moved {
+        ctx.data_mut(|d| d.insert_temp(dragged, true));
+    } else if ctx.data(|d| d.get_temp(dragged)).unwrap_or(false) && !ctx.input(|i| i.pointer.any_down()) {
+        ctx.data_mut(|d| d.remove::<bool>(dragged));
+        if moved {
+            let (left, right, bottom) = sizes;
+            actions.push(Action::View(ViewChange::Sizes { left, right, bottom }));
+        }
+    }
+}
+
+/// Writes down whether the pointer and the keys belong to the picture.
+fn steering(ctx: &egui::Context, lab: &mut Lab, rect: Rect, dialog: bool) {
+    let pointer = ctx.input(|i| i.pointer.latest_pos());
+    let busy = lab.question.is_some() || dialog;
+    // Panels are no layers of their own; menus, popups, windows and dialogs are.
+    let over = pointer.is_some_and(|p| {
+        rect.contains(p) && ctx.layer_id_at(p).is_none_or(|l| l.order == egui::Order::Background)
+    });
+    lab.pointer_in_picture = over && !busy && !ctx.egui_is_using_pointer();
+    lab.keyboard_free = !busy && ctx.memory(|m| m.focused()).is_none();
+}
+
+/// Adds the window to the app: the state, the panels, and the system that shows them. What it does
+/// not do itself it writes as [`LabEffect`] messages.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PanelPlugin;
+
+impl Plugin for PanelPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Lab>();
+        app.world_mut().get_resource_or_insert_with(Panels::builtin);
+        app.add_message::<LabEffect>();
+        app.add_systems(EguiPrimaryContextPass, show_panels);
+    }
+}
+
+/// Shows the panels in the primary egui context. Does nothing while there is none.
+pub fn show_panels(
+    mut contexts: EguiContexts,
+    mut lab: ResMut<Lab>,
+    registry: Res<Registry>,
+    panels: Res<Panels>,
+    mut dialogs: Local<Dialogs>,
+    mut effects: MessageWriter<LabEffect>,
+) {
+    let Ok(ctx) = contexts.ctx_mut() else { return };
+    let ctx = ctx.clone();
+    let mut ui = Ui::new(
+        ctx.clone(),
+        Id::new("lab"),
+        UiBuilder::new().layer_id(LayerId::background()).max_rect(ctx.viewport_rect()),
+    );
+    for effect in show(&mut ui, &mut lab, &registry, &panels, &mut dialogs) {
+        effects.write(LabEffect(effect));
+    }
+}

@@ -132,8 +132,10 @@ impl<M: ReflectionModel> Material for ModelMaterial<M> {
         layout: &MeshVertexBufferLayoutRef,
         key: MaterialPipelineKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        let mut attributes =
-            vec![Mesh::ATTRIBUTE_POSITION.at_shader_location(0), Mesh::ATTRIBUTE_NORMAL.at_shader_location(1)];
+        let mut attributes = vec![
+            Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
+            Mesh::ATTRIBUTE_NORMAL.at_shader_location(1),
+        ];
         if key.bind_group_data.faces {
             attributes.push(FACE_NORMAL.at_shader_location(2));
             attributes.push(FACE_CENTRE.at_shader_location(3));

@@ -175,12 +175,17 @@ impl<M: ReflectionModel> Surface for M {
 /// term is left out. Zero where the light or the viewer is below the surface.
 #[must_use]
 pub fn brdf(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
+    brdf_of(surface.response(l, v, frame), l, v, frame)
+}
+
+/// The BRDF `f_r` in sr⁻¹ that belongs to a response; see [`brdf`].
+#[must_use]
+pub fn brdf_of(response: Terms, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
     let cos_i = frame.n.dot(l);
     if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
         return Vec3::ZERO;
     }
-    let terms = surface.response(l, v, frame);
-    (terms.diffuse + terms.specular) / (std::f32::consts::PI * cos_i)
+    (response.diffuse + response.specular) / (std::f32::consts::PI * cos_i)
 }
 
 /// A registered model: what the rest of the program knows of it.

@@ -86,7 +86,9 @@ pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
     let mut face_normals = Vec::new();
     let mut face_centres = Vec::new();
     let mut indices = Vec::new();
-    for ((polygon, normal), centre) in mesh.polygons.iter().zip(mesh.polygon_normals()).zip(mesh.polygon_centres()) {
+    for ((polygon, normal), centre) in
+        mesh.polygons.iter().zip(mesh.polygon_normals()).zip(mesh.polygon_centres())
+    {
         let first = positions.len() as u32;
         for &corner in polygon.corners() {
             positions.push(mesh.positions[corner as usize]);

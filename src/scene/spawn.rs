@@ -5,12 +5,7 @@
 //! the entities that differ (so a reload leaves the rest alone); changing a component of an entity
 //! changes the scene. Either way the picture follows in the next frame.
 
-use bevy::{
-    camera::visibility::Visibility,
-    ecs::prelude::*,
-    log::warn,
-    transform::components::Transform,
-};
+use bevy::{camera::visibility::Visibility, ecs::prelude::*, log::warn, transform::components::Transform};
 use glam::{EulerRot, Quat, Vec3};
 
 use super::{Light, Object, Observer, Scene};
@@ -52,7 +47,11 @@ pub struct SceneEntities {
 /// The transform of an object: unit mesh → size → rotation → position.
 #[must_use]
 pub fn object_transform(object: &Object) -> Transform {
-    Transform { translation: object.position, rotation: rotation(object.rotation), scale: Vec3::splat(object.size) }
+    Transform {
+        translation: object.position,
+        rotation: rotation(object.rotation),
+        scale: Vec3::splat(object.size),
+    }
 }
 
 /// The rotation of Euler angles in degrees: about the room's x first, then y, then z.
@@ -118,7 +117,11 @@ pub fn reconcile(
                 e
             }
         };
-        entity.insert((LightSource(light.clone()), light_transform(light), label(light.name.as_ref(), &light.kind, i)));
+        entity.insert((
+            LightSource(light.clone()),
+            light_transform(light),
+            label(light.name.as_ref(), &light.kind, i),
+        ));
         if old_kind != Some(light.kind.as_str()) {
             if let Some(old) = old_kind.and_then(|k| registry.light(k)) {
                 (old.unmark)(&mut entity);
@@ -139,8 +142,11 @@ pub fn reconcile(
         if current.is_some() && mirrored_object(i) == Some(object) {
             continue;
         }
-        let parts =
-            (LitObject(object.clone()), object_transform(object), label(object.name.as_ref(), &object.kind, i));
+        let parts = (
+            LitObject(object.clone()),
+            object_transform(object),
+            label(object.name.as_ref(), &object.kind, i),
+        );
         match entities.objects.get_mut(i) {
             Some(e) if current.is_some() => {
                 commands.entity(*e).insert(parts);
@@ -162,7 +168,8 @@ pub fn reconcile(
             }
         }
         None => {
-            let e = commands.spawn((Eye(*observer), observer_transform(observer), Name::new("Observer"))).id();
+            let e =
+                commands.spawn((Eye(*observer), observer_transform(observer), Name::new("Observer"))).id();
             entities.observer = Some(e);
         }
     }

@@ -39,11 +39,9 @@ impl std::error::Error for ShaderProblem {}
 /// The first problem, located in the author's file.
 pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     let module = wgsl::parse_str(&composed.text).map_err(|error| {
-        let place = error.location(&composed.text).map(|l| (l.line_number as usize, l.line_position as usize));
-        locate(composed, place, error.message().to_owned())
+        locate(composed, place(composed, error.labels().map(|l| l.0)), error.message().to_owned())
     })?;
     Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).map_err(|error| {
-        let place = error.location(&composed.text).map(|l| (l.line_number as usize, l.line_position as usize));
         // The outermost message only says that some function is invalid; the innermost says why.
         let mut message = error.as_inner().to_string();
         let mut source = std::error::Error::source(error.as_inner());
@@ -51,9 +49,17 @@ pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
             message = format!("{message}: {inner}");
             source = inner.source();
         }
-        locate(composed, place, message)
+        locate(composed, place(composed, error.spans().map(|s| s.0)), message)
     })?;
     Ok(module)
+}
+
+/// Line and column of the first span that is one: naga may list some that point nowhere.
+fn place(composed: &Composed, spans: impl Iterator<Item = naga::Span>) -> Option<(usize, usize)> {
+    spans.into_iter().find(naga::Span::is_defined).map(|span| {
+        let location = span.location(&composed.text);
+        (location.line_number as usize, location.line_position as usize)
+    })
 }
 
 fn locate(composed: &Composed, place: Option<(usize, usize)>, message: String) -> Box<ShaderProblem> {
@@ -94,7 +100,8 @@ mod tests {
     fn every_model_is_valid_and_its_parameters_lie_where_rust_puts_them() {
         for model in Registry::builtin().models() {
             let module = validate(&compose_evaluation(&Sources::default(), model)).expect("valid WGSL");
-            let rust: Vec<_> = layout(model.parameters).into_iter().map(|(n, _, at)| (n.to_owned(), at)).collect();
+            let rust: Vec<_> =
+                layout(model.parameters).into_iter().map(|(n, _, at)| (n.to_owned(), at)).collect();
             assert_eq!(struct_layout(&module, "Parameters"), Some(rust), "{}", model.declaration.id);
         }
     }
@@ -102,7 +109,9 @@ mod tests {
     #[test]
     fn lights_lie_where_rust_puts_them() {
         let module = wgsl::parse_str(&format!("{}{}", TERMS.text, LIGHTS.text)).expect("valid WGSL");
-        let owned = |layout: &[(&str, usize)]| layout.iter().map(|(n, at)| ((*n).to_owned(), *at)).collect::<Vec<_>>();
+        let owned = |layout: &[(&str, usize)]| {
+            layout.iter().map(|(n, at)| ((*n).to_owned(), *at)).collect::<Vec<_>>()
+        };
         assert_eq!(struct_layout(&module, "Light"), Some(owned(&LIGHT_LAYOUT)));
         assert_eq!(struct_layout(&module, "Illumination"), Some(owned(&ILLUMINATION_LAYOUT)));
         // The wrong twin: without the padding that vec3 wants, the layouts differ.
@@ -115,7 +124,8 @@ mod tests {
     fn problems_name_the_authors_file_and_line() {
         let registry = Registry::builtin();
         let mut sources = Sources::default();
-        sources.edit("reflection/lambert.wgsl", "// mine\nfn response(l: vec3<f32>) -> Terms { return 1.0; }\n");
+        sources
+            .edit("reflection/lambert.wgsl", "// mine\nfn response(l: vec3<f32>) -> Terms { return 1.0; }\n");
         let problem = validate(&compose_evaluation(&sources, &registry.models()[0])).expect_err("broken");
         assert_eq!((problem.file.as_str(), problem.line), ("reflection/lambert.wgsl", 2), "{problem}");
         sources.edit("reflection/lambert.wgsl", "fn f( {");

@@ -107,9 +107,11 @@ pub fn parameter_struct(parameters: &[parameter::Parameter]) -> String {
 /// The function that hands a light to its type, by the index of the type in the registry.
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
-    let mut text = String::from("fn incident(light: Light, p: vec3<f32>) -> Incident {\n    switch light.kind {\n");
+    let mut text =
+        String::from("fn incident(light: Light, p: vec3<f32>) -> Incident {\n    switch light.kind {\n");
     for (i, light) in lights.iter().enumerate() {
-        let _ = writeln!(text, "        case {i}u: {{ return incident_{}(light, p); }}", light.declaration.id);
+        let _ =
+            writeln!(text, "        case {i}u: {{ return incident_{}(light, p); }}", light.declaration.id);
     }
     text.push_str("        default: { return Incident(vec3(0.0), 0.0, 0u); }\n    }\n}\n");
     text

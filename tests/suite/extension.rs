@@ -6,7 +6,10 @@ use glam::Vec3;
 use lights_camera_models::{
     capture::gpu::{GpuRenderer, Output},
     light::{self, Incident, LightRecord, LightType},
-    optics::{Frame, TermSelection, Terms, colour::{BACKGROUND, Encoding}},
+    optics::{
+        Frame, TermSelection, Terms,
+        colour::{BACKGROUND, Encoding},
+    },
     parameters, reference,
     reflection::{
         self, EquationPart, Family, Laws, ReflectionModel, Term,
@@ -112,8 +115,18 @@ impl ObjectType for Tetrahedron {
 
     fn mesh(_: u32) -> PolygonMesh {
         let mut mesh = PolygonMesh {
-            positions: vec![Vec3::new(1.0, 1.0, 1.0), Vec3::new(-1.0, -1.0, 1.0), Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, -1.0, -1.0)],
-            polygons: vec![Polygon::triangle(0, 2, 1), Polygon::triangle(0, 1, 3), Polygon::triangle(0, 3, 2), Polygon::triangle(1, 2, 3)],
+            positions: vec![
+                Vec3::new(1.0, 1.0, 1.0),
+                Vec3::new(-1.0, -1.0, 1.0),
+                Vec3::new(-1.0, 1.0, -1.0),
+                Vec3::new(1.0, -1.0, -1.0),
+            ],
+            polygons: vec![
+                Polygon::triangle(0, 2, 1),
+                Polygon::triangle(0, 1, 3),
+                Polygon::triangle(0, 3, 2),
+                Polygon::triangle(1, 2, 3),
+            ],
         };
         mesh.normalise();
         mesh
@@ -131,7 +144,12 @@ fn scene() -> Scene {
     scene.objects[0].kind = "tetrahedron".to_owned();
     scene.reflection_model = "toon".to_owned();
     scene.shading_model = "flat".to_owned();
-    scene.lights.push(Light { kind: "skylight".to_owned(), position: None, intensity: 0.5, ..Light::default() });
+    scene.lights.push(Light {
+        kind: "skylight".to_owned(),
+        position: None,
+        intensity: 0.5,
+        ..Light::default()
+    });
     scene
 }
 
@@ -139,8 +157,8 @@ fn scene() -> Scene {
 fn an_own_model_light_and_shape_are_drawn_alike_by_both_renderers() {
     let mut registry = Registry::builtin();
     register(&mut registry);
-    let mut renderer =
-        GpuRenderer::extended(64, 64, 1, Output::Linear, |app| register(app)).expect("software Vulkan is installed");
+    let mut renderer = GpuRenderer::extended(64, 64, 1, Output::Linear, |app| register(app))
+        .expect("software Vulkan is installed");
     renderer.set_scene(scene());
     renderer.settle().expect("the GPU draws");
     let gpu = renderer.read_linear().expect("the picture can be read");
@@ -152,7 +170,8 @@ fn an_own_model_light_and_shape_are_drawn_alike_by_both_renderers() {
 
 #[test]
 fn a_parameter_that_means_something_else_elsewhere_is_refused() {
-    const WRONG: Parameter = Parameter { kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 }, ..BASE_COLOUR };
+    const WRONG: Parameter =
+        Parameter { kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 }, ..BASE_COLOUR };
     parameters! {
         /// Uses the name of a colour for a number.
         pub struct Clash {
@@ -161,7 +180,8 @@ fn a_parameter_that_means_something_else_elsewhere_is_refused() {
         }
     }
     impl ReflectionModel for Clash {
-        const DECLARATION: reflection::Declaration = reflection::Declaration { id: "clash", ..Toon::DECLARATION };
+        const DECLARATION: reflection::Declaration =
+            reflection::Declaration { id: "clash", ..Toon::DECLARATION };
         fn response(&self, _: Vec3, _: Vec3, _: &Frame) -> Terms {
             Terms::default()
         }

@@ -50,7 +50,12 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
                     scene.reflection_model = model.declaration.id.to_owned();
                     scene.shading_model = mode.declaration.id.to_owned();
                     let picture = cpu(&scene, TermSelection::All);
-                    let d = compare(&gpu(&mut renderer, &scene, TermSelection::All), &picture, background(), 1e-3);
+                    let d = compare(
+                        &gpu(&mut renderer, &scene, TermSelection::All),
+                        &picture,
+                        background(),
+                        1e-3,
+                    );
                     let case = format!(
                         "{} × {} × {} × {}: {d:?}",
                         model.declaration.id, mode.declaration.id, light.declaration.id, shape.declaration.id
@@ -117,7 +122,8 @@ fn terms_alone_and_many_lights_give_the_same_picture() {
 #[test]
 fn exposure_tone_mapping_and_gamma_naive_display_agree_to_the_last_bit_but_one() {
     use lights_camera_models::optics::tone::ToneMapping;
-    let mut renderer = GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed");
+    let mut renderer =
+        GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed");
     for tone in ToneMapping::ALL {
         for (exposure, encoding) in [(0.0, Encoding::Srgb), (1.5, Encoding::Srgb), (-1.0, Encoding::Off)] {
             let mut scene = close_up("sphere", "point");
@@ -128,10 +134,15 @@ fn exposure_tone_mapping_and_gamma_naive_display_agree_to_the_last_bit_but_one()
             renderer.set_scene(scene.clone());
             renderer.settle().expect("the GPU draws");
             let g = renderer.read_rgb8().expect("the picture can be read");
-            let settings = reference::Settings { width: SIZE, height: SIZE, samples: 1, terms: TermSelection::All };
+            let settings =
+                reference::Settings { width: SIZE, height: SIZE, samples: 1, terms: TermSelection::All };
             let c = reference::render_rgb8(&scene, &Registry::builtin(), &settings);
             let off = g.iter().zip(&c).filter(|(g, c)| g.abs_diff(**c) > 2).count();
-            assert!(off * 100 < g.len(), "{tone:?} {exposure} EV {encoding:?}: {off} of {} values differ by more than 2", g.len());
+            assert!(
+                off * 100 < g.len(),
+                "{tone:?} {exposure} EV {encoding:?}: {off} of {} values differ by more than 2",
+                g.len()
+            );
         }
     }
 }
@@ -183,10 +194,16 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
             let mut wrong_twin_noticed = false;
             for ((l, v), gpu) in pairs.iter().zip(answers) {
                 let cpu = surface.response(*l, *v, &frame);
-                for (g, c) in [(gpu.ambient, cpu.ambient), (gpu.diffuse, cpu.diffuse), (gpu.specular, cpu.specular)] {
+                for (g, c) in
+                    [(gpu.ambient, cpu.ambient), (gpu.diffuse, cpu.diffuse), (gpu.specular, cpu.specular)]
+                {
                     // A response below 1e-5 is darker than any display shows.
                     let error = ((g - c).abs() / c.abs().max(Vec3::splat(1e-2))).max_element();
-                    assert!(error <= 1e-4, "{} {values:?} l {l} v {v}: GPU {g}, CPU {c}", model.declaration.id);
+                    assert!(
+                        error <= 1e-4,
+                        "{} {values:?} l {l} v {v}: GPU {g}, CPU {c}",
+                        model.declaration.id
+                    );
                     let twin = ((g - c * 1.0005).abs() / c.abs().max(Vec3::splat(1e-2))).max_element();
                     wrong_twin_noticed |= twin > 1e-4;
                 }

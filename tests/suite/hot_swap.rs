@@ -66,7 +66,11 @@ fn every_ordered_pair_of_model_and_mode_swaps_in_one_frame() {
     for (i, a) in expected.iter().enumerate() {
         assert!(covered(a) > 300, "{:?} shows nothing", states[i]);
         for (j, b) in expected.iter().enumerate().skip(i + 1) {
-            assert_ne!(a, b, "{:?} and {:?} look the same, so a swap could not be seen", states[i], states[j]);
+            assert_ne!(
+                a, b,
+                "{:?} and {:?} look the same, so a swap could not be seen",
+                states[i], states[j]
+            );
         }
     }
     for on_object in [false, true] {
@@ -131,19 +135,29 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
 fn loading_another_scene_respawns_what_differs_and_keeps_the_rest() {
     let mut renderer = renderer();
     let mut scene = close_up("sphere", "point");
-    scene.objects.push(Object { kind: "cube".to_owned(), position: Vec3::new(2.0, 2.0, 2.0), ..Object::default() });
+    scene.objects.push(Object {
+        kind: "cube".to_owned(),
+        position: Vec3::new(2.0, 2.0, 2.0),
+        ..Object::default()
+    });
     renderer.set_scene(scene.clone());
     renderer.settle().expect("the GPU draws");
     let first = renderer.app().world().resource::<SceneEntities>().objects[0];
 
     scene.objects.pop();
-    scene.lights.push(Light { kind: "ambient".to_owned(), position: None, intensity: 0.5, ..Light::default() });
+    scene.lights.push(Light {
+        kind: "ambient".to_owned(),
+        position: None,
+        intensity: 0.5,
+        ..Light::default()
+    });
     renderer.set_scene(scene);
     renderer.step();
     let world = renderer.app().world_mut();
     assert_eq!(world.resource::<SceneEntities>().objects, [first], "the sphere stays the same entity");
     assert_eq!(world.query::<&LitObject>().iter(world).count(), 1);
     assert_eq!(world.query::<&LightSource>().iter(world).count(), 2);
-    let ambient = world.query_filtered::<&LightSource, bevy::prelude::With<lights_camera_models::light::Ambient>>();
+    let ambient =
+        world.query_filtered::<&LightSource, bevy::prelude::With<lights_camera_models::light::Ambient>>();
     assert_eq!({ ambient }.iter(world).count(), 1, "each type has its marker component");
 }

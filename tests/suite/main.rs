@@ -7,6 +7,7 @@ mod golden;
 mod gpu_parity;
 mod hot_swap;
 mod laws;
+mod panels;
 mod pictures;
 mod readme;
 mod reference_renderer;

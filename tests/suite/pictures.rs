@@ -17,7 +17,11 @@ pub fn close_up(shape: &str, light: &str) -> Scene {
             intensity: if matches!(light, "point" | "spot") { 9.0 } else { 0.8 },
             ..Light::default()
         }],
-        observer: Observer { position: Vec3::new(5.0, 5.2, 8.8), direction: Vec3::new(0.02, -0.05, -1.0), field_of_view: 40.0 },
+        observer: Observer {
+            position: Vec3::new(5.0, 5.2, 8.8),
+            direction: Vec3::new(0.02, -0.05, -1.0),
+            field_of_view: 40.0,
+        },
         objects: vec![Object {
             kind: shape.to_owned(),
             size: 2.4,
@@ -26,7 +30,9 @@ pub fn close_up(shape: &str, light: &str) -> Scene {
         }],
         ..Scene::default()
     };
-    scene.objects[0].material.set("base_colour", lights_camera_models::reflection::parameter::Value::Colour([220, 120, 60]));
+    scene.objects[0]
+        .material
+        .set("base_colour", lights_camera_models::reflection::parameter::Value::Colour([220, 120, 60]));
     scene
 }
 

@@ -1,0 +1,110 @@
+//! Carrying out the effects that need files: opening, saving, settings.
+
+use std::path::Path;
+
+use super::{
+    settings,
+    state::{Effect, Lab, MissingPart, Question, Severity},
+};
+use crate::{registry::Registry, scene::Scene};
+
+/// The boundary to reading and writing scene files: what the window needs, and nothing of how it is
+/// done.
+pub trait Files: Send + Sync + 'static {
+    /// Reads a scene file.
+    fn open(&mut self, path: &Path, registry: &Registry) -> Opened;
+    /// Writes a scene file, all or nothing. Without `overwrite`, a file that changed on disk since it
+    /// was opened or saved is left alone.
+    fn save(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
+}
+
+/// What became of opening a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Opened {
+    /// It holds a legal scene.
+    Scene(Box<Scene>),
+    /// It holds a scene that lacks parts; here it is with the defaults in place.
+    Incomplete {
+        /// With defaults.
+        scene: Box<Scene>,
+        /// What is missing.
+        parts: Vec<MissingPart>,
+    },
+    /// It is empty.
+    Empty,
+    /// It cannot be used: every problem, one sentence each.
+    Failed(Vec<String>),
+}
+
+/// What became of saving a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Saved {
+    /// It is on disk.
+    Done,
+    /// Somebody else changed it; it was left alone.
+    ChangedOnDisk,
+    /// It could not be written: why.
+    Failed(String),
+}
+
+/// Carries out an effect that needs files. Returns the effects that follow, among them the one given
+/// when it is none of this module's.
+#[must_use]
+pub fn run(lab: &mut Lab, registry: &Registry, effect: Effect, files: &mut dyn Files) -> Vec<Effect> {
+    match effect {
+        Effect::OpenFile(path) => match files.open(&path, registry) {
+            Opened::Scene(scene) => lab.opened(path, *scene),
+            Opened::Incomplete { scene, parts } => {
+                lab.ask(Question::MissingParts { path, scene, parts });
+                Vec::new()
+            }
+            Opened::Empty => {
+                lab.ask(Question::EmptyFile { path });
+                Vec::new()
+            }
+            Opened::Failed(problems) => {
+                for problem in problems {
+                    lab.say(Severity::Error, problem);
+                }
+                Vec::new()
+            }
+        },
+        Effect::SaveFile { path, overwrite } => match files.save(&path, &lab.scene, registry, overwrite) {
+            Saved::Done => lab.saved(path, registry),
+            Saved::ChangedOnDisk => {
+                lab.ask(Question::ChangedOnDisk { path });
+                Vec::new()
+            }
+            Saved::Failed(why) => {
+                lab.not_saved();
+                lab.say(Severity::Error, why);
+                Vec::new()
+            }
+        },
+        Effect::SaveSettings => {
+            save_settings(lab);
+            Vec::new()
+        }
+        other => vec![other],
+    }
+}
+
+/// Reads the settings of the last session into the state; says so when they cannot be read.
+pub fn load_settings(lab: &mut Lab) {
+    if let Some(folder) = settings::folder() {
+        let (settings, complaint) = settings::load(&folder);
+        lab.adopt(settings);
+        if let Some(complaint) = complaint {
+            lab.say(Severity::Warning, complaint);
+        }
+    }
+}
+
+/// Writes the settings for the next session; says so when they cannot be written.
+pub fn save_settings(lab: &mut Lab) {
+    if let Some(folder) = settings::folder()
+        && let Err(complaint) = settings::save(&folder, &lab.settings())
+    {
+        lab.say(Severity::Warning, complaint);
+    }
+}

@@ -1,0 +1,125 @@
+//! The list of keys, and "about".
+
+use bevy_egui::egui::{self, Grid, Id, RichText, ScrollArea, Ui, Window};
+
+use super::{
+    keys,
+    state::{Action, Lab, ViewChange},
+    theme,
+};
+use crate::registry::Registry;
+
+/// Shows the windows that are open.
+pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    let mut actions = Vec::new();
+    let scale = theme::scale(&lab.view);
+    let screen = ctx.content_rect();
+    let mut open = lab.view.keys_open;
+    Window::new(RichText::new("Keys and mouse").heading())
+        .id(Id::new("keys"))
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_width((720.0 * scale).min(screen.width() - 80.0))
+        .pivot(egui::Align2::CENTER_CENTER)
+        .default_pos(screen.center())
+        .show(ctx, |ui| {
+            ScrollArea::vertical()
+                .min_scrolled_height(screen.height() - 140.0)
+                .max_height(screen.height() - 140.0)
+                .show(ui, |ui| key_list(ui, lab, registry));
+        });
+    if open != lab.view.keys_open {
+        actions.push(Action::View(ViewChange::Keys(open)));
+    }
+    let mut open = lab.view.about_open;
+    Window::new(RichText::new("About").heading())
+        .id(Id::new("about"))
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_width(440.0 * scale)
+        .pivot(egui::Align2::CENTER_CENTER)
+        .default_pos(screen.center())
+        .show(ctx, |ui| about(ui, lab, registry));
+    if open != lab.view.about_open {
+        actions.push(Action::View(ViewChange::About(open)));
+    }
+    if ctx.input(|i| i.key_pressed(egui::Key::Escape)) {
+        for (open, close) in
+            [(lab.view.keys_open, ViewChange::Keys(false)), (lab.view.about_open, ViewChange::About(false))]
+        {
+            if open {
+                actions.push(Action::View(close));
+            }
+        }
+    }
+    actions
+}
+
+fn key_list(ui: &mut Ui, lab: &Lab, registry: &Registry) {
+    let mut rows: Vec<(&str, String, String)> =
+        keys::bindings(lab, registry).into_iter().map(|b| (b.group, b.keys(), b.label)).collect();
+    rows.extend(
+        keys::ELSEWHERE.iter().map(|(group, key, label)| (*group, (*key).to_owned(), (*label).to_owned())),
+    );
+    let mut groups: Vec<&str> = Vec::new();
+    for (group, ..) in &rows {
+        if !groups.contains(group) {
+            groups.push(group);
+        }
+    }
+    // Two columns of about the same length.
+    let half = rows.len().div_ceil(2);
+    let mut left = Vec::new();
+    let mut right = Vec::new();
+    let mut count = 0;
+    for group in groups {
+        let size = rows.iter().filter(|r| r.0 == group).count();
+        if count + size / 2 <= half {
+            left.push(group)
+        } else {
+            right.push(group)
+        }
+        count += size;
+    }
+    ui.spacing_mut().interact_size.y = 20.0 * theme::scale_here(ui);
+    ui.columns_const(|[a, b]| {
+        for (ui, groups) in [(a, left), (b, right)] {
+            for group in groups {
+                ui.label(theme::strong(ui, group));
+                Grid::new(group).num_columns(2).min_col_width(88.0 * theme::scale_here(ui)).show(ui, |ui| {
+                    for (_, key, label) in rows.iter().filter(|r| r.0 == group) {
+                        ui.label(RichText::new(key).color(theme::Palette::here(ui).accent));
+                        ui.label(label);
+                        ui.end_row();
+                    }
+                });
+                ui.add_space(10.0);
+            }
+        }
+    });
+}
+
+fn about(ui: &mut Ui, lab: &Lab, registry: &Registry) {
+    ui.label(theme::strong(ui, format!("Lights, Camera, Models!  {}", env!("CARGO_PKG_VERSION"))));
+    ui.add(egui::Label::new(env!("CARGO_PKG_DESCRIPTION")).wrap());
+    ui.add_space(8.0);
+    let line = format!(
+        "{} reflection models · {} shading modes · {} light types · {} object types",
+        registry.models().len(),
+        registry.modes().len(),
+        registry.lights().len(),
+        registry.shapes().len()
+    );
+    ui.add(egui::Label::new(theme::small(ui, line)).wrap());
+    if !lab.status.adapter.is_empty() {
+        ui.add(
+            egui::Label::new(theme::small(ui, format!("{} · {}", lab.status.adapter, lab.status.backend)))
+                .wrap(),
+        );
+    }
+    let licence =
+        format!("Licence: {}. Type: Inter and STIX, SIL Open Font License 1.1.", env!("CARGO_PKG_LICENSE"));
+    ui.add(egui::Label::new(theme::small(ui, licence)).wrap());
+}

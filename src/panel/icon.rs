@@ -1,0 +1,209 @@
+//! Small pictures, drawn with lines so that they are sharp at every size, and buttons that carry
+//! them. An icon button always has a tooltip, which is also what a screen reader says.
+
+use bevy_egui::egui::{
+    self, Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, WidgetType, pos2,
+    vec2,
+};
+
+use super::{
+    state::Severity,
+    theme::{self, Palette},
+};
+use crate::shading::Stage;
+
+/// A small picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Icon {
+    /// Add something.
+    Plus,
+    /// Remove something.
+    Bin,
+    /// One more like this.
+    Duplicate,
+    /// Change the name.
+    Pencil,
+    /// Close, dismiss.
+    Cross,
+    /// Copy text.
+    Copy,
+    /// More below.
+    Down,
+    /// Less.
+    Up,
+    /// The observer.
+    Eye,
+    /// The room.
+    Room,
+    /// Back to the default.
+    Reset,
+    /// Into view.
+    Target,
+}
+
+/// Draws an icon into a square.
+pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
+    let s = rect.width().min(rect.height());
+    let stroke = Stroke::new((s / 11.0).max(1.2), colour);
+    let at = |x: f32, y: f32| pos2(rect.center().x + (x - 0.5) * s, rect.center().y + (y - 0.5) * s);
+    let line = |points: &[(f32, f32)]| {
+        painter.add(Shape::line(points.iter().map(|(x, y)| at(*x, *y)).collect(), stroke));
+    };
+    match icon {
+        Icon::Plus => {
+            line(&[(0.5, 0.16), (0.5, 0.84)]);
+            line(&[(0.16, 0.5), (0.84, 0.5)]);
+        }
+        Icon::Cross => {
+            line(&[(0.22, 0.22), (0.78, 0.78)]);
+            line(&[(0.78, 0.22), (0.22, 0.78)]);
+        }
+        Icon::Bin => {
+            line(&[(0.14, 0.26), (0.86, 0.26)]);
+            line(&[(0.38, 0.26), (0.38, 0.12), (0.62, 0.12), (0.62, 0.26)]);
+            line(&[(0.24, 0.26), (0.3, 0.9), (0.7, 0.9), (0.76, 0.26)]);
+        }
+        Icon::Duplicate | Icon::Copy => {
+            line(&[(0.34, 0.34), (0.9, 0.34), (0.9, 0.9), (0.34, 0.9), (0.34, 0.34)]);
+            line(&[(0.66, 0.34), (0.66, 0.1), (0.1, 0.1), (0.1, 0.66), (0.34, 0.66)]);
+            if icon == Icon::Duplicate {
+                line(&[(0.62, 0.48), (0.62, 0.76)]);
+                line(&[(0.48, 0.62), (0.76, 0.62)]);
+            }
+        }
+        Icon::Pencil => {
+            line(&[(0.14, 0.86), (0.2, 0.64), (0.7, 0.14), (0.86, 0.3), (0.36, 0.8), (0.14, 0.86)]);
+        }
+        Icon::Down => line(&[(0.2, 0.36), (0.5, 0.66), (0.8, 0.36)]),
+        Icon::Up => line(&[(0.2, 0.64), (0.5, 0.34), (0.8, 0.64)]),
+        Icon::Eye => {
+            let lid = |sign: f32| -> Vec<Pos2> {
+                (0..=12)
+                    .map(|i| {
+                        let t = i as f32 / 12.0;
+                        at(0.06 + 0.88 * t, 0.5 - sign * 0.3 * (std::f32::consts::PI * t).sin())
+                    })
+                    .collect()
+            };
+            painter.add(Shape::line(lid(1.0), stroke));
+            painter.add(Shape::line(lid(-1.0), stroke));
+            painter.circle_filled(at(0.5, 0.5), 0.15 * s, colour);
+        }
+        Icon::Room => {
+            line(&[(0.12, 0.34), (0.66, 0.34), (0.66, 0.9), (0.12, 0.9), (0.12, 0.34)]);
+            line(&[(0.12, 0.34), (0.36, 0.1), (0.9, 0.1), (0.66, 0.34)]);
+            line(&[(0.9, 0.1), (0.9, 0.64), (0.66, 0.9)]);
+        }
+        Icon::Reset => {
+            let arc: Vec<Pos2> = (0..=14)
+                .map(|i| {
+                    let a = (-150.0 + 20.0 * i as f32).to_radians();
+                    at(0.5 + 0.36 * a.cos(), 0.54 + 0.36 * a.sin())
+                })
+                .collect();
+            painter.add(Shape::line(arc, stroke));
+            line(&[(0.1, 0.12), (0.18, 0.38), (0.44, 0.32)]);
+        }
+        Icon::Target => {
+            painter.circle_stroke(at(0.5, 0.5), 0.26 * s, stroke);
+            for (a, b) in [
+                ((0.5, 0.02), (0.5, 0.3)),
+                ((0.5, 0.7), (0.5, 0.98)),
+                ((0.02, 0.5), (0.3, 0.5)),
+                ((0.7, 0.5), (0.98, 0.5)),
+            ] {
+                line(&[a, b]);
+            }
+        }
+    }
+}
+
+/// A button with nothing but a picture. `says` is its tooltip and its name.
+pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(22.0, 22.0) * scale, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, ui.is_enabled(), says));
+    if ui.is_rect_visible(rect) {
+        let hot = response.hovered() || response.has_focus();
+        if hot {
+            ui.painter().rect_filled(rect, 4.0, palette.hovered);
+        }
+        if response.has_focus() {
+            ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.5, palette.accent), egui::StrokeKind::Inside);
+        }
+        let colour = if hot { palette.text } else { palette.weak };
+        paint(ui.painter(), Rect::from_center_size(rect.center(), vec2(13.0, 13.0) * scale), icon, colour);
+    }
+    response.on_hover_text(says)
+}
+
+/// The sign of a severity: its shape says as much as its colour.
+pub fn severity(painter: &Painter, centre: Pos2, radius: f32, severity: Severity, palette: &Palette) {
+    let colour = palette.severity(severity);
+    let r = radius;
+    let stroke = Stroke::new((r / 4.0).max(1.2), colour);
+    let mark = |top: f32, bottom: f32, dot: f32| {
+        painter.line_segment([centre + vec2(0.0, top * r), centre + vec2(0.0, bottom * r)], stroke);
+        painter.circle_filled(centre + vec2(0.0, dot * r), stroke.width * 0.65, colour);
+    };
+    match severity {
+        Severity::Info => {
+            painter.circle_stroke(centre, r, stroke);
+            mark(-0.05, 0.55, -0.45);
+        }
+        Severity::Warning => {
+            let corners = vec![
+                centre + vec2(0.0, -r),
+                centre + vec2(1.05 * r, 0.85 * r),
+                centre + vec2(-1.05 * r, 0.85 * r),
+            ];
+            painter.add(Shape::closed_line(corners, stroke));
+            mark(-0.35, 0.25, 0.55);
+        }
+        Severity::Error => {
+            painter.circle_stroke(centre, r, stroke);
+            let d = 0.4 * r;
+            painter.line_segment([centre + vec2(-d, -d), centre + vec2(d, d)], stroke);
+            painter.line_segment([centre + vec2(d, -d), centre + vec2(-d, d)], stroke);
+        }
+    }
+}
+
+/// Where a shading mode evaluates the reflection model: a triangle with the points marked.
+pub fn stage(painter: &Painter, rect: Rect, stage: Stage, palette: &Palette) {
+    let corners = [
+        pos2(rect.center().x, rect.top() + 3.0),
+        pos2(rect.right() - 3.0, rect.bottom() - 4.0),
+        pos2(rect.left() + 3.0, rect.bottom() - 4.0),
+    ];
+    painter.add(Shape::convex_polygon(corners.to_vec(), palette.raised, Stroke::new(1.2, palette.weak)));
+    let dot = |p: Pos2, r: f32| {
+        painter.circle_filled(p, r, palette.accent);
+    };
+    let unit = rect.width() / 48.0;
+    match stage {
+        Stage::Polygon => dot(
+            ((corners[0].to_vec2() + corners[1].to_vec2() + corners[2].to_vec2()) / 3.0).to_pos2(),
+            3.5 * unit,
+        ),
+        Stage::Vertex => corners.into_iter().for_each(|p| dot(p, 3.0 * unit)),
+        Stage::Pixel => {
+            let (rows, height) = (6, corners[1].y - corners[0].y);
+            let step = height / rows as f32;
+            for row in 0..rows {
+                let y = corners[0].y + (row as f32 + 0.7) * step;
+                let half = (y - corners[0].y) / height * 0.5 * (corners[1].x - corners[2].x) - 1.0;
+                let count = (2.0 * half / step).floor().max(0.0) as i32;
+                for k in 0..=count {
+                    let x = rect.center().x + (k as f32 - 0.5 * count as f32) * step;
+                    painter.rect_filled(
+                        Rect::from_center_size(pos2(x, y), vec2(0.55, 0.55) * step),
+                        0.0,
+                        palette.accent,
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,664 @@
+//! The inspector at the right: everything that can be set about what is selected.
+
+use bevy_egui::egui::{
+    self, Align, CollapsingHeader, Key, Layout, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2,
+};
+use glam::Vec3;
+
+use super::{
+    Panel, Place,
+    icon::{self, Icon},
+    knob::{self, Caption},
+    limits::{self, Limits},
+    maths,
+    state::{Action, Edit, Lab, LightField, ObjectField, Selection, ViewChange},
+    theme::{self, Palette},
+    top::segmented,
+};
+use crate::{
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
+    reflection::{EquationPart, ModelEntry, Term},
+    registry::Registry,
+    scene::{Display, Observer, SceneSize},
+    shading::ModeEntry,
+};
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Inspector;
+
+impl Panel for Inspector {
+    fn id(&self) -> &'static str {
+        "inspector"
+    }
+
+    fn title(&self) -> &'static str {
+        "Inspector"
+    }
+
+    fn place(&self) -> Place {
+        Place::Right
+    }
+
+    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+        let mut actions = Vec::new();
+        // Each part has fields of its own: what is typed about one must not turn up in another.
+        ui.push_id(lab.selection, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                // The scroll bar floats over this margin.
+                ui.set_max_width(ui.available_width() - 8.0);
+                match lab.selection {
+                    Selection::Room => room(ui, lab, registry, &mut actions),
+                    Selection::Observer => observer(ui, lab, &mut actions),
+                    Selection::Light(i) => light(ui, lab, registry, i, &mut actions),
+                    Selection::Object(i) => object(ui, lab, registry, i, &mut actions),
+                }
+                ui.add_space(16.0);
+            });
+        });
+        actions
+    }
+}
+
+/// A group with a heading; folds.
+fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
+    ui.add_space(4.0 * theme::scale_here(ui));
+    let line = ui.available_rect_before_wrap();
+    let palette = Palette::here(ui);
+    ui.painter().hline(line.x_range(), line.top(), egui::Stroke::new(1.0, palette.line));
+    ui.add_space(4.0);
+    let heading = theme::strong(ui, title);
+    ui.scope(|ui| {
+        ui.spacing_mut().indent = 16.0 * theme::scale_here(ui);
+        ui.visuals_mut().indent_has_left_vline = false;
+        CollapsingHeader::new(heading).id_salt(title).default_open(open).show_unindented(ui, |ui| {
+            ui.add_space(2.0);
+            add(ui);
+        });
+    });
+}
+
+/// The name of a part, its type below it, and what can be done with it as a whole.
+fn header(
+    ui: &mut Ui,
+    lab: &Lab,
+    registry: &Registry,
+    part: Selection,
+    own: Option<&str>,
+    actions: &mut Vec<Action>,
+) {
+    let scale = theme::scale_here(ui);
+    let name = lab.name_of(part, registry);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let width = ui.available_width() - 76.0 * scale;
+        let rename = move |text: String| match part {
+            Selection::Light(i) => Action::Edit(Edit::Light(i, LightField::Name(text))),
+            Selection::Object(i) => Action::Edit(Edit::Object(i, ObjectField::Name(text))),
+            _ => Action::Edit(Edit::SceneName(text)),
+        };
+        text_field(ui, "name", "Name", own.unwrap_or_default(), &name, width, true, |text| {
+            actions.push(rename(text))
+        });
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if icon::button(ui, Icon::Bin, &format!("Remove {name}")).clicked() {
+                actions.push(Action::Remove(part));
+            }
+            if icon::button(ui, Icon::Duplicate, &format!("Duplicate {name}")).clicked() {
+                actions.push(Action::Duplicate(part));
+            }
+            if icon::button(ui, Icon::Target, &format!("Look at {name}  (C)")).clicked() {
+                actions.push(Action::FocusSelection);
+            }
+        });
+    });
+    ui.add_space(4.0 * scale);
+}
+
+/// A field for text; the change counts when the field is left.
+fn text_field(
+    ui: &mut Ui,
+    salt: &str,
+    label: &str,
+    value: &str,
+    hint: &str,
+    width: f32,
+    heading: bool,
+    mut set: impl FnMut(String),
+) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let id = ui.make_persistent_id(salt);
+    let draft_id = id.with("draft");
+    let mut text: String = ui.data(|d| d.get_temp(draft_id)).unwrap_or_else(|| value.to_owned());
+    let focused = ui.memory(|m| m.has_focus(id));
+    let stroke =
+        if focused { egui::Stroke::new(1.5, palette.accent) } else { egui::Stroke::new(1.0, palette.line) };
+    let style = if heading { egui::TextStyle::Heading } else { egui::TextStyle::Body };
+    let edit = TextEdit::singleline(&mut text)
+        .id(id)
+        .font(style)
+        .hint_text(if heading { RichText::new(hint).heading() } else { RichText::new(hint) })
+        .desired_width(width - 14.0 * scale)
+        .frame(
+            egui::Frame::new()
+                .fill(palette.field)
+                .stroke(stroke)
+                .corner_radius(4.0)
+                .inner_margin(egui::Margin::symmetric((6.0 * scale) as i8, (3.0 * scale) as i8)),
+        );
+    let response = ui.add(edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(true, value, &text, hint);
+        info.label = Some(label.to_owned());
+        info
+    });
+    if response.changed() {
+        ui.data_mut(|d| d.insert_temp(draft_id, text.clone()));
+    }
+    if response.lost_focus() {
+        ui.data_mut(|d| d.remove::<String>(draft_id));
+        if !ui.input(|i| i.key_pressed(Key::Escape)) && text.trim() != value {
+            set(text);
+        }
+    }
+    response.on_hover_text(label);
+}
+
+fn position_limits(size: SceneSize) -> [Limits; 3] {
+    [0, 1, 2].map(|axis| limits::position(size, axis))
+}
+
+fn thrice(limits: Limits) -> [Limits; 3] {
+    [limits.clone(), limits.clone(), limits]
+}
+
+fn direction_knob(ui: &mut Ui, value: Vec3, help: &str) -> Option<Vec3> {
+    let caption = Caption { label: "direction", help, ..Caption::default() };
+    knob::vector_knob(ui, "direction", &caption, value, &thrice(limits::direction()))
+}
+
+// ── object ──
+
+fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Vec<Action>) {
+    let Some(object) = lab.scene.objects.get(i) else { return };
+    let set = |field: ObjectField| Action::Edit(Edit::Object(i, field));
+    header(ui, lab, registry, Selection::Object(i), object.name.as_deref(), actions);
+
+    let caption = Caption {
+        label: "position",
+        unit: "m",
+        help: "Where the centre is; y is up, the origin is a corner of the room.",
+        ..Caption::default()
+    };
+    if let Some(p) =
+        knob::vector_knob(ui, "position", &caption, object.position, &position_limits(lab.scene.scene_size))
+    {
+        actions.push(set(ObjectField::Position(p)));
+    }
+    let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
+    let size_limits = limits::object_size(lab.scene.scene_size);
+    let default = f64::from(crate::scene::DEFAULT_SIZE);
+    if let Some(v) =
+        knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
+    {
+        actions.push(set(ObjectField::Size(v as f32)));
+    }
+
+    let model = registry.model(lab.scene.model_of(object));
+    let mode = registry.mode(lab.scene.mode_of(object));
+    section(ui, "Reflection", true, |ui| {
+        if let Some(model) = model {
+            model_header(ui, model);
+            equation(ui, lab, registry, model, actions);
+        }
+        if let Some(mode) = mode {
+            stage(ui, mode);
+        }
+    });
+
+    section(ui, "Material", true, |ui| {
+        let Some(model) = model else {
+            ui.label("The reflection model of this object is not known here; choose another one.");
+            return;
+        };
+        for p in model.parameters {
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), None) {
+                actions.push(set(ObjectField::Material(p.name, v)));
+            }
+        }
+        let unused: Vec<_> = registry
+            .material_parameters()
+            .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
+            .collect();
+        if !unused.is_empty() {
+            let reason = format!("not used by {}", model.declaration.name);
+            ui.add_space(4.0);
+            ui.label(theme::small(ui, format!("Set, but {reason}: kept for models that do")));
+            ui.add_space(2.0);
+            for p in unused {
+                knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
+            }
+        }
+    });
+
+    section(ui, "Shape", true, |ui| {
+        let kinds: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
+        let names: Vec<_> = kinds.iter().map(|d| d.name).collect();
+        let chosen = kinds.iter().position(|d| d.id == object.kind);
+        let help = chosen.map_or("", |k| kinds[k].summary);
+        let caption = Caption { label: "type", help, ..Caption::default() };
+        if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
+            actions.push(set(ObjectField::Kind(kinds[k].id.to_owned())));
+        }
+        let caption = Caption {
+            label: "rotation",
+            unit: "°",
+            help: "Turned about x first, then y, then z of the room.",
+            ..Caption::default()
+        };
+        if let Some(r) =
+            knob::vector_knob(ui, "rotation", &caption, object.rotation, &thrice(limits::rotation()))
+        {
+            actions.push(set(ObjectField::Rotation(r)));
+        }
+        if let Some(shape) = registry.shape(&object.kind) {
+            let d = shape.declaration;
+            let caption = Caption { label: "tessellation", help: d.tessellation_help, ..Caption::default() };
+            let value = f64::from(shape.tessellation(object.tessellation));
+            let default = f64::from(d.default_tessellation);
+            if let Some(v) = knob::number_knob(
+                ui,
+                "tessellation",
+                &caption,
+                value,
+                Some(default),
+                &limits::tessellation(d),
+            ) {
+                actions.push(set(ObjectField::Tessellation(
+                    Some(v as u32).filter(|n| *n != d.default_tessellation),
+                )));
+            }
+        }
+    });
+
+    section(
+        ui,
+        "Its own model and shading",
+        object.reflection_model.is_some() || object.shading_model.is_some(),
+        |ui| {
+            let scene_model =
+                registry.model(&lab.scene.reflection_model).map_or("–", |m| m.declaration.name);
+            let of_scene = format!("as the scene: {scene_model}");
+            let options: Vec<&str> = std::iter::once(of_scene.as_str())
+                .chain(registry.models().iter().map(|m| m.declaration.name))
+                .collect();
+            let chosen = object.reflection_model.as_ref().map_or(Some(0), |id| {
+                registry.models().iter().position(|m| m.declaration.id == id).map(|k| k + 1)
+            });
+            let caption = Caption {
+                label: "reflection",
+                help: "The reflection model of this object: the scene’s, or its own.",
+                ..Caption::default()
+            };
+            if let Some(k) = knob::choice_knob(ui, "model", &caption, chosen.unwrap_or(usize::MAX), &options)
+            {
+                let id = k.checked_sub(1).map(|k| registry.models()[k].declaration.id.to_owned());
+                actions.push(set(ObjectField::Model(id)));
+            }
+            let scene_mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
+            let of_scene = format!("as the scene: {scene_mode}");
+            let options: Vec<&str> = std::iter::once(of_scene.as_str())
+                .chain(registry.modes().iter().map(|m| m.declaration.name))
+                .collect();
+            let chosen = object.shading_model.as_ref().map_or(Some(0), |id| {
+                registry.modes().iter().position(|m| m.declaration.id == id).map(|k| k + 1)
+            });
+            let caption = Caption {
+                label: "shading",
+                help: "Where on this object the reflection model is evaluated: as the scene says, or its own way.",
+                ..Caption::default()
+            };
+            if let Some(k) = knob::choice_knob(ui, "mode", &caption, chosen.unwrap_or(usize::MAX), &options) {
+                let id = k.checked_sub(1).map(|k| registry.modes()[k].declaration.id.to_owned());
+                actions.push(set(ObjectField::Mode(id)));
+            }
+        },
+    );
+}
+
+/// Name, author and year of a model; the whole story is the tooltip.
+fn model_header(ui: &mut Ui, model: &ModelEntry) {
+    let d = model.declaration;
+    let palette = Palette::here(ui);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(d.name).heading());
+        ui.label(theme::small(ui, d.author));
+    })
+    .response
+    .on_hover_ui(|ui| {
+        ui.set_max_width(320.0 * theme::scale_here(ui));
+        ui.label(d.summary);
+        for (law, holds) in d.laws.list() {
+            let text = if holds { format!("✓ {law}") } else { format!("✗ not {law}") };
+            ui.label(RichText::new(text).small().color(if holds { palette.text } else { palette.weak }));
+        }
+        ui.label(theme::small(ui, d.source));
+    });
+}
+
+fn equation(ui: &mut Ui, lab: &Lab, registry: &Registry, model: &ModelEntry, actions: &mut Vec<Action>) {
+    let d = model.declaration;
+    let name = |symbol: &str| -> Option<String> {
+        let parameter = model.parameters.iter().find(|p| maths::same_symbol(p.symbol, symbol));
+        match parameter {
+            Some(p) => Some(format!("{}: {}", p.label, p.help)),
+            None => maths::meaning(symbol).map(str::to_owned).or_else(|| {
+                let other = registry.material_parameters().find(|p| maths::same_symbol(p.symbol, symbol))?;
+                Some(other.label.to_owned())
+            }),
+        }
+    };
+    maths::equation(ui, d.equation, name);
+    let has = |term: Term| d.equation.iter().any(|p: &EquationPart| p.term == term);
+    if has(Term::Total) {
+        ui.horizontal(|ui| {
+            ui.set_min_height(30.0 * theme::scale_here(ui));
+            ui.label(theme::small(ui, "show"));
+            let options =
+                [TermSelection::All, TermSelection::Ambient, TermSelection::Diffuse, TermSelection::Specular];
+            let chosen = options.iter().position(|t| *t == lab.view.terms);
+            let names = ["all", "ambient", "diffuse", "specular"];
+            let tip = |ui: &mut Ui, i: usize| {
+                ui.label(match options[i] {
+                    TermSelection::All => "The whole equation.".to_owned(),
+                    other => format!("The {} term alone, the others as if they were 0.", other.id()),
+                });
+                ui.label(theme::small(ui, "key T goes through them"));
+            };
+            if let Some(i) = segmented(ui, "Terms", &names, chosen, tip) {
+                actions.push(Action::View(ViewChange::Terms(options[i])));
+            }
+        });
+    }
+    ui.add_space(4.0);
+}
+
+/// The stage that evaluates the model: a picture and the words.
+fn stage(ui: &mut Ui, mode: &ModeEntry) {
+    let d = mode.declaration;
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(48.0, 42.0) * scale, Sense::hover());
+        icon::stage(ui.painter(), rect, d.stage, &palette);
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            ui.label(theme::strong(ui, format!("computed {}", d.stage.phrase())));
+            ui.label(theme::small(ui, format!("{} shading · {}", d.name, d.author)));
+        });
+    })
+    .response
+    .on_hover_ui(|ui| {
+        ui.set_max_width(320.0 * scale);
+        ui.label(d.summary);
+        ui.label(theme::small(ui, d.source));
+    });
+    ui.add_space(6.0 * scale);
+}
+
+// ── light ──
+
+fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Vec<Action>) {
+    let Some(light) = lab.scene.lights.get(i) else { return };
+    let set = |field: LightField| Action::Edit(Edit::Light(i, field));
+    header(ui, lab, registry, Selection::Light(i), light.name.as_deref(), actions);
+    let kinds: Vec<_> = registry.lights().iter().map(|l| l.declaration).collect();
+    let names: Vec<_> = kinds.iter().map(|d| d.name).collect();
+    let chosen = kinds.iter().position(|d| d.id == light.kind);
+    section(ui, "Light", true, |ui| {
+        let help = chosen.map_or("", |k| kinds[k].summary);
+        let caption = Caption { label: "type", help, ..Caption::default() };
+        if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
+            actions.push(set(LightField::Kind(kinds[k].id.to_owned())));
+        }
+        let Some(d) = chosen.map(|k| kinds[k]) else {
+            ui.label("This type of light is not known here; choose another one.");
+            return;
+        };
+        if !d.summary.is_empty() {
+            ui.add(egui::Label::new(theme::small(ui, d.summary)).wrap());
+        }
+        let part = [EquationPart { term: Term::Total, text: d.equation }];
+        maths::equation(ui, &part, |symbol| match symbol {
+            "I" => Some("the intensity of the light".to_owned()),
+            other => maths::meaning(other).map(str::to_owned),
+        });
+        let caption = Caption {
+            symbol: "I",
+            label: "intensity",
+            unit: d.unit,
+            help: unit_help(d.unit),
+            ..Caption::default()
+        };
+        let default = Some(f64::from(d.default_intensity));
+        if let Some(v) = knob::number_knob(
+            ui,
+            "intensity",
+            &caption,
+            f64::from(light.intensity),
+            default,
+            &limits::intensity(d),
+        ) {
+            actions.push(set(LightField::Intensity(v as f32)));
+        }
+        let caption = Caption {
+            label: "colour",
+            unit: "sRGB",
+            help: "The colour of the light; white leaves the materials as they are.",
+            ..Caption::default()
+        };
+        if let Some(c) = knob::colour_knob(ui, "colour", &caption, light.colour, Some([255; 3])) {
+            actions.push(set(LightField::Colour(c)));
+        }
+        for p in d.parameters {
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), None) {
+                actions.push(set(LightField::Parameter(p.name, v)));
+            }
+        }
+    });
+    if light.position.is_some() || light.direction.is_some() {
+        section(ui, "Place", true, |ui| {
+            if let Some(position) = light.position {
+                let caption = Caption {
+                    label: "position",
+                    unit: "m",
+                    help: "Where the light stands; y is up, the origin is a corner of the room.",
+                    ..Caption::default()
+                };
+                if let Some(p) = knob::vector_knob(
+                    ui,
+                    "position",
+                    &caption,
+                    position,
+                    &position_limits(lab.scene.scene_size),
+                ) {
+                    actions.push(set(LightField::Position(p)));
+                }
+            }
+            if let Some(direction) = light.direction
+                && let Some(d) =
+                    direction_knob(ui, direction, "Where the light shines; its length does not matter.")
+            {
+                actions.push(set(LightField::Direction(d)));
+            }
+        });
+    }
+}
+
+fn unit_help(unit: &str) -> &'static str {
+    match unit {
+        "cd" => "In candela: the light sent into each direction. At 1 m, 1 cd gives an illuminance of 1 lx.",
+        "lx" => "In lux: the light that arrives on a surface that faces it.",
+        _ => "How strong the light is.",
+    }
+}
+
+// ── observer ──
+
+fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
+    let o = lab.scene.observer;
+    let scale = theme::scale_here(ui);
+    let set = |o: Observer| Action::Edit(Edit::Observer(o));
+    ui.label(RichText::new("Observer").heading());
+    ui.label(theme::small(ui, "The eye for which the scene is computed"));
+    ui.add_space(6.0 * scale);
+    section(ui, "Place", true, |ui| {
+        let caption = Caption {
+            label: "position",
+            unit: "m",
+            help: "Where the eye is; y is up, the origin is a corner of the room.",
+            ..Caption::default()
+        };
+        if let Some(position) =
+            knob::vector_knob(ui, "position", &caption, o.position, &position_limits(lab.scene.scene_size))
+        {
+            actions.push(set(Observer { position, ..o }));
+        }
+        if let Some(direction) =
+            direction_knob(ui, o.direction, "Where the eye looks; its length does not matter.")
+        {
+            actions.push(set(Observer { direction, ..o }));
+        }
+        let caption = Caption {
+            label: "field of view",
+            unit: "°",
+            help: "The angle between the lower and the upper edge of the picture.",
+            ..Caption::default()
+        };
+        let default = Some(f64::from(crate::scene::DEFAULT_FIELD_OF_VIEW));
+        if let Some(v) = knob::number_knob(
+            ui,
+            "field of view",
+            &caption,
+            f64::from(o.field_of_view),
+            default,
+            &limits::field_of_view(),
+        ) {
+            actions.push(set(Observer { field_of_view: v as f32, ..o }));
+        }
+        ui.horizontal_wrapped(|ui| {
+            if ui.button("Look from here").on_hover_text("Put the camera where the observer is (H)").clicked()
+            {
+                actions.push(Action::HomeView);
+            }
+            if ui
+                .button("Put the observer here")
+                .on_hover_text("Make the place of the camera that of the observer")
+                .clicked()
+            {
+                actions.push(Action::ObserverFromView);
+            }
+        });
+    });
+}
+
+// ── room and display ──
+
+fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+    let scale = theme::scale_here(ui);
+    let width = ui.available_width();
+    let s = &lab.scene;
+    text_field(
+        ui,
+        "scene name",
+        "Name of the scene",
+        s.name.as_deref().unwrap_or_default(),
+        "Untitled scene",
+        width,
+        true,
+        |text| {
+            actions.push(Action::Edit(Edit::SceneName(text)));
+        },
+    );
+    ui.add_space(4.0 * scale);
+    text_field(
+        ui,
+        "description",
+        "What the scene shows",
+        s.description.as_deref().unwrap_or_default(),
+        "What the scene shows, in one line",
+        width,
+        false,
+        |text| {
+            actions.push(Action::Edit(Edit::SceneDescription(text)));
+        },
+    );
+    ui.add_space(6.0 * scale);
+    section(ui, "Room", true, |ui| {
+        let size = s.scene_size;
+        let caption = Caption {
+            label: "size",
+            unit: "m",
+            help: "Width along x, height along y, depth along z. One corner of the room is the origin; everything stands in it.",
+            ..Caption::default()
+        };
+        let limits = [0, 1, 2].map(|axis| lab.dimension_limits(axis, registry));
+        if let Some(c) = knob::vector_knob(ui, "size", &caption, size.corner(), &limits) {
+            actions.push(Action::Edit(Edit::SceneSize(SceneSize { width: c.x, height: c.y, depth: c.z })));
+        }
+    });
+    section(ui, "Display", true, |ui| {
+        let d = s.display;
+        let set = |d: Display| Action::Edit(Edit::Display(d));
+        let caption = Caption {
+            label: "exposure",
+            unit: "EV",
+            help: "Each EV doubles the brightness of the picture, as a stop of a camera does.",
+            ..Caption::default()
+        };
+        if let Some(v) =
+            knob::number_knob(ui, "exposure", &caption, f64::from(d.exposure), Some(0.0), &limits::exposure())
+        {
+            actions.push(set(Display { exposure: v as f32, ..d }));
+        }
+        let names: Vec<_> = ToneMapping::ALL.iter().map(|t| t.name()).collect();
+        let chosen = ToneMapping::ALL.iter().position(|t| *t == d.tone_mapping).unwrap_or(0);
+        let caption = Caption {
+            label: "tone mapping",
+            help: "How light brighter than the display can show is brought into its range. None: it is cut off, and values stay comparable.",
+            ..Caption::default()
+        };
+        if let Some(i) = knob::choice_knob(ui, "tone mapping", &caption, chosen, &names) {
+            actions.push(set(Display { tone_mapping: ToneMapping::ALL[i], ..d }));
+        }
+        let names: Vec<_> = Encoding::ALL
+            .iter()
+            .map(|e| match e {
+                Encoding::Srgb => "sRGB",
+                Encoding::Off => "off (gamma-naive)",
+            })
+            .collect();
+        let chosen = Encoding::ALL.iter().position(|e| *e == d.encoding).unwrap_or(0);
+        let caption = Caption {
+            label: "encoding",
+            help: "sRGB: colours are decoded to linear light, the picture is encoded for the display. Off: neither, which is wrong; seeing the difference is a lesson.",
+            ..Caption::default()
+        };
+        if let Some(i) = knob::choice_knob(ui, "encoding", &caption, chosen, &names) {
+            actions.push(set(Display { encoding: Encoding::ALL[i], ..d }));
+        }
+    });
+    let objects = s.objects.len();
+    let own = s.objects.iter().filter(|o| o.reflection_model.is_some() || o.shading_model.is_some()).count();
+    ui.add_space(8.0 * scale);
+    let text = format!("{} · {}", plural(s.lights.len(), "light"), plural(objects, "object"));
+    let text = if own > 0 { format!("{text}, {own} with a model or shading of its own") } else { text };
+    ui.add(egui::Label::new(theme::small(ui, text)).wrap());
+}
+
+/// "1 light", "2 lights".
+#[must_use]
+pub fn plural(n: usize, what: &str) -> String {
+    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+}

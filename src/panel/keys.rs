@@ -1,0 +1,203 @@
+//! The keyboard: one table, which the handler, the menus and the list of keys (F1) all read.
+
+use bevy_egui::egui::{self, Key, Modifiers};
+
+use super::state::{Action, Edit, Lab, ViewChange};
+use crate::registry::Registry;
+
+/// A key and what it does.
+#[derive(Clone, Debug)]
+pub struct Binding {
+    /// Ctrl (⌘ on a Mac) must be held.
+    pub ctrl: bool,
+    /// Shift must be held.
+    pub shift: bool,
+    /// The key.
+    pub key: Key,
+    /// The heading in the list of keys.
+    pub group: &'static str,
+    /// What it does.
+    pub label: String,
+    /// The action.
+    pub action: Action,
+}
+
+impl Binding {
+    /// How people write it: `Ctrl+Shift+S`.
+    #[must_use]
+    pub fn keys(&self) -> String {
+        let ctrl = match (self.ctrl, cfg!(target_os = "macos")) {
+            (true, true) => "Cmd+",
+            (true, false) => "Ctrl+",
+            (false, _) => "",
+        };
+        let key = match self.key {
+            Key::Equals | Key::Plus => "+",
+            Key::Minus => "−",
+            key => key.name(),
+        };
+        format!("{ctrl}{}{key}", if self.shift { "Shift+" } else { "" })
+    }
+
+    fn matches(&self, key: Key, modifiers: Modifiers) -> bool {
+        let plus = |k: Key| matches!(k, Key::Plus | Key::Equals);
+        let same_key = key == self.key || (plus(key) && plus(self.key));
+        // `+` needs Shift on many keyboards and none on others.
+        let shift = plus(self.key) || modifiers.shift == self.shift;
+        same_key && shift && modifiers.command == self.ctrl && !modifiers.alt
+    }
+
+    /// Whether it works while text is being typed.
+    fn while_typing(&self) -> bool {
+        (self.ctrl && self.group == "File") || self.key == Key::F1
+    }
+}
+
+/// All keys, in the order of the list.
+#[must_use]
+pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
+    let mut all = Vec::new();
+    let mut add = |group, ctrl, shift, key, label: &str, action| {
+        all.push(Binding { ctrl, shift, key, group, label: label.to_owned(), action });
+    };
+    add("File", true, false, Key::N, "New default scene", Action::New);
+    add("File", true, false, Key::O, "Open…", Action::OpenDialog);
+    add("File", true, false, Key::S, "Save", Action::Save);
+    add("File", true, true, Key::S, "Save as…", Action::SaveAsDialog);
+    add("File", true, false, Key::Q, "Quit", Action::Quit);
+    add("Edit", true, false, Key::D, "Duplicate", Action::Duplicate(lab.selection));
+    add("Edit", false, false, Key::Delete, "Remove", Action::Remove(lab.selection));
+    add("Edit", false, false, Key::F2, "Rename", Action::BeginRename(lab.selection));
+    for mode in registry.modes() {
+        let d = mode.declaration;
+        if let Some(key) = Key::from_name(&d.key.to_string()) {
+            let label = format!("{} shading", d.name);
+            add(
+                "Reflection and shading",
+                false,
+                false,
+                key,
+                &label,
+                Action::Edit(Edit::Mode(d.id.to_owned())),
+            );
+        }
+    }
+    let chooser = Action::View(ViewChange::Chooser(!lab.view.chooser_open));
+    add("Reflection and shading", false, false, Key::R, "Choose a reflection model", chooser);
+    const DIGITS: [Key; 9] =
+        [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+    for (slot, key) in DIGITS.into_iter().enumerate() {
+        let label = match lab.model_slots.get(slot) {
+            Some(id) => registry.model(id).map_or(id.as_str(), |m| m.declaration.name).to_owned(),
+            None => continue,
+        };
+        add("Reflection and shading", false, false, key, &label, Action::RecentModel(slot));
+    }
+    add("Reflection and shading", false, false, Key::T, "Next term of the equation alone", Action::NextTerms);
+    add("Picture", false, false, Key::Tab, "Next object", Action::SelectNext);
+    add("Picture", false, true, Key::Tab, "Previous object", Action::SelectPrevious);
+    add("Picture", false, false, Key::H, "Home: the observer's view", Action::HomeView);
+    add("Picture", false, false, Key::C, "Look at what is selected", Action::FocusSelection);
+    add("Picture", false, false, Key::Plus, "Brighter by ½ EV", Action::Expose(0.5));
+    add("Picture", false, false, Key::Minus, "Darker by ½ EV", Action::Expose(-0.5));
+    add("Window", false, false, Key::F1, "This list", Action::View(ViewChange::Keys(!lab.view.keys_open)));
+    add("Window", false, false, Key::F8, "Messages", Action::View(ViewChange::Bottom(!lab.view.bottom_open)));
+    all
+}
+
+/// What the mouse does, and keys that belong to a widget: for the list.
+pub const ELSEWHERE: &[(&str, &str, &str)] = &[
+    ("Window", "F6", "Into the panels; then Tab moves on, Esc leaves"),
+    ("In a field", "↑ ↓", "A little more, a little less; with Shift ten times that"),
+    ("In a field", "Enter, Esc", "Keep the value; go back to the one before"),
+    ("On a slider", "← →", "A little less, a little more; Home and End: the ends"),
+    ("On a slider", "double-click", "The default; Backspace does it too"),
+    ("Mouse in the picture", "left drag", "Turn about what is looked at"),
+    ("Mouse in the picture", "right drag", "Move sideways; Shift and left drag does it too"),
+    ("Mouse in the picture", "wheel", "Nearer, farther"),
+    ("Mouse in the picture", "click", "Select"),
+];
+
+/// How people write the key of an action: for menus.
+#[must_use]
+pub fn keys_of(bindings: &[Binding], action: &Action) -> String {
+    bindings.iter().find(|b| b.action == *action).map(Binding::keys).unwrap_or_default()
+}
+
+/// Reads the keys that were pressed. Call before the widgets see them.
+#[must_use]
+pub fn pressed(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    if lab.question.is_some() {
+        return Vec::new();
+    }
+    let typing = ctx.text_edit_focused();
+    let focused = ctx.memory(|m| m.focused());
+    let popup = egui::Popup::is_any_open(ctx);
+    let table = bindings(lab, registry);
+    let mut actions = Vec::new();
+    let mut stop_tab = false;
+    let mut into_panels = false;
+    ctx.input_mut(|input| {
+        input.events.retain(|event| {
+            let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
+            if *key == Key::F6 && !typing {
+                into_panels = true;
+                return false;
+            }
+            let Some(binding) = table.iter().find(|b| b.matches(*key, *modifiers)) else { return true };
+            if (typing || popup) && !binding.while_typing() {
+                return true;
+            }
+            // With the focus in a panel, Delete is the panel's: nobody means to remove the object that
+            // a slider belongs to.
+            if *key == Key::Delete && focused.is_some() {
+                return true;
+            }
+            // With the focus in a panel, Tab moves it on.
+            if *key == Key::Tab {
+                if focused.is_some() {
+                    return true;
+                }
+                stop_tab = true;
+            }
+            actions.push(binding.action.clone());
+            false
+        });
+        // A letter that is a command is no text.
+        if !actions.is_empty() && !typing {
+            input.events.retain(|e| !matches!(e, egui::Event::Text(_)));
+        }
+    });
+    if stop_tab {
+        ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
+    }
+    if into_panels {
+        ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::Next));
+    }
+    actions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_key_does_two_things() {
+        let table = bindings(&Lab::default(), &Registry::builtin());
+        for (i, a) in table.iter().enumerate() {
+            for b in &table[..i] {
+                assert!(a.keys() != b.keys(), "{} does “{}” and “{}”", a.keys(), a.label, b.label);
+            }
+        }
+    }
+
+    #[test]
+    fn every_shading_mode_has_its_key() {
+        let registry = Registry::builtin();
+        let table = bindings(&Lab::default(), &registry);
+        for mode in registry.modes() {
+            let edit = Action::Edit(Edit::Mode(mode.declaration.id.to_owned()));
+            assert_eq!(keys_of(&table, &edit), mode.declaration.key.to_string());
+        }
+    }
+}

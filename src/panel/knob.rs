@@ -1,0 +1,886 @@
+//! The knobs: how one value is shown, dragged, typed, and kept within its limits.
+//!
+//! A knob never yields an illegal value. What is typed and not legal stays in the field, in the error
+//! style and with the rule beside it, until it is corrected or given up with Escape.
+
+use bevy_egui::egui::{
+    self, Align, Color32, CursorIcon, FontId, Id, Key, Rect, Response, Sense, Stroke, TextEdit, TextStyle,
+    Ui, WidgetInfo, WidgetType, pos2, vec2,
+};
+use glam::Vec3;
+
+use super::{
+    limits::{Limits, number},
+    maths,
+    theme::{self, Palette},
+};
+use crate::reflection::parameter::{Parameter, ParameterKind, Value};
+
+/// What a knob says about itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Caption<'a> {
+    /// The symbol in the equation; empty for none.
+    pub symbol: &'a str,
+    /// The word.
+    pub label: &'a str,
+    /// The unit; empty for none.
+    pub unit: &'a str,
+    /// What it does.
+    pub help: &'a str,
+    /// Why it can not be turned, if so.
+    pub disabled: Option<&'a str>,
+}
+
+/// What is being typed into a field.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Draft {
+    text: String,
+    /// The value that the field had when typing began: what Escape goes back to.
+    before: f64,
+    /// The value that the field last yielded, to notice a change from elsewhere.
+    last: f64,
+}
+
+/// What a field says.
+#[derive(Debug)]
+pub struct Field {
+    /// The response of the text field.
+    pub response: Response,
+    /// A new legal value.
+    pub value: Option<f64>,
+    /// The rule that the text in the field breaks.
+    pub error: Option<String>,
+}
+
+/// Reads a number as people type it: with a point or a comma, with a real minus sign.
+#[must_use]
+pub fn parse(text: &str) -> Option<f64> {
+    let text = text.trim().replace('−', "-").replace(',', ".");
+    text.parse::<f64>().ok().filter(|v| v.is_finite())
+}
+
+/// A field for one number. `name` is what a screen reader says.
+pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width: f32) -> Field {
+    let palette = Palette::here(ui);
+    let draft_id = id.with("draft");
+    let mut draft: Option<Draft> = ui.data(|d| d.get_temp(draft_id));
+    // Somebody else changed the value: what was typed is about another one.
+    if draft.as_ref().is_some_and(|d| d.last != value) {
+        draft = None;
+    }
+    let mut text = draft.as_ref().map_or_else(|| number(value), |d| d.text.clone());
+    let problem = |text: &str| match parse(text) {
+        Some(v) if limits.allows(v) => None,
+        Some(_) => Some(format!("must be {}", limits.rule())),
+        None => Some(format!("is not a number; must be {}", limits.rule())),
+    };
+    let wrong = draft.as_ref().and_then(|d| problem(&d.text));
+
+    let focused = ui.memory(|m| m.has_focus(id));
+    // The arrow keys turn the value; taken before the text field sees them.
+    let mut step = 0.0;
+    if focused {
+        ui.input_mut(|i| {
+            for (key, sign) in [(Key::ArrowUp, 1.0), (Key::ArrowDown, -1.0)] {
+                for (modifiers, factor) in [(egui::Modifiers::SHIFT, 10.0), (egui::Modifiers::NONE, 1.0)] {
+                    if i.consume_key(modifiers, key) {
+                        step += sign * factor;
+                    }
+                }
+            }
+        });
+    }
+
+    let scale = theme::scale_here(ui);
+    let stroke = match (&wrong, focused) {
+        (Some(_), _) => Stroke::new(1.5, palette.error),
+        (None, true) => Stroke::new(1.5, palette.accent),
+        (None, false) => Stroke::new(1.0, palette.line),
+    };
+    let edit = TextEdit::singleline(&mut text)
+        .id(id)
+        .desired_width(width - 10.0 * scale)
+        .min_size(vec2(width, 22.0 * scale))
+        .vertical_align(Align::Center)
+        .horizontal_align(Align::Max)
+        .clip_text(true)
+        .text_color(if wrong.is_some() { palette.error } else { palette.text })
+        .frame(
+            egui::Frame::new()
+                .fill(palette.field)
+                .stroke(stroke)
+                .corner_radius(4.0)
+                .inner_margin(egui::Margin::symmetric((4.0 * scale) as i8, (2.0 * scale) as i8)),
+        );
+    let response = ui.add_sized(vec2(width, 22.0 * scale), edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(ui.is_enabled(), number(value), &text, "");
+        info.label = Some(name.to_owned());
+        info
+    });
+
+    let mut out = None;
+    if response.gained_focus() {
+        draft = Some(Draft { text: text.clone(), before: value, last: value });
+        select_all(ui, id, &text);
+    }
+    if response.changed() {
+        let d = draft.get_or_insert_with(|| Draft { text: String::new(), before: value, last: value });
+        d.text.clone_from(&text);
+        if let Some(v) = parse(&text).filter(|v| limits.allows(*v)) {
+            out = Some(v);
+        }
+    }
+    if step != 0.0 {
+        let base = parse(&text).filter(|v| limits.allows(*v)).unwrap_or(value);
+        let v = round_to(base + step * nudge(limits, base), nudge(limits, base))
+            .clamp(limits.min.max(-1e12), limits.max);
+        let v = if limits.is_above_zero() && v <= limits.min { base } else { v };
+        if limits.allows(v) {
+            out = Some(v);
+            let d = draft.get_or_insert_with(|| Draft { before: value, last: value, text: String::new() });
+            d.text = number(v);
+        }
+    }
+    // egui itself takes the focus away at Escape.
+    let escape = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape));
+    if escape && let Some(d) = draft.take() {
+        out = Some(d.before).filter(|v| *v != value && limits.allows(*v));
+    } else if response.lost_focus() && draft.as_ref().is_some_and(|d| problem(&d.text).is_none()) {
+        draft = None;
+    }
+    if let (Some(v), Some(d)) = (out, draft.as_mut()) {
+        d.last = f64::from(v as f32);
+    }
+    let error = draft.as_ref().and_then(|d| problem(&d.text));
+    ui.data_mut(|d| match draft {
+        Some(draft) => {
+            d.insert_temp(draft_id, draft);
+        }
+        None => d.remove::<Draft>(draft_id),
+    });
+    Field { response, value: out.filter(|v| *v as f32 != value as f32 || limits.whole && *v != value), error }
+}
+
+fn select_all(ui: &Ui, id: Id, text: &str) {
+    use egui::text::{CCursor, CCursorRange};
+    if let Some(mut state) = egui::text_edit::TextEditState::load(ui.ctx(), id) {
+        let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
+        state.cursor.set_char_range(Some(all));
+        state.store(ui.ctx(), id);
+    }
+}
+
+/// What one press of an arrow key adds: about a hundredth of the range, a round number.
+fn nudge(limits: &Limits, value: f64) -> f64 {
+    if limits.whole {
+        return 1.0;
+    }
+    let range =
+        if curved(limits) { value.abs().max(1.0) * 10.0 } else { limits.slider_max - limits.slider_min };
+    if range.is_finite() && range > 0.0 { 10f64.powf((range / 100.0).log10().round()) } else { 0.1 }
+}
+
+fn round_to(value: f64, step: f64) -> f64 {
+    let rounded = (value / step).round() * step;
+    // Powers of ten below one are not exact in binary: cut what the multiplication added.
+    (rounded * 1e9).round() / 1e9
+}
+
+/// Whether the slider spends more of its length on small values.
+fn curved(limits: &Limits) -> bool {
+    limits.slider_min >= 0.0 && limits.slider_max - limits.slider_min > 60.0 && limits.slider_max > 64.0
+}
+
+const CURVE: f64 = 2.5;
+
+fn to_slider(limits: &Limits, value: f64) -> f64 {
+    let t = ((value - limits.slider_min) / (limits.slider_max - limits.slider_min)).clamp(0.0, 1.0);
+    if curved(limits) { t.powf(1.0 / CURVE) } else { t }
+}
+
+fn from_slider(limits: &Limits, t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    let shaped = if curved(limits) { t.powf(CURVE) } else { t };
+    let value = limits.slider_min + shaped * (limits.slider_max - limits.slider_min);
+    let range = limits.slider_max - limits.slider_min;
+    let fine = if curved(limits) { value.abs().max(range / 1000.0) } else { range };
+    let step = if limits.whole { 1.0 } else { 10f64.powf((fine / 100.0).log10().floor()) };
+    let value = round_to(value, step).clamp(limits.min, limits.max);
+    if limits.is_above_zero() && value < step { step.min(limits.max) } else { value }
+}
+
+/// A slider. Double-click sets the default; the arrow keys step; Home and End go to the ends.
+fn slider(
+    ui: &mut Ui,
+    name: &str,
+    value: f64,
+    default: Option<f64>,
+    limits: &Limits,
+    width: f32,
+) -> (Response, Option<f64>) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let height = 16.0 * scale;
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), value, name));
+    let radius = 6.0 * scale;
+    let rail = Rect::from_min_max(
+        pos2(rect.left() + radius, rect.center().y - 1.5),
+        pos2(rect.right() - radius, rect.center().y + 1.5),
+    );
+    let mut out = None;
+    if let Some(pointer) = response.interact_pointer_pos()
+        && (response.dragged() || response.clicked())
+    {
+        let t = f64::from((pointer.x - rail.left()) / rail.width());
+        out = Some(from_slider(limits, t));
+    }
+    if response.clicked() || response.drag_started() {
+        response.request_focus();
+    }
+    if response.double_clicked()
+        && let Some(default) = default
+    {
+        out = Some(default);
+    }
+    if response.has_focus() {
+        let filter = egui::EventFilter { horizontal_arrows: true, ..Default::default() };
+        ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+        ui.input(|i| {
+            let factor = if i.modifiers.shift { 10.0 } else { 1.0 };
+            let presses = i.num_presses(Key::ArrowRight) as f64 - i.num_presses(Key::ArrowLeft) as f64;
+            if presses != 0.0 {
+                let step = nudge(limits, value);
+                let v = round_to(value + presses * factor * step, step)
+                    .clamp(limits.min.max(limits.slider_min), limits.max);
+                out = Some(if limits.allows(v) { v } else { value });
+            }
+            if i.key_pressed(Key::Home) {
+                out = Some(from_slider(limits, 0.0));
+            }
+            if i.key_pressed(Key::End) {
+                out = Some(from_slider(limits, 1.0));
+            }
+            if i.key_pressed(Key::Backspace) {
+                out = default.or(out);
+            }
+        });
+    }
+    if ui.is_rect_visible(rect) {
+        let painter = ui.painter();
+        let x = |v: f64| rail.left() + to_slider(limits, v) as f32 * rail.width();
+        painter.rect_filled(rail, 1.5, palette.line);
+        let handle = pos2(x(out.unwrap_or(value)), rail.center().y);
+        painter.rect_filled(Rect::from_min_max(rail.min, pos2(handle.x, rail.bottom())), 1.5, palette.accent);
+        if let Some(default) = default {
+            let tick = x(default);
+            painter.vline(
+                tick,
+                rail.center().y + 3.5 * scale..=rail.center().y + 7.0 * scale,
+                Stroke::new(1.0, palette.weak),
+            );
+        }
+        let hot = response.hovered() || response.dragged() || response.has_focus();
+        let r = if hot { radius } else { radius - 1.0 };
+        let outside = value < limits.slider_min || value > limits.slider_max;
+        let fill = if outside {
+            palette.panel
+        } else if ui.is_enabled() {
+            palette.text
+        } else {
+            palette.weak
+        };
+        painter.circle(handle, r, fill, Stroke::new(2.0, if hot { palette.accent } else { palette.panel }));
+        if outside {
+            painter.circle_stroke(handle, r, Stroke::new(1.5, palette.text));
+        }
+    }
+    let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
+    (response, out.filter(|v| limits.allows(*v) && *v as f32 != value as f32))
+}
+
+/// The first line of a knob: symbol and word at the left, what `right` adds at the right.
+fn head<R>(ui: &mut Ui, caption: &Caption, right: impl FnOnce(&mut Ui) -> R) -> (Response, R) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let marked = !caption.symbol.is_empty()
+        && maths::highlighted(ui.ctx()).is_some_and(|m| maths::same_symbol(&m, caption.symbol));
+    let mut label_response = None;
+    let out = ui
+        .horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0 * scale;
+            let height = 22.0 * scale;
+            let symbol_column = if caption.symbol.is_empty() { 0.0 } else { 30.0 * scale };
+            let colour =
+                if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
+            let galley = ui.painter().layout_no_wrap(
+                caption.label.to_owned(),
+                TextStyle::Body.resolve(ui.style()),
+                colour,
+            );
+            let room = (ui.available_width() - 96.0 * scale).max(40.0 * scale);
+            let (rect, response) = ui.allocate_exact_size(
+                vec2((symbol_column + galley.size().x).min(room), height),
+                Sense::hover(),
+            );
+            if marked {
+                ui.painter().rect_filled(rect.expand2(vec2(4.0, 0.0)), 3.0, palette.chosen);
+            }
+            if !caption.symbol.is_empty() {
+                let at = pos2(rect.left(), rect.center().y + 5.0 * scale);
+                maths::paint_symbol(ui, at, caption.symbol, 16.0 * scale, colour);
+            }
+            let clip = ui.painter_at(rect.expand(1.0));
+            clip.galley(
+                pos2(rect.left() + symbol_column, rect.center().y - galley.size().y / 2.0),
+                galley,
+                colour,
+            );
+            label_response = Some(response);
+            ui.with_layout(egui::Layout::right_to_left(Align::Center), right).inner
+        })
+        .inner;
+    match label_response {
+        Some(response) => (response, out),
+        None => (ui.response(), out),
+    }
+}
+
+/// The tooltip of a knob: what it does, what is legal, the default.
+fn tooltip(ui: &mut Ui, caption: &Caption, rule: &str, default: &str) {
+    ui.set_max_width(300.0 * theme::scale_here(ui));
+    if let Some(reason) = caption.disabled {
+        ui.label(theme::strong(ui, reason));
+    }
+    ui.label(caption.help);
+    if !rule.is_empty() {
+        ui.label(theme::small(ui, format!("{}.", capitalised(rule))));
+    }
+    if !default.is_empty() {
+        ui.label(theme::small(ui, format!("Default {default}: double-click the slider.")));
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
+}
+
+/// The sentence under a field that holds something illegal.
+fn complaint(ui: &mut Ui, error: &str, kept: &str) {
+    let palette = Palette::here(ui);
+    let text = format!("{error} — the picture keeps {kept}");
+    let label = egui::Label::new(egui::RichText::new(text).small().color(palette.error)).wrap();
+    let response = ui.add(label);
+    response.scroll_to_me(None);
+}
+
+/// The unit, outside the field, in a column of its own.
+fn unit(ui: &mut Ui, text: &str) {
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    let font = TextStyle::Small.resolve(ui.style());
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, palette.weak);
+    let width = (18.0 * scale).max(galley.size().x);
+    let (rect, _) = ui.allocate_exact_size(vec2(width, 22.0 * scale), Sense::hover());
+    ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, palette.weak);
+}
+
+/// A knob for a number: returns a new legal value.
+pub fn number_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: f64,
+    default: Option<f64>,
+    limits: &Limits,
+) -> Option<f64> {
+    let id = ui.make_persistent_id(salt);
+    let mut out = None;
+    let response = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let scale = theme::scale_here(ui);
+        let (label, field) = head(ui, caption, |ui| {
+            unit(ui, caption.unit);
+            field(ui, id, caption.label, value, limits, 64.0 * scale)
+        });
+        out = field.value;
+        if (label.hovered() || field.response.hovered()) && !caption.symbol.is_empty() {
+            maths::highlight(ui.ctx(), caption.symbol);
+        }
+        let (rule, default_text) = (limits.rule(), default.map(number).unwrap_or_default());
+        label.on_hover_ui(|ui| tooltip(ui, caption, &rule, &default_text));
+        let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
+        if finite {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 4.0 * scale;
+                let (left, right) = (number(limits.slider_min), number(limits.slider_max));
+                let left = if limits.is_above_zero() { format!(">{left}") } else { left };
+                let right = if limits.max > limits.slider_max { format!("{right}…") } else { right };
+                let end = 30.0 * scale;
+                range_end(ui, &left, end, Align::Max);
+                let width = (ui.available_width() - end - 26.0 * scale).max(24.0);
+                let (slider, new) = slider(ui, caption.label, value, default, limits, width);
+                out = new.or(out);
+                if (slider.hovered() || slider.dragged() || slider.has_focus()) && !caption.symbol.is_empty()
+                {
+                    maths::highlight(ui.ctx(), caption.symbol);
+                }
+                slider
+                    .on_hover_ui(|ui| tooltip(ui, caption, &rule, &default_text))
+                    .on_disabled_hover_ui(|ui| tooltip(ui, caption, &rule, &default_text));
+                range_end(ui, &right, end, Align::Min);
+            });
+        }
+        if let Some(error) = &field.error {
+            complaint(ui, &capitalised(error), &number(value));
+        }
+        ui.add_space(6.0 * scale);
+    });
+    if let Some(reason) = caption.disabled {
+        response.response.on_hover_text(reason);
+    }
+    out
+}
+
+fn range_end(ui: &mut Ui, text: &str, width: f32, align: Align) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let font = FontId::proportional(10.5 * scale);
+    let (rect, _) = ui.allocate_exact_size(vec2(width, 16.0 * scale), Sense::hover());
+    let anchor = if align == Align::Max { egui::Align2::RIGHT_CENTER } else { egui::Align2::LEFT_CENTER };
+    let at = if align == Align::Max { rect.right_center() } else { rect.left_center() };
+    ui.painter().text(at, anchor, text, font, palette.weak);
+}
+
+/// A knob for a whole colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
+pub fn colour_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: [u8; 3],
+    default: Option<[u8; 3]>,
+) -> Option<[u8; 3]> {
+    let id = ui.make_persistent_id(salt);
+    let mut out = None;
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let scale = theme::scale_here(ui);
+        let rule = "three whole numbers from 0 to 255: red, green, blue";
+        let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
+        let (label, hex) = head(ui, caption, |ui| {
+            unit(ui, "");
+            hex_field(ui, id.with("hex"), caption.label, value, 72.0 * scale)
+        });
+        out = hex.0;
+        let mut hot = label.hovered();
+        label.on_hover_ui(|ui| {
+            ui.set_max_width(300.0 * scale);
+            if let Some(reason) = caption.disabled {
+                ui.label(theme::strong(ui, reason));
+            }
+            ui.label(caption.help);
+            ui.label(theme::small(
+                ui,
+                format!("{}, encoded as sRGB. Default {default_text}.", capitalised(rule)),
+            ));
+        });
+        let mut errors = hex.1;
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0 * scale;
+            let mut rgb = value;
+            let swatch = swatch(ui, id.with("swatch"), caption.label, &mut rgb, default);
+            hot |= swatch.hovered();
+            if rgb != value {
+                out = Some(rgb);
+            }
+            let limits = Limits::between(0.0, 255.0).whole();
+            for (channel, letter) in ["R", "G", "B"].into_iter().enumerate() {
+                let name = format!("{}: {}", caption.label, ["red", "green", "blue"][channel]);
+                axis_letter(ui, letter, &name, &limits, f64::from(value[channel]), |v| {
+                    let mut rgb = value;
+                    rgb[channel] = v as u8;
+                    out = Some(rgb);
+                });
+                let f = field(ui, id.with(channel), &name, f64::from(value[channel]), &limits, 40.0 * scale);
+                if let Some(v) = f.value {
+                    let mut rgb = value;
+                    rgb[channel] = v as u8;
+                    out = Some(rgb);
+                }
+                errors = errors.take().or(f.error);
+            }
+            unit(ui, caption.unit);
+        });
+        if hot && !caption.symbol.is_empty() {
+            maths::highlight(ui.ctx(), caption.symbol);
+        }
+        if let Some(error) = errors {
+            let [r, g, b] = value;
+            complaint(ui, &capitalised(&error), &format!("{r}, {g}, {b}"));
+        }
+        ui.add_space(6.0 * scale);
+    });
+    out.filter(|c| *c != value)
+}
+
+/// The colour itself; a click opens the picker, a double-click sets the default.
+fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u8; 3]>) -> Response {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0) * scale, Sense::click());
+    let says = format!("{name}: choose a colour");
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::ColorButton, ui.is_enabled(), &says));
+    let [r, g, b] = *rgb;
+    let hot = response.hovered() || response.has_focus();
+    let stroke = Stroke::new(if hot { 1.5 } else { 1.0 }, if hot { palette.accent } else { palette.weak });
+    ui.painter().rect(rect, 4.0, Color32::from_rgb(r, g, b), stroke, egui::StrokeKind::Inside);
+    if response.double_clicked()
+        && let Some(default) = default
+    {
+        *rgb = default;
+        egui::Popup::close_id(ui.ctx(), id);
+        return response;
+    }
+    egui::Popup::from_toggle_button_response(&response)
+        .id(id)
+        .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.spacing_mut().slider_width = 220.0 * scale;
+            let mut colour = Color32::from_rgb(rgb[0], rgb[1], rgb[2]);
+            if egui::color_picker::color_picker_color32(ui, &mut colour, egui::color_picker::Alpha::Opaque) {
+                *rgb = [colour.r(), colour.g(), colour.b()];
+            }
+        });
+    response.on_hover_text("Choose a colour. Double-click: default.")
+}
+
+/// A field for a colour in hexadecimal.
+fn hex_field(
+    ui: &mut Ui,
+    id: Id,
+    label: &str,
+    value: [u8; 3],
+    width: f32,
+) -> (Option<[u8; 3]>, Option<String>) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let [r, g, b] = value;
+    let shown = format!("#{r:02x}{g:02x}{b:02x}");
+    let draft_id = id.with("draft");
+    let draft: Option<String> = ui.data(|d| d.get_temp(draft_id));
+    let focused = ui.memory(|m| m.has_focus(id));
+    let mut text = draft.clone().filter(|_| focused).unwrap_or_else(|| shown.clone());
+    let wrong = focused && parse_hex(&text).is_none();
+    let stroke = if wrong {
+        Stroke::new(1.5, palette.error)
+    } else if focused {
+        Stroke::new(1.5, palette.accent)
+    } else {
+        Stroke::new(1.0, palette.line)
+    };
+    let edit = TextEdit::singleline(&mut text)
+        .id(id)
+        .desired_width(width - 10.0 * scale)
+        .min_size(vec2(width, 22.0 * scale))
+        .vertical_align(Align::Center)
+        .horizontal_align(Align::Max)
+        .text_color(if wrong { palette.error } else { palette.text })
+        .frame(
+            egui::Frame::new()
+                .fill(palette.field)
+                .stroke(stroke)
+                .corner_radius(4.0)
+                .inner_margin(egui::Margin::symmetric((4.0 * scale) as i8, (2.0 * scale) as i8)),
+        );
+    let response = ui.add_sized(vec2(width, 22.0 * scale), edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(ui.is_enabled(), &shown, &text, "");
+        info.label = Some(format!("{label} in hexadecimal"));
+        info
+    });
+    if response.gained_focus() {
+        select_all(ui, id, &text);
+    }
+    let mut out = None;
+    if response.changed() {
+        out = parse_hex(&text).filter(|c| *c != value);
+        ui.data_mut(|d| d.insert_temp(draft_id, text.clone()));
+    }
+    if response.lost_focus() {
+        ui.data_mut(|d| d.remove::<String>(draft_id));
+    }
+    let error = wrong.then(|| "is not a colour; must be # and six hexadecimal digits".to_owned());
+    (out, error)
+}
+
+/// Reads `#rrggbb`, `rrggbb` or `#rgb`.
+#[must_use]
+pub fn parse_hex(text: &str) -> Option<[u8; 3]> {
+    let digits = text.trim().trim_start_matches('#');
+    if !digits.is_ascii() {
+        return None;
+    }
+    let digits = match digits.len() {
+        3 => digits.chars().flat_map(|c| [c, c]).collect(),
+        6 => digits.to_owned(),
+        _ => return None,
+    };
+    let at = |i: usize| u8::from_str_radix(&digits[i..i + 2], 16).ok();
+    Some([at(0)?, at(2)?, at(4)?])
+}
+
+/// The letter before a field; dragging it sideways turns the value.
+fn axis_letter(ui: &mut Ui, letter: &str, name: &str, limits: &Limits, value: f64, set: impl FnOnce(f64)) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(14.0, 22.0) * scale, Sense::drag());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, ui.is_enabled(), name));
+    let colour = if response.hovered() || response.dragged() { palette.accent } else { palette.weak };
+    let font = TextStyle::Small.resolve(ui.style());
+    ui.painter().text(
+        rect.right_center() - vec2(2.0 * scale, 0.0),
+        egui::Align2::RIGHT_CENTER,
+        letter,
+        font,
+        colour,
+    );
+    if response.dragged() {
+        let id = response.id.with("drag");
+        let start: f64 =
+            if response.drag_started() { value } else { ui.data(|d| d.get_temp(id)).unwrap_or(value) };
+        ui.data_mut(|d| d.insert_temp(id, start));
+        if let Some(moved) = response.total_drag_delta() {
+            let range = limits.slider_max - limits.slider_min;
+            let range = if range.is_finite() { range } else { 10.0 };
+            let step = if limits.whole { 1.0 } else { 10f64.powf((range / 100.0).log10().round()) };
+            let wanted = round_to(start + f64::from(moved.x) * range / 400.0, step);
+            let low = if limits.is_above_zero() { step } else { limits.min };
+            let wanted = wanted.clamp(low.min(limits.max), limits.max);
+            if limits.allows(wanted) && wanted as f32 != value as f32 {
+                set(wanted);
+            }
+        }
+    }
+    response
+        .on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal)
+        .on_hover_text("Drag sideways to change the value");
+}
+
+/// A field for three numbers, each with its own limits.
+pub fn vector_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: Vec3,
+    limits: &[Limits; 3],
+) -> Option<Vec3> {
+    named_vector_knob(ui, salt, caption, value, limits, ["x", "y", "z"])
+}
+
+/// The same with other names for the three.
+pub fn named_vector_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: Vec3,
+    limits: &[Limits; 3],
+    letters: [&str; 3],
+) -> Option<Vec3> {
+    let id = ui.make_persistent_id(salt);
+    let mut out = None;
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let scale = theme::scale_here(ui);
+        let rules: Vec<_> = (0..3).map(|i| format!("{}: {}", letters[i], limits[i].rule())).collect();
+        let mut error = None;
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0 * scale;
+            let font = TextStyle::Body.resolve(ui.style());
+            let colour = Palette::here(ui).text;
+            let galley = ui.painter().layout_no_wrap(caption.label.to_owned(), font, colour);
+            let column = galley.size().x.max(54.0 * scale);
+            let (rect, label) = ui.allocate_exact_size(vec2(column, 22.0 * scale), Sense::hover());
+            ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, colour);
+            label.on_hover_ui(|ui| {
+                ui.set_max_width(300.0 * scale);
+                ui.label(caption.help);
+                for rule in &rules {
+                    ui.label(theme::small(ui, rule));
+                }
+            });
+            // Three letters, three fields, the unit, and the gaps between the seven.
+            let room = ui.available_width() - (3.0 * 14.0 + 18.0 + 6.0 * 4.0) * scale;
+            let width = (room / 3.0).clamp(36.0 * scale, 96.0 * scale).floor();
+            for axis in 0..3 {
+                let component = f64::from(value.to_array()[axis]);
+                let name = format!("{} {}", caption.label, letters[axis]);
+                let mut set = |v: f64| {
+                    let mut new = value.to_array();
+                    new[axis] = v as f32;
+                    out = Some(Vec3::from_array(new));
+                };
+                axis_letter(ui, letters[axis], &name, &limits[axis], component, &mut set);
+                let f = field(ui, id.with(axis), &name, component, &limits[axis], width);
+                if let Some(v) = f.value {
+                    set(v);
+                }
+                error = error.take().or(f.error.map(|e| (format!("{} {e}", letters[axis]), component)));
+            }
+            unit(ui, caption.unit);
+        });
+        if let Some((error, kept)) = error {
+            complaint(ui, &error, &number(kept));
+        }
+        ui.add_space(6.0 * scale);
+    });
+    out.filter(|v| *v != value)
+}
+
+/// One of several: word at the left, list at the right. Returns the index of a new choice.
+pub fn choice_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    chosen: usize,
+    options: &[&str],
+) -> Option<usize> {
+    let mut out = None;
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        let scale = theme::scale_here(ui);
+        let id = ui.make_persistent_id(salt);
+        let (label, ()) = head(ui, caption, |ui| {
+            ui.add_space(22.0 * scale);
+            let width = (ui.available_width() - 4.0 * scale).clamp(80.0 * scale, 190.0 * scale);
+            let shown = options.get(chosen).copied().unwrap_or("–");
+            let combo = egui::ComboBox::from_id_salt(id)
+                .width(width)
+                .truncate()
+                .selected_text(shown)
+                .show_ui(ui, |ui| {
+                    for (i, option) in options.iter().enumerate() {
+                        if ui.selectable_label(i == chosen, *option).clicked() && i != chosen {
+                            out = Some(i);
+                        }
+                    }
+                });
+            combo.response.widget_info(|| {
+                WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
+            });
+        });
+        if label.hovered() && !caption.symbol.is_empty() {
+            maths::highlight(ui.ctx(), caption.symbol);
+        }
+        label.on_hover_ui(|ui| tooltip(ui, caption, "", ""));
+        ui.add_space(4.0 * scale);
+    });
+    out
+}
+
+/// The limits that a declaration gives, for numbers.
+#[must_use]
+pub fn limits_of(parameter: &Parameter) -> Option<Limits> {
+    match parameter.kind {
+        ParameterKind::Number { min, max, .. } => Some(Limits {
+            min: f64::from(min),
+            max: f64::from(max),
+            slider_min: if f64::from(min) < 1e-30 { f64::from(min.min(0.0)) } else { f64::from(min) },
+            slider_max: f64::from(max),
+            whole: false,
+            because: None,
+        }),
+        ParameterKind::Integer { min, max, slider_max, .. } => Some(Limits {
+            min: min as f64,
+            max: max.map_or(f64::INFINITY, |m| m as f64),
+            slider_min: min as f64,
+            slider_max: max.unwrap_or(slider_max).min(slider_max.max(min + 1)) as f64,
+            whole: true,
+            because: None,
+        }),
+        ParameterKind::Colour { .. } | ParameterKind::Choice { .. } => None,
+    }
+}
+
+/// The knob of a declared parameter. Returns a new legal value.
+pub fn parameter_knob(
+    ui: &mut Ui,
+    salt: &str,
+    parameter: &Parameter,
+    value: &Value,
+    disabled: Option<&str>,
+) -> Option<Value> {
+    let caption = Caption {
+        symbol: parameter.symbol,
+        label: parameter.label,
+        unit: parameter.unit,
+        help: parameter.help,
+        disabled,
+    };
+    match (&parameter.kind, value) {
+        (ParameterKind::Number { default, .. }, Value::Number(v)) => {
+            let limits = limits_of(parameter)?;
+            // The limits are f32: a value at an end must not fall outside for being an f64.
+            number_knob(ui, salt, &caption, f64::from(*v), Some(f64::from(*default)), &limits)
+                .map(|v| Value::Number(v as f32))
+                .filter(|v| parameter.allows(v))
+        }
+        (ParameterKind::Integer { default, .. }, Value::Integer(v)) => {
+            let limits = limits_of(parameter)?;
+            number_knob(ui, salt, &caption, *v as f64, Some(*default as f64), &limits)
+                .map(|v| Value::Integer(v as i64))
+                .filter(|v| parameter.allows(v))
+        }
+        (ParameterKind::Colour { default }, Value::Colour(rgb)) => {
+            colour_knob(ui, salt, &caption, *rgb, Some(*default)).map(Value::Colour)
+        }
+        (ParameterKind::Choice { options, .. }, Value::Choice(id)) => {
+            let chosen = options.iter().position(|(o, _)| *o == id.as_ref()).unwrap_or(0);
+            let names: Vec<_> = options.iter().map(|(_, name)| *name).collect();
+            choice_knob(ui, salt, &caption, chosen, &names).map(|i| Value::Choice(options[i].0.into()))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_as_people_type_them() {
+        assert_eq!(parse(" 0,5 "), Some(0.5));
+        assert_eq!(parse("−3"), Some(-3.0));
+        assert_eq!(parse("1e-3"), Some(0.001));
+        for nonsense in ["", "-", "a", "1 2", "inf", "nan"] {
+            assert_eq!(parse(nonsense), None, "{nonsense:?}");
+        }
+    }
+
+    #[test]
+    fn colours_are_read_in_hexadecimal() {
+        assert_eq!(parse_hex("#ff8000"), Some([255, 128, 0]));
+        assert_eq!(parse_hex("F80"), Some([255, 136, 0]));
+        for nonsense in ["", "#ff80", "#gg0000", "ü1234"] {
+            assert_eq!(parse_hex(nonsense), None, "{nonsense:?}");
+        }
+    }
+
+    #[test]
+    fn sliders_stay_legal_and_find_their_way_back() {
+        let all = [
+            Limits::between(0.5, 1.0),
+            Limits::above_zero(90.0),
+            Limits::between(0.0, f64::INFINITY).slider(0.0, 512.0).whole(),
+            Limits::between(1.0, 170.0),
+        ];
+        for limits in all {
+            for i in 0..=100 {
+                let t = f64::from(i) / 100.0;
+                let value = from_slider(&limits, t);
+                assert!(limits.allows(value), "{value} at {t} in {limits:?}");
+                assert!((to_slider(&limits, value) - t).abs() < 0.16, "{value} at {t} in {limits:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! What the fields of a scene may hold: one place for the widgets, which show the rule while a value
+//! is typed, and for [`Lab::apply`](super::state::Lab::apply), which refuses what breaks it.
+
+use crate::{
+    light,
+    reflection::parameter::ABOVE_ZERO,
+    scene::{MAX_DIMENSION, Scene, SceneSize},
+    shape,
+};
+
+/// The legal values of a number, and how a slider walks through them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// Smallest legal value.
+    pub min: f64,
+    /// Largest legal value; infinite when there is none.
+    pub max: f64,
+    /// Where the slider begins.
+    pub slider_min: f64,
+    /// Where the slider ends.
+    pub slider_max: f64,
+    /// Whether only whole numbers are legal.
+    pub whole: bool,
+    /// Why the limits are where they are, when the numbers alone do not say it.
+    pub because: Option<String>,
+}
+
+impl Limits {
+    /// Every number between two, both included.
+    #[must_use]
+    pub fn between(min: f64, max: f64) -> Self {
+        Self { min, max, slider_min: min, slider_max: max, whole: false, because: None }
+    }
+
+    /// Greater than zero and at most `max`.
+    #[must_use]
+    pub fn above_zero(max: f64) -> Self {
+        Self { min: f64::from(ABOVE_ZERO), slider_min: 0.0, ..Self::between(0.0, max) }
+    }
+
+    /// The same limits with a slider that walks through a part of them.
+    #[must_use]
+    pub fn slider(mut self, min: f64, max: f64) -> Self {
+        (self.slider_min, self.slider_max) = (min, max);
+        self
+    }
+
+    /// The same limits for whole numbers.
+    #[must_use]
+    pub fn whole(mut self) -> Self {
+        self.whole = true;
+        self
+    }
+
+    /// Whether a value is legal.
+    #[must_use]
+    pub fn allows(&self, value: f64) -> bool {
+        value.is_finite() && value >= self.min && value <= self.max && (!self.whole || value.fract() == 0.0)
+    }
+
+    /// Whether zero is excluded though everything above it is legal.
+    #[must_use]
+    pub fn is_above_zero(&self) -> bool {
+        self.min == f64::from(ABOVE_ZERO)
+    }
+
+    /// What is legal, as the end of "must be …".
+    #[must_use]
+    pub fn rule(&self) -> String {
+        let what = if self.whole { "a whole number " } else { "" };
+        let (min, max) = (number(self.min), number(self.max));
+        let range = match (self.is_above_zero(), self.min.is_finite(), self.max.is_finite()) {
+            (true, _, true) => format!("{what}greater than 0 and at most {max}"),
+            (true, _, false) => format!("{what}greater than 0"),
+            (_, true, true) => format!("{what}between {min} and {max}"),
+            (_, true, false) => format!("{what}of at least {min}"),
+            (_, false, true) => format!("{what}of at most {max}"),
+            (_, false, false) if self.whole => "a whole number".to_owned(),
+            (_, false, false) => "a number".to_owned(),
+        };
+        let range = if self.whole { range } else { range.replacen("of at", "at", 1) };
+        match &self.because {
+            Some(because) => format!("{range} ({because})"),
+            None => range,
+        }
+    }
+}
+
+/// A number as people write it: at most four decimals, no trailing zeros, a real minus sign.
+#[must_use]
+pub fn number(value: f64) -> String {
+    if !value.is_finite() {
+        return if value.is_nan() {
+            "–".to_owned()
+        } else if value > 0.0 {
+            "∞".to_owned()
+        } else {
+            "−∞".to_owned()
+        };
+    }
+    let magnitude = value.abs();
+    if magnitude != 0.0 && magnitude < 5e-5 {
+        return format!("{value:.1e}").replace('-', "−");
+    }
+    let text = format!("{value:.4}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
+}
+
+/// A coordinate of a position in a room: 0 < coordinate ≤ size. `axis` is 0 for x, 1 for y, 2 for z.
+#[must_use]
+pub fn position(size: SceneSize, axis: usize) -> Limits {
+    let name = ["wide", "high", "deep"][axis.min(2)];
+    let extent = f64::from(size.corner().to_array()[axis.min(2)]);
+    let because = format!("the room is {} m {name}", number(extent));
+    Limits { because: Some(because), ..Limits::above_zero(extent) }
+}
+
+/// A component of a direction.
+#[must_use]
+pub fn direction() -> Limits {
+    Limits::between(f64::NEG_INFINITY, f64::INFINITY).slider(-1.0, 1.0)
+}
+
+/// A rotation about one axis, degrees.
+#[must_use]
+pub fn rotation() -> Limits {
+    Limits::between(f64::NEG_INFINITY, f64::INFINITY).slider(-180.0, 180.0)
+}
+
+/// The size of an object, metres.
+#[must_use]
+pub fn object_size(size: SceneSize) -> Limits {
+    Limits::above_zero(f64::INFINITY).slider(0.0, f64::from(size.corner().max_element()))
+}
+
+/// How finely an object is cut.
+#[must_use]
+pub fn tessellation(shape: &shape::Declaration) -> Limits {
+    let range = &shape.tessellation;
+    Limits::between(f64::from(*range.start()), f64::from(*range.end())).whole()
+}
+
+/// The intensity of a light.
+#[must_use]
+pub fn intensity(light: &light::Declaration) -> Limits {
+    Limits::between(0.0, f64::INFINITY).slider(0.0, f64::from(light.slider_max))
+}
+
+/// The vertical field of view, degrees.
+#[must_use]
+pub fn field_of_view() -> Limits {
+    Limits::between(1.0, 170.0)
+}
+
+/// The exposure, EV.
+#[must_use]
+pub fn exposure() -> Limits {
+    Limits::between(-32.0, 32.0).slider(-8.0, 8.0)
+}
+
+/// An extent of the room, metres: what stands in the room must stay in it. `name` is what the user
+/// calls a part of the scene.
+#[must_use]
+pub fn dimension(scene: &Scene, axis: usize, name: impl Fn(super::state::Selection) -> String) -> Limits {
+    use super::state::Selection;
+    let at = |p: glam::Vec3| p.to_array()[axis.min(2)];
+    let lights =
+        scene.lights.iter().enumerate().filter_map(|(i, l)| Some((Selection::Light(i), l.position?)));
+    let objects = scene.objects.iter().enumerate().map(|(i, o)| (Selection::Object(i), o.position));
+    let furthest = lights
+        .chain(objects)
+        .chain([(Selection::Observer, scene.observer.position)])
+        .map(|(who, p)| (who, at(p)))
+        .filter(|(_, c)| c.is_finite())
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    let max = f64::from(MAX_DIMENSION);
+    match furthest {
+        Some((who, c)) if c > 0.0 && c <= MAX_DIMENSION => Limits {
+            because: Some(format!(
+                "{} stands at {} = {} m",
+                name(who),
+                ["x", "y", "z"][axis.min(2)],
+                number(f64::from(c))
+            )),
+            ..Limits::between(f64::from(c), max).slider(0.0, max)
+        },
+        _ => Limits::above_zero(max),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_as_people_write_them() {
+        assert_eq!(number(0.8), "0.8");
+        assert_eq!(number(f64::from(0.1f32)), "0.1");
+        assert_eq!(number(-2.0), "−2");
+        assert_eq!(number(-0.0), "0");
+        assert_eq!(number(1e-7), "1.0e−7");
+    }
+
+    #[test]
+    fn rules_are_sentences() {
+        assert_eq!(Limits::between(0.5, 1.0).rule(), "between 0.5 and 1");
+        assert_eq!(Limits::above_zero(90.0).rule(), "greater than 0 and at most 90");
+        assert_eq!(Limits::between(0.0, f64::INFINITY).whole().rule(), "a whole number of at least 0");
+        assert_eq!(Limits::between(0.0, f64::INFINITY).rule(), "at least 0");
+    }
+
+    #[test]
+    fn limits_exclude_what_they_say() {
+        assert!(!Limits::above_zero(1.0).allows(0.0));
+        assert!(!Limits::between(0.0, 9.0).whole().allows(1.5));
+        assert!(!direction().allows(f64::NAN));
+    }
+}

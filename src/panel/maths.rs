@@ -1,0 +1,424 @@
+//! Equations in readable mathematics: variables slanted, words upright, subscripts and superscripts
+//! in their places, broken into lines where they are too long.
+//!
+//! The source is that of [`EquationPart`]: `_x` is a subscript, `^x` a superscript, braces group.
+
+use bevy_egui::egui::{
+    self, Color32, FontId, Id, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType,
+    pos2, vec2,
+};
+
+use super::theme::{self, Palette};
+use crate::reflection::{EquationPart, Term};
+
+/// A piece of an equation that is not broken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Atom {
+    /// A variable, perhaps with an index and a power: `k_d`, `d^2`.
+    Symbol {
+        /// The letter.
+        base: String,
+        /// Below the line.
+        sub: String,
+        /// Above the line.
+        sup: String,
+    },
+    /// A function's name, a number, an operator or a bracket, perhaps with an index and a power.
+    Upright {
+        /// The characters.
+        base: String,
+        /// Below the line.
+        sub: String,
+        /// Above the line.
+        sup: String,
+    },
+    /// A space: where a line may be broken.
+    Space,
+}
+
+impl Atom {
+    /// The symbol as declarations write it (`k_d`), if the atom is one.
+    #[must_use]
+    pub fn symbol(&self) -> Option<String> {
+        match self {
+            Self::Symbol { base, sub, .. } if sub.is_empty() => Some(base.clone()),
+            Self::Symbol { base, sub, .. } => Some(format!("{base}_{sub}")),
+            _ => None,
+        }
+    }
+
+    /// The symbol that is the power of the atom, if the power is one: the `α` of `(N·H)^α`.
+    #[must_use]
+    pub fn power(&self) -> Option<String> {
+        match self {
+            Self::Symbol { sup, .. } | Self::Upright { sup, .. } if sup.chars().all(char::is_alphabetic) => {
+                Some(sup.clone()).filter(|s| s.chars().count() == 1)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Splits an equation into atoms.
+#[must_use]
+pub fn parse(text: &str) -> Vec<Atom> {
+    let chars: Vec<char> = text.chars().collect();
+    let mut atoms = Vec::new();
+    let mut i = 0;
+    while i < chars.len() {
+        let c = chars[i];
+        if c.is_whitespace() {
+            if atoms.last() != Some(&Atom::Space) {
+                atoms.push(Atom::Space);
+            }
+            i += 1;
+            continue;
+        }
+        let start = i;
+        let ascii_word = |c: &char| c.is_ascii_alphabetic();
+        if c.is_ascii_alphabetic() {
+            i += chars[i..].iter().take_while(|c| ascii_word(c)).count();
+        } else if c.is_ascii_digit() {
+            i += chars[i..].iter().take_while(|c| c.is_ascii_digit() || **c == '.').count();
+        } else {
+            i += 1;
+        }
+        let base: String = chars[start..i].iter().collect();
+        let (mut sub, mut sup) = (String::new(), String::new());
+        while let Some(mark @ ('_' | '^')) = chars.get(i).copied() {
+            let (script, next) = script(&chars, i + 1);
+            i = next;
+            if mark == '_' { sub = script } else { sup = script }
+        }
+        // One letter is a variable; several are a word, such as `max`.
+        let variable = c.is_alphabetic() && base.chars().count() == 1;
+        atoms.push(if variable { Atom::Symbol { base, sub, sup } } else { Atom::Upright { base, sub, sup } });
+    }
+    atoms
+}
+
+/// What is raised or lowered: a group in braces, a number, or one character.
+fn script(chars: &[char], start: usize) -> (String, usize) {
+    match chars.get(start) {
+        Some('{') => {
+            let end = chars[start..].iter().position(|c| *c == '}').map_or(chars.len(), |n| start + n);
+            (chars[start + 1..end].iter().collect(), (end + 1).min(chars.len()))
+        }
+        Some(c) if c.is_ascii_digit() => {
+            let n = chars[start..].iter().take_while(|c| c.is_ascii_digit()).count();
+            (chars[start..start + n].iter().collect(), start + n)
+        }
+        Some(c) => (c.to_string(), start + 1),
+        None => (String::new(), start),
+    }
+}
+
+/// The symbol of a parameter, which is all one symbol: what follows `_` is its index, however long.
+#[must_use]
+pub fn parse_symbol(symbol: &str) -> Atom {
+    let (base, sub) = symbol.split_once('_').unwrap_or((symbol, ""));
+    let sub = sub.trim_matches(['{', '}']).to_owned();
+    Atom::Symbol { base: base.to_owned(), sub, sup: String::new() }
+}
+
+/// The same symbol, however it is written.
+#[must_use]
+pub fn same_symbol(a: &str, b: &str) -> bool {
+    let plain = |s: &str| s.replace(['{', '}'], "");
+    plain(a) == plain(b)
+}
+
+/// What the symbols mean that every equation uses.
+#[must_use]
+pub fn meaning(symbol: &str) -> Option<&'static str> {
+    const MEANINGS: &[(&str, &str)] = &[
+        ("I", "the light that leaves the surface towards the observer, per unit of light intensity"),
+        ("I_a", "the ambient term: light without direction"),
+        ("I_d", "the diffuse term: light scattered in all directions"),
+        ("I_s", "the specular term: light gathered into a highlight"),
+        ("N", "the unit normal: the direction in which the surface faces"),
+        ("L", "the unit vector from the surface to the light"),
+        ("V", "the unit vector from the surface to the observer"),
+        ("H", "the half vector: the unit vector halfway between L and V"),
+        ("R", "the mirror direction of L: 2(N·L)N − L"),
+        ("D", "the distribution of the normals of the microfacets"),
+        ("G", "masking and shadowing of microfacets by each other"),
+        ("F", "the Fresnel reflectance: how much a smooth surface mirrors at this angle"),
+        ("F_0", "the Fresnel reflectance when looking straight at the surface"),
+        ("d", "the distance from the light to the point"),
+        ("p", "the point that is lit"),
+        ("π", "3.14159…"),
+        ("θ", "the angle between the axis and the ray"),
+        ("θ_i", "the angle between the normal and the light"),
+        ("θ_r", "the angle between the normal and the observer"),
+        ("θ_h", "the angle between the normal and the half vector"),
+    ];
+    MEANINGS.iter().find(|(s, _)| same_symbol(s, symbol)).map(|(_, m)| *m)
+}
+
+struct Piece {
+    galley: std::sync::Arc<egui::Galley>,
+    offset: Vec2,
+}
+
+struct Laid {
+    pieces: Vec<Piece>,
+    width: f32,
+}
+
+/// Lays an atom out with its baseline at y = 0.
+fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
+    let (base, sub, sup, family) = match atom {
+        Atom::Symbol { base, sub, sup } => {
+            // Capital Greek letters and ∇ are upright by custom; N·L and the like are slanted.
+            (base, sub, sup, theme::maths_italic())
+        }
+        Atom::Upright { base, sub, sup } => (base, sub, sup, theme::maths()),
+        Atom::Space => return Laid { pieces: Vec::new(), width: 0.28 * size },
+    };
+    let baseline = |galley: &egui::Galley| {
+        galley.rows.first().map_or(0.0, |row| row.row.glyphs.first().map_or(0.0, |g| g.pos.y))
+    };
+    let text = |text: &str, family: egui::FontFamily, size: f32| {
+        ui.painter().layout_no_wrap(text.to_owned(), FontId::new(size, family), colour)
+    };
+    let padding = match base.as_str() {
+        "·" | "/" => 0.08 * size,
+        "," => 0.0,
+        _ => 0.0,
+    };
+    let galley = text(base, family, size);
+    let mut pieces = Vec::new();
+    let mut x = padding;
+    let y = -baseline(&galley);
+    let advance = galley.size().x;
+    pieces.push(Piece { galley, offset: vec2(x, y) });
+    x += advance;
+    let script_size = (0.7 * size).max(9.0);
+    let script_family = |s: &str| {
+        if s.chars().count() == 1 && s.chars().all(char::is_alphabetic) {
+            theme::maths_italic()
+        } else {
+            theme::maths()
+        }
+    };
+    let mut width = x;
+    for (script, shift) in [(sub, 0.22 * size), (sup, -0.38 * size)] {
+        if !script.is_empty() {
+            let galley = text(script, script_family(script), script_size);
+            let y = shift - baseline(&galley);
+            width = width.max(x + 0.04 * size + galley.size().x);
+            pieces.push(Piece { galley, offset: vec2(x + 0.04 * size, y) });
+        }
+    }
+    Laid { pieces, width: width + padding }
+}
+
+/// One symbol in the colour of text, at a place; returns its width. `baseline` is where it stands.
+pub fn paint_symbol(ui: &Ui, left_baseline: Pos2, symbol: &str, size: f32, colour: Color32) -> f32 {
+    let laid = lay_out(ui, &parse_symbol(symbol), size, colour);
+    for piece in laid.pieces {
+        ui.painter().galley(left_baseline + piece.offset, piece.galley, colour);
+    }
+    laid.width
+}
+
+/// The width of a symbol.
+#[must_use]
+pub fn symbol_width(ui: &Ui, symbol: &str, size: f32) -> f32 {
+    lay_out(ui, &parse_symbol(symbol), size, Color32::WHITE).width
+}
+
+/// Says that the pointer is on something that has this symbol, until the next pass is over.
+pub fn highlight(ctx: &egui::Context, symbol: &str) {
+    let now = ctx.cumulative_pass_nr();
+    ctx.data_mut(|d| d.insert_temp(Id::new("highlighted symbol"), (now, symbol.to_owned())));
+}
+
+/// The symbol that [`highlight`] named last, if that is not long ago.
+#[must_use]
+pub fn highlighted(ctx: &egui::Context) -> Option<String> {
+    let now = ctx.cumulative_pass_nr();
+    let stored: Option<(u64, String)> = ctx.data(|d| d.get_temp(Id::new("highlighted symbol")));
+    stored.filter(|(pass, _)| now.saturating_sub(*pass) <= 1).map(|(_, symbol)| symbol)
+}
+
+/// A sample of the line that stands for a term in equations and plots: colour and dash.
+pub fn term_sample(painter: &egui::Painter, from: Pos2, to: Pos2, term: Term, palette: &Palette) {
+    let stroke = Stroke::new(2.0, palette.term(term));
+    match theme::term_dash(term) {
+        [dash, gap, ..] if *gap > 0.0 => {
+            painter.extend(Shape::dashed_line(&[from, to], stroke, *dash, *gap));
+        }
+        _ => {
+            painter.line_segment([from, to], stroke);
+        }
+    }
+}
+
+/// An equation, a line for each part, coloured by term. `name` says what a symbol means; it is the
+/// tooltip. Hovering a symbol highlights it; so does [`highlight`].
+pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let size = 17.0 * scale;
+    let line_height = 26.0 * scale;
+    let sample = if parts.len() > 1 { 20.0 * scale } else { 0.0 };
+    let width = ui.available_width();
+    let marked = highlighted(ui.ctx());
+
+    struct Placed {
+        laid: Laid,
+        symbol: Option<String>,
+        power: Option<String>,
+        x: f32,
+        line: usize,
+        part: usize,
+    }
+    let mut placed: Vec<Placed> = Vec::new();
+    let mut line = 0;
+    let mut firsts = Vec::new();
+    for (part, p) in parts.iter().enumerate() {
+        firsts.push(line);
+        let colour = palette.term_text(p.term);
+        let atoms = parse(p.text);
+        // A continued line begins under what follows the equals sign.
+        let mut x = sample;
+        let mut hang = sample + 24.0 * scale;
+        let mut word: Vec<Placed> = Vec::new();
+        let mut word_width = 0.0;
+        let mut depth = 0i32;
+        let mut flush =
+            |word: &mut Vec<Placed>, word_width: &mut f32, x: &mut f32, line: &mut usize, hang: f32| {
+                if *x + *word_width > width && *x > hang {
+                    *line += 1;
+                    *x = hang;
+                }
+                for mut w in word.drain(..) {
+                    w.x += *x;
+                    w.line = *line;
+                    placed.push(w);
+                }
+                *x += *word_width;
+                *word_width = 0.0;
+            };
+        for atom in &atoms {
+            let laid = lay_out(ui, atom, size, colour);
+            let glue = matches!(atom, Atom::Space) && depth > 1;
+            if matches!(atom, Atom::Space) && !glue {
+                flush(&mut word, &mut word_width, &mut x, &mut line, hang);
+                x += laid.width;
+                continue;
+            }
+            if let Atom::Upright { base, .. } = atom {
+                depth += i32::from(base == "(") - i32::from(base == ")");
+                if base == "=" && line == firsts[part] {
+                    hang = (x + word_width + laid.width + 0.28 * size).min(width * 0.4);
+                }
+            }
+            let advance = laid.width;
+            word.push(Placed {
+                laid,
+                symbol: atom.symbol(),
+                power: atom.power(),
+                x: word_width,
+                line: 0,
+                part,
+            });
+            word_width += advance;
+        }
+        flush(&mut word, &mut word_width, &mut x, &mut line, hang);
+        line += 1;
+    }
+
+    let (rect, response) = ui.allocate_exact_size(vec2(width, line_height * line as f32), Sense::hover());
+    let spoken: Vec<_> = parts.iter().map(|p| p.text).collect();
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, spoken.join("; ")));
+    if !ui.is_rect_visible(rect) {
+        return response;
+    }
+    let painter = ui.painter_at(rect.expand(2.0));
+    for (part, first) in parts.iter().zip(&firsts) {
+        if sample > 0.0 {
+            let y = rect.top() + line_height * (*first as f32 + 0.52);
+            let x = rect.left();
+            term_sample(&painter, pos2(x, y), pos2(x + sample - 6.0 * scale, y), part.term, &palette);
+        }
+    }
+    for (i, p) in placed.iter().enumerate() {
+        let baseline = pos2(rect.left() + p.x, rect.top() + line_height * (p.line as f32 + 0.68));
+        let colour = palette.term_text(parts[p.part].term);
+        let line = rect.top() + line_height * p.line as f32;
+        let raised = p.laid.pieces.last().filter(|_| p.power.is_some());
+        let base_width = raised.map_or(p.laid.width, |piece| piece.offset.x);
+        let base = Rect::from_min_size(
+            pos2(baseline.x - 1.0, line + 2.0),
+            vec2(base_width + 2.0, line_height - 4.0),
+        );
+        let power = raised.map(|piece| {
+            let width = piece.galley.size().x + 3.0;
+            Rect::from_min_size(
+                pos2(baseline.x + piece.offset.x - 1.0, line + 1.0),
+                vec2(width, 0.62 * line_height),
+            )
+        });
+        let cells = [(p.symbol.as_ref(), Some(base)), (p.power.as_ref(), power)];
+        for (k, (symbol, cell)) in cells.into_iter().enumerate() {
+            let (Some(symbol), Some(cell)) = (symbol, cell) else { continue };
+            let Some(meaning) = name(symbol) else { continue };
+            let here = ui.interact(cell, response.id.with((i, k)), Sense::hover());
+            if here.hovered() {
+                highlight(ui.ctx(), symbol);
+            }
+            here.on_hover_text(meaning);
+            if marked.as_ref().is_some_and(|m| same_symbol(m, symbol)) {
+                painter.rect_filled(cell, 3.0, palette.chosen);
+                painter.hline(cell.x_range(), cell.bottom() - 1.0, Stroke::new(1.5, palette.accent));
+            }
+        }
+        for piece in &p.laid.pieces {
+            painter.galley(baseline + piece.offset, piece.galley.clone(), colour);
+        }
+    }
+    response
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn symbol(base: &str, sub: &str, sup: &str) -> Atom {
+        Atom::Symbol { base: base.to_owned(), sub: sub.to_owned(), sup: sup.to_owned() }
+    }
+
+    #[test]
+    fn subscripts_superscripts_and_words_are_told_apart() {
+        let atoms = parse("I_d = max(0, N·L)^{p+1} d^2");
+        assert_eq!(atoms[0], symbol("I", "d", ""));
+        assert_eq!(atoms[0].symbol().as_deref(), Some("I_d"));
+        assert!(atoms.contains(&Atom::Upright {
+            base: "max".to_owned(),
+            sub: String::new(),
+            sup: String::new()
+        }));
+        assert!(atoms.contains(&Atom::Upright {
+            base: ")".to_owned(),
+            sub: String::new(),
+            sup: "p+1".to_owned()
+        }));
+        assert_eq!(atoms.last(), Some(&symbol("d", "", "2")));
+    }
+
+    #[test]
+    fn the_index_of_a_symbol_alone_may_be_long() {
+        assert_eq!(parse_symbol("α_GGX"), symbol("α", "GGX", ""));
+        assert!(same_symbol("F_{90}", "F_90"));
+    }
+
+    #[test]
+    fn unfinished_mathematics_is_no_reason_to_stop() {
+        for text in ["", "_", "a_", "a^{", "{}", "x__y", "∑_{i=1}^n"] {
+            let _ = parse(text);
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The strip at the bottom: messages, which stay until they are dismissed.
+
+use bevy_egui::egui::{self, Align, Layout, RichText, ScrollArea, Sense, Ui, vec2};
+
+use super::{
+    Panel, Place,
+    icon::{self, Icon},
+    state::{Action, Lab},
+    theme::{self, Palette},
+};
+use crate::registry::Registry;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Messages;
+
+impl Panel for Messages {
+    fn id(&self) -> &'static str {
+        "messages"
+    }
+
+    fn title(&self) -> &'static str {
+        "Messages"
+    }
+
+    fn place(&self) -> Place {
+        Place::Bottom
+    }
+
+    fn show(&self, ui: &mut Ui, lab: &Lab, _registry: &Registry) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let palette = Palette::here(ui);
+        let scale = theme::scale_here(ui);
+        if lab.messages.is_empty() {
+            ui.add_space(8.0);
+            ui.weak("No messages. Problems with files, values and shaders appear here and stay until you dismiss them.");
+            return actions;
+        }
+        ui.horizontal(|ui| {
+            let all = || {
+                lab.messages
+                    .iter()
+                    .map(|m| format!("{}: {}", m.severity.name(), m.text))
+                    .collect::<Vec<_>>()
+                    .join("\n")
+            };
+            if ui.button("Copy all").clicked() {
+                actions.push(Action::Copy(all()));
+            }
+            if ui.button("Dismiss all").clicked() {
+                actions.push(Action::DismissAll);
+            }
+        });
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for (i, message) in lab.messages.iter().enumerate().rev() {
+                ui.push_id(i, |ui| {
+                    ui.horizontal_top(|ui| {
+                        ui.spacing_mut().item_spacing.x = 6.0 * scale;
+                        let (rect, sign) = ui.allocate_exact_size(vec2(16.0, 20.0) * scale, Sense::hover());
+                        icon::severity(ui.painter(), rect.center(), 6.0 * scale, message.severity, &palette);
+                        sign.on_hover_text(message.severity.name());
+                        let width = ui.available_width() - 58.0 * scale;
+                        ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
+                            ui.set_width(width);
+                            ui.add_space(2.0 * scale);
+                            ui.add(egui::Label::new(RichText::new(&message.text)).wrap().selectable(true));
+                        });
+                        if icon::button(ui, Icon::Copy, "Copy the message").clicked() {
+                            actions.push(Action::Copy(message.text.clone()));
+                        }
+                        if icon::button(ui, Icon::Cross, "Dismiss the message").clicked() {
+                            actions.push(Action::Dismiss(i));
+                        }
+                    });
+                });
+            }
+        });
+        actions
+    }
+}

@@ -1,0 +1,92 @@
+//! Questions that must be answered: the only thing that stops everything else.
+
+use bevy_egui::egui::{self, Align, Button, Id, Key, Layout, Modal, RichText, Ui, vec2};
+
+use super::{
+    state::{Action, Answer, Lab, Question},
+    theme::{self, Palette},
+};
+
+/// Shows the open question. Enter gives the first answer, which loses nothing; Escape the last.
+pub fn show(ctx: &egui::Context, lab: &Lab) -> Vec<Action> {
+    let Some(question) = &lab.question else { return Vec::new() };
+    let (title, text, details, answers) = words(lab, question);
+    let mut out = None;
+    let scale = theme::scale(&lab.view);
+    Modal::new(Id::new("question")).show(ctx, |ui: &mut Ui| {
+        let palette = Palette::here(ui);
+        ui.set_width(420.0 * scale);
+        egui::Frame::new().inner_margin(8.0).show(ui, |ui| {
+            ui.label(RichText::new(title).heading());
+            ui.add_space(8.0);
+            ui.add(egui::Label::new(text).wrap());
+            for (what, default) in details {
+                ui.add_space(4.0);
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(theme::strong(ui, what));
+                    ui.label(RichText::new(format!("default: {default}")).color(palette.weak));
+                });
+            }
+            ui.add_space(16.0);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                for (i, (label, answer)) in answers.iter().enumerate() {
+                    let label = if i == 0 { theme::strong(ui, *label) } else { RichText::new(*label) };
+                    let mut button = Button::new(label).min_size(vec2(80.0, 28.0) * scale);
+                    if i == 0 {
+                        button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
+                    }
+                    let response = ui.add(button);
+                    // The keyboard starts here, not in what lies below.
+                    let focused = ui.memory(|m| m.focused());
+                    if i == 0 && focused.is_none() {
+                        response.request_focus();
+                    }
+                    if response.clicked() {
+                        out = Some(*answer);
+                    }
+                }
+            });
+        });
+    });
+    if ctx.input(|i| i.key_pressed(Key::Escape)) {
+        out = Some(Answer::Cancel);
+    }
+    out.map(Action::Answer).into_iter().collect()
+}
+
+type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, Answer)>);
+
+fn words(lab: &Lab, question: &Question) -> Words {
+    match question {
+        Question::Unsaved { .. } => (
+            "Save the changes?",
+            format!("“{}” has changes that are not in its file. Without saving they are lost.", lab.title()),
+            Vec::new(),
+            vec![("Save", Answer::Save), ("Do not save", Answer::Discard), ("Cancel", Answer::Cancel)],
+        ),
+        Question::MissingParts { path, parts, .. } => {
+            let what = if parts.len() == 1 { "a part" } else { "parts" };
+            (
+                "Use the defaults?",
+                format!("{} lacks {what} that every scene has. Shall the defaults be used?", path.display()),
+                parts.iter().map(|p| (p.name.clone(), p.default.clone())).collect(),
+                vec![("Use the defaults", Answer::UseDefaults), ("Do not open", Answer::Cancel)],
+            )
+        }
+        Question::EmptyFile { path } => (
+            "Load the default scene?",
+            format!("{} is empty.", path.display()),
+            Vec::new(),
+            vec![("Load the default scene", Answer::UseDefaults), ("Cancel", Answer::Cancel)],
+        ),
+        Question::ChangedOnDisk { path } => (
+            "The file has changed",
+            format!(
+                "{} was changed by another program since it was read. Replace it with what is on screen, or read it again and lose what is on screen?",
+                path.display()
+            ),
+            Vec::new(),
+            vec![("Cancel", Answer::Cancel), ("Read again", Answer::Reload), ("Replace", Answer::Overwrite)],
+        ),
+    }
+}

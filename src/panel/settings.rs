@@ -1,0 +1,153 @@
+//! What survives a restart: theme, type size, panel sizes, recent files.
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use serde::{Deserialize, Serialize};
+
+use super::state::{ThemeChoice, View};
+
+/// The environment variable that names another folder for the settings.
+pub const FOLDER_VARIABLE: &str = "LCM_CONFIG_DIR";
+/// The name of the file.
+const FILE: &str = "settings.json";
+
+/// What survives a restart.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Light or dark.
+    pub theme: ThemeChoice,
+    /// Large type, for projectors.
+    pub large_type: bool,
+    /// Width of the tree, points.
+    pub left_width: f32,
+    /// Width of the inspector, points.
+    pub right_width: f32,
+    /// Height of the strip at the bottom, points.
+    pub bottom_height: f32,
+    /// Files opened or saved, latest first.
+    pub recent_files: Vec<PathBuf>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let view = View::default();
+        Self {
+            theme: view.theme,
+            large_type: view.large_type,
+            left_width: view.left_width,
+            right_width: view.right_width,
+            bottom_height: view.bottom_height,
+            recent_files: Vec::new(),
+        }
+    }
+}
+
+/// The folder of the settings: the one that [`FOLDER_VARIABLE`] names, else the usual place of the
+/// operating system; `None` when there is neither.
+#[must_use]
+pub fn folder() -> Option<PathBuf> {
+    match std::env::var_os(FOLDER_VARIABLE) {
+        Some(folder) if !folder.is_empty() => Some(PathBuf::from(folder)),
+        _ => {
+            directories::ProjectDirs::from("", "", "lights-camera-models").map(|d| d.config_dir().to_owned())
+        }
+    }
+}
+
+/// Reads the settings in a folder. No file means defaults; a file that cannot be read means defaults
+/// and a sentence that says so.
+#[must_use]
+pub fn load(folder: &Path) -> (Settings, Option<String>) {
+    let path = folder.join(FILE);
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return (Settings::default(), None),
+        Err(e) => return (Settings::default(), Some(unreadable(&path, &e))),
+    };
+    match serde_json::from_str::<Settings>(&text) {
+        Ok(settings) => (settings.tidy(), None),
+        Err(e) => (Settings::default(), Some(unreadable(&path, &e))),
+    }
+}
+
+fn unreadable(path: &Path, why: &dyn std::fmt::Display) -> String {
+    format!("The settings in {} cannot be read ({why}); defaults are used instead.", path.display())
+}
+
+/// Writes the settings to a folder, all or nothing.
+///
+/// # Errors
+/// A sentence, when the folder or the file cannot be written.
+pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
+    let path = folder.join(FILE);
+    let write = || -> std::io::Result<()> {
+        std::fs::create_dir_all(folder)?;
+        let mut file = tempfile::NamedTempFile::new_in(folder)?;
+        serde_json::to_writer_pretty(&mut file, settings)?;
+        file.write_all(b"\n")?;
+        file.as_file().sync_all()?;
+        file.persist(&path)?;
+        Ok(())
+    };
+    write().map_err(|e| format!("The settings cannot be written to {}: {e}.", path.display()))
+}
+
+impl Settings {
+    /// Sizes that no screen has (someone edited the file) become the defaults.
+    fn tidy(mut self) -> Self {
+        let default = Self::default();
+        let tidy = |value: &mut f32, default: f32| {
+            if !value.is_finite() || !(64.0..=2000.0).contains(value) {
+                *value = default;
+            }
+        };
+        tidy(&mut self.left_width, default.left_width);
+        tidy(&mut self.right_width, default.right_width);
+        tidy(&mut self.bottom_height, default.bottom_height);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_saved_is_loaded() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        let settings = Settings {
+            theme: ThemeChoice::Light,
+            large_type: true,
+            recent_files: vec![PathBuf::from("a.json")],
+            ..Settings::default()
+        };
+        save(folder.path(), &settings)?;
+        assert_eq!(load(folder.path()), (settings, None));
+        Ok(())
+    }
+
+    #[test]
+    fn no_file_means_defaults_and_a_broken_one_says_so() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        assert_eq!(load(folder.path()), (Settings::default(), None));
+        std::fs::write(folder.path().join(FILE), "{ \"theme\": ")?;
+        let (settings, complaint) = load(folder.path());
+        assert_eq!(settings, Settings::default());
+        assert!(complaint.is_some_and(|c| c.contains("cannot be read")));
+        Ok(())
+    }
+
+    #[test]
+    fn sizes_that_no_screen_has_become_the_defaults() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        std::fs::write(folder.path().join(FILE), "{ \"left_width\": 1e9, \"large_type\": true }")?;
+        let (settings, _) = load(folder.path());
+        assert_eq!(settings.left_width, Settings::default().left_width);
+        assert!(settings.large_type);
+        Ok(())
+    }
+}

@@ -1,0 +1,1225 @@
+//! The state of the window: the document, what is selected, what is shown; and the actions that
+//! change it.
+//!
+//! [`Lab`] is a Bevy resource, and knows nothing of Bevy otherwise: panels read it and return
+//! [`Action`]s, [`Lab::apply`] carries them out and returns the [`Effect`]s that need files, entities
+//! or the operating system. All of it can be driven without a window.
+
+use std::path::{Path, PathBuf};
+
+use bevy::ecs::{message::Message, resource::Resource};
+use bevy_egui::egui;
+use glam::{Quat, Vec3};
+
+use super::{PanelInfo, limits, settings::Settings};
+use crate::{
+    light::MAX_LIGHTS,
+    optics::TermSelection,
+    reflection::parameter::Value,
+    registry::Registry,
+    scene::{Display, Light, MAX_OBJECTS, Object, Observer, Scene, SceneSize},
+};
+
+/// The most models that keys 1–9 reach.
+pub const MODEL_SLOTS: usize = 9;
+/// The most files that the list of recent files holds.
+pub const RECENT_FILES: usize = 10;
+/// Two positions nearer than this are the same place, metres.
+const SAME_PLACE: f32 = 1e-6;
+
+/// What the inspector shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Selection {
+    /// The room and the display: what is there when nothing in particular is selected.
+    #[default]
+    Room,
+    /// The observer.
+    Observer,
+    /// A light, by its index in the scene.
+    Light(usize),
+    /// An object, by its index in the scene.
+    Object(usize),
+}
+
+/// The state of the window.
+#[derive(Clone, Debug, Resource)]
+pub struct Lab {
+    /// The document.
+    pub scene: Scene,
+    /// The file that the document came from or was last saved to.
+    pub path: Option<PathBuf>,
+    /// What the inspector shows.
+    pub selection: Selection,
+    /// Messages, oldest first; each stays until it is dismissed.
+    pub messages: Vec<Note>,
+    /// What is shown and how.
+    pub view: View,
+    /// Files opened or saved, latest first.
+    pub recent_files: Vec<PathBuf>,
+    /// The models that keys 1–9 choose. A model keeps its number while it is among them.
+    pub model_slots: Vec<String>,
+    /// Facts for the status line, fed by the app.
+    pub status: Status,
+    /// What the picture must say about itself, fed by the app.
+    pub badges: Vec<Badge>,
+    /// The orientation of the camera, fed by the app; turns the axes in the corner of the picture.
+    pub camera: Quat,
+    /// The question that waits for an answer. While there is one, nothing else can be done.
+    pub question: Option<Question>,
+    /// Where the picture is, in points; written by the panels.
+    pub picture_rect: egui::Rect,
+    /// Whether the pointer is over the picture with no panel, menu or dialog between; written by the
+    /// panels. What turns the camera must ask here first.
+    pub pointer_in_picture: bool,
+    /// Whether keys may steer the picture: no field has the focus and no question is open; written by
+    /// the panels.
+    pub keyboard_free: bool,
+    /// The panels that there are, for the menus; written when they are shown.
+    pub panels: Vec<PanelInfo>,
+    /// The part whose name is being typed in the tree.
+    pub renaming: Option<Selection>,
+    /// The document as it is in the file.
+    saved: Scene,
+    /// What waits for the document to be saved first.
+    after_save: Option<Action>,
+    /// Slots of [`Self::model_slots`] in the order of use, latest last.
+    slot_use: Vec<String>,
+}
+
+/// A message to the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// How bad it is.
+    pub severity: Severity,
+    /// What happened, where, and what to do.
+    pub text: String,
+}
+
+/// How bad a message is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Severity {
+    /// Good to know.
+    Info,
+    /// Something is not as asked, and the picture is still right.
+    Warning,
+    /// Something failed.
+    Error,
+}
+
+impl Severity {
+    /// The word for it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Info => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// Light or dark.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ThemeChoice {
+    /// Near-black panels: for judging pictures.
+    #[default]
+    Dark,
+    /// Near-white panels: for bright rooms and projectors.
+    Light,
+}
+
+/// What is shown and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// Light or dark.
+    pub theme: ThemeChoice,
+    /// Large type, for projectors.
+    pub large_type: bool,
+    /// Whether lights have gizmos in the picture.
+    pub show_gizmos: bool,
+    /// Whether the outline of the room is drawn.
+    pub show_room: bool,
+    /// Which terms of the equation the picture shows.
+    pub terms: TermSelection,
+    /// Whether the strip at the bottom is unfolded.
+    pub bottom_open: bool,
+    /// Id of the panel that the strip at the bottom shows.
+    pub bottom_tab: String,
+    /// Whether the tree at the left is shown.
+    pub left_open: bool,
+    /// Whether the inspector at the right is shown.
+    pub right_open: bool,
+    /// Width of the tree, points.
+    pub left_width: f32,
+    /// Width of the inspector, points.
+    pub right_width: f32,
+    /// Height of the strip at the bottom, points.
+    pub bottom_height: f32,
+    /// Whether the list of keys is open.
+    pub keys_open: bool,
+    /// Whether "about" is open.
+    pub about_open: bool,
+    /// Whether the chooser of reflection models is open.
+    pub chooser_open: bool,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            theme: ThemeChoice::Dark,
+            large_type: false,
+            show_gizmos: true,
+            show_room: true,
+            terms: TermSelection::All,
+            bottom_open: false,
+            bottom_tab: "messages".to_owned(),
+            left_open: true,
+            right_open: true,
+            left_width: 208.0,
+            right_width: 344.0,
+            bottom_height: 144.0,
+            keys_open: false,
+            about_open: false,
+            chooser_open: false,
+        }
+    }
+}
+
+/// Facts for the status line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Status {
+    /// Mean time per frame, milliseconds; 0 when not yet known.
+    pub frame_ms: f32,
+    /// The interface to the graphics card: "Vulkan", "Metal", …
+    pub backend: String,
+    /// The graphics card.
+    pub adapter: String,
+    /// How the shaders are.
+    pub shaders: Shaders,
+    /// What is in progress, from 0 to 1, and what it is.
+    pub progress: Option<(String, f32)>,
+}
+
+impl Status {
+    /// Frames per second; 0 when not yet known.
+    #[must_use]
+    pub fn fps(&self) -> f32 {
+        if self.frame_ms > 0.0 { 1000.0 / self.frame_ms } else { 0.0 }
+    }
+}
+
+/// How the shaders are.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Shaders {
+    /// All compiled.
+    #[default]
+    Ready,
+    /// Some are being compiled.
+    Compiling,
+    /// The last change does not compile; the picture shows the one before.
+    Stale,
+}
+
+/// What the picture says about itself in its corner, such as "stale shader".
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Badge {
+    /// How bad it is.
+    pub severity: Severity,
+    /// A few words.
+    pub text: String,
+    /// The whole story, for the tooltip.
+    pub help: String,
+}
+
+/// A question that must be answered.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Question {
+    /// There are unsaved changes, and this would lose them.
+    Unsaved {
+        /// What was asked for.
+        then: Box<Action>,
+    },
+    /// A file lacks parts that have defaults (R3).
+    MissingParts {
+        /// The file.
+        path: PathBuf,
+        /// The scene with the defaults in place.
+        scene: Box<Scene>,
+        /// Which parts are missing.
+        parts: Vec<MissingPart>,
+    },
+    /// The file is empty (R2).
+    EmptyFile {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file changed on disk since it was read.
+    ChangedOnDisk {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// A part that a scene file lacks, and its default.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MissingPart {
+    /// What people call it: "the scene size".
+    pub name: String,
+    /// The default in words: "10 × 10 × 10 m".
+    pub default: String,
+}
+
+/// The answer to a question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Save first, then do what was asked for.
+    Save,
+    /// Lose the changes and do what was asked for.
+    Discard,
+    /// Do nothing.
+    Cancel,
+    /// Use the defaults.
+    UseDefaults,
+    /// Replace what is on disk.
+    Overwrite,
+    /// Take what is on disk.
+    Reload,
+}
+
+/// What a user can do. Panels return these.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Start a new default scene.
+    New,
+    /// Choose a file to open.
+    OpenDialog,
+    /// Open a file.
+    Open(PathBuf),
+    /// Read the file again.
+    Reload,
+    /// Save to the file of the document, or choose one.
+    Save,
+    /// Choose a file and save to it.
+    SaveAsDialog,
+    /// Save to a file.
+    SaveAs(PathBuf),
+    /// Forget the list of recent files.
+    ClearRecent,
+    /// Close the window.
+    Quit,
+    /// Answer the open question.
+    Answer(Answer),
+    /// Select a part of the scene.
+    Select(Selection),
+    /// Select the next object.
+    SelectNext,
+    /// Select the object before.
+    SelectPrevious,
+    /// Add a light of this type.
+    AddLight(String),
+    /// Add an object of this type.
+    AddObject(String),
+    /// Add another one like this.
+    Duplicate(Selection),
+    /// Remove a light or an object.
+    Remove(Selection),
+    /// Begin typing the name of a part in the tree.
+    BeginRename(Selection),
+    /// Stop typing without a change.
+    CancelRename,
+    /// Change the scene.
+    Edit(Edit),
+    /// Choose the n-th of the recent models, from 0.
+    RecentModel(usize),
+    /// Change the exposure by so many EV.
+    Expose(f32),
+    /// Show the next term of the equation alone.
+    NextTerms,
+    /// Change what is shown.
+    View(ViewChange),
+    /// Put the camera where the observer is.
+    HomeView,
+    /// Let the camera look at what is selected.
+    FocusSelection,
+    /// Make the place of the camera that of the observer.
+    ObserverFromView,
+    /// Put text on the clipboard.
+    Copy(String),
+    /// Say something.
+    Say(Severity, String),
+    /// Remove a message.
+    Dismiss(usize),
+    /// Remove all messages.
+    DismissAll,
+}
+
+/// A change of what is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ViewChange {
+    /// See [`View::theme`].
+    Theme(ThemeChoice),
+    /// See [`View::large_type`].
+    LargeType(bool),
+    /// See [`View::show_gizmos`].
+    Gizmos(bool),
+    /// See [`View::show_room`].
+    Room(bool),
+    /// See [`View::terms`].
+    Terms(TermSelection),
+    /// Whether the strip at the bottom is unfolded.
+    Bottom(bool),
+    /// Which panel the strip at the bottom shows; unfolds it.
+    BottomTab(String),
+    /// See [`View::left_open`].
+    Left(bool),
+    /// See [`View::right_open`].
+    Right(bool),
+    /// The widths of the panels after dragging: tree, inspector, height of the strip.
+    Sizes {
+        /// See [`View::left_width`].
+        left: f32,
+        /// See [`View::right_width`].
+        right: f32,
+        /// See [`View::bottom_height`].
+        bottom: f32,
+    },
+    /// See [`View::keys_open`].
+    Keys(bool),
+    /// See [`View::about_open`].
+    About(bool),
+    /// See [`View::chooser_open`].
+    Chooser(bool),
+}
+
+/// A change of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// The name of the scene; empty for none.
+    SceneName(String),
+    /// What the scene shows; empty for none.
+    SceneDescription(String),
+    /// The extent of the room.
+    SceneSize(SceneSize),
+    /// Tone mapping, exposure, encoding.
+    Display(Display),
+    /// The reflection model of the scene.
+    Model(String),
+    /// The shading mode of the scene.
+    Mode(String),
+    /// The observer.
+    Observer(Observer),
+    /// A field of a light.
+    Light(usize, LightField),
+    /// A field of an object.
+    Object(usize, ObjectField),
+}
+
+/// A field of a light with its new value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightField {
+    /// The name; empty for none.
+    Name(String),
+    /// The type.
+    Kind(String),
+    /// Where it stands.
+    Position(Vec3),
+    /// Where it shines.
+    Direction(Vec3),
+    /// Colour.
+    Colour([u8; 3]),
+    /// Intensity.
+    Intensity(f32),
+    /// A parameter of the type.
+    Parameter(&'static str, Value),
+}
+
+/// A field of an object with its new value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ObjectField {
+    /// The name; empty for none.
+    Name(String),
+    /// The type.
+    Kind(String),
+    /// Where its centre is.
+    Position(Vec3),
+    /// Largest extent.
+    Size(f32),
+    /// Euler angles XYZ, degrees.
+    Rotation(Vec3),
+    /// How finely it is cut; `None` for the default of the type.
+    Tessellation(Option<u32>),
+    /// Its own reflection model; `None` for the scene's.
+    Model(Option<String>),
+    /// Its own shading mode; `None` for the scene's.
+    Mode(Option<String>),
+    /// A parameter of the material.
+    Material(&'static str, Value),
+}
+
+/// What needs files, entities or the operating system; the app carries these out.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Show the dialog that chooses a file to open.
+    PickOpen,
+    /// Show the dialog that chooses a file to save to.
+    PickSave,
+    /// Read a file; see [`files::run`](super::files::run).
+    OpenFile(PathBuf),
+    /// Write the document; see [`files::run`](super::files::run).
+    SaveFile {
+        /// Where to.
+        path: PathBuf,
+        /// Whether to replace a file that changed on disk since it was read, or that was never read.
+        overwrite: bool,
+    },
+    /// The document is another one: forget what belonged to the one before.
+    DocumentChanged,
+    /// End the program.
+    Quit,
+    /// Put the camera where the observer is.
+    HomeView,
+    /// Let the camera look at what is selected.
+    FocusSelection,
+    /// Write the place of the camera into the observer.
+    ObserverFromView,
+    /// Put text on the clipboard.
+    CopyText(String),
+    /// Write the settings.
+    SaveSettings,
+}
+
+/// An [`Effect`] on its way to the systems that carry it out.
+#[derive(Clone, Debug, PartialEq, Message)]
+pub struct LabEffect(pub Effect);
+
+impl Default for Lab {
+    fn default() -> Self {
+        Self::new(Scene::default())
+    }
+}
+
+impl Lab {
+    /// A window on a scene that is in no file.
+    #[must_use]
+    pub fn new(scene: Scene) -> Self {
+        let mut lab = Self {
+            saved: scene.clone(),
+            selection: Selection::Room,
+            scene,
+            path: None,
+            messages: Vec::new(),
+            view: View::default(),
+            recent_files: Vec::new(),
+            model_slots: Vec::new(),
+            status: Status::default(),
+            badges: Vec::new(),
+            camera: Quat::IDENTITY,
+            question: None,
+            picture_rect: egui::Rect::NOTHING,
+            pointer_in_picture: false,
+            keyboard_free: true,
+            panels: Vec::new(),
+            renaming: None,
+            after_save: None,
+            slot_use: Vec::new(),
+        };
+        lab.select_first();
+        lab.use_slot(&lab.scene.reflection_model.clone());
+        lab
+    }
+
+    /// Whether the document differs from its file.
+    #[must_use]
+    pub fn is_dirty(&self) -> bool {
+        self.scene != self.saved
+    }
+
+    /// What the window calls the document: the name of the scene, else the name of the file.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let file = || Some(self.path.as_ref()?.file_stem()?.to_string_lossy().into_owned());
+        self.scene.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
+    }
+
+    /// What people call a part of the scene: its name, or its type and its number among its type.
+    #[must_use]
+    pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
+        name_of(&self.scene, part, registry)
+    }
+
+    /// Adds a message; an error unfolds the strip that shows it.
+    pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
+        let message = Note { severity, text: text.into() };
+        // The same words twice in a row say no more than once.
+        if self.messages.last() != Some(&message) {
+            self.messages.push(message);
+        }
+        if severity == Severity::Error {
+            self.view.bottom_open = true;
+            "messages".clone_into(&mut self.view.bottom_tab);
+        }
+    }
+
+    /// The worst severity among the messages.
+    #[must_use]
+    pub fn worst(&self) -> Option<Severity> {
+        self.messages.iter().map(|m| m.severity).max()
+    }
+
+    /// The scene of a file has been read: it becomes the document.
+    pub fn opened(&mut self, path: PathBuf, scene: Scene) -> Vec<Effect> {
+        self.remember_file(&path);
+        self.replace_document(Some(path), scene);
+        vec![Effect::DocumentChanged, Effect::SaveSettings]
+    }
+
+    /// The document has been written. Returns what waited for it.
+    pub fn saved(&mut self, path: PathBuf, registry: &Registry) -> Vec<Effect> {
+        self.remember_file(&path);
+        self.path = Some(path);
+        self.saved = self.scene.clone();
+        let mut effects = vec![Effect::SaveSettings];
+        if let Some(action) = self.after_save.take() {
+            effects.extend(self.apply(action, registry));
+        }
+        effects
+    }
+
+    /// The document could not be written, or no file was chosen: what waited for it is dropped.
+    pub fn not_saved(&mut self) {
+        self.after_save = None;
+    }
+
+    /// Asks a question.
+    pub fn ask(&mut self, question: Question) {
+        self.question = Some(question);
+    }
+
+    /// Carries out an action. Returns what needs files, entities or the operating system.
+    pub fn apply(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
+        match action {
+            Action::New => return self.unless_unsaved(Action::New, |lab| lab.start_new()),
+            Action::Quit => return self.unless_unsaved(Action::Quit, |_| vec![Effect::Quit]),
+            Action::OpenDialog => return self.unless_unsaved(Action::OpenDialog, |_| vec![Effect::PickOpen]),
+            Action::Open(path) => {
+                let again = Action::Open(path.clone());
+                return self.unless_unsaved(again, |_| vec![Effect::OpenFile(path)]);
+            }
+            Action::Reload => {
+                return match self.path.clone() {
+                    Some(path) => self.unless_unsaved(Action::Reload, |_| vec![Effect::OpenFile(path)]),
+                    None => Vec::new(),
+                };
+            }
+            Action::Save => {
+                return match self.path.clone() {
+                    Some(path) => vec![Effect::SaveFile { path, overwrite: false }],
+                    None => vec![Effect::PickSave],
+                };
+            }
+            Action::SaveAsDialog => return vec![Effect::PickSave],
+            Action::SaveAs(path) => return vec![Effect::SaveFile { path, overwrite: true }],
+            Action::ClearRecent => {
+                self.recent_files.clear();
+                return vec![Effect::SaveSettings];
+            }
+            Action::Answer(answer) => return self.answer(answer, registry),
+            Action::Select(selection) => self.select(selection),
+            Action::SelectNext => self.step_selection(1),
+            Action::SelectPrevious => self.step_selection(-1),
+            Action::AddLight(kind) => self.add_light(&kind, registry),
+            Action::AddObject(kind) => self.add_object(&kind, registry),
+            Action::Duplicate(part) => self.duplicate(part),
+            Action::Remove(part) => self.remove(part),
+            Action::BeginRename(part) => {
+                self.select(part);
+                self.renaming = Some(part);
+            }
+            Action::CancelRename => self.renaming = None,
+            Action::Edit(edit) => self.edit(edit, registry),
+            Action::RecentModel(slot) => {
+                if let Some(id) = self.model_slots.get(slot).cloned() {
+                    self.edit(Edit::Model(id), registry);
+                }
+            }
+            Action::Expose(ev) => {
+                let exposure = self.scene.display.exposure + ev;
+                if limits::exposure().allows(f64::from(exposure)) {
+                    self.edit(Edit::Display(Display { exposure, ..self.scene.display }), registry);
+                }
+            }
+            Action::NextTerms => {
+                let all = TermSelection::ALL;
+                let at = all.iter().position(|t| *t == self.view.terms).unwrap_or(0);
+                self.view.terms = all[(at + 1) % all.len()];
+            }
+            Action::View(change) => return self.change_view(change),
+            Action::HomeView => return vec![Effect::HomeView],
+            Action::FocusSelection => return vec![Effect::FocusSelection],
+            Action::ObserverFromView => return vec![Effect::ObserverFromView],
+            Action::Copy(text) => return vec![Effect::CopyText(text)],
+            Action::Say(severity, text) => self.say(severity, text),
+            Action::Dismiss(index) => {
+                if index < self.messages.len() {
+                    self.messages.remove(index);
+                }
+            }
+            Action::DismissAll => self.messages.clear(),
+        }
+        Vec::new()
+    }
+
+    /// What should survive a restart.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        Settings {
+            theme: self.view.theme,
+            large_type: self.view.large_type,
+            left_width: self.view.left_width,
+            right_width: self.view.right_width,
+            bottom_height: self.view.bottom_height,
+            recent_files: self.recent_files.clone(),
+        }
+    }
+
+    /// Takes over what survived a restart.
+    pub fn adopt(&mut self, settings: Settings) {
+        self.view.theme = settings.theme;
+        self.view.large_type = settings.large_type;
+        self.view.left_width = settings.left_width;
+        self.view.right_width = settings.right_width;
+        self.view.bottom_height = settings.bottom_height;
+        self.recent_files = settings.recent_files;
+        self.recent_files.truncate(RECENT_FILES);
+    }
+
+    /// The limits of one extent of the room.
+    #[must_use]
+    pub fn dimension_limits(&self, axis: usize, registry: &Registry) -> limits::Limits {
+        limits::dimension(&self.scene, axis, |part| self.name_of(part, registry))
+    }
+
+    // ── documents ──
+
+    fn unless_unsaved(&mut self, action: Action, go: impl FnOnce(&mut Self) -> Vec<Effect>) -> Vec<Effect> {
+        if self.is_dirty() {
+            self.question = Some(Question::Unsaved { then: Box::new(action) });
+            return Vec::new();
+        }
+        go(self)
+    }
+
+    fn start_new(&mut self) -> Vec<Effect> {
+        self.replace_document(None, Scene::default());
+        vec![Effect::DocumentChanged]
+    }
+
+    fn replace_document(&mut self, path: Option<PathBuf>, scene: Scene) {
+        self.saved = scene.clone();
+        self.scene = scene;
+        self.path = path;
+        self.renaming = None;
+        self.after_save = None;
+        self.view.terms = TermSelection::All;
+        self.select_first();
+        self.use_slot(&self.scene.reflection_model.clone());
+    }
+
+    fn remember_file(&mut self, path: &Path) {
+        self.recent_files.retain(|p| p != path);
+        self.recent_files.insert(0, path.to_owned());
+        self.recent_files.truncate(RECENT_FILES);
+    }
+
+    fn answer(&mut self, answer: Answer, registry: &Registry) -> Vec<Effect> {
+        let Some(question) = self.question.take() else { return Vec::new() };
+        match (question, answer) {
+            (Question::Unsaved { then }, Answer::Discard) => {
+                // What is on screen counts as saved, so that the action goes through.
+                self.saved = self.scene.clone();
+                self.apply(*then, registry)
+            }
+            (Question::Unsaved { then }, Answer::Save) => {
+                self.after_save = Some(*then);
+                self.apply(Action::Save, registry)
+            }
+            (Question::MissingParts { path, scene, .. }, Answer::UseDefaults) => self.opened(path, *scene),
+            (Question::MissingParts { path, parts, .. }, _) => {
+                let names: Vec<_> = parts.iter().map(|p| p.name.as_str()).collect();
+                self.say(
+                    Severity::Warning,
+                    format!("{} was not opened: it lacks {}.", path.display(), names.join(" and ")),
+                );
+                Vec::new()
+            }
+            (Question::EmptyFile { .. }, Answer::UseDefaults) => self.start_new(),
+            (Question::ChangedOnDisk { path }, Answer::Overwrite) => {
+                vec![Effect::SaveFile { path, overwrite: true }]
+            }
+            (Question::ChangedOnDisk { path }, Answer::Reload) => {
+                self.not_saved();
+                vec![Effect::OpenFile(path)]
+            }
+            _ => {
+                self.not_saved();
+                Vec::new()
+            }
+        }
+    }
+
+    // ── selection ──
+
+    fn select_first(&mut self) {
+        self.selection = if self.scene.objects.is_empty() { Selection::Room } else { Selection::Object(0) };
+    }
+
+    fn exists(&self, part: Selection) -> bool {
+        match part {
+            Selection::Room | Selection::Observer => true,
+            Selection::Light(i) => i < self.scene.lights.len(),
+            Selection::Object(i) => i < self.scene.objects.len(),
+        }
+    }
+
+    fn select(&mut self, selection: Selection) {
+        if self.exists(selection) {
+            if self.renaming != Some(selection) {
+                self.renaming = None;
+            }
+            self.selection = selection;
+        }
+    }
+
+    fn step_selection(&mut self, by: isize) {
+        let count = self.scene.objects.len() as isize;
+        if count == 0 {
+            return;
+        }
+        let next = match self.selection {
+            Selection::Object(i) => (i as isize + by).rem_euclid(count),
+            _ if by > 0 => 0,
+            _ => count - 1,
+        };
+        self.select(Selection::Object(next as usize));
+    }
+
+    // ── lights and objects ──
+
+    fn add_light(&mut self, kind: &str, registry: &Registry) {
+        let Some(entry) = registry.light(kind) else { return };
+        if self.scene.lights.len() >= MAX_LIGHTS {
+            self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
+            return;
+        }
+        let d = entry.declaration;
+        let corner = self.scene.scene_size.corner();
+        let position = self.free_place(corner * Vec3::new(0.25, 0.8, 0.9));
+        let light = Light {
+            kind: kind.to_owned(),
+            position: d.has_position.then_some(position),
+            direction: d.has_direction.then(|| self.towards_centre(position)),
+            intensity: d.default_intensity,
+            ..Light::default()
+        };
+        self.change(|scene| scene.lights.push(light));
+        self.select(Selection::Light(self.scene.lights.len() - 1));
+    }
+
+    fn add_object(&mut self, kind: &str, registry: &Registry) {
+        if registry.shape(kind).is_none() {
+            return;
+        }
+        if self.scene.objects.len() >= MAX_OBJECTS {
+            self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
+            return;
+        }
+        let corner = self.scene.scene_size.corner();
+        let size = crate::scene::DEFAULT_SIZE.min(0.5 * corner.min_element());
+        let position = self.free_place(corner * 0.5);
+        let object = Object { kind: kind.to_owned(), position, size, ..Object::default() };
+        self.change(|scene| scene.objects.push(object));
+        self.select(Selection::Object(self.scene.objects.len() - 1));
+    }
+
+    fn duplicate(&mut self, part: Selection) {
+        match part {
+            Selection::Light(i) if i < self.scene.lights.len() => {
+                if self.scene.lights.len() >= MAX_LIGHTS {
+                    self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
+                    return;
+                }
+                let mut copy = self.scene.lights[i].clone();
+                copy.position = copy.position.map(|p| self.free_place(p));
+                copy.name = copy.name.map(|n| self.free_name(&n));
+                self.change(|scene| scene.lights.insert(i + 1, copy));
+                self.select(Selection::Light(i + 1));
+            }
+            Selection::Object(i) if i < self.scene.objects.len() => {
+                if self.scene.objects.len() >= MAX_OBJECTS {
+                    self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
+                    return;
+                }
+                let mut copy = self.scene.objects[i].clone();
+                copy.position = self.free_place(copy.position);
+                copy.name = copy.name.map(|n| self.free_name(&n));
+                self.change(|scene| scene.objects.insert(i + 1, copy));
+                self.select(Selection::Object(i + 1));
+            }
+            _ => self.say(Severity::Info, "Select a light or an object to duplicate it."),
+        }
+    }
+
+    fn remove(&mut self, part: Selection) {
+        match part {
+            Selection::Light(_) if self.scene.lights.len() <= 1 => {
+                self.say(
+                    Severity::Info,
+                    "The last light stays: a scene needs at least one to show anything.",
+                );
+            }
+            Selection::Object(_) if self.scene.objects.len() <= 1 => {
+                self.say(
+                    Severity::Info,
+                    "The last object stays: a scene needs at least one to show anything.",
+                );
+            }
+            Selection::Light(i) if i < self.scene.lights.len() => {
+                self.change(|scene| drop(scene.lights.remove(i)));
+                self.selection = Selection::Light(i.min(self.scene.lights.len() - 1));
+                self.renaming = None;
+            }
+            Selection::Object(i) if i < self.scene.objects.len() => {
+                self.change(|scene| drop(scene.objects.remove(i)));
+                self.selection = Selection::Object(i.min(self.scene.objects.len() - 1));
+                self.renaming = None;
+            }
+            Selection::Observer => {
+                self.say(Severity::Info, "The observer stays: a scene has exactly one.");
+            }
+            _ => self.say(Severity::Info, "Select a light or an object to remove it."),
+        }
+    }
+
+    /// A place in the room near the wanted one where nothing stands yet.
+    fn free_place(&self, wanted: Vec3) -> Vec3 {
+        let corner = self.scene.scene_size.corner();
+        let step = 0.1 * corner;
+        let taken = |p: Vec3| places(&self.scene).any(|(_, q)| (p - q).length() < 0.5 * step.min_element());
+        let inside = |p: Vec3| p.clamp(0.02 * corner, corner);
+        let moves = (0..1000).map(|n| {
+            // x runs fastest, then z, then y: a row on the floor before a tower.
+            let (x, z, y) = (n % 10, (n / 10) % 10, n / 100);
+            let wrapped = |start: f32, k: i32, step: f32, end: f32| {
+                let q = start + k as f32 * step;
+                if q > end { q - end } else { q }
+            };
+            inside(Vec3::new(
+                wrapped(wanted.x, x, step.x, corner.x),
+                wrapped(wanted.y, y, step.y, corner.y),
+                wrapped(wanted.z, z, step.z, corner.z),
+            ))
+        });
+        let mut moves = moves;
+        moves.find(|p| !taken(*p)).unwrap_or_else(|| inside(wanted + 0.01 * step))
+    }
+
+    fn towards_centre(&self, from: Vec3) -> Vec3 {
+        let to_centre = 0.5 * self.scene.scene_size.corner() - from;
+        if to_centre.length() > SAME_PLACE { round(to_centre.normalize()) } else { Vec3::NEG_Y }
+    }
+
+    /// "lamp" → "lamp 2", "lamp 2" → "lamp 3": the next number that is free.
+    fn free_name(&self, name: &str) -> String {
+        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+        let stem = if stem.is_empty() { name } else { stem };
+        let names: Vec<_> = (self.scene.lights.iter().filter_map(|l| l.name.as_deref()))
+            .chain(self.scene.objects.iter().filter_map(|o| o.name.as_deref()))
+            .collect();
+        (2..).map(|n| format!("{stem} {n}")).find(|n| !names.contains(&n.as_str())).unwrap_or_default()
+    }
+
+    // ── changing the scene ──
+
+    /// The one place where the scene changes: where a stack of snapshots for undoing would be fed.
+    fn change(&mut self, f: impl FnOnce(&mut Scene)) {
+        f(&mut self.scene);
+    }
+
+    fn edit(&mut self, edit: Edit, registry: &Registry) {
+        if let Err(why) = self.check(&edit, registry) {
+            self.say(Severity::Warning, why);
+            return;
+        }
+        if let Edit::Model(id) = &edit {
+            self.use_slot(id);
+        }
+        if let Edit::Object(_, ObjectField::Model(Some(id))) = &edit {
+            self.use_slot(id);
+        }
+        let named = |text: String| Some(text.trim().to_owned()).filter(|t| !t.is_empty());
+        match edit {
+            Edit::SceneName(name) => self.change(|s| s.name = named(name)),
+            Edit::SceneDescription(text) => self.change(|s| s.description = named(text)),
+            Edit::SceneSize(size) => self.change(|s| s.scene_size = size),
+            Edit::Display(display) => self.change(|s| s.display = display),
+            Edit::Model(id) => self.change(|s| s.reflection_model = id),
+            Edit::Mode(id) => self.change(|s| s.shading_model = id),
+            Edit::Observer(observer) => self.change(|s| s.observer = observer),
+            Edit::Light(i, LightField::Kind(kind)) => self.change_light_kind(i, &kind, registry),
+            Edit::Light(i, field) => {
+                if let LightField::Name(_) = field {
+                    self.renaming = None;
+                }
+                self.change(|s| match field {
+                    LightField::Name(name) => s.lights[i].name = named(name),
+                    LightField::Kind(kind) => s.lights[i].kind = kind,
+                    LightField::Position(p) => s.lights[i].position = Some(p),
+                    LightField::Direction(d) => s.lights[i].direction = Some(d),
+                    LightField::Colour(c) => s.lights[i].colour = c,
+                    LightField::Intensity(v) => s.lights[i].intensity = v,
+                    LightField::Parameter(name, value) => s.lights[i].parameters.set(name, value),
+                });
+            }
+            Edit::Object(i, field) => {
+                if let ObjectField::Name(_) = field {
+                    self.renaming = None;
+                }
+                self.change(|s| {
+                    let o = &mut s.objects[i];
+                    match field {
+                        ObjectField::Name(name) => o.name = named(name),
+                        ObjectField::Kind(kind) => {
+                            // What the number counts differs from type to type.
+                            o.tessellation = None;
+                            o.kind = kind;
+                        }
+                        ObjectField::Position(p) => o.position = p,
+                        ObjectField::Size(v) => o.size = v,
+                        ObjectField::Rotation(r) => o.rotation = r,
+                        ObjectField::Tessellation(n) => o.tessellation = n,
+                        ObjectField::Model(id) => o.reflection_model = id,
+                        ObjectField::Mode(id) => o.shading_model = id,
+                        ObjectField::Material(name, value) => o.material.set(name, value),
+                    }
+                });
+            }
+        }
+    }
+
+    fn change_light_kind(&mut self, i: usize, kind: &str, registry: &Registry) {
+        let Some(new) = registry.light(kind).map(|e| e.declaration) else { return };
+        let old = registry.light(&self.scene.lights[i].kind).map(|e| e.declaration);
+        let position = match self.scene.lights[i].position {
+            Some(p) => p,
+            None => self.free_place(self.scene.scene_size.corner() * Vec3::new(0.75, 0.8, 0.9)),
+        };
+        let direction = self.scene.lights[i].direction.unwrap_or_else(|| self.towards_centre(position));
+        self.change(|s| {
+            let light = &mut s.lights[i];
+            kind.clone_into(&mut light.kind);
+            light.position = new.has_position.then_some(position);
+            light.direction = new.has_direction.then_some(direction);
+            // 20 cd and 20 lx are worlds apart: another unit starts from its own default.
+            if old.is_none_or(|o| o.unit != new.unit) {
+                light.intensity = new.default_intensity;
+            }
+            light.parameters.0.retain(|name, _| new.parameters.iter().any(|p| p.name == name));
+        });
+    }
+
+    /// Whether an edit keeps the scene legal; the widgets ask the same limits before.
+    fn check(&self, edit: &Edit, registry: &Registry) -> Result<(), String> {
+        let light = |i: usize| self.scene.lights.get(i).ok_or_else(|| "there is no such light".to_owned());
+        let object = |i: usize| self.scene.objects.get(i).ok_or_else(|| "there is no such object".to_owned());
+        let name = |part| self.name_of(part, registry);
+        let known = |yes: bool, what: &str, id: &str| {
+            if yes { Ok(()) } else { Err(format!("There is no {what} called “{id}”.")) }
+        };
+        let legal = |what: String, value: f32, limits: limits::Limits| {
+            if limits.allows(f64::from(value)) {
+                return Ok(());
+            }
+            Err(format!("{what} is {}, but must be {}.", limits::number(f64::from(value)), limits.rule()))
+        };
+        let model = |id: &str| known(registry.model(id).is_some(), "reflection model", id);
+        let mode = |id: &str| known(registry.mode(id).is_some(), "shading model", id);
+        let place = |part: Selection, p: Vec3| {
+            for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+                let what = format!("{}: {letter}", name(part));
+                legal(what, p.to_array()[axis], limits::position(self.scene.scene_size, axis))?;
+            }
+            match places(&self.scene)
+                .find(|(q, at)| may_not_meet(part, *q) && (*at - p).length() < SAME_PLACE)
+            {
+                Some((other, _)) => {
+                    Err(format!("{} cannot stand exactly where {} stands.", name(part), name(other)))
+                }
+                None => Ok(()),
+            }
+        };
+        let direction = |part: Selection, d: Vec3| {
+            if d.is_finite() && d.length() > SAME_PLACE {
+                return Ok(());
+            }
+            Err(format!("{}: the direction (0, 0, 0) points nowhere.", name(part)))
+        };
+        match edit {
+            Edit::SceneName(_) | Edit::SceneDescription(_) => Ok(()),
+            Edit::SceneSize(size) => {
+                for (axis, what) in ["width", "height", "depth"].into_iter().enumerate() {
+                    let value = size.corner().to_array()[axis];
+                    legal(format!("The {what} of the room"), value, self.dimension_limits(axis, registry))?;
+                }
+                Ok(())
+            }
+            Edit::Display(d) => legal("The exposure".to_owned(), d.exposure, limits::exposure()),
+            Edit::Model(id) => model(id),
+            Edit::Mode(id) => mode(id),
+            Edit::Observer(o) => {
+                place(Selection::Observer, o.position)?;
+                direction(Selection::Observer, o.direction)?;
+                legal("The field of view".to_owned(), o.field_of_view, limits::field_of_view())
+            }
+            Edit::Light(i, field) => {
+                let light = light(*i)?;
+                let part = Selection::Light(*i);
+                let declaration = registry.light(&light.kind).map(|e| e.declaration);
+                match field {
+                    LightField::Name(_) | LightField::Colour(_) => Ok(()),
+                    LightField::Kind(id) => known(registry.light(id).is_some(), "light type", id),
+                    LightField::Position(p) => place(part, *p),
+                    LightField::Direction(d) => direction(part, *d),
+                    LightField::Intensity(v) => match declaration {
+                        Some(d) => legal(format!("{}: the intensity", name(part)), *v, limits::intensity(d)),
+                        None => Ok(()),
+                    },
+                    LightField::Parameter(id, value) => {
+                        let parameter = declaration.and_then(|d| d.parameters.iter().find(|p| p.name == *id));
+                        match parameter {
+                            Some(p) if p.allows(value) => Ok(()),
+                            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+                            None => Err(format!("{} has no parameter “{id}”.", name(part))),
+                        }
+                    }
+                }
+            }
+            Edit::Object(i, field) => {
+                let object = object(*i)?;
+                let part = Selection::Object(*i);
+                match field {
+                    ObjectField::Name(_) => Ok(()),
+                    ObjectField::Kind(id) => known(registry.shape(id).is_some(), "object type", id),
+                    ObjectField::Position(p) => place(part, *p),
+                    ObjectField::Size(v) => legal(
+                        format!("{}: the size", name(part)),
+                        *v,
+                        limits::object_size(self.scene.scene_size),
+                    ),
+                    ObjectField::Rotation(r) if r.is_finite() => Ok(()),
+                    ObjectField::Rotation(_) => Err(format!("{}: the rotation must be finite.", name(part))),
+                    ObjectField::Tessellation(None) => Ok(()),
+                    ObjectField::Tessellation(Some(n)) => match registry.shape(&object.kind) {
+                        Some(s) => legal(
+                            format!("{}: the tessellation", name(part)),
+                            *n as f32,
+                            limits::tessellation(s.declaration),
+                        ),
+                        None => Ok(()),
+                    },
+                    ObjectField::Model(id) => id.as_deref().map_or(Ok(()), model),
+                    ObjectField::Mode(id) => id.as_deref().map_or(Ok(()), mode),
+                    ObjectField::Material(id, value) => match registry.material_parameter(id) {
+                        Some(p) if p.allows(value) => Ok(()),
+                        Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+                        None => Err(format!("No model has a parameter “{id}”.")),
+                    },
+                }
+            }
+        }
+    }
+
+    /// Gives a model one of the keys 1–9: the one that it has, a free one, or that of the model that
+    /// was not used for longest. The others keep theirs, so that fingers can learn them.
+    fn use_slot(&mut self, id: &str) {
+        self.slot_use.retain(|m| m != id);
+        self.slot_use.push(id.to_owned());
+        if self.model_slots.iter().any(|m| m == id) {
+            return;
+        }
+        if self.model_slots.len() < MODEL_SLOTS {
+            self.model_slots.push(id.to_owned());
+            return;
+        }
+        let oldest = self.slot_use.remove(0);
+        if let Some(slot) = self.model_slots.iter_mut().find(|m| **m == oldest) {
+            id.clone_into(slot);
+        }
+    }
+
+    fn change_view(&mut self, change: ViewChange) -> Vec<Effect> {
+        let before = self.settings();
+        let view = &mut self.view;
+        match change {
+            ViewChange::Theme(theme) => view.theme = theme,
+            ViewChange::LargeType(on) => view.large_type = on,
+            ViewChange::Gizmos(on) => view.show_gizmos = on,
+            ViewChange::Room(on) => view.show_room = on,
+            ViewChange::Terms(terms) => view.terms = terms,
+            ViewChange::Bottom(open) => view.bottom_open = open,
+            ViewChange::BottomTab(id) => {
+                view.bottom_tab = id;
+                view.bottom_open = true;
+            }
+            ViewChange::Left(open) => view.left_open = open,
+            ViewChange::Right(open) => view.right_open = open,
+            ViewChange::Sizes { left, right, bottom } => {
+                (view.left_width, view.right_width, view.bottom_height) = (left, right, bottom);
+            }
+            ViewChange::Keys(open) => view.keys_open = open,
+            ViewChange::About(open) => view.about_open = open,
+            ViewChange::Chooser(open) => view.chooser_open = open,
+        }
+        if before == self.settings() { Vec::new() } else { vec![Effect::SaveSettings] }
+    }
+}
+
+/// What people call a part of the scene: its name, or its type and its number among its type.
+#[must_use]
+pub fn name_of(scene: &Scene, part: Selection, registry: &Registry) -> String {
+    match part {
+        Selection::Room => "Room".to_owned(),
+        Selection::Observer => "Observer".to_owned(),
+        Selection::Light(i) => {
+            let Some(light) = scene.lights.get(i) else { return "light".to_owned() };
+            let kind = registry.light(&light.kind).map_or(light.kind.as_str(), |e| e.declaration.name);
+            let number = scene.lights[..=i].iter().filter(|l| l.kind == light.kind).count();
+            light.name.clone().unwrap_or_else(|| format!("{kind} {number}"))
+        }
+        Selection::Object(i) => {
+            let Some(object) = scene.objects.get(i) else { return "object".to_owned() };
+            let kind = registry.shape(&object.kind).map_or(object.kind.as_str(), |e| e.declaration.name);
+            let number = scene.objects[..=i].iter().filter(|o| o.kind == object.kind).count();
+            object.name.clone().unwrap_or_else(|| format!("{kind} {number}"))
+        }
+    }
+}
+
+/// Where everything stands that has a place.
+fn places(scene: &Scene) -> impl Iterator<Item = (Selection, Vec3)> + '_ {
+    let lights =
+        scene.lights.iter().enumerate().filter_map(|(i, l)| Some((Selection::Light(i), l.position?)));
+    let objects = scene.objects.iter().enumerate().map(|(i, o)| (Selection::Object(i), o.position));
+    lights.chain(objects).chain([(Selection::Observer, scene.observer.position)])
+}
+
+/// Which parts must not stand in the same place: lights, objects and the observer exclude each other;
+/// two lights or two objects may share theirs.
+fn may_not_meet(a: Selection, b: Selection) -> bool {
+    std::mem::discriminant(&a) != std::mem::discriminant(&b)
+}
+
+/// Rounded to what people like to read.
+fn round(v: Vec3) -> Vec3 {
+    (v * 1000.0).round() / 1000.0
+}

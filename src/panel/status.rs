@@ -1,0 +1,88 @@
+//! The line at the bottom: what is selected, what is in progress, what needs attention.
+
+use bevy_egui::egui::{self, Align, Button, Layout, ProgressBar, Sense, Ui, WidgetInfo, WidgetType, vec2};
+
+use super::{
+    Panel, Place,
+    icon::{self, Icon},
+    inspector::plural,
+    state::{Action, Lab, Shaders, ViewChange},
+    theme::{self, Palette},
+};
+use crate::registry::Registry;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct StatusLine;
+
+impl Panel for StatusLine {
+    fn id(&self) -> &'static str {
+        "status"
+    }
+
+    fn title(&self) -> &'static str {
+        "Status line"
+    }
+
+    fn place(&self) -> Place {
+        Place::Status
+    }
+
+    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let palette = Palette::here(ui);
+        let scale = theme::scale_here(ui);
+        ui.horizontal(|ui| {
+            ui.set_min_height(20.0 * scale);
+            let count = lab.messages.len();
+            let text = theme::small(
+                ui,
+                if count == 0 { "No messages".to_owned() } else { plural(count, "message") },
+            );
+            let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0) * scale, Sense::hover());
+            match lab.worst() {
+                Some(worst) => icon::severity(ui.painter(), rect.center(), 5.5 * scale, worst, &palette),
+                None => icon::paint(
+                    ui.painter(),
+                    rect.shrink(3.0 * scale),
+                    if lab.view.bottom_open { Icon::Down } else { Icon::Up },
+                    palette.weak,
+                ),
+            }
+            let says = if lab.view.bottom_open {
+                "Fold the strip away (F8)"
+            } else {
+                "Unfold the strip with the messages (F8)"
+            };
+            let button = ui.add(Button::new(text).frame_when_inactive(false).small());
+            button
+                .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("Messages: {count}")));
+            if button.on_hover_text(says).clicked() {
+                actions.push(Action::View(ViewChange::Bottom(!lab.view.bottom_open)));
+            }
+            let (words, help) = match lab.status.shaders {
+                Shaders::Ready => ("", ""),
+                Shaders::Compiling => (
+                    "Compiling shaders…",
+                    "The graphics card’s programs are being made; the picture follows.",
+                ),
+                Shaders::Stale => (
+                    "Shader has an error: the picture shows the last good one",
+                    "The message says where the error is.",
+                ),
+            };
+            if !words.is_empty() {
+                ui.label(theme::small(ui, words)).on_hover_text(help);
+            }
+            if let Some((what, how_far)) = &lab.status.progress {
+                ui.label(theme::small(ui, what));
+                ui.add(ProgressBar::new(*how_far).desired_width(120.0 * scale).desired_height(6.0 * scale));
+            }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let name = lab.name_of(lab.selection, registry);
+                ui.add(egui::Label::new(theme::small(ui, format!("{name} selected · F1 keys"))).truncate());
+            });
+        });
+        actions
+    }
+}

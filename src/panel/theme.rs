@@ -1,0 +1,367 @@
+//! How the window looks: colours, type, space.
+//!
+//! Neutral greys, since colours are judged against them; one accent for what can be touched or is
+//! chosen; the colours of M. Okabe and K. Ito (2008), *Color Universal Design*, for data. Text has a
+//! contrast of at least 4.5:1 (WCAG 2.2, AA); a test holds the palettes to it.
+
+use std::sync::Arc;
+
+use bevy_egui::egui::{
+    self, Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke,
+    TextStyle, Vec2, style::HandleShape, vec2,
+};
+
+use super::state::{Severity, ThemeChoice, View};
+use crate::reflection::Term;
+
+/// The unit of space, points; halves are allowed.
+pub const UNIT: f32 = 8.0;
+/// How much larger everything is for projectors.
+const LARGE: f32 = 1.35;
+
+/// The family of the semibold text font.
+#[must_use]
+pub fn semibold() -> FontFamily {
+    FontFamily::Name("semibold".into())
+}
+/// The family of upright mathematics.
+#[must_use]
+pub fn maths() -> FontFamily {
+    FontFamily::Name("maths".into())
+}
+/// The family of variables in mathematics.
+#[must_use]
+pub fn maths_italic() -> FontFamily {
+    FontFamily::Name("maths italic".into())
+}
+
+/// The colours of the window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Palette {
+    /// Whether it is the dark one.
+    pub dark: bool,
+    /// Behind everything in a panel.
+    pub panel: Color32,
+    /// What stands out of a panel: menus, dialogs, buttons.
+    pub raised: Color32,
+    /// What the pointer is over.
+    pub hovered: Color32,
+    /// Fields that are typed into, and rails.
+    pub field: Color32,
+    /// Lines between things.
+    pub line: Color32,
+    /// Text.
+    pub text: Color32,
+    /// Text of less weight: units, ends of ranges, hints.
+    pub weak: Color32,
+    /// What is chosen or can be touched.
+    pub accent: Color32,
+    /// The ground of what is chosen in a list.
+    pub chosen: Color32,
+    /// Failures.
+    pub error: Color32,
+    /// Warnings.
+    pub warning: Color32,
+    /// Around the picture.
+    pub surround: Color32,
+}
+
+const fn grey(v: u8) -> Color32 {
+    Color32::from_rgb(v, v, v)
+}
+
+/// For judging pictures.
+pub const DARK: Palette = Palette {
+    dark: true,
+    panel: grey(21),
+    raised: grey(34),
+    hovered: grey(48),
+    field: grey(11),
+    line: grey(52),
+    text: grey(230),
+    weak: grey(160),
+    accent: Color32::from_rgb(0x6c, 0xb4, 0xff),
+    chosen: Color32::from_rgb(0x1f, 0x3a, 0x57),
+    error: Color32::from_rgb(0xff, 0x8a, 0x7a),
+    warning: Color32::from_rgb(0xf0, 0xc0, 0x50),
+    surround: grey(46),
+};
+
+/// For bright rooms and projectors.
+pub const LIGHT: Palette = Palette {
+    dark: false,
+    panel: grey(250),
+    raised: grey(238),
+    hovered: grey(224),
+    field: grey(255),
+    line: grey(205),
+    text: grey(24),
+    weak: grey(92),
+    accent: Color32::from_rgb(0x0a, 0x5c, 0xb0),
+    chosen: Color32::from_rgb(0xcf, 0xe3, 0xf8),
+    error: Color32::from_rgb(0xb3, 0x26, 0x1e),
+    warning: Color32::from_rgb(0x7a, 0x52, 0x00),
+    surround: grey(184),
+};
+
+impl Palette {
+    /// The palette that a view asks for.
+    #[must_use]
+    pub fn of(view: &View) -> Self {
+        match view.theme {
+            ThemeChoice::Dark => DARK,
+            ThemeChoice::Light => LIGHT,
+        }
+    }
+
+    /// The palette in force where a widget stands.
+    #[must_use]
+    pub fn here(ui: &egui::Ui) -> Self {
+        if ui.visuals().dark_mode { DARK } else { LIGHT }
+    }
+
+    /// The data colour of a term of an equation, for lines and areas.
+    #[must_use]
+    pub fn term(&self, term: Term) -> Color32 {
+        match term {
+            Term::Total => self.text,
+            Term::Ambient => Color32::from_rgb(0x00, 0x9e, 0x73),
+            Term::Diffuse => Color32::from_rgb(0xe6, 0x9f, 0x00),
+            Term::Specular => Color32::from_rgb(0xcc, 0x79, 0xa7),
+        }
+    }
+
+    /// The same hue, dark or light enough to be read as text.
+    #[must_use]
+    pub fn term_text(&self, term: Term) -> Color32 {
+        match (self.dark, term) {
+            (_, Term::Total) => self.text,
+            (true, Term::Ambient) => Color32::from_rgb(0x2f, 0xc7, 0x9b),
+            (true, Term::Diffuse) => Color32::from_rgb(0xf0, 0xb4, 0x2d),
+            (true, Term::Specular) => Color32::from_rgb(0xe0, 0x9c, 0xc3),
+            (false, Term::Ambient) => Color32::from_rgb(0x00, 0x69, 0x4d),
+            (false, Term::Diffuse) => Color32::from_rgb(0x80, 0x58, 0x00),
+            (false, Term::Specular) => Color32::from_rgb(0x94, 0x3c, 0x70),
+        }
+    }
+
+    /// The colour of a severity.
+    #[must_use]
+    pub fn severity(&self, severity: Severity) -> Color32 {
+        match severity {
+            Severity::Info => self.accent,
+            Severity::Warning => self.warning,
+            Severity::Error => self.error,
+        }
+    }
+}
+
+/// How a term's line is drawn beside its colour, as lengths of dash and gap; empty for a solid line.
+#[must_use]
+pub fn term_dash(term: Term) -> &'static [f32] {
+    match term {
+        Term::Total => &[],
+        Term::Ambient => &[1.5, 2.5],
+        Term::Diffuse => &[6.0, 0.0],
+        Term::Specular => &[5.0, 3.0],
+    }
+}
+
+/// The factor of everything that is measured in points.
+#[must_use]
+pub fn scale(view: &View) -> f32 {
+    if view.large_type { LARGE } else { 1.0 }
+}
+
+/// The factor in force where a widget stands.
+#[must_use]
+pub fn scale_here(ui: &egui::Ui) -> f32 {
+    ui.style().text_styles.get(&TextStyle::Body).map_or(1.0, |f| f.size / BODY)
+}
+
+const SMALL: f32 = 11.5;
+const BODY: f32 = 13.0;
+const HEADING: f32 = 16.0;
+
+/// Text of less weight in the smallest size.
+#[must_use]
+pub fn small(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
+    egui::RichText::new(text).small().color(Palette::here(ui).weak)
+}
+
+/// Text that names a group.
+#[must_use]
+pub fn strong(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
+    egui::RichText::new(text).family(semibold()).color(Palette::here(ui).text)
+}
+
+/// Makes the fonts known to egui. Once per context.
+pub fn install_fonts(ctx: &Context) {
+    let mut fonts = FontDefinitions::default();
+    let bundled: [(&str, &'static [u8]); 4] = [
+        ("lab text", include_bytes!("../../assets/fonts/text-regular.otf")),
+        ("lab semibold", include_bytes!("../../assets/fonts/text-semibold.otf")),
+        ("lab maths", include_bytes!("../../assets/fonts/maths-regular.otf")),
+        ("lab maths italic", include_bytes!("../../assets/fonts/maths-italic.otf")),
+    ];
+    for (name, bytes) in bundled {
+        fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
+    }
+    // egui's own fonts come last: they have pictograms that ours lack.
+    let builtin = fonts.families.get(&FontFamily::Proportional).cloned().unwrap_or_default();
+    let family = |first: &[&str]| -> Vec<String> {
+        first.iter().map(|s| (*s).to_owned()).chain(builtin.iter().cloned()).collect()
+    };
+    fonts.families.insert(FontFamily::Proportional, family(&["lab text", "lab maths"]));
+    fonts.families.insert(semibold(), family(&["lab semibold", "lab maths"]));
+    fonts.families.insert(maths(), family(&["lab maths", "lab text"]));
+    fonts.families.insert(maths_italic(), family(&["lab maths italic", "lab maths", "lab text"]));
+    ctx.set_fonts(fonts);
+}
+
+/// Makes egui look as the view asks. Cheap when nothing changed. The fonts arrive with the next pass:
+/// until then it answers `false`, and nothing can be shown.
+#[must_use]
+pub fn apply(ctx: &Context, view: &View) -> bool {
+    let id = egui::Id::new("lab theme");
+    let wanted = (view.theme == ThemeChoice::Dark, view.large_type);
+    let before: Option<(bool, bool)> = ctx.data(|d| d.get_temp(id));
+    if before == Some(wanted) {
+        return true;
+    }
+    if before.is_none() {
+        install_fonts(ctx);
+    }
+    ctx.data_mut(|d| d.insert_temp(id, wanted));
+    let theme = if wanted.0 { egui::Theme::Dark } else { egui::Theme::Light };
+    ctx.set_theme(theme);
+    ctx.set_style_of(theme, style(&Palette::of(view), scale(view)));
+    if before.is_none() {
+        ctx.request_repaint();
+    }
+    before.is_some()
+}
+
+fn style(p: &Palette, scale: f32) -> egui::Style {
+    let mut style = egui::Style::default();
+    let font = |size: f32, family: FontFamily| FontId::new((size * scale * 2.0).round() / 2.0, family);
+    style.text_styles = [
+        (TextStyle::Small, font(SMALL, FontFamily::Proportional)),
+        (TextStyle::Body, FontId::new(BODY * scale, FontFamily::Proportional)),
+        (TextStyle::Button, FontId::new(BODY * scale, FontFamily::Proportional)),
+        (TextStyle::Monospace, font(SMALL, FontFamily::Monospace)),
+        (TextStyle::Heading, font(HEADING, semibold())),
+    ]
+    .into();
+    let unit = UNIT * scale;
+    let s = &mut style.spacing;
+    s.item_spacing = vec2(unit, unit / 2.0);
+    s.button_padding = vec2(unit, unit / 4.0);
+    s.interact_size = vec2(3.0 * unit, 3.0 * unit);
+    s.menu_margin = Margin::same((unit / 2.0) as i8);
+    s.window_margin = Margin::same((2.0 * unit) as i8);
+    s.indent = 2.0 * unit;
+    s.icon_width = 14.0 * scale;
+    s.icon_width_inner = 8.0 * scale;
+    s.icon_spacing = 6.0 * scale;
+    s.combo_width = 8.0 * unit;
+    s.combo_height = 40.0 * unit;
+    s.tooltip_width = 40.0 * unit;
+    s.menu_width = 36.0 * unit;
+    s.scroll = egui::style::ScrollStyle::thin();
+    // Fading the edges would falsify the colours of what lies there.
+    s.scroll.fade.strength = 0.0;
+    style.interaction.tooltip_delay = 0.35;
+    style.interaction.selectable_labels = false;
+    style.animation_time = 0.08;
+
+    let v = &mut style.visuals;
+    *v = if p.dark { egui::Visuals::dark() } else { egui::Visuals::light() };
+    v.override_text_color = None;
+    v.weak_text_color = Some(p.weak);
+    v.panel_fill = p.panel;
+    v.window_fill = p.raised;
+    v.window_stroke = Stroke::new(1.0, p.line);
+    v.window_corner_radius = CornerRadius::same(6);
+    v.menu_corner_radius = CornerRadius::same(6);
+    v.extreme_bg_color = p.field;
+    v.text_edit_bg_color = Some(p.field);
+    v.faint_bg_color = p.raised;
+    v.code_bg_color = p.raised;
+    v.hyperlink_color = p.accent;
+    v.warn_fg_color = p.warning;
+    v.error_fg_color = p.error;
+    v.selection.bg_fill = p.chosen;
+    v.selection.stroke = Stroke::new(1.0, p.accent);
+    v.handle_shape = HandleShape::Circle;
+    v.slider_trailing_fill = true;
+    v.disabled_alpha = 0.62;
+    let radius = CornerRadius::same(4);
+    let w = &mut v.widgets;
+    for widget in [&mut w.noninteractive, &mut w.inactive, &mut w.hovered, &mut w.active, &mut w.open] {
+        widget.corner_radius = radius;
+        widget.expansion = 0.0;
+        widget.fg_stroke = Stroke::new(1.0, p.text);
+    }
+    w.noninteractive.bg_fill = p.panel;
+    w.noninteractive.weak_bg_fill = p.panel;
+    w.noninteractive.bg_stroke = Stroke::new(1.0, p.line);
+    w.inactive.bg_fill = p.raised;
+    w.inactive.weak_bg_fill = p.raised;
+    w.inactive.bg_stroke = Stroke::new(1.0, p.line);
+    w.hovered.bg_fill = p.hovered;
+    w.hovered.weak_bg_fill = p.hovered;
+    w.hovered.bg_stroke = Stroke::new(1.0, p.weak);
+    w.active.bg_fill = p.hovered;
+    w.active.weak_bg_fill = p.hovered;
+    w.active.bg_stroke = Stroke::new(1.5, p.accent);
+    w.open.bg_fill = p.hovered;
+    w.open.weak_bg_fill = p.hovered;
+    w.open.bg_stroke = Stroke::new(1.0, p.accent);
+    style
+}
+
+/// The margins inside a panel.
+pub fn panel_frame(p: &Palette, margin: Vec2) -> egui::Frame {
+    egui::Frame::new().fill(p.panel).inner_margin(Margin::symmetric(margin.x as i8, margin.y as i8))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn luminance(c: Color32) -> f32 {
+        let linear = |v: u8| crate::optics::colour::srgb_decode(f32::from(v) / 255.0);
+        0.2126 * linear(c.r()) + 0.7152 * linear(c.g()) + 0.0722 * linear(c.b())
+    }
+
+    fn contrast(a: Color32, b: Color32) -> f32 {
+        let (a, b) = (luminance(a) + 0.05, luminance(b) + 0.05);
+        a.max(b) / a.min(b)
+    }
+
+    #[test]
+    fn text_can_be_read_on_every_ground() {
+        for p in [DARK, LIGHT] {
+            for ground in [p.panel, p.raised, p.field, p.hovered, p.chosen] {
+                assert!(contrast(p.text, ground) >= 7.0, "text on {ground:?}");
+            }
+            for ground in [p.panel, p.raised, p.field] {
+                for ink in [p.weak, p.accent, p.error, p.warning] {
+                    assert!(contrast(ink, ground) >= 4.5, "{ink:?} on {ground:?}: {}", contrast(ink, ground));
+                }
+                for term in [Term::Total, Term::Ambient, Term::Diffuse, Term::Specular] {
+                    assert!(contrast(p.term_text(term), ground) >= 4.5, "{term:?} on {ground:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_surround_of_the_picture_has_no_tint() {
+        for p in [DARK, LIGHT] {
+            assert!(p.surround.r() == p.surround.g() && p.surround.g() == p.surround.b());
+        }
+        assert_eq!(DARK.surround, Color32::from_rgb(46, 46, 46));
+    }
+}

@@ -1,0 +1,347 @@
+//! The bar at the top: document, menus, reflection, shading.
+
+use bevy_egui::egui::{self, Align, Button, Layout, RichText, Ui, WidgetInfo, WidgetType, vec2};
+
+use super::{
+    Panel, Place, chooser,
+    keys::{self, Binding},
+    state::{Action, Edit, Lab, Selection, ThemeChoice, ViewChange},
+    theme::{self, Palette},
+};
+use crate::{optics::TermSelection, registry::Registry};
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct TopBar;
+
+impl Panel for TopBar {
+    fn id(&self) -> &'static str {
+        "top"
+    }
+
+    fn title(&self) -> &'static str {
+        "Top bar"
+    }
+
+    fn place(&self) -> Place {
+        Place::Top
+    }
+
+    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let table = keys::bindings(lab, registry);
+        let scale = theme::scale_here(ui);
+        ui.horizontal(|ui| {
+            ui.set_min_height(28.0 * scale);
+            ui.spacing_mut().item_spacing.x = 4.0 * scale;
+            document(ui, lab, &mut actions);
+            divider(ui);
+            menus(ui, lab, registry, &table, &mut actions);
+            divider(ui);
+            caption(ui, "Reflection");
+            actions.extend(chooser::show(ui, lab, registry));
+            ui.add_space(8.0 * scale);
+            caption(ui, "Shading");
+            shading(ui, lab, registry, &mut actions);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, lab));
+        });
+        actions
+    }
+}
+
+fn divider(ui: &mut Ui) {
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    let (rect, _) = ui.allocate_exact_size(vec2(9.0, 18.0) * scale, egui::Sense::hover());
+    ui.painter().vline(rect.center().x, rect.y_range(), egui::Stroke::new(1.0, palette.line));
+}
+
+fn caption(ui: &mut Ui, text: &str) {
+    let text = theme::small(ui, text);
+    ui.label(text);
+}
+
+fn document(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    let mut title: String = lab.title();
+    const MOST: usize = 24;
+    if title.chars().count() > MOST {
+        title = title.chars().take(MOST - 1).chain(['…']).collect();
+    }
+    let response = ui.add(Button::new(theme::strong(ui, &title)).frame_when_inactive(false));
+    let state = if lab.is_dirty() { "has unsaved changes" } else { "has no unsaved changes" };
+    response
+        .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("{} {state}", lab.title())));
+    if response.clicked() {
+        actions.push(Action::Select(Selection::Room));
+    }
+    response.on_hover_ui(|ui| {
+        ui.label(theme::strong(ui, lab.title()));
+        if let Some(description) = &lab.scene.description {
+            ui.label(description);
+        }
+        let file = lab.path.as_ref().map_or("in no file yet".to_owned(), |p| p.display().to_string());
+        ui.label(theme::small(ui, format!("{file}; {state}")));
+    });
+    // The place of the dot is kept, so that nothing moves when it comes and goes.
+    let (rect, dot) = ui.allocate_exact_size(vec2(10.0, 18.0) * scale, egui::Sense::hover());
+    if lab.is_dirty() {
+        ui.painter().circle_filled(rect.center(), 3.5 * scale, palette.accent);
+        dot.on_hover_text("Unsaved changes");
+    }
+}
+
+/// Room for the longest entry and its key, points.
+const MENU_WIDTH: f32 = 232.0;
+
+fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions: &mut Vec<Action>) {
+    let item = |ui: &mut Ui, text: &str, action: Action, actions: &mut Vec<Action>| {
+        let keys = RichText::new(keys::keys_of(table, &action)).color(Palette::here(ui).weak);
+        if ui.add(Button::new(text).shortcut_text(keys)).clicked() {
+            actions.push(action);
+            ui.close();
+        }
+    };
+    let check = |ui: &mut Ui, text: &str, on: bool, keys: &str, action: Action, actions: &mut Vec<Action>| {
+        let mut on = on;
+        ui.horizontal(|ui| {
+            if ui.checkbox(&mut on, text).clicked() {
+                actions.push(action);
+            }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.weak(keys));
+        });
+    };
+    ui.scope(|ui| {
+        egui::containers::menu::menu_style(ui.style_mut());
+        let scale = theme::scale_here(ui);
+        ui.spacing_mut().item_spacing.x = 0.0;
+        ui.spacing_mut().button_padding = vec2(7.0, 3.0) * scale;
+        ui.menu_button("File", |ui| {
+            ui.set_width(MENU_WIDTH * scale);
+            item(ui, "New default scene", Action::New, actions);
+            item(ui, "Open…", Action::OpenDialog, actions);
+            ui.menu_button("Open recent", |ui| {
+                if lab.recent_files.is_empty() {
+                    ui.weak("Files that you open or save appear here.");
+                    return;
+                }
+                for path in &lab.recent_files {
+                    let name = path
+                        .file_name()
+                        .map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
+                    if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                        actions.push(Action::Open(path.clone()));
+                        ui.close();
+                    }
+                }
+                ui.separator();
+                item(ui, "Clear the list", Action::ClearRecent, actions);
+            });
+            ui.separator();
+            item(ui, "Save", Action::Save, actions);
+            item(ui, "Save as…", Action::SaveAsDialog, actions);
+            ui.add_enabled_ui(lab.path.is_some(), |ui| {
+                item(ui, "Read again from disk", Action::Reload, actions)
+            });
+            ui.separator();
+            item(ui, "Quit", Action::Quit, actions);
+        });
+        ui.menu_button("Edit", |ui| {
+            ui.set_width(MENU_WIDTH * scale);
+            ui.menu_button("Add a light", |ui| {
+                for light in registry.lights() {
+                    let d = light.declaration;
+                    if ui.button(format!("{}  {}", d.glyph, d.name)).on_hover_text(d.summary).clicked() {
+                        actions.push(Action::AddLight(d.id.to_owned()));
+                        ui.close();
+                    }
+                }
+            });
+            ui.menu_button("Add an object", |ui| {
+                for shape in registry.shapes() {
+                    let d = shape.declaration;
+                    if ui.button(format!("{}  {}", d.glyph, d.name)).on_hover_text(d.summary).clicked() {
+                        actions.push(Action::AddObject(d.id.to_owned()));
+                        ui.close();
+                    }
+                }
+            });
+            ui.separator();
+            let part = matches!(lab.selection, Selection::Light(_) | Selection::Object(_));
+            ui.add_enabled_ui(part, |ui| {
+                item(ui, "Rename", Action::BeginRename(lab.selection), actions);
+                item(ui, "Duplicate", Action::Duplicate(lab.selection), actions);
+                item(ui, "Remove", Action::Remove(lab.selection), actions);
+            });
+        });
+        ui.menu_button("View", |ui| {
+            ui.set_width(MENU_WIDTH * scale);
+            item(ui, "Home: the observer’s view", Action::HomeView, actions);
+            item(ui, "Look at what is selected", Action::FocusSelection, actions);
+            item(ui, "Put the observer here", Action::ObserverFromView, actions);
+            ui.separator();
+            for terms in TermSelection::ALL {
+                let name = match terms {
+                    TermSelection::All => "All terms of the equation".to_owned(),
+                    other => format!("The {} term alone", other.id()),
+                };
+                if ui.radio(lab.view.terms == terms, name).clicked() {
+                    actions.push(Action::View(ViewChange::Terms(terms)));
+                }
+            }
+            ui.separator();
+            let v = &lab.view;
+            let view = |c: ViewChange| Action::View(c);
+            check(
+                ui,
+                "Signs at the lights",
+                v.show_gizmos,
+                "",
+                view(ViewChange::Gizmos(!v.show_gizmos)),
+                actions,
+            );
+            check(ui, "Outline of the room", v.show_room, "", view(ViewChange::Room(!v.show_room)), actions);
+            ui.separator();
+            check(ui, "Tree", v.left_open, "", view(ViewChange::Left(!v.left_open)), actions);
+            check(ui, "Inspector", v.right_open, "", view(ViewChange::Right(!v.right_open)), actions);
+            for panel in lab.panels.iter().filter(|p| p.place == Place::Bottom) {
+                let shown = v.bottom_open && v.bottom_tab == panel.id;
+                let change = if shown {
+                    ViewChange::Bottom(false)
+                } else {
+                    ViewChange::BottomTab(panel.id.to_owned())
+                };
+                let key = if panel.id == "messages" { "F8" } else { "" };
+                check(ui, panel.title, shown, key, view(change), actions);
+            }
+            ui.separator();
+            for (choice, name) in [(ThemeChoice::Dark, "Dark theme"), (ThemeChoice::Light, "Light theme")] {
+                if ui.radio(v.theme == choice, name).clicked() {
+                    actions.push(view(ViewChange::Theme(choice)));
+                }
+            }
+            check(
+                ui,
+                "Large type, for projectors",
+                v.large_type,
+                "",
+                view(ViewChange::LargeType(!v.large_type)),
+                actions,
+            );
+        });
+        ui.menu_button("Help", |ui| {
+            ui.set_width(MENU_WIDTH * scale);
+            item(ui, "Keys and mouse", Action::View(ViewChange::Keys(!lab.view.keys_open)), actions);
+            item(ui, "About", Action::View(ViewChange::About(true)), actions);
+        });
+    });
+}
+
+/// One button for each shading mode, as one control.
+fn shading(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+    let names: Vec<_> = registry.modes().iter().map(|m| m.declaration.short_name).collect();
+    let chosen = registry.modes().iter().position(|m| m.declaration.id == lab.scene.shading_model);
+    let tip = |ui: &mut Ui, i: usize| {
+        let d = registry.modes()[i].declaration;
+        ui.set_max_width(300.0 * theme::scale_here(ui));
+        ui.label(theme::strong(ui, format!("{} shading", d.name)));
+        ui.label(d.summary);
+        ui.label(theme::small(ui, format!("{} · computed {} · key {}", d.author, d.stage.phrase(), d.key)));
+    };
+    if let Some(i) = segmented(ui, "Shading", &names, chosen, tip) {
+        actions.push(Action::Edit(Edit::Mode(registry.modes()[i].declaration.id.to_owned())));
+    }
+}
+
+/// Several choices side by side, one of them chosen. Returns the index of another one that was clicked.
+pub fn segmented(
+    ui: &mut Ui,
+    name: &str,
+    options: &[&str],
+    chosen: Option<usize>,
+    tip: impl Fn(&mut Ui, usize),
+) -> Option<usize> {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let mut out = None;
+    egui::Frame::new()
+        .fill(palette.field)
+        .stroke(egui::Stroke::new(1.0, palette.line))
+        .corner_radius(5.0)
+        .inner_margin(1.0)
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            ui.horizontal(|ui| {
+                for (i, option) in options.iter().enumerate() {
+                    let on = chosen == Some(i);
+                    // As wide as when chosen, so that nothing moves when the choice does.
+                    let bold = egui::FontId::new(
+                        egui::TextStyle::Button.resolve(ui.style()).size,
+                        theme::semibold(),
+                    );
+                    let width =
+                        ui.painter().layout_no_wrap((*option).to_owned(), bold, palette.text).size().x;
+                    let width = width + 2.0 * ui.spacing().button_padding.x;
+                    let colour = if on { palette.text } else { palette.weak };
+                    let text = RichText::new(*option).color(colour);
+                    let text = if on { text.family(theme::semibold()) } else { text };
+                    let fill = if on { palette.chosen } else { egui::Color32::TRANSPARENT };
+                    let button = Button::new(text)
+                        .fill(fill)
+                        .stroke(egui::Stroke::NONE)
+                        .corner_radius(4.0)
+                        .min_size(vec2(width, 22.0 * scale));
+                    let response = ui.add(button);
+                    response.widget_info(|| {
+                        WidgetInfo::selected(WidgetType::RadioButton, true, on, format!("{name}: {option}"))
+                    });
+                    if on {
+                        let r = response.rect.shrink2(vec2(6.0 * scale, 0.0));
+                        ui.painter().hline(
+                            r.x_range(),
+                            r.bottom() - 1.0,
+                            egui::Stroke::new(2.0, palette.accent),
+                        );
+                    }
+                    if response.has_focus() {
+                        ui.painter().rect_stroke(
+                            response.rect,
+                            4.0,
+                            egui::Stroke::new(1.5, palette.accent),
+                            egui::StrokeKind::Inside,
+                        );
+                    }
+                    if response.clicked() && !on {
+                        out = Some(i);
+                    }
+                    response.on_hover_ui(|ui| tip(ui, i));
+                }
+            });
+        });
+    out
+}
+
+fn renderer(ui: &mut Ui, lab: &Lab) {
+    let status = &lab.status;
+    let mut parts = Vec::new();
+    if status.fps() > 0.0 {
+        parts.push(format!("{:.0} fps", status.fps()));
+    }
+    if !status.backend.is_empty() {
+        parts.push(status.backend.clone());
+    }
+    if ui.available_width() < 100.0 * theme::scale_here(ui) {
+        parts.truncate(1);
+    }
+    if parts.is_empty() {
+        return;
+    }
+    let text = theme::small(ui, parts.join(" · "));
+    ui.add(egui::Label::new(text).truncate()).on_hover_ui(|ui| {
+        ui.label(format!("{:.2} ms per frame", status.frame_ms));
+        if !status.adapter.is_empty() {
+            ui.label(&status.adapter);
+        }
+    });
+}

@@ -1,0 +1,324 @@
+//! The tree at the left: room, observer, lights, objects.
+
+use bevy_egui::egui::{
+    self, Align2, FontId, Key, Rect, ScrollArea, Sense, Stroke, StrokeKind, TextEdit, TextStyle, Ui,
+    WidgetInfo, WidgetType, pos2, vec2,
+};
+
+use super::{
+    Panel, Place,
+    icon::{self, Icon},
+    state::{Action, Edit, Lab, LightField, ObjectField, Selection},
+    theme::{self, Palette},
+};
+use crate::{optics::colour::Encoding, reflection::parameter::BASE_COLOUR, registry::Registry};
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Tree;
+
+#[derive(Clone, Copy)]
+enum Row {
+    Part(Selection),
+    Lights,
+    Objects,
+}
+
+impl Panel for Tree {
+    fn id(&self) -> &'static str {
+        "tree"
+    }
+
+    fn title(&self) -> &'static str {
+        "Scene"
+    }
+
+    fn place(&self) -> Place {
+        Place::Left
+    }
+
+    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let (lights, objects) = (lab.scene.lights.len(), lab.scene.objects.len());
+        // Rows are addressed by number, so that ten thousand objects cost no more than those on screen.
+        let row = |i: usize| match i {
+            0 => Row::Part(Selection::Room),
+            1 => Row::Part(Selection::Observer),
+            2 => Row::Lights,
+            i if i < 3 + lights => Row::Part(Selection::Light(i - 3)),
+            i if i == 3 + lights => Row::Objects,
+            i => Row::Part(Selection::Object(i - 4 - lights)),
+        };
+        let height = 26.0 * theme::scale_here(ui);
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let total = 4 + lights + objects;
+        let mut area = ScrollArea::vertical().auto_shrink(false);
+        // A selection from elsewhere comes into view.
+        let memory = ui.id().with("shown selection");
+        let shown: Option<Selection> = ui.data(|d| d.get_temp(memory));
+        if shown != Some(lab.selection) {
+            ui.data_mut(|d| d.insert_temp(memory, lab.selection));
+            let index = match lab.selection {
+                Selection::Room => 0,
+                Selection::Observer => 1,
+                Selection::Light(i) => 3 + i,
+                Selection::Object(i) => 4 + lights + i,
+            };
+            let (top, view) = (index as f32 * height, ui.available_height());
+            let offset: f32 = ui.data(|d| d.get_temp(memory.with("offset"))).unwrap_or(0.0);
+            if top < offset || top + height > offset + view {
+                area = area.vertical_scroll_offset((top - 0.4 * view).max(0.0));
+            }
+        }
+        let output = area.show_rows(ui, height, total, |ui, range| {
+            for i in range {
+                match row(i) {
+                    Row::Part(part) => part_row(ui, lab, registry, part, height, &mut actions),
+                    Row::Lights => {
+                        heading(ui, "Lights", lights, height, |ui| {
+                            for light in registry.lights() {
+                                let d = light.declaration;
+                                add_item(
+                                    ui,
+                                    d.glyph,
+                                    d.name,
+                                    d.summary,
+                                    Action::AddLight(d.id.to_owned()),
+                                    &mut actions,
+                                );
+                            }
+                        });
+                    }
+                    Row::Objects => {
+                        heading(ui, "Objects", objects, height, |ui| {
+                            for shape in registry.shapes() {
+                                let d = shape.declaration;
+                                add_item(
+                                    ui,
+                                    d.glyph,
+                                    d.name,
+                                    d.summary,
+                                    Action::AddObject(d.id.to_owned()),
+                                    &mut actions,
+                                );
+                            }
+                        });
+                    }
+                }
+            }
+        });
+        ui.data_mut(|d| d.insert_temp(memory.with("offset"), output.state.offset.y));
+        actions
+    }
+}
+
+fn add_item(ui: &mut Ui, glyph: &str, name: &str, summary: &str, action: Action, actions: &mut Vec<Action>) {
+    let response = ui.button(format!("{glyph}  {name}"));
+    let response = if summary.is_empty() { response } else { response.on_hover_text(summary) };
+    if response.clicked() {
+        actions.push(action);
+        ui.close();
+    }
+}
+
+fn heading(ui: &mut Ui, name: &str, count: usize, height: f32, menu: impl FnOnce(&mut Ui)) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let small = TextStyle::Small.resolve(ui.style());
+    let text = ui.painter().text(
+        pos2(rect.left() + 8.0 * scale, rect.bottom() - 5.0 * scale),
+        Align2::LEFT_BOTTOM,
+        name,
+        FontId::new(small.size, theme::semibold()),
+        palette.weak,
+    );
+    ui.painter().text(
+        pos2(text.right() + 6.0 * scale, text.bottom()),
+        Align2::LEFT_BOTTOM,
+        count,
+        small,
+        palette.weak,
+    );
+    let place = Rect::from_min_size(
+        pos2(rect.right() - 26.0 * scale, rect.top() + 2.0 * scale),
+        vec2(22.0, 22.0) * scale,
+    );
+    let mut child = ui.new_child(egui::UiBuilder::new().id_salt(name).max_rect(place));
+    let what = if name == "Lights" { "Add a light" } else { "Add an object" };
+    let response = icon::button(&mut child, Icon::Plus, what);
+    egui::Popup::menu(&response).show(menu);
+}
+
+fn part_row(
+    ui: &mut Ui,
+    lab: &Lab,
+    registry: &Registry,
+    part: Selection,
+    height: f32,
+    actions: &mut Vec<Action>,
+) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let selected = lab.selection == part;
+    let name = lab.name_of(part, registry);
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let id = ui.id().with(("row", part));
+    let response = ui.interact(rect, id, Sense::click());
+    response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, &name));
+    let hovered = ui.rect_contains_pointer(rect);
+    let painter = ui.painter_at(rect);
+    let ground = rect.shrink2(vec2(4.0 * scale, 0.0));
+    if selected {
+        painter.rect_filled(ground, 4.0, palette.chosen);
+        painter.rect_filled(Rect::from_min_size(ground.min, vec2(3.0, ground.height())), 1.5, palette.accent);
+    } else if hovered {
+        painter.rect_filled(ground, 4.0, palette.hovered);
+    }
+    if response.has_focus() {
+        painter.rect_stroke(ground, 4.0, Stroke::new(1.5, palette.accent), StrokeKind::Inside);
+    }
+    let nested = matches!(part, Selection::Light(_) | Selection::Object(_));
+    let x = rect.left() + (if nested { 22.0 } else { 16.0 }) * scale;
+    let centre = pos2(x, rect.center().y);
+    let square = Rect::from_center_size(centre, vec2(14.0, 14.0) * scale);
+    let body = TextStyle::Body.resolve(ui.style());
+    let glyph = |glyph: &str| {
+        painter.text(
+            centre,
+            Align2::CENTER_CENTER,
+            glyph,
+            FontId::new(14.0 * scale, body.family.clone()),
+            palette.text,
+        );
+    };
+    let mut dot = None;
+    match part {
+        Selection::Room => icon::paint(&painter, square, Icon::Room, palette.text),
+        Selection::Observer => icon::paint(&painter, square, Icon::Eye, palette.text),
+        Selection::Light(i) => {
+            let light = &lab.scene.lights[i];
+            glyph(registry.light(&light.kind).map_or("?", |e| e.declaration.glyph));
+            dot = Some(light.colour);
+        }
+        Selection::Object(i) => {
+            let object = &lab.scene.objects[i];
+            glyph(registry.shape(&object.kind).map_or("?", |e| e.declaration.glyph));
+            let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
+            dot = Some([colour.x as u8, colour.y as u8, colour.z as u8]);
+        }
+    }
+    let text_left = x + 14.0 * scale;
+    if lab.renaming == Some(part) {
+        let place = Rect::from_min_max(
+            pos2(text_left - 4.0 * scale, rect.top() + 2.0),
+            pos2(ground.right() - 4.0, rect.bottom() - 2.0),
+        );
+        rename(ui, lab, part, &name, place, actions);
+        return;
+    }
+    let buttons = nested && (hovered || response.has_focus() || response.context_menu_opened());
+    let right = ground.right() - if buttons { 50.0 * scale } else { 22.0 * scale };
+    let galley = elided(ui, &name, body, palette.text, right - text_left);
+    let cut = galley.elided;
+    painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, palette.text);
+    if buttons {
+        let place = Rect::from_min_max(
+            pos2(ground.right() - 48.0 * scale, rect.top() + 2.0 * scale),
+            pos2(ground.right(), rect.bottom()),
+        );
+        let mut child = ui.new_child(
+            egui::UiBuilder::new()
+                .id_salt(("buttons", part))
+                .max_rect(place)
+                .layout(egui::Layout::left_to_right(egui::Align::Min)),
+        );
+        child.spacing_mut().item_spacing.x = 2.0;
+        if icon::button(&mut child, Icon::Duplicate, &format!("Duplicate {name}")).clicked() {
+            actions.push(Action::Duplicate(part));
+        }
+        if icon::button(&mut child, Icon::Bin, &format!("Remove {name}")).clicked() {
+            actions.push(Action::Remove(part));
+        }
+    } else if let Some([r, g, b]) = dot {
+        let at = pos2(ground.right() - 12.0 * scale, rect.center().y);
+        painter.circle(at, 4.0 * scale, egui::Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
+    }
+    if response.clicked() {
+        actions.push(Action::Select(part));
+    }
+    if nested && response.has_focus() && ui.input(|i| i.key_pressed(Key::Delete)) {
+        actions.push(Action::Remove(part));
+    }
+    if nested && response.double_clicked() {
+        actions.push(Action::BeginRename(part));
+    }
+    response.context_menu(|ui| {
+        let mut item = |ui: &mut Ui, text: &str, action: Action| {
+            if ui.button(text).clicked() {
+                actions.push(action);
+                ui.close();
+            }
+        };
+        if nested {
+            item(ui, "Rename", Action::BeginRename(part));
+            item(ui, "Duplicate", Action::Duplicate(part));
+            item(ui, "Remove", Action::Remove(part));
+        } else {
+            item(ui, "Show in the inspector", Action::Select(part));
+        }
+        if part == Selection::Observer {
+            item(ui, "Put the observer where the camera is", Action::ObserverFromView);
+        }
+    });
+    if cut {
+        response.on_hover_text(name);
+    }
+}
+
+fn elided(
+    ui: &Ui,
+    text: &str,
+    font: FontId,
+    colour: egui::Color32,
+    width: f32,
+) -> std::sync::Arc<egui::Galley> {
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, colour);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
+    ui.painter().layout_job(job)
+}
+
+fn rename(ui: &mut Ui, lab: &Lab, part: Selection, name: &str, place: Rect, actions: &mut Vec<Action>) {
+    let id = ui.id().with(("rename", part));
+    let own = match part {
+        Selection::Light(i) => lab.scene.lights[i].name.clone(),
+        Selection::Object(i) => lab.scene.objects[i].name.clone(),
+        _ => None,
+    };
+    let first = ui.data(|d| d.get_temp::<String>(id)).is_none();
+    let mut text: String =
+        ui.data(|d| d.get_temp(id)).unwrap_or_else(|| own.unwrap_or_else(|| name.to_owned()));
+    let response =
+        ui.put(place, TextEdit::singleline(&mut text).id(id.with("text")).desired_width(place.width()));
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(true, name, &text, "");
+        info.label = Some(format!("New name of {name}"));
+        info
+    });
+    if first {
+        response.request_focus();
+    }
+    let done = response.lost_focus();
+    if done || (!first && !response.has_focus()) {
+        ui.data_mut(|d| d.remove::<String>(id));
+        let given_up = ui.input(|i| i.key_pressed(Key::Escape)) || text.trim() == name;
+        actions.push(match part {
+            _ if given_up => Action::CancelRename,
+            Selection::Light(i) => Action::Edit(Edit::Light(i, LightField::Name(text))),
+            Selection::Object(i) => Action::Edit(Edit::Object(i, ObjectField::Name(text))),
+            _ => Action::CancelRename,
+        });
+    } else {
+        ui.data_mut(|d| d.insert_temp(id, text));
+    }
+}

@@ -1,0 +1,195 @@
+//! Moving the camera of the picture: orbit, pan, zoom around an object; back to the observer.
+
+use bevy::{
+    app::{App, Plugin, PreUpdate},
+    ecs::{prelude::*, system::SystemParam},
+    input::{
+        ButtonInput,
+        keyboard::KeyCode,
+        mouse::{MouseButton, MouseWheel},
+    },
+    transform::components::Transform,
+};
+use bevy_panorbit_camera::PanOrbitCamera;
+use glam::Vec3;
+
+use crate::{
+    observer::{camera::PictureCamera, rotation},
+    panel::state::{Action, Edit, Lab, Selection, Severity},
+    registry::Registry,
+    scene::{Observer, Scene, check, spawn::CurrentScene},
+};
+
+/// The nearest that the camera comes to what it turns around, metres.
+const NEAREST: f32 = 0.05;
+
+/// The controls of the camera.
+pub(super) fn orbit() -> PanOrbitCamera {
+    PanOrbitCamera {
+        button_orbit: MouseButton::Left,
+        button_pan: MouseButton::Right,
+        // At once: what is compared must not glide.
+        orbit_smoothness: 0.0,
+        pan_smoothness: 0.0,
+        zoom_smoothness: 0.0,
+        zoom_lower_limit: NEAREST,
+        pitch_upper_limit: Some(89.9f32.to_radians()),
+        pitch_lower_limit: Some(-89.9f32.to_radians()),
+        enabled: false,
+        ..PanOrbitCamera::default()
+    }
+}
+
+pub(super) struct CameraPlugin;
+
+impl Plugin for CameraPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(PreUpdate, (gate, keep_at_observer, tell_lab).chain());
+    }
+}
+
+/// What the view turns around when it stands at the observer: the point of its line of sight nearest
+/// to the objects' middle.
+fn focus_of(scene: &Scene, observer: &Observer) -> Vec3 {
+    let forward = rotation(observer.direction) * Vec3::NEG_Z;
+    let count = scene.objects.len().max(1) as f32;
+    let middle = scene.objects.iter().map(|o| o.position).sum::<Vec3>() / count;
+    observer.position + forward * (middle - observer.position).dot(forward).max(0.5)
+}
+
+fn put_at(camera: &mut PanOrbitCamera, transform: &mut Transform, place: Transform, focus: Vec3) {
+    *transform = place;
+    camera.focus = focus;
+    camera.yaw = None;
+    camera.pitch = None;
+    camera.radius = None;
+    camera.initialized = false;
+}
+
+/// The picture gets the mouse only where nothing else wants it; and a camera that is moved no longer
+/// stands at the observer.
+fn gate(
+    lab: Res<Lab>,
+    buttons: Res<ButtonInput<MouseButton>>,
+    keys: Res<ButtonInput<KeyCode>>,
+    mut wheel: MessageReader<MouseWheel>,
+    mut dragging: Local<bool>,
+    mut cameras: Query<(&mut PanOrbitCamera, &mut PictureCamera)>,
+) {
+    let pressed = [MouseButton::Left, MouseButton::Right];
+    if lab.pointer_in_picture && buttons.any_just_pressed(pressed) {
+        *dragging = true;
+    } else if !buttons.any_pressed(pressed) {
+        *dragging = false;
+    }
+    let wheeled = wheel.read().count() > 0 && lab.pointer_in_picture;
+    // A drag that began in the picture goes on outside; one that began outside never gets in.
+    let enabled = *dragging || (lab.pointer_in_picture && !buttons.any_pressed(pressed));
+    let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
+    for (mut orbit, mut picture) in &mut cameras {
+        if orbit.enabled != enabled {
+            orbit.enabled = enabled;
+        }
+        let (turn, pan) = if shift {
+            (MouseButton::Middle, MouseButton::Left)
+        } else {
+            (MouseButton::Left, MouseButton::Right)
+        };
+        if orbit.button_pan != pan {
+            orbit.button_orbit = turn;
+            orbit.button_pan = pan;
+        }
+        if picture.follows_observer && (*dragging || wheeled) {
+            picture.follows_observer = false;
+        }
+    }
+}
+
+/// While the camera stands at the observer, the controls know its place, so that a drag starts there.
+fn keep_at_observer(
+    scene: Res<CurrentScene>,
+    mut cameras: Query<(&mut PanOrbitCamera, &mut Transform, &PictureCamera)>,
+    mut known: Local<Option<(Observer, Vec3)>>,
+) {
+    let observer = scene.0.observer;
+    let focus = focus_of(&scene.0, &observer);
+    for (mut orbit, mut transform, picture) in &mut cameras {
+        if !picture.follows_observer {
+            *known = None;
+        } else if *known != Some((observer, focus)) {
+            let place =
+                Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
+            put_at(&mut orbit, &mut transform, place, focus);
+            *known = Some((observer, focus));
+        }
+    }
+}
+
+fn tell_lab(mut lab: ResMut<Lab>, cameras: Query<&Transform, With<PictureCamera>>) {
+    if let Some(transform) = cameras.iter().next()
+        && lab.camera != transform.rotation
+    {
+        lab.camera = transform.rotation;
+    }
+}
+
+/// What the panels may ask of the camera.
+#[derive(SystemParam)]
+pub(super) struct CameraControl<'w, 's> {
+    scene: Res<'w, CurrentScene>,
+    cameras: Query<'w, 's, (&'static mut PanOrbitCamera, &'static mut Transform, &'static mut PictureCamera)>,
+}
+
+impl CameraControl<'_, '_> {
+    /// Back to the observer.
+    pub(super) fn home(&mut self) {
+        for (_, _, mut picture) in &mut self.cameras {
+            picture.follows_observer = true;
+        }
+    }
+
+    /// Turns to what is selected, from the side where the camera is now.
+    pub(super) fn focus(&mut self, lab: &Lab) {
+        let scene = &self.scene.0;
+        let (target, size) = match lab.selection {
+            Selection::Object(i) => match scene.objects.get(i) {
+                Some(object) => (object.position, object.size),
+                None => return,
+            },
+            Selection::Light(i) => match scene.lights.get(i).and_then(|l| l.position) {
+                Some(position) => (position, 0.5),
+                None => return,
+            },
+            Selection::Observer => return self.home(),
+            Selection::Room => (scene.scene_size.corner() * 0.5, scene.scene_size.corner().max_element()),
+        };
+        for (mut orbit, mut transform, mut picture) in &mut self.cameras {
+            picture.follows_observer = false;
+            let distance = 2.2 * size.max(NEAREST);
+            let backward = transform.rotation * Vec3::Z;
+            let place = transform.with_translation(target + backward * distance);
+            put_at(&mut orbit, &mut transform, place, target);
+        }
+    }
+
+    /// Makes the camera's place the observer's, if the rules of scenes allow it.
+    pub(super) fn place_observer(&mut self, lab: &mut Lab, registry: &Registry) {
+        let Some((_, transform, _)) = self.cameras.iter().next() else { return };
+        let observer = Observer {
+            position: transform.translation,
+            direction: transform.rotation * Vec3::NEG_Z,
+            field_of_view: lab.scene.observer.field_of_view,
+        };
+        let mut wanted = lab.scene.clone();
+        wanted.observer = observer;
+        match check::scene(&wanted, registry).first() {
+            Some(problem) => {
+                lab.apply(Action::Say(Severity::Warning, problem.message()), registry);
+            }
+            None => {
+                lab.apply(Action::Edit(Edit::Observer(observer)), registry);
+                self.home();
+            }
+        }
+    }
+}

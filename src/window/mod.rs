@@ -1,0 +1,399 @@
+//! The window: the picture in the middle, the panels around it, and what connects the two.
+//!
+//! [`panel`](crate::panel) draws and decides; here is what needs entities, a camera, files or the
+//! operating system. Frames are drawn only when something changes.
+
+use std::{
+    sync::{Arc, Mutex},
+    time::{Duration, Instant},
+};
+
+use bevy::{
+    app::{App, AppExit, First, Last, Plugin, PluginGroup, PostUpdate, PreUpdate, Startup},
+    asset::AssetPlugin,
+    camera::{Camera, Camera2d, CameraOutputMode, ClearColorConfig, Hdr, Viewport, visibility::RenderLayers},
+    ecs::prelude::*,
+    light::cluster::GlobalClusterSettings,
+    log::{Level, LogPlugin},
+    prelude::DefaultPlugins,
+    render::{
+        RenderPlugin,
+        pipelined_rendering::PipelinedRenderingPlugin,
+        render_resource::BlendState,
+        renderer::RenderAdapterInfo,
+        settings::{RenderCreation, WgpuSettings},
+        view::Msaa,
+    },
+    window::{
+        ExitCondition, PresentMode, PrimaryWindow, RequestRedraw, Window, WindowCloseRequested, WindowPlugin,
+        WindowResolution,
+    },
+    winit::{UpdateMode, WinitSettings},
+};
+use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
+use bevy_panorbit_camera::PanOrbitCameraPlugin;
+use glam::UVec2;
+
+use crate::{
+    app::{LabFrame, LabSystems, ScenePlugin, ShownTerms},
+    capture::gpu::{find_adapter, wgpu_settings},
+    cli::{Failure, ViewOptions},
+    observer::camera::{PictureCamera, picture_camera},
+    panel::{
+        PanelPlugin,
+        files::{load_settings, run as run_files},
+        state::{Action, Effect, Lab, LabEffect},
+        theme::Palette,
+    },
+    registry::Registry,
+    scene::spawn::CurrentScene,
+};
+
+mod camera;
+mod capture;
+mod files;
+mod gizmos;
+mod pick;
+
+/// The size of a new window, points.
+const SIZE: UVec2 = UVec2::new(1280, 720);
+/// How long the window sleeps when nothing happens; it wakes for input at once.
+const SLEEP: Duration = Duration::from_secs(3600);
+/// Frames that are drawn after the last change: the panels lay themselves out anew in the first and
+/// settle in the second.
+const SETTLING_FRAMES: u32 = 3;
+
+/// Opens the window and stays until it is closed.
+///
+/// # Errors
+/// [`Failure::NoRenderer`] without a display or a driver, [`Failure::Write`] when the capture cannot
+/// be written.
+pub fn view(options: ViewOptions) -> Result<(), Failure> {
+    need_display()?;
+    find_adapter().map_err(|e| Failure::NoRenderer(e.to_string()))?;
+    let failure = Arc::new(Mutex::new(None));
+    let mut app = App::new();
+    app.add_plugins((
+        DefaultPlugins
+            .set(WindowPlugin {
+                primary_window: Some(Window {
+                    title: "Lights, Camera, Models!".to_owned(),
+                    name: Some("lights-camera-models".to_owned()),
+                    resolution: options.size.map_or_else(
+                        || WindowResolution::new(SIZE.x, SIZE.y),
+                        |[w, h]| WindowResolution::new(w, h).with_scale_factor_override(1.0),
+                    ),
+                    // Software Vulkan offers no other mode everywhere.
+                    present_mode: PresentMode::AutoVsync,
+                    ..Window::default()
+                }),
+                // Closing asks about unsaved changes first.
+                close_when_requested: false,
+                exit_condition: ExitCondition::OnPrimaryClosed,
+                ..WindowPlugin::default()
+            })
+            .set(RenderPlugin {
+                render_creation: RenderCreation::Automatic(Box::new(WgpuSettings { ..wgpu_settings() })),
+                // A model that is shown for the first time must not cost a frame without its object.
+                synchronous_pipeline_compilation: true,
+                ..RenderPlugin::default()
+            })
+            .set(AssetPlugin { watch_for_changes_override: Some(false), ..AssetPlugin::default() })
+            .set(log_plugin(&options))
+            .disable::<PipelinedRenderingPlugin>(),
+        EguiPlugin::default(),
+        PanOrbitCameraPlugin,
+        ScenePlugin,
+        PanelPlugin,
+        WindowSystemsPlugin,
+    ));
+    let mut lab = Lab::new(options.scene.clone());
+    lab.path.clone_from(&options.file);
+    load_settings(&mut lab);
+    app.insert_resource(CurrentScene(options.scene.clone())).insert_resource(lab);
+    app.insert_resource(files::DiskFiles::new(options.file.clone(), options.stamp));
+    if let Some(path) = options.open {
+        app.add_systems(Startup, move |mut effects: MessageWriter<LabEffect>| {
+            effects.write(LabEffect(Effect::OpenFile(path.clone())));
+        });
+    }
+    if let Some(frames) = options.exit_after {
+        app.insert_resource(WinitSettings::continuous());
+        app.add_plugins(capture::ExitAfter { frames, file: options.capture, failure: failure.clone() });
+    }
+    app.run();
+    let failure = failure.lock().ok().and_then(|mut f| f.take());
+    failure.map_or(Ok(()), Err)
+}
+
+/// Without a display the windowing library would panic; say what is missing instead.
+fn need_display() -> Result<(), Failure> {
+    let set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
+    if cfg!(target_os = "linux") && !set("DISPLAY") && !set("WAYLAND_DISPLAY") && !set("WAYLAND_SOCKET") {
+        return Err(Failure::NoRenderer(
+            "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); \
+             `lcm render` makes pictures without one, and `xvfb-run lcm view` gives the window an invisible display \
+             (Debian and Ubuntu: apt-get install xvfb)"
+                .to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+fn log_plugin(options: &ViewOptions) -> LogPlugin {
+    let (level, filter) = if options.verbose {
+        (Level::INFO, "wgpu=error,naga=warn")
+    } else if options.quiet {
+        (Level::ERROR, "wgpu=error,naga=error")
+    } else {
+        // That the renderer is a program on the CPU stands in the status line; the rest of what is
+        // silenced here is no news to a user.
+        (Level::WARN, "wgpu=error,naga=error,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error")
+    };
+    LogPlugin { level, filter: filter.to_owned(), ..LogPlugin::default() }
+}
+
+/// Everything of the window that are systems.
+struct WindowSystemsPlugin;
+
+impl Plugin for WindowSystemsPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(WinitSettings {
+            focused_mode: UpdateMode::reactive(SLEEP),
+            unfocused_mode: UpdateMode::reactive_low_power(SLEEP),
+        })
+        .init_resource::<Settling>()
+        .init_resource::<FrameClock>()
+        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin))
+        .add_systems(Startup, (spawn_cameras, adapter_facts))
+        .add_systems(First, start_frame)
+        .add_systems(Last, end_frame)
+        .add_systems(PreUpdate, close_requested)
+        .add_systems(
+            LabFrame,
+            (
+                (carry_out, pick::pick, lab_to_scene).chain().in_set(LabSystems::Load),
+                scene_to_lab.in_set(LabSystems::Upload),
+            ),
+        )
+        .add_systems(PostUpdate, (fit_viewport, window_title, redraw));
+    }
+
+    fn finish(&self, app: &mut App) {
+        // egui gets a camera of its own, above the picture.
+        if let Some(mut settings) = app.world_mut().get_resource_mut::<EguiGlobalSettings>() {
+            settings.auto_create_primary_context = false;
+        }
+        if let Some(mut clusters) = app.world_mut().get_resource_mut::<GlobalClusterSettings>() {
+            // Bevy's own lights are not used, so neither is their clustering.
+            clusters.gpu_clustering = None;
+        }
+    }
+}
+
+fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>) {
+    let software = adapter.is_some_and(|a| a.device_type == wgpu::DeviceType::Cpu);
+    // Four samples double the cost of a frame where the GPU is a program on the CPU.
+    let samples = if software { 1 } else { 4 };
+    commands.spawn((picture_camera(samples), Hdr, camera::orbit()));
+    commands.spawn((
+        Camera2d,
+        Camera {
+            order: 1,
+            output_mode: CameraOutputMode::Write {
+                blend_state: Some(BlendState::ALPHA_BLENDING),
+                clear_color: ClearColorConfig::None,
+            },
+            clear_color: ClearColorConfig::Custom(bevy::color::Color::NONE),
+            ..Camera::default()
+        },
+        Hdr,
+        Msaa::Off,
+        bevy::core_pipeline::tonemapping::Tonemapping::None,
+        RenderLayers::none(),
+        PrimaryEguiContext,
+    ));
+}
+
+fn adapter_facts(adapter: Option<Res<RenderAdapterInfo>>, mut lab: ResMut<Lab>) {
+    if let Some(adapter) = adapter {
+        lab.status.backend = format!("{:?}", adapter.backend);
+        lab.status.adapter.clone_from(&adapter.name);
+    }
+}
+
+/// Carries out what the panels asked for.
+fn carry_out(
+    mut effects: MessageReader<LabEffect>,
+    mut lab: ResMut<Lab>,
+    registry: Res<Registry>,
+    mut files: ResMut<files::DiskFiles>,
+    mut camera: camera::CameraControl,
+    mut exit: MessageWriter<AppExit>,
+) {
+    let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
+    pending.reverse();
+    while let Some(effect) = pending.pop() {
+        match effect {
+            Effect::HomeView => camera.home(),
+            Effect::FocusSelection => camera.focus(&lab),
+            Effect::ObserverFromView => camera.place_observer(&mut lab, &registry),
+            Effect::DocumentChanged => {
+                files.forget(lab.path.as_deref());
+                camera.home();
+            }
+            Effect::Quit => {
+                exit.write(AppExit::Success);
+            }
+            // The dialogs and the clipboard belong to the panels.
+            Effect::PickOpen | Effect::PickSave | Effect::CopyText(_) => {}
+            other => {
+                let more = run_files(&mut lab, &registry, other.clone(), &mut *files);
+                // What comes back unchanged is nobody's.
+                pending.extend(more.into_iter().rev().filter(|e| *e != other));
+            }
+        }
+    }
+}
+
+/// The document goes into the scene that is shown.
+fn lab_to_scene(lab: Res<Lab>, mut scene: ResMut<CurrentScene>, mut terms: ResMut<ShownTerms>) {
+    if !lab.is_changed() {
+        return;
+    }
+    if scene.0 != lab.scene {
+        scene.0 = lab.scene.clone();
+    }
+    terms.set_if_neq(ShownTerms(lab.view.terms));
+}
+
+/// What others changed in the entities goes into the document.
+fn scene_to_lab(scene: Res<CurrentScene>, mut lab: ResMut<Lab>) {
+    if scene.is_changed() && lab.scene != scene.0 {
+        lab.scene = scene.0.clone();
+    }
+}
+
+fn close_requested(
+    mut requests: MessageReader<WindowCloseRequested>,
+    mut lab: ResMut<Lab>,
+    registry: Res<Registry>,
+    mut effects: MessageWriter<LabEffect>,
+) {
+    if requests.read().count() > 0 {
+        for effect in lab.apply(Action::Quit, &registry) {
+            effects.write(LabEffect(effect));
+        }
+    }
+}
+
+/// The picture is drawn where the panels leave room.
+fn fit_viewport(
+    lab: Res<Lab>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    mut cameras: Query<&mut Camera, With<PictureCamera>>,
+) {
+    let rect = lab.picture_rect;
+    if !rect.is_finite() || !rect.is_positive() {
+        return;
+    }
+    let limit = window.physical_size();
+    let pixels = |points: f32| (points * window.scale_factor()).round().max(0.0) as u32;
+    let low = UVec2::new(pixels(rect.min.x), pixels(rect.min.y)).min(limit.saturating_sub(UVec2::ONE));
+    let high = UVec2::new(pixels(rect.max.x), pixels(rect.max.y)).min(limit);
+    let size = high.saturating_sub(low).max(UVec2::ONE);
+    if limit.min_element() == 0 {
+        return;
+    }
+    // In the light theme the surround is light.
+    let grey = Palette::of(&lab.view).surround;
+    let surround = ClearColorConfig::Custom(bevy::color::Color::srgb_u8(grey.r(), grey.g(), grey.b()));
+    for mut camera in &mut cameras {
+        if !matches!((camera.clear_color, surround), (ClearColorConfig::Custom(a), ClearColorConfig::Custom(b)) if a == b)
+        {
+            camera.clear_color = surround;
+        }
+        let same =
+            camera.viewport.as_ref().is_some_and(|v| v.physical_position == low && v.physical_size == size);
+        if !same {
+            camera.viewport =
+                Some(Viewport { physical_position: low, physical_size: size, ..Viewport::default() });
+        }
+    }
+}
+
+fn window_title(lab: Res<Lab>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
+    let mark = if lab.is_dirty() { " •" } else { "" };
+    let title = format!("{}{mark} – Lights, Camera, Models!", lab.title());
+    if window.title != title {
+        window.title = title;
+    }
+}
+
+/// How many frames are still to be drawn because something changed.
+#[derive(Resource)]
+struct Settling {
+    frames: u32,
+    last: Option<Box<Snapshot>>,
+}
+
+impl Default for Settling {
+    fn default() -> Self {
+        Self { frames: 10, last: None }
+    }
+}
+
+/// What a frame shows beside the input that egui itself watches.
+#[derive(Clone, PartialEq)]
+struct Snapshot {
+    scene: crate::scene::Scene,
+    rect: [f32; 4],
+    camera: Option<bevy::transform::components::Transform>,
+    terms: ShownTerms,
+    messages: usize,
+}
+
+/// Asks for another frame while something changes, and for none when nothing does.
+fn redraw(
+    lab: Res<Lab>,
+    terms: Res<ShownTerms>,
+    cameras: Query<&bevy::transform::components::Transform, With<PictureCamera>>,
+    mut settling: ResMut<Settling>,
+    mut requests: MessageWriter<RequestRedraw>,
+) {
+    let rect = lab.picture_rect;
+    let now = Snapshot {
+        scene: lab.scene.clone(),
+        rect: [rect.min.x, rect.min.y, rect.max.x, rect.max.y],
+        camera: cameras.iter().next().copied(),
+        terms: *terms,
+        messages: lab.messages.len() + usize::from(lab.question.is_some()),
+    };
+    if settling.last.as_deref() != Some(&now) {
+        settling.last = Some(Box::new(now));
+        settling.frames = settling.frames.max(SETTLING_FRAMES);
+    }
+    if settling.frames > 0 {
+        settling.frames -= 1;
+        requests.write(RequestRedraw);
+    }
+}
+
+/// Measures what a frame costs: from its first system to its last, drawing included.
+#[derive(Default, Resource)]
+struct FrameClock {
+    start: Option<Instant>,
+    mean: f32,
+}
+
+fn start_frame(mut clock: ResMut<FrameClock>) {
+    clock.start = Some(Instant::now());
+}
+
+fn end_frame(mut clock: ResMut<FrameClock>, mut lab: ResMut<Lab>) {
+    if let Some(start) = clock.start.take() {
+        let ms = start.elapsed().as_secs_f32() * 1e3;
+        clock.mean = if clock.mean == 0.0 { ms } else { 0.9 * clock.mean + 0.1 * ms };
+        lab.bypass_change_detection().status.frame_ms = clock.mean;
+    }
+}

@@ -1,0 +1,84 @@
+//! Clicking into the picture selects what is under the pointer.
+
+use bevy::{
+    camera::Camera,
+    ecs::prelude::*,
+    input::{ButtonInput, mouse::MouseButton},
+    math::Ray3d,
+    picking::mesh_picking::ray_cast::{MeshRayCast, MeshRayCastSettings},
+    transform::components::GlobalTransform,
+    window::{PrimaryWindow, Window},
+};
+use glam::Vec2;
+
+use crate::{
+    observer::camera::PictureCamera,
+    panel::state::{Action, Lab, Selection},
+    registry::Registry,
+    scene::spawn::{CurrentScene, LitObject, SceneEntities},
+};
+
+/// How far from a light's mark a click still means it, points.
+const LIGHT_REACH: f32 = 12.0;
+/// How far the pointer may move between press and release of a click, points.
+const CLICK_SLACK: f32 = 4.0;
+
+/// Selects the light whose mark, or else the object whose surface, was clicked.
+pub(super) fn pick(
+    buttons: Res<ButtonInput<MouseButton>>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    cameras: Query<(&Camera, &GlobalTransform), With<PictureCamera>>,
+    scene: Res<CurrentScene>,
+    entities: Res<SceneEntities>,
+    objects: Query<(), With<LitObject>>,
+    registry: Res<Registry>,
+    mut lab: ResMut<Lab>,
+    mut ray_cast: MeshRayCast,
+    mut pressed_at: Local<Option<Vec2>>,
+) {
+    let pointer = window.cursor_position();
+    if buttons.just_pressed(MouseButton::Left) {
+        *pressed_at = pointer.filter(|_| lab.pointer_in_picture);
+    }
+    if !buttons.just_released(MouseButton::Left) {
+        return;
+    }
+    let (Some(start), Some(end)) = (pressed_at.take(), pointer) else { return };
+    let Ok((camera, place)) = cameras.single() else { return };
+    if start.distance(end) > CLICK_SLACK {
+        return;
+    }
+    let light = lab.view.show_gizmos.then(|| nearest_light(&scene, camera, place, end)).flatten();
+    let selection = light.map(Selection::Light).or_else(|| {
+        let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
+        let filter = |e: Entity| objects.contains(e);
+        let settings = MeshRayCastSettings::default().with_filter(&filter);
+        let (hit, _) = ray_cast.cast_ray(ray, &settings).first()?;
+        entities.objects.iter().position(|e| e == hit).map(Selection::Object)
+    });
+    if let Some(selection) = selection
+        && selection != lab.selection
+    {
+        lab.apply(Action::Select(selection), &registry);
+    }
+}
+
+fn nearest_light(
+    scene: &CurrentScene,
+    camera: &Camera,
+    place: &GlobalTransform,
+    pointer: Vec2,
+) -> Option<usize> {
+    scene
+        .0
+        .lights
+        .iter()
+        .enumerate()
+        .filter_map(|(i, light)| {
+            let at = camera.world_to_viewport(place, light.position?).ok()?;
+            Some((i, at.distance(pointer)))
+        })
+        .filter(|(_, distance)| *distance <= LIGHT_REACH)
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(i, _)| i)
+}

@@ -1,0 +1,869 @@
+//! The panels without a window: synthetic keys and clicks in, actions and effects out; what is on
+//! screen is read from the accessibility tree, as a screen reader would.
+//!
+//! `LCM_PANEL_PICTURES=folder` also writes pictures of the window in many states, drawn in software,
+//! to be looked at.
+
+use std::{collections::HashMap, path::PathBuf};
+
+use bevy_egui::egui::{
+    self, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, TextureId, accesskit, epaint, pos2,
+    vec2,
+};
+use lights_camera_models::{
+    panel::{
+        self, Dialogs, Panels,
+        state::{
+            Action, Answer, Badge, Edit, Effect, Lab, LightField, MissingPart, ObjectField, Question,
+            Selection, Severity, Shaders, ThemeChoice, ViewChange,
+        },
+    },
+    reflection::parameter::Value,
+    registry::Registry,
+    scene::{Light, Object, Scene},
+};
+
+/// A window that exists in memory only.
+struct Bench {
+    ctx: egui::Context,
+    lab: Lab,
+    registry: Registry,
+    panels: Panels,
+    dialogs: Dialogs,
+    size: egui::Vec2,
+    time: f64,
+    tree: Vec<Seen>,
+    effects: Vec<Effect>,
+    painter: Painter,
+}
+
+/// A widget as a screen reader sees it.
+#[derive(Clone, Debug)]
+struct Seen {
+    role: accesskit::Role,
+    label: String,
+    disabled: bool,
+    rect: Rect,
+}
+
+impl Bench {
+    fn new(lab: Lab) -> Self {
+        let ctx = egui::Context::default();
+        ctx.enable_accesskit();
+        let mut bench = Self {
+            ctx,
+            lab,
+            registry: Registry::builtin(),
+            panels: Panels::builtin(),
+            dialogs: Dialogs::default(),
+            size: vec2(1280.0, 1600.0),
+            time: 0.0,
+            tree: Vec::new(),
+            effects: Vec::new(),
+            painter: Painter::default(),
+        };
+        bench.settle();
+        bench
+    }
+
+    fn with_model(model: &str) -> Self {
+        Self::new(Lab::new(Scene { reflection_model: model.to_owned(), ..Scene::default() }))
+    }
+
+    /// Runs one frame with the given events.
+    fn frame(&mut self, events: Vec<Event>) -> Vec<epaint::ClippedPrimitive> {
+        self.time += 1.0 / 30.0;
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size)),
+            time: Some(self.time),
+            focused: true,
+            events,
+            ..RawInput::default()
+        };
+        let mut effects = Vec::new();
+        let (lab, registry, panels, dialogs) =
+            (&mut self.lab, &self.registry, &self.panels, &mut self.dialogs);
+        let mut output =
+            self.ctx.run_ui(input, |ui| effects.extend(panel::show(ui, lab, registry, panels, dialogs)));
+        self.effects.extend(effects);
+        if let Some(update) = output.platform_output.accesskit_update.take() {
+            self.tree = update
+                .nodes
+                .iter()
+                .filter_map(|(_, node)| {
+                    let bounds = node.bounds()?;
+                    let rect = Rect::from_min_max(
+                        pos2(bounds.x0 as f32, bounds.y0 as f32),
+                        pos2(bounds.x1 as f32, bounds.y1 as f32),
+                    );
+                    let label = node.label().or(node.value()).unwrap_or_default().to_owned();
+                    Some(Seen { role: node.role(), label, disabled: node.is_disabled(), rect })
+                })
+                .collect();
+        }
+        self.painter.take(&mut output.textures_delta);
+        self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point)
+    }
+
+    fn settle(&mut self) {
+        for _ in 0..6 {
+            self.frame(Vec::new());
+        }
+    }
+
+    /// The first widget with this label.
+    fn find(&self, label: &str) -> Option<&Seen> {
+        self.tree.iter().find(|s| s.label == label)
+    }
+
+    fn field(&self, label: &str) -> Seen {
+        let text = |s: &&Seen| matches!(s.role, accesskit::Role::TextInput);
+        let Some(seen) = self.tree.iter().filter(text).find(|s| s.label == label) else {
+            panic!(
+                "no field “{label}” among {:?}",
+                self.tree.iter().filter(text).map(|s| &s.label).collect::<Vec<_>>()
+            )
+        };
+        seen.clone()
+    }
+
+    fn click_at(&mut self, at: Pos2, button: PointerButton) {
+        let press = |pressed| Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE };
+        self.frame(vec![Event::PointerMoved(at)]);
+        self.frame(vec![press(true)]);
+        self.frame(vec![press(false)]);
+        self.settle();
+    }
+
+    fn click(&mut self, label: &str) {
+        let Some(seen) = self.find(label) else {
+            panic!(
+                "nothing is called “{label}”; there are {:?}",
+                self.tree.iter().map(|s| &s.label).collect::<Vec<_>>()
+            )
+        };
+        let at = seen.rect.center();
+        self.click_at(at, PointerButton::Primary);
+    }
+
+    fn key(&mut self, key: Key, modifiers: Modifiers) {
+        let event = |pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+        self.frame(vec![Event::ModifiersChanged(modifiers), event(true)]);
+        self.frame(vec![event(false), Event::ModifiersChanged(Modifiers::NONE)]);
+        self.settle();
+    }
+
+    /// Presses a letter as a keyboard does: a key and a text.
+    fn letter(&mut self, key: Key, text: &str) {
+        let modifiers = Modifiers::NONE;
+        let event = Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+        self.frame(vec![event, Event::Text(text.to_owned())]);
+        self.settle();
+    }
+
+    fn type_into(&mut self, label: &str, text: &str) {
+        let at = self.field(label).rect.center();
+        self.click_at(at, PointerButton::Primary);
+        self.key(Key::A, Modifiers::COMMAND | Modifiers::CTRL);
+        if text.is_empty() {
+            self.key(Key::Backspace, Modifiers::NONE);
+        } else {
+            self.frame(vec![Event::Text(text.to_owned())]);
+        }
+        self.settle();
+    }
+
+    fn apply(&mut self, action: Action) {
+        let effects = self.lab.apply(action, &self.registry);
+        self.effects.extend(effects);
+        self.settle();
+    }
+
+    fn says(&self, words: &str) -> bool {
+        self.tree.iter().any(|s| s.label.contains(words))
+    }
+}
+
+// ── knobs ──
+
+#[test]
+fn every_parameter_of_every_model_has_a_knob() {
+    for model in Registry::builtin().models() {
+        let bench = Bench::with_model(model.declaration.id);
+        for p in model.parameters {
+            let knobs: Vec<_> = bench.tree.iter().filter(|s| s.label.contains(p.label)).collect();
+            assert!(!knobs.is_empty(), "{}: no knob for {}", model.declaration.id, p.name);
+            assert!(knobs.iter().all(|k| !k.disabled), "{}: {} is disabled", model.declaration.id, p.name);
+        }
+    }
+}
+
+#[test]
+fn parameters_that_the_model_does_not_use_are_disabled_and_kept() {
+    let mut scene = Scene::default();
+    scene.objects[0].material.set("alpha", Value::Integer(64));
+    let mut bench = Bench::new(Lab::new(scene));
+    assert!(bench.field("shininess").disabled);
+    assert!(bench.says("not used by Lambert"));
+    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    assert!(!bench.field("shininess").disabled);
+    assert_eq!(bench.lab.scene.objects[0].material.0.get("alpha"), Some(&Value::Integer(64)));
+}
+
+#[test]
+fn typing_a_legal_value_changes_the_scene_at_once() {
+    let mut bench = Bench::with_model("phong");
+    bench.type_into("diffuse coefficient", "0,65");
+    assert_eq!(bench.lab.scene.objects[0].material.0.get("k_d"), Some(&Value::Number(0.65)));
+    assert!(bench.lab.is_dirty());
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert_eq!(
+        bench.lab.scene.objects[0].material.0.get("k_d"),
+        Some(&Value::Number(0.8)),
+        "Escape goes back"
+    );
+}
+
+#[test]
+fn typing_an_illegal_value_shows_the_rule_and_leaves_the_scene_alone() {
+    for text in ["0.2", "7", "abc", ""] {
+        let mut bench = Bench::with_model("phong");
+        let before = bench.lab.scene.clone();
+        bench.type_into("diffuse coefficient", text);
+        assert_eq!(bench.lab.scene, before, "{text:?}");
+        assert!(bench.says("between 0.5 and 1"), "{text:?}: the rule is not shown");
+        assert!(bench.says("the picture keeps 0.8"), "{text:?}");
+    }
+}
+
+#[test]
+fn positions_stay_in_the_room() {
+    let mut bench = Bench::new(Lab::default());
+    let before = bench.lab.scene.clone();
+    bench.type_into("position x", "11");
+    assert_eq!(bench.lab.scene, before);
+    assert!(bench.says("greater than 0 and at most 10"));
+    bench.type_into("position x", "3.5");
+    assert_eq!(bench.lab.scene.objects[0].position.x, 3.5);
+}
+
+#[test]
+fn arrow_keys_turn_the_value_of_a_field() {
+    let mut bench = Bench::with_model("phong");
+    let at = bench.field("shininess").rect.center();
+    bench.click_at(at, PointerButton::Primary);
+    bench.key(Key::ArrowUp, Modifiers::NONE);
+    assert_eq!(bench.lab.scene.objects[0].material.0.get("alpha"), Some(&Value::Integer(33)));
+}
+
+#[test]
+fn sliders_are_dragged_and_a_double_click_sets_the_default() {
+    let mut bench = Bench::with_model("phong");
+    let slider = |b: &Bench| {
+        b.tree
+            .iter()
+            .find(|s| s.role == accesskit::Role::Slider && s.label == "specular coefficient")
+            .cloned()
+    };
+    let Some(seen) = slider(&bench) else { panic!("no slider") };
+    let at = pos2(seen.rect.left() + 0.9 * seen.rect.width(), seen.rect.center().y);
+    bench.click_at(at, PointerButton::Primary);
+    let value = |b: &Bench| match b.lab.scene.objects[0].material.0.get("k_s") {
+        Some(Value::Number(v)) => *v,
+        other => panic!("{other:?}"),
+    };
+    assert!(value(&bench) > 0.85, "{}", value(&bench));
+    let press = |pressed| Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    // Long enough for the click before not to count.
+    (0..6).for_each(|_| bench.settle());
+    for _ in 0..2 {
+        bench.frame(vec![press(true)]);
+        bench.frame(vec![press(false)]);
+    }
+    bench.settle();
+    assert_eq!(value(&bench), 0.5);
+}
+
+// ── the document ──
+
+#[test]
+fn a_change_shows_the_mark_of_unsaved_changes_and_saving_removes_it() {
+    let mut bench = Bench::new(Lab::default());
+    assert!(bench.says("has no unsaved changes"));
+    bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+    assert!(bench.says("has unsaved changes"));
+    let path = PathBuf::from("a.json");
+    let effects = bench.lab.saved(path.clone(), &bench.registry);
+    assert_eq!(effects, [Effect::SaveSettings]);
+    bench.settle();
+    assert!(bench.says("has no unsaved changes"));
+    assert_eq!(bench.lab.recent_files, [path]);
+}
+
+#[test]
+fn nothing_is_lost_without_a_question() {
+    for action in [Action::New, Action::Quit, Action::Open(PathBuf::from("b.json"))] {
+        let mut bench = Bench::new(Lab::default());
+        bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+        bench.effects.clear();
+        bench.apply(action.clone());
+        assert!(bench.effects.is_empty(), "{action:?}");
+        assert!(bench.says("Save the changes?"), "{action:?}");
+        bench.key(Key::Escape, Modifiers::NONE);
+        assert_eq!(bench.lab.question, None);
+        assert_eq!(bench.lab.scene.shading_model, "flat", "cancelling keeps everything");
+        assert!(bench.effects.is_empty(), "{action:?}");
+    }
+}
+
+#[test]
+fn saving_first_carries_on_with_what_was_asked_for() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+    bench.lab.path = Some(PathBuf::from("a.json"));
+    bench.apply(Action::Quit);
+    bench.effects.clear();
+    bench.click("Save");
+    assert_eq!(bench.effects, [Effect::SaveFile { path: PathBuf::from("a.json"), overwrite: false }]);
+    let effects = bench.lab.saved(PathBuf::from("a.json"), &bench.registry);
+    assert!(effects.contains(&Effect::Quit));
+}
+
+#[test]
+fn missing_parts_are_named_and_defaults_used_on_yes_only() {
+    let ask = |bench: &mut Bench| {
+        let scene = Box::new(Scene { shading_model: "phong".to_owned(), ..Scene::default() });
+        let parts =
+            vec![MissingPart { name: "the scene size".to_owned(), default: "10 × 10 × 10 m".to_owned() }];
+        bench.lab.ask(Question::MissingParts { path: PathBuf::from("c.json"), scene, parts });
+        bench.settle();
+    };
+    let mut bench = Bench::new(Lab::default());
+    ask(&mut bench);
+    assert!(bench.says("the scene size") && bench.says("10 × 10 × 10 m"));
+    bench.click("Do not open");
+    assert_eq!(bench.lab.scene.shading_model, "gouraud");
+    assert!(bench.lab.messages.iter().any(|m| m.text.contains("the scene size")));
+    ask(&mut bench);
+    bench.click("Use the defaults");
+    assert_eq!(bench.lab.scene.shading_model, "phong");
+    assert_eq!(bench.lab.path, Some(PathBuf::from("c.json")));
+}
+
+#[test]
+fn messages_stay_until_dismissed() {
+    let mut bench = Bench::new(Lab::default());
+    bench.lab.say(Severity::Error, "room.json:14:20: k_d is 0.2");
+    bench.settle();
+    assert!(bench.lab.view.bottom_open, "an error unfolds the strip");
+    assert!(bench.says("room.json:14:20"));
+    bench.click("Dismiss the message");
+    assert!(bench.lab.messages.is_empty());
+}
+
+// ── lights and objects ──
+
+#[test]
+fn every_registered_kind_can_be_added() {
+    let mut bench = Bench::new(Lab::default());
+    let registry = Registry::builtin();
+    for light in registry.lights() {
+        bench.apply(Action::AddLight(light.declaration.id.to_owned()));
+        let Some(added) = bench.lab.scene.lights.last() else { panic!("none") };
+        assert_eq!(added.kind, light.declaration.id);
+        assert_eq!(added.position.is_some(), light.declaration.has_position);
+        assert_eq!(added.direction.is_some(), light.declaration.has_direction);
+        assert!(added.position.is_none_or(|p| bench.lab.scene.scene_size.contains(p)));
+    }
+    for shape in registry.shapes() {
+        bench.apply(Action::AddObject(shape.declaration.id.to_owned()));
+        assert_eq!(bench.lab.scene.objects.last().map(|o| o.kind.as_str()), Some(shape.declaration.id));
+    }
+    let mut places: Vec<_> =
+        bench.lab.scene.objects.iter().map(|o| o.position.to_array().map(f32::to_bits)).collect();
+    places.sort_unstable();
+    places.dedup();
+    assert_eq!(places.len(), bench.lab.scene.objects.len(), "each stands in a place of its own");
+}
+
+#[test]
+fn the_last_light_and_the_last_object_stay_and_say_why() {
+    let mut bench = Bench::new(Lab::default());
+    for (part, words) in [
+        (Selection::Light(0), "last light"),
+        (Selection::Object(0), "last object"),
+        (Selection::Observer, "exactly one"),
+    ] {
+        bench.apply(Action::Remove(part));
+        assert!(bench.lab.messages.iter().any(|m| m.text.contains(words)));
+    }
+    assert_eq!((bench.lab.scene.lights.len(), bench.lab.scene.objects.len()), (1, 1));
+}
+
+#[test]
+fn removing_and_duplicating_keep_the_selection_on_something_that_exists() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Duplicate(Selection::Object(0)));
+    assert_eq!(bench.lab.selection, Selection::Object(1));
+    bench.apply(Action::Remove(Selection::Object(1)));
+    assert_eq!(bench.lab.selection, Selection::Object(0));
+    bench.apply(Action::Duplicate(Selection::Light(0)));
+    bench.apply(Action::Remove(Selection::Light(0)));
+    assert_eq!(bench.lab.selection, Selection::Light(0));
+}
+
+#[test]
+fn illegal_edits_are_refused_with_the_reason() {
+    let mut bench = Bench::new(Lab::default());
+    let before = bench.lab.scene.clone();
+    let observer = bench.lab.scene.observer.position;
+    for edit in [
+        Edit::Model("nonsense".to_owned()),
+        Edit::Light(0, LightField::Position(observer)),
+        Edit::Light(0, LightField::Intensity(-1.0)),
+        Edit::Object(0, ObjectField::Position(glam::Vec3::splat(20.0))),
+        Edit::Object(0, ObjectField::Material("k_d", Value::Number(0.1))),
+        Edit::Object(7, ObjectField::Size(1.0)),
+    ] {
+        let messages = bench.lab.messages.len();
+        bench.apply(Action::Edit(edit.clone()));
+        assert_eq!(bench.lab.scene, before, "{edit:?}");
+        assert_eq!(bench.lab.messages.len(), messages + 1, "{edit:?}");
+    }
+}
+
+#[test]
+fn another_type_of_light_has_what_the_type_needs() {
+    let mut bench = Bench::new(Lab::default());
+    for light in Registry::builtin().lights() {
+        bench.apply(Action::Edit(Edit::Light(0, LightField::Kind(light.declaration.id.to_owned()))));
+        let now = &bench.lab.scene.lights[0];
+        assert_eq!(now.position.is_some(), light.declaration.has_position);
+        assert_eq!(now.direction.is_some(), light.declaration.has_direction);
+        assert_eq!(now.intensity, light.declaration.default_intensity);
+    }
+}
+
+// ── keys ──
+
+#[test]
+fn keys_choose_the_shading_but_not_while_typing() {
+    let mut bench = Bench::new(Lab::default());
+    for (key, text, mode) in
+        [(Key::F, "f", "flat"), (Key::P, "p", "phong"), (Key::D, "d", "derivative"), (Key::G, "g", "gouraud")]
+    {
+        bench.letter(key, text);
+        assert_eq!(bench.lab.scene.shading_model, mode);
+    }
+    let at = bench.field("Name").rect.center();
+    bench.click_at(at, PointerButton::Primary);
+    bench.letter(Key::F, "f");
+    bench.key(Key::Delete, Modifiers::NONE);
+    assert_eq!(bench.lab.scene.shading_model, "gouraud");
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(bench.lab.scene.objects[0].name.as_deref(), Some("f"));
+}
+
+#[test]
+fn delete_removes_the_selection_but_not_from_within_a_knob() {
+    let mut bench = Bench::with_model("phong");
+    bench.apply(Action::AddObject("cube".to_owned()));
+    let slider = bench.tree.iter().find(|s| s.role == accesskit::Role::Slider).map(|s| s.rect.center());
+    bench.click_at(slider.unwrap_or_default(), PointerButton::Primary);
+    bench.key(Key::Delete, Modifiers::NONE);
+    assert_eq!(bench.lab.scene.objects.len(), 2);
+    bench.key(Key::Escape, Modifiers::NONE);
+    bench.key(Key::Delete, Modifiers::NONE);
+    assert_eq!(bench.lab.scene.objects.len(), 1);
+}
+
+#[test]
+fn tab_goes_through_the_objects_and_takes_no_focus() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::AddObject("cube".to_owned()));
+    bench.apply(Action::AddObject("torus".to_owned()));
+    bench.key(Key::Tab, Modifiers::NONE);
+    assert_eq!(bench.lab.selection, Selection::Object(0));
+    bench.key(Key::Tab, Modifiers::SHIFT);
+    assert_eq!(bench.lab.selection, Selection::Object(2));
+    assert_eq!(bench.ctx.memory(|m| m.focused()), None);
+    bench.key(Key::F6, Modifiers::NONE);
+    assert!(bench.ctx.memory(|m| m.focused()).is_some(), "F6 goes into the panels");
+}
+
+#[test]
+fn numbers_choose_recent_models_and_keep_their_places() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
+    bench.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+    for (key, model) in
+        [(Key::Num2, "phong"), (Key::Num1, "lambert"), (Key::Num3, "blinn_phong"), (Key::Num2, "phong")]
+    {
+        bench.key(key, Modifiers::NONE);
+        assert_eq!(bench.lab.scene.reflection_model, model);
+    }
+}
+
+#[test]
+fn the_chooser_finds_by_typing_and_chooses_with_enter() {
+    let mut bench = Bench::new(Lab::default());
+    bench.key(Key::R, Modifiers::NONE);
+    assert!(bench.lab.view.chooser_open);
+    bench.frame(vec![Event::Text("1977".to_owned())]);
+    bench.settle();
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(bench.lab.scene.reflection_model, "blinn_phong");
+    assert!(!bench.lab.view.chooser_open);
+}
+
+#[test]
+fn nothing_but_the_question_can_be_used_while_it_is_open() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+    bench.apply(Action::New);
+    bench.letter(Key::P, "p");
+    assert_eq!(bench.lab.scene.shading_model, "flat");
+    assert!(!bench.lab.pointer_in_picture);
+    bench.apply(Action::Answer(Answer::Discard));
+    assert_eq!(bench.lab.scene, Scene::default());
+}
+
+// ── the window ──
+
+#[test]
+fn the_pointer_belongs_to_the_picture_only_over_the_picture() {
+    let mut bench = Bench::new(Lab::default());
+    let rect = bench.lab.picture_rect;
+    assert!(rect.width() > 500.0 && rect.height() > 500.0);
+    for (at, expected) in [
+        (rect.center(), true),
+        (pos2(4.0, 4.0), false),
+        (pos2(1270.0, 400.0), false),
+        (pos2(40.0, 400.0), false),
+    ] {
+        bench.frame(vec![Event::PointerMoved(at)]);
+        bench.frame(Vec::new());
+        assert_eq!(bench.lab.pointer_in_picture, expected, "{at:?}");
+    }
+    bench.apply(Action::View(ViewChange::Chooser(true)));
+    let Some(search) = bench.find("Search reflection models") else { panic!("not open") };
+    let inside = search.rect.center() + vec2(0.0, 60.0);
+    bench.frame(vec![Event::PointerMoved(inside)]);
+    bench.frame(Vec::new());
+    assert!(!bench.lab.pointer_in_picture, "a popup over the picture is not the picture");
+}
+
+#[test]
+fn everything_that_can_be_operated_has_a_name() {
+    use accesskit::Role;
+    let mut bench = Bench::with_model("phong");
+    bench.lab.say(Severity::Error, "an error");
+    for selection in [Selection::Room, Selection::Observer, Selection::Light(0), Selection::Object(0)] {
+        bench.apply(Action::Select(selection));
+        for seen in &bench.tree {
+            let operated = matches!(
+                seen.role,
+                Role::Button
+                    | Role::TextInput
+                    | Role::Slider
+                    | Role::CheckBox
+                    | Role::ComboBox
+                    | Role::SpinButton
+                    | Role::RadioButton
+            );
+            assert!(!operated || !seen.label.trim().is_empty(), "{selection:?}: {seen:?}");
+        }
+    }
+}
+
+#[test]
+fn ten_thousand_objects_are_listed_without_drawing_them_all() {
+    let mut scene = Scene::default();
+    for i in 0..9_999u16 {
+        let mut object = Object::default();
+        object.position.x = 0.1 + f32::from(i) * 9e-4;
+        scene.objects.push(object);
+    }
+    let mut bench = Bench::new(Lab::new(scene));
+    assert!(bench.tree.len() < 400);
+    bench.apply(Action::SelectPrevious);
+    assert!(bench.says("Sphere 10000"), "the selection comes into view");
+}
+
+#[test]
+fn a_panel_from_outside_gets_a_tab() {
+    struct Extra;
+    impl panel::Panel for Extra {
+        fn id(&self) -> &'static str {
+            "extra"
+        }
+        fn title(&self) -> &'static str {
+            "Extra"
+        }
+        fn place(&self) -> panel::Place {
+            panel::Place::Bottom
+        }
+        fn show(&self, ui: &mut egui::Ui, _lab: &Lab, _registry: &Registry) -> Vec<Action> {
+            ui.label("from outside");
+            Vec::new()
+        }
+    }
+    let mut bench = Bench::new(Lab::default());
+    bench.panels.add(Extra);
+    bench.apply(Action::View(ViewChange::BottomTab("extra".to_owned())));
+    assert!(bench.says("from outside"));
+    bench.click("Messages");
+    assert!(!bench.says("from outside"));
+}
+
+// ── pictures ──
+
+#[test]
+fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
+    let Some(folder) = std::env::var_os("LCM_PANEL_PICTURES").map(PathBuf::from) else { return Ok(()) };
+    std::fs::create_dir_all(&folder)?;
+    type Setup = fn(&mut Bench);
+    let states: &[(&str, (f32, f32), Setup)] = &[
+        ("start", (1280.0, 720.0), |_| {}),
+        ("phong", (1280.0, 720.0), |b| b.apply(Action::Edit(Edit::Model("phong".to_owned())))),
+        ("blinn", (1920.0, 1080.0), |b| {
+            b.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+            let rect = b
+                .tree
+                .iter()
+                .find(|s| s.role == accesskit::Role::Slider && s.label == "shininess")
+                .map(|s| s.rect);
+            b.frame(vec![Event::PointerMoved(rect.map_or(Pos2::ZERO, |r| r.center()))]);
+            b.settle();
+        }),
+        ("light", (1280.0, 720.0), |b| {
+            b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
+            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
+            b.apply(Action::AddLight("spot".to_owned()));
+        }),
+        ("large", (1280.0, 720.0), |b| {
+            b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
+            b.apply(Action::View(ViewChange::LargeType(true)));
+            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
+        }),
+        ("large-dark", (1920.0, 1080.0), |b| {
+            b.apply(Action::View(ViewChange::LargeType(true)));
+            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
+        }),
+        ("error", (1280.0, 720.0), |b| {
+            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
+            b.apply(Action::Edit(Edit::Object(0, ObjectField::Material("alpha", Value::Integer(64)))));
+            b.apply(Action::Edit(Edit::Model("mod_lambert".to_owned())));
+            b.lab.say(Severity::Info, "The last light stays: a scene needs at least one to show anything.");
+            b.lab.say(
+                Severity::Warning,
+                "The settings cannot be written to /home/x/.config: no space left on device.",
+            );
+            b.lab.say(Severity::Error, "scenes/room.json:14:20: objects[0].material.k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1. This one is long, so that it has to be broken into two lines at the least, and must not push the buttons out of the window.");
+            b.lab.badges.push(Badge {
+                severity: Severity::Error,
+                text: "stale shader".to_owned(),
+                help: String::new(),
+            });
+            b.lab.status.shaders = Shaders::Stale;
+            b.type_into("position x", "12");
+        }),
+        ("knob-error", (1280.0, 900.0), |b| {
+            b.apply(Action::Edit(Edit::Model("phong".to_owned())));
+            b.type_into("diffuse coefficient", "0.2");
+        }),
+        ("many", (1280.0, 720.0), |b| {
+            for i in 0..40 {
+                b.apply(Action::AddObject(["cube", "torus", "teapot", "sphere"][i % 4].to_owned()));
+            }
+            let name = "A very long name for a very small thing".to_owned();
+            b.apply(Action::Edit(Edit::Object(2, ObjectField::Name(name))));
+            b.apply(Action::Select(Selection::Object(2)));
+        }),
+        ("room", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Room))),
+        ("observer", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Observer))),
+        ("chooser", (1280.0, 720.0), |b| b.key(Key::R, Modifiers::NONE)),
+        ("menu", (1280.0, 720.0), |b| b.click("View")),
+        ("file-menu", (1280.0, 720.0), |b| b.click("File")),
+        ("keys", (1280.0, 720.0), |b| b.key(Key::F1, Modifiers::NONE)),
+        ("about", (1280.0, 720.0), |b| b.apply(Action::View(ViewChange::About(true)))),
+        ("question", (1280.0, 720.0), |b| {
+            b.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+            b.apply(Action::Quit);
+        }),
+        ("missing", (1280.0, 720.0), |b| {
+            let part = |name: &str, default: &str| MissingPart {
+                name: name.to_owned(),
+                default: default.to_owned(),
+            };
+            let parts = vec![part("the scene size", "10 × 10 × 10 m"), part("the shading model", "Gouraud")];
+            b.lab.ask(Question::MissingParts {
+                path: PathBuf::from("scenes/room.json"),
+                scene: Box::default(),
+                parts,
+            });
+        }),
+        ("colour", (1280.0, 900.0), |b| b.click("base colour: choose a colour")),
+        ("open-dialog", (1280.0, 720.0), |b| b.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL)),
+        ("rename", (1280.0, 720.0), |b| b.key(Key::F2, Modifiers::NONE)),
+    ];
+    let only = std::env::var("LCM_PANEL_ONLY").ok().filter(|o| !o.is_empty());
+    for (name, (width, height), setup) in states {
+        if only.as_ref().is_some_and(|o| !o.split(',').any(|o| o == *name)) {
+            continue;
+        }
+        let mut scene = Scene::default();
+        scene.lights.push(Light {
+            kind: "ambient".to_owned(),
+            name: Some("sky".to_owned()),
+            position: None,
+            intensity: 0.2,
+            ..Light::default()
+        });
+        scene.objects[0].material.set("base_colour", Value::Colour([204, 96, 64]));
+        let mut lab = Lab::new(scene);
+        lab.status.frame_ms = 16.6;
+        lab.status.backend = "Vulkan".to_owned();
+        lab.status.adapter = "llvmpipe (LLVM 15.0.6, 256 bits)".to_owned();
+        lab.camera = glam::Quat::from_euler(glam::EulerRot::YXZ, 0.5, -0.4, 0.0);
+        let mut bench = Bench::new(lab);
+        bench.size = vec2(*width, *height);
+        bench.settle();
+        setup(&mut bench);
+        // Tooltips wait for the pointer to rest.
+        for _ in 0..30 {
+            bench.frame(Vec::new());
+        }
+        let primitives = bench.frame(Vec::new());
+        let surround = panel::theme::Palette::of(&bench.lab.view).surround;
+        let picture = bench.painter.draw(&primitives, (*width as usize, *height as usize), surround);
+        let file = std::fs::File::create(folder.join(format!("{name}.png")))?;
+        let mut encoder = png::Encoder::new(file, *width as u32, *height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.write_header()?.write_image_data(&picture)?;
+    }
+    Ok(())
+}
+
+/// Draws what egui wants drawn, in software: slow, and needs nothing.
+#[derive(Default)]
+struct Painter {
+    textures: HashMap<TextureId, egui::ColorImage>,
+}
+
+impl Painter {
+    fn take(&mut self, delta: &mut epaint::textures::TexturesDelta) {
+        for (id, deltas) in &delta.set {
+            for delta in deltas {
+                let epaint::ImageData::Color(image) = &delta.image;
+                match (delta.pos, self.textures.get_mut(id)) {
+                    (Some([x, y]), Some(whole)) => {
+                        for row in 0..image.size[1] {
+                            for column in 0..image.size[0] {
+                                whole.pixels[(y + row) * whole.size[0] + x + column] =
+                                    image.pixels[row * image.size[0] + column];
+                            }
+                        }
+                    }
+                    _ => drop(self.textures.insert(*id, (**image).clone())),
+                }
+            }
+        }
+        for id in &delta.free {
+            self.textures.remove(id);
+        }
+        delta.clear();
+    }
+
+    fn draw(
+        &self,
+        primitives: &[epaint::ClippedPrimitive],
+        size: (usize, usize),
+        ground: egui::Color32,
+    ) -> Vec<u8> {
+        let mut pixels =
+            vec![[f32::from(ground.r()), f32::from(ground.g()), f32::from(ground.b())]; size.0 * size.1];
+        for primitive in primitives {
+            let epaint::Primitive::Mesh(mesh) = &primitive.primitive else { continue };
+            let Some(texture) = self.textures.get(&mesh.texture_id) else { continue };
+            let clip = primitive.clip_rect;
+            for triangle in mesh.indices.chunks_exact(3) {
+                let [a, b, c] = [0, 1, 2].map(|k| mesh.vertices[triangle[k] as usize]);
+                self.triangle(&mut pixels, size, texture, clip, [a, b, c]);
+            }
+        }
+        pixels.iter().flat_map(|p| p.map(|v| v.clamp(0.0, 255.0).round() as u8)).collect()
+    }
+
+    fn triangle(
+        &self,
+        pixels: &mut [[f32; 3]],
+        size: (usize, usize),
+        texture: &egui::ColorImage,
+        clip: Rect,
+        v: [epaint::Vertex; 3],
+    ) {
+        let edge = |a: Pos2, b: Pos2, p: Pos2| (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+        let area = edge(v[0].pos, v[1].pos, v[2].pos);
+        if area == 0.0 {
+            return;
+        }
+        let bound = Rect::from_points(&[v[0].pos, v[1].pos, v[2].pos]).intersect(clip);
+        let first = |x: f32| (x - 0.5).ceil().max(0.0) as usize;
+        for y in first(bound.top())..first(bound.bottom()).min(size.1) {
+            for x in first(bound.left())..first(bound.right()).min(size.0) {
+                let p = pos2(x as f32 + 0.5, y as f32 + 0.5);
+                let w =
+                    [edge(v[1].pos, v[2].pos, p), edge(v[2].pos, v[0].pos, p), edge(v[0].pos, v[1].pos, p)]
+                        .map(|e| e / area);
+                // An edge that two triangles share belongs to one of them.
+                let owned = |k: usize| {
+                    let (a, b) = (v[(k + 1) % 3].pos, v[(k + 2) % 3].pos);
+                    let d = if area > 0.0 { b - a } else { a - b };
+                    d.y < 0.0 || (d.y == 0.0 && d.x > 0.0)
+                };
+                if (0..3).any(|k| w[k] < 0.0 || (w[k] == 0.0 && !owned(k))) {
+                    continue;
+                }
+                let mix = |f: fn(&epaint::Vertex) -> [f32; 4]| -> [f32; 4] {
+                    let all = v.map(|v| f(&v));
+                    std::array::from_fn(|i| (0..3).map(|k| w[k] * all[k][i]).sum())
+                };
+                let colour = mix(|v| v.color.to_array().map(f32::from));
+                let uv = mix(|v| [v.uv.x, v.uv.y, 0.0, 0.0]);
+                let texel = sample(texture, uv[0], uv[1]);
+                let source: [f32; 4] = std::array::from_fn(|i| colour[i] * texel[i] / 255.0);
+                let target = &mut pixels[y * size.0 + x];
+                for (i, t) in target.iter_mut().enumerate() {
+                    *t = source[i] + *t * (1.0 - source[3] / 255.0);
+                }
+            }
+        }
+    }
+}
+
+fn sample(texture: &egui::ColorImage, u: f32, v: f32) -> [f32; 4] {
+    let [width, height] = texture.size;
+    let (x, y) = (u * width as f32 - 0.5, v * height as f32 - 0.5);
+    let at = |x: f32, y: f32| {
+        let x = (x.max(0.0) as usize).min(width - 1);
+        let y = (y.max(0.0) as usize).min(height - 1);
+        texture.pixels[y * width + x].to_array().map(f32::from)
+    };
+    let (fx, fy) = (x - x.floor(), y - y.floor());
+    let [a, b, c, d] = [
+        at(x.floor(), y.floor()),
+        at(x.floor() + 1.0, y.floor()),
+        at(x.floor(), y.floor() + 1.0),
+        at(x.floor() + 1.0, y.floor() + 1.0),
+    ];
+    std::array::from_fn(|i| {
+        (a[i] * (1.0 - fx) + b[i] * fx) * (1.0 - fy) + (c[i] * (1.0 - fx) + d[i] * fx) * fy
+    })
+}
