@@ -172,7 +172,7 @@ fn the_comparison_notices_one_light_moved() {
         assert_eq!(SAME_RENDERER.broken(&right, &right), None);
         // One of the middle: the outer ones of many may lie beside the picture.
         let count = scene.lights.len();
-        let (before, after) = scene.lights.split_at_mut((count / 2 + 1) % count);
+        let (before, after) = scene.lights.split_at_mut((count / 2 + 2) % count);
         let mut movable =
             after.iter_mut().chain(before).filter(|l| l.position.is_some() || l.direction.is_some());
         let light = movable.next().unwrap_or_else(|| panic!("{name} has ambient lights only"));
