@@ -8,6 +8,7 @@
 
 use std::{error::Error, path::Path};
 
+use glam::Vec3;
 use lights_camera_models::{
     capture::png,
     optics::{Frame, Terms},
@@ -21,7 +22,6 @@ use lights_camera_models::{
     scene::{Object, Scene},
     shader::Source,
 };
-use glam::Vec3;
 
 const TONES: Parameter = Parameter {
     name: "tones",

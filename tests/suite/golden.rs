@@ -35,8 +35,8 @@ struct Bound {
 }
 
 /// Between CPUs: compilers and libraries round sines and powers differently in the last bits, which
-/// can move a value by a level and, seldom, a silhouette by a sample.
-const SAME_RENDERER: Bound = Bound { levels: 2, fraction: 0.002 };
+/// can move a value by a level and, seldom, a silhouette by a sample: room for ten such pixels.
+const SAME_RENDERER: Bound = Bound { levels: 2, fraction: 0.0005 };
 
 /// Between the renderers: they round independently, and snapping corners to a grid moves a sample of a
 /// silhouette here and there, which at this size, with much silhouette per picture, touches up to
@@ -171,10 +171,10 @@ fn the_comparison_notices_one_light_moved() {
         let right = on_cpu(&scene);
         assert_eq!(SAME_RENDERER.broken(&right, &right), None);
         // One of the middle: the outer ones of many may lie beside the picture.
-        let middle = scene.lights.len() / 2 + 1;
         let count = scene.lights.len();
-        let (before, after) = scene.lights.split_at_mut(middle % count);
-        let mut movable = after.iter_mut().chain(before).filter(|l| l.position.is_some() || l.direction.is_some());
+        let (before, after) = scene.lights.split_at_mut((count / 2 + 2) % count);
+        let mut movable =
+            after.iter_mut().chain(before).filter(|l| l.position.is_some() || l.direction.is_some());
         let light = movable.next().unwrap_or_else(|| panic!("{name} has ambient lights only"));
         light.position.iter_mut().for_each(|p| p.y += 2.0);
         light.direction.iter_mut().for_each(|d| *d += Vec3::new(0.1, -0.1, 0.0));
@@ -223,10 +223,9 @@ fn the_matrix_shows_every_model_in_every_mode() {
     for model in registry.models() {
         for mode in registry.modes() {
             let (model, mode) = (model.declaration.id, mode.declaration.id);
-            let shown = scene
-                .objects
-                .iter()
-                .any(|o| o.reflection_model.as_deref() == Some(model) && o.shading_model.as_deref() == Some(mode));
+            let shown = scene.objects.iter().any(|o| {
+                o.reflection_model.as_deref() == Some(model) && o.shading_model.as_deref() == Some(mode)
+            });
             assert!(shown, "scenes/model_matrix.json lacks {model} with {mode} shading");
         }
     }

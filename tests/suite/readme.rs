@@ -2,9 +2,19 @@
 
 use std::fs;
 
-use lights_camera_models::registry::Registry;
+use glam::Vec3;
+use lights_camera_models::{
+    capture::evaluate::evaluate,
+    optics::{Frame, colour::Encoding},
+    reflection::{ModelEntry, parameter::Values},
+    registry::Registry,
+};
 
 use crate::support::root;
+
+#[path = "../../examples/toon.rs"]
+#[allow(dead_code)]
+mod example;
 
 /// Rows of a table, with a heading.
 fn table(heading: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
@@ -25,7 +35,14 @@ fn sections() -> Vec<(&'static str, String)> {
         let d = m.declaration;
         let parameters: Vec<_> = m.parameters.iter().map(|p| code(p.name)).collect();
         let kept: Vec<_> = d.laws.list().iter().filter(|(_, kept)| *kept).map(|(law, _)| *law).collect();
-        vec![code(d.id), d.name.into(), d.author.into(), d.summary.into(), parameters.join(", "), kept.join(", ")]
+        vec![
+            code(d.id),
+            d.name.into(),
+            d.author.into(),
+            d.summary.into(),
+            parameters.join(", "),
+            kept.join(", "),
+        ]
     });
     let modes = registry.modes().iter().map(|m| {
         let d = m.declaration;
@@ -86,5 +103,22 @@ fn every_file_that_a_document_points_to_is_there() {
             let file = target.split('#').next().unwrap_or_default();
             assert!(root().join(file).exists(), "{document} points to {file}, which is not there");
         }
+    }
+}
+
+#[test]
+fn the_model_of_the_example_is_the_same_in_rust_and_in_wgsl() {
+    let model = ModelEntry::of::<example::Toon>();
+    let values = Values::default();
+    let frame = Frame { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
+    // Away from the edges of the tones, where the last bit decides.
+    let directions = (0..4).map(|i| 0.125 + 0.25 * i as f32);
+    let pairs: Vec<_> = directions.map(|z: f32| (Vec3::new((1.0 - z * z).sqrt(), 0.0, z), Vec3::Z)).collect();
+    let answers = evaluate(&model, &values, Encoding::Srgb, &pairs).expect("software Vulkan is installed");
+    let surface = model.instantiate(&values, Encoding::Srgb);
+    for (i, ((l, v), gpu)) in pairs.iter().zip(answers).enumerate() {
+        let cpu = surface.response(*l, *v, &frame).diffuse;
+        assert!((cpu - 0.25 * (i as f32 + 1.0)).abs().max_element() < 1e-6, "{l}: {cpu}");
+        assert!((gpu.diffuse - cpu).abs().max_element() < 1e-6, "{l}: GPU {}, CPU {cpu}", gpu.diffuse);
     }
 }
