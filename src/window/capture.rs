@@ -11,7 +11,11 @@ use bevy::{
     render::view::screenshot::{Screenshot, ScreenshotCaptured},
 };
 
-use crate::{app::{LabFrame, LabSystems}, capture::png, cli::Failure};
+use crate::{
+    app::{LabFrame, LabSystems},
+    capture::png,
+    cli::Failure,
+};
 
 /// Exits after so many frames; before, writes the window to a file, if one is given.
 pub(super) struct ExitAfter {

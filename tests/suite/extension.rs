@@ -157,8 +157,8 @@ fn scene() -> Scene {
 fn an_own_model_light_and_shape_are_drawn_alike_by_both_renderers() {
     let mut registry = Registry::builtin();
     register(&mut registry);
-    let mut renderer = GpuRenderer::extended(64, 64, 1, Output::Linear, register)
-        .expect("software Vulkan is installed");
+    let mut renderer =
+        GpuRenderer::extended(64, 64, 1, Output::Linear, register).expect("software Vulkan is installed");
     renderer.set_scene(scene());
     renderer.settle().expect("the GPU draws");
     let gpu = renderer.read_linear().expect("the picture can be read");
