@@ -32,6 +32,7 @@ pub(super) fn orbit() -> PanOrbitCamera {
         orbit_smoothness: 0.0,
         pan_smoothness: 0.0,
         zoom_smoothness: 0.0,
+        zoom_sensitivity: 0.35,
         zoom_lower_limit: NEAREST,
         pitch_upper_limit: Some(89.9f32.to_radians()),
         pitch_lower_limit: Some(-89.9f32.to_radians()),

@@ -30,7 +30,7 @@ use bevy::{
     },
     winit::{UpdateMode, WinitSettings},
 };
-use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
+use bevy_egui::{EguiGlobalSettings, EguiInput, EguiPlugin, EguiPreUpdateSet, PrimaryEguiContext, egui};
 use bevy_panorbit_camera::PanOrbitCameraPlugin;
 use glam::UVec2;
 
@@ -169,6 +169,10 @@ impl Plugin for WindowSystemsPlugin {
         .add_systems(First, start_frame)
         .add_systems(Last, end_frame)
         .add_systems(PreUpdate, close_requested)
+        .add_systems(
+            PreUpdate,
+            drop_idle_events.after(EguiPreUpdateSet::ProcessInput).before(EguiPreUpdateSet::BeginPass),
+        )
         .add_systems(
             LabFrame,
             (
@@ -376,6 +380,23 @@ fn redraw(
     if settling.frames > 0 {
         settling.frames -= 1;
         requests.write(RequestRedraw);
+    }
+}
+
+/// bevy_egui 0.42 tells egui in every frame which modifier keys are held, and egui draws again after
+/// every event: the window would never rest. Only changes are news.
+fn drop_idle_events(mut contexts: Query<&mut EguiInput>, mut held: Local<egui::Modifiers>) {
+    for mut input in &mut contexts {
+        let mut changed = false;
+        let known = *held;
+        input.events.retain(|event| match event {
+            egui::Event::ModifiersChanged(now) => {
+                changed |= *now != known;
+                *held = *now;
+                changed
+            }
+            _ => true,
+        });
     }
 }
 
