@@ -1,4 +1,4 @@
-//! The JSON Schema of scene files, for editors: the types of [`format`](super::format) plus what the
+//! The JSON Schema of scene files, for editors: the types of `format` plus what the
 //! registry knows.
 
 use schemars::{SchemaGenerator, generate::SchemaSettings};
