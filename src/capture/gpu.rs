@@ -254,6 +254,14 @@ impl GpuRenderer {
         self.app.update();
     }
 
+    /// Waits until the GPU has drawn everything that was asked of it; for timing.
+    pub fn wait(&mut self) {
+        if let Some(render_app) = self.app.get_sub_app(RenderApp) {
+            // A lost device shows when the picture is read.
+            let _ = render_app.world().resource::<RenderDevice>().poll(PollType::wait_indefinitely());
+        }
+    }
+
     /// Draws frames until nothing is waiting to be loaded or compiled.
     ///
     /// # Errors

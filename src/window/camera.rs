@@ -6,7 +6,7 @@ use bevy::{
     input::{
         ButtonInput,
         keyboard::KeyCode,
-        mouse::{MouseButton, MouseWheel},
+        mouse::{MouseButton, MouseMotion, MouseWheel},
     },
     transform::components::Transform,
 };
@@ -74,6 +74,7 @@ fn gate(
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
     mut wheel: MessageReader<MouseWheel>,
+    mut motion: MessageReader<MouseMotion>,
     mut dragging: Local<bool>,
     mut cameras: Query<(&mut PanOrbitCamera, &mut PictureCamera)>,
 ) {
@@ -83,6 +84,7 @@ fn gate(
     } else if !buttons.any_pressed(pressed) {
         *dragging = false;
     }
+    let moved = motion.read().count() > 0;
     let wheeled = wheel.read().count() > 0 && lab.pointer_in_picture;
     // A drag that began in the picture goes on outside; one that began outside never gets in.
     let enabled = *dragging || (lab.pointer_in_picture && !buttons.any_pressed(pressed));
@@ -100,7 +102,7 @@ fn gate(
             orbit.button_orbit = turn;
             orbit.button_pan = pan;
         }
-        if picture.follows_observer && (*dragging || wheeled) {
+        if picture.follows_observer && ((*dragging && moved) || wheeled) {
             picture.follows_observer = false;
         }
     }

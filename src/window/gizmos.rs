@@ -85,7 +85,9 @@ fn draw(
             let selected = lab.selection == Selection::Light(i);
             draw_light(&mut top, light, selected, scene, &registry, eye.translation);
         }
-        if !camera.follows_observer {
+        // From within, its own pyramid would frame the picture.
+        let apart = eye.translation.distance(scene.observer.position) > OBSERVER_MARK;
+        if !camera.follows_observer && apart {
             draw_observer(&mut top, &scene.observer, lab.selection == Selection::Observer);
         }
         if let Selection::Object(i) = lab.selection
@@ -175,13 +177,16 @@ fn draw_light(
     }
 }
 
+/// Length of the observer's mark, metres.
+const OBSERVER_MARK: f32 = 0.4;
+
 /// The observer as the pyramid of its view.
 fn draw_observer(gizmos: &mut Gizmos<OnTop>, observer: &Observer, selected: bool) {
     let colour = if selected { SELECTED } else { OBSERVER };
     let turn = look_along(observer.direction);
-    let half = 0.4 * (observer.field_of_view.min(120.0) * 0.5).to_radians().tan();
+    let half = OBSERVER_MARK * (observer.field_of_view.min(120.0) * 0.5).to_radians().tan();
     let corners = [(-1.6, -1.0), (1.6, -1.0), (1.6, 1.0), (-1.6, 1.0)]
-        .map(|(x, y)| observer.position + turn * Vec3::new(x * half, y * half, -0.4));
+        .map(|(x, y)| observer.position + turn * Vec3::new(x * half, y * half, -OBSERVER_MARK));
     for i in 0..4 {
         gizmos.line(observer.position, corners[i], colour);
         gizmos.line(corners[i], corners[(i + 1) % 4], colour);

@@ -16,3 +16,4 @@ mod scene_errors;
 mod scene_roundtrip;
 mod schema;
 mod support;
+mod window;
