@@ -20,6 +20,22 @@ use crate::{
 pub struct PictureCamera {
     /// Whether it stands at the scene's observer; free once a user has moved it.
     pub follows_observer: bool,
+    /// Whether a picture that is narrower than [`WIDE`] shows more above and below, so that what a
+    /// wide picture shows at the sides is not cut off: for windows, whose panels take width.
+    pub fits_width: bool,
+}
+
+/// Width/height of the pictures that scenes are composed for.
+pub const WIDE: f32 = 16.0 / 9.0;
+
+/// The vertical field of view in radians of a picture of the given width/height.
+#[must_use]
+pub fn vertical_field_of_view(degrees: f32, aspect: f32, fits_width: bool) -> f32 {
+    let radians = degrees.to_radians();
+    if !fits_width || aspect >= WIDE || aspect <= 0.0 {
+        return radians;
+    }
+    2.0 * ((radians * 0.5).tan() * WIDE / aspect).atan()
 }
 
 /// The parts of a camera for the picture. For a picture that people see, add [`Hdr`]: it is drawn into
@@ -27,7 +43,7 @@ pub struct PictureCamera {
 #[must_use]
 pub fn picture_camera(samples: u8) -> impl Bundle {
     (
-        PictureCamera { follows_observer: true },
+        PictureCamera { follows_observer: true, fits_width: false },
         Camera3d::default(),
         Camera {
             clear_color: ClearColorConfig::Custom(Color::srgb_u8(
@@ -79,9 +95,9 @@ pub fn follow_scene(
                 *transform = wanted;
             }
         }
-        let fov = observer.field_of_view.to_radians();
-        if let Projection::Perspective(perspective) = &*lens
-            && perspective.fov != fov
+        let Projection::Perspective(perspective) = &*lens else { continue };
+        let fov = vertical_field_of_view(observer.field_of_view, perspective.aspect_ratio, camera.fits_width);
+        if perspective.fov != fov
             && let Projection::Perspective(perspective) = &mut *lens
         {
             perspective.fov = fov;
@@ -90,5 +106,19 @@ pub fn follow_scene(
         if *tone != wanted {
             *tone = wanted;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_narrow_window_shows_what_a_wide_picture_shows_at_the_sides() {
+        let half_width = |aspect: f32| (vertical_field_of_view(45.0, aspect, true) * 0.5).tan() * aspect;
+        assert!((half_width(1.1) - half_width(WIDE)).abs() < 1e-6);
+        assert!((half_width(0.5) - half_width(WIDE)).abs() < 1e-6);
+        assert_eq!(vertical_field_of_view(45.0, 2.5, true), 45f32.to_radians());
+        assert_eq!(vertical_field_of_view(45.0, 1.1, false), 45f32.to_radians());
     }
 }

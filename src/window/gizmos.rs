@@ -65,6 +65,10 @@ const OBSERVER: Color = Color::srgb(0.0, 0.62, 0.451);
 /// Radius of a light's mark, metres per metre of distance from the camera: the same size everywhere.
 const MARK: f32 = 0.012;
 
+/// Length of arrows and cones, metres per metre of distance from the camera: in a large room they
+/// would else cover the picture.
+const REACH: f32 = 0.14;
+
 fn draw(
     lab: Res<Lab>,
     scene: Res<CurrentScene>,
@@ -154,7 +158,7 @@ fn draw_light(
         }
     }
     let Some(direction) = direction else { return };
-    let length = 0.12 * corner.max_element();
+    let length = (0.12 * corner.max_element()).min(REACH * position.distance(eye).max(0.5));
     let turn = Quat::from_rotation_arc(Vec3::Z, direction);
     match entry.declaration.cone_parameter {
         Some(index) => {

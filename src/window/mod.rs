@@ -199,7 +199,9 @@ fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>
     let software = adapter.is_some_and(|a| a.device_type == wgpu::DeviceType::Cpu);
     // Four samples double the cost of a frame where the GPU is a program on the CPU.
     let samples = if software { 1 } else { 4 };
-    commands.spawn((picture_camera(samples), Hdr, camera::orbit()));
+    commands
+        .spawn((picture_camera(samples), Hdr, camera::orbit()))
+        .insert(PictureCamera { follows_observer: true, fits_width: true });
     commands.spawn((
         Camera2d,
         Camera {

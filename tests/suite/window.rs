@@ -109,7 +109,7 @@ fn capture(size: Option<(u32, u32)>, scene: &str) -> Capture {
 fn the_window_shows_the_picture_between_the_panels() {
     let window = capture(None, "default.json");
     // The sphere stands in the middle of the picture, lit from the upper right.
-    let (lit, dark) = (window.at(650, 260), window.at(420, 470));
+    let (lit, dark) = (window.at(610, 310), window.at(505, 430));
     assert!(lit[0] > 180 && lit[0] == lit[1] && lit[1] == lit[2], "the lit side is {lit:?}");
     assert!(dark[0] < 40, "the dark side is {dark:?}");
     assert_eq!(window.at(230, 60), [46, 46, 46], "the surround is neutral");
