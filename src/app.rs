@@ -14,7 +14,7 @@ use crate::{
     light::buffer::{IlluminationBuffer, illumination_bytes, record},
     observer::camera::follow_scene,
     optics::TermSelection,
-    reflection::swap::{self, ComposedShaders, ShapeMeshes},
+    reflection::swap::{self, ComposedShaders, ParameterTables, ShapeMeshes},
     registry::{Registry, register_builtin},
     scene::spawn::{CurrentScene, SceneEntities, absorb, reconcile},
 };
@@ -59,6 +59,7 @@ impl Plugin for ScenePlugin {
             .init_resource::<SceneEntities>()
             .init_resource::<ComposedShaders>()
             .init_resource::<ShapeMeshes>()
+            .init_resource::<ParameterTables>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
             // Two of our systems that touch the same data must say who comes first.

@@ -3,8 +3,12 @@
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
 
-@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> parameters: Parameters;
+// The parameters of all objects under the model; an object's row is its mesh tag.
+@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> parameter_table: array<Parameters>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
+
+// The parameters of the object that is being drawn.
+var<private> parameters: Parameters;
 
 struct VertexIn {
     @builtin(instance_index) instance_index: u32,
@@ -22,6 +26,7 @@ struct Stages {
     @location(1) normal: vec3<f32>,
     @location(2) colour: vec3<f32>,
     @location(3) offset: vec3<f32>,
+    @location(4) @interpolate(flat) row: u32,
 }
 
 fn observer_position() -> vec3<f32> {
@@ -30,6 +35,8 @@ fn observer_position() -> vec3<f32> {
 
 @vertex
 fn vertex(in: VertexIn) -> Stages {
+    let row = mesh_functions::get_tag(in.instance_index);
+    parameters = parameter_table[row];
     let room_from_local = mesh_functions::get_world_from_local(in.instance_index);
     let centre = room_from_local[3].xyz;
     var corner: Corner;
@@ -47,11 +54,13 @@ fn vertex(in: VertexIn) -> Stages {
     out.normal = passed.normal;
     out.colour = passed.colour;
     out.offset = (room_from_local * vec4(in.position, 0.0)).xyz;
+    out.row = row;
     return out;
 }
 
 @fragment
 fn fragment(in: Stages) -> @location(0) vec4<f32> {
+    parameters = parameter_table[in.row];
     let linear = shade_pixel(Varying(in.position, in.normal, in.colour, in.offset)) * illumination.exposure;
     if illumination.gamma_naive != 0u {
         // The display encodes what it gets; decoding first undoes that, and the numbers stand as they are.

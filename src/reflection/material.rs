@@ -1,13 +1,14 @@
 //! The Material implementation, generic over the model (rule 3): one Material type per model.
 //!
-//! A material carries the parameters of one object in a uniform block whose layout follows from the
-//! declaration, the shared buffer of lights, and the composed shader of its model and shading mode,
-//! which is part of the pipeline key.
+//! A material holds the table of the parameters of all objects under its model, whose layout follows
+//! from the declaration, the shared buffer of lights, and the composed shader of its model and shading
+//! mode, which is part of the pipeline key. Each object knows its row of the table by its mesh tag, so
+//! all objects under one model and mode share one material and are drawn together.
 
 use std::{collections::HashMap, marker::PhantomData};
 
 use bevy::{
-    asset::{Asset, Assets, Handle},
+    asset::{Asset, AssetId, Assets, Handle},
     ecs::{
         change_detection::Mut,
         resource::Resource,
@@ -19,15 +20,14 @@ use bevy::{
     reflect::TypePath,
     render::{
         render_resource::{
-            AsBindGroup, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError, VertexFormat,
+            AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError, VertexFormat,
         },
         storage::ShaderBuffer,
     },
     shader::Shader,
 };
-use glam::Vec4;
 
-use super::{ReflectionModel, parameter::BLOCK_BYTES};
+use super::ReflectionModel;
 
 /// The normal of the polygon (DD8), on meshes for modes that calculate per polygon.
 pub const FACE_NORMAL: MeshVertexAttribute =
@@ -36,29 +36,11 @@ pub const FACE_NORMAL: MeshVertexAttribute =
 pub const FACE_CENTRE: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceCentre", 0x4c43_4d02, VertexFormat::Float32x3);
 
-/// The uniform block of any model: [`BLOCK_BYTES`] bytes, laid out as
-/// [`layout`](super::parameter::layout) says.
-#[derive(Clone, Copy, Debug, Default, PartialEq, ShaderType)]
-pub struct ParameterBlock {
-    values: [Vec4; BLOCK_BYTES / 16],
-}
-
-impl From<[u8; BLOCK_BYTES]> for ParameterBlock {
-    fn from(bytes: [u8; BLOCK_BYTES]) -> Self {
-        let mut block = Self::default();
-        for (value, chunk) in block.values.iter_mut().zip(bytes.chunks_exact(16)) {
-            let at = |i: usize| f32::from_le_bytes([chunk[i], chunk[i + 1], chunk[i + 2], chunk[i + 3]]);
-            *value = Vec4::new(at(0), at(4), at(8), at(12));
-        }
-        block
-    }
-}
-
 /// What is the same for all model types: everything a material holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ingredients {
-    /// The parameters of the object.
-    pub parameters: ParameterBlock,
+    /// The parameters of all objects under the model.
+    pub parameters: Handle<ShaderBuffer>,
     /// The lights of the scene, shared by all materials.
     pub illumination: Handle<ShaderBuffer>,
     /// The composed shader of model and mode.
@@ -71,8 +53,8 @@ pub struct Ingredients {
 #[derive(Asset, AsBindGroup, Clone, Debug)]
 #[bind_group_data(PipelineKey)]
 pub struct ModelMaterial<M: ReflectionModel> {
-    #[uniform(0)]
-    parameters: ParameterBlock,
+    #[storage(0, read_only)]
+    parameters: Handle<ShaderBuffer>,
     #[storage(1, read_only)]
     illumination: Handle<ShaderBuffer>,
     shader: Handle<Shader>,
@@ -159,7 +141,7 @@ impl<M: ReflectionModel> Material for ModelMaterial<M> {
 /// model, looked up by id.
 #[derive(Clone, Copy)]
 pub struct Attachment {
-    /// Puts the material on; where the entity has one of this type already, changes it.
+    /// Puts the material on.
     pub attach: fn(&mut EntityWorldMut, Ingredients),
     /// Takes the material off.
     pub detach: fn(&mut EntityWorldMut),
@@ -187,20 +169,26 @@ impl MaterialApp for App {
     }
 }
 
+/// The materials of one model by shader: one for each shading mode in use.
+#[derive(Resource)]
+struct SharedMaterials<M: ReflectionModel>(HashMap<AssetId<Shader>, Handle<ModelMaterial<M>>>);
+
 fn attach<M: ReflectionModel>(entity: &mut EntityWorldMut, ingredients: Ingredients) {
-    let current = entity.get::<MeshMaterial3d<ModelMaterial<M>>>().map(|m| m.0.clone());
     let handle = entity.world_scope(|world: &mut World| {
-        world.resource_scope(|_, mut materials: Mut<Assets<ModelMaterial<M>>>| match current {
-            Some(handle) => {
-                if let Some(mut material) = materials.get_mut(&handle) {
-                    *material = ingredients.into();
-                }
-                None
-            }
-            None => Some(materials.add(ModelMaterial::<M>::from(ingredients))),
+        let key = ingredients.shader.id();
+        world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
+        world.resource_scope(|world, mut shared: Mut<SharedMaterials<M>>| {
+            shared
+                .0
+                .entry(key)
+                .or_insert_with(|| {
+                    let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
+                    materials.add(ModelMaterial::<M>::from(ingredients))
+                })
+                .clone()
         })
     });
-    if let Some(handle) = handle {
+    if entity.get::<MeshMaterial3d<ModelMaterial<M>>>().map(|m| &m.0) != Some(&handle) {
         entity.insert(MeshMaterial3d(handle));
     }
 }

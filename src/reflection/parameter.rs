@@ -210,11 +210,11 @@ impl Values {
     }
 }
 
-/// Size of the uniform block that carries the parameters of any model, in bytes.
+/// The most bytes that the parameters of a model may take.
 pub const BLOCK_BYTES: usize = 256;
 
 /// The fields of the WGSL struct `Parameters` of a model: name, type, byte offset, in the order of
-/// the declarations. The layout is that of WGSL's uniform address space (vec3 aligned to 16).
+/// the declarations. The layout is WGSL's (vec3 aligned to 16), the same for uniform and storage buffers.
 #[must_use]
 pub fn layout(parameters: &[Parameter]) -> Vec<(&'static str, &'static str, usize)> {
     let mut offset = 0usize;
@@ -231,10 +231,20 @@ pub fn layout(parameters: &[Parameter]) -> Vec<(&'static str, &'static str, usiz
     fields
 }
 
-/// The bytes of the uniform block for one object.
+/// Bytes from the parameters of one object to those of the next in the table that the shader reads:
+/// the size of the WGSL struct `Parameters`.
 #[must_use]
-pub fn pack(parameters: &[Parameter], values: &Values, encoding: Encoding) -> [u8; BLOCK_BYTES] {
-    let mut block = [0u8; BLOCK_BYTES];
+pub fn stride(parameters: &[Parameter]) -> usize {
+    let fields = layout(parameters);
+    let align = if fields.iter().any(|f| f.1 == "vec3<f32>") { 16 } else { 4 };
+    let end = fields.last().map_or(4, |(_, kind, offset)| offset + if *kind == "vec3<f32>" { 12 } else { 4 });
+    end.next_multiple_of(align)
+}
+
+/// The bytes of the parameters of one object, [`stride`] long.
+#[must_use]
+pub fn pack(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Vec<u8> {
+    let mut block = vec![0u8; stride(parameters)];
     for ((_, kind, offset), parameter) in layout(parameters).into_iter().zip(parameters) {
         let mut put = |at: usize, bytes: [u8; 4]| block[at..at + 4].copy_from_slice(&bytes);
         match kind {

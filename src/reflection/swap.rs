@@ -6,7 +6,8 @@ use std::collections::HashMap;
 use bevy::{
     asset::{Assets, Handle, RenderAssetUsages},
     ecs::prelude::*,
-    mesh::{Indices, Mesh, Mesh3d, PrimitiveTopology},
+    mesh::{Indices, Mesh, Mesh3d, MeshTag, PrimitiveTopology},
+    render::storage::ShaderBuffer,
     shader::Shader,
 };
 
@@ -18,11 +19,60 @@ use crate::{
     light::buffer::IlluminationBuffer,
     optics::colour::Encoding,
     registry::Registry,
-    scene::spawn::{CurrentScene, LitObject},
+    scene::{
+        MAX_OBJECTS,
+        spawn::{CurrentScene, LitObject, SceneEntities},
+    },
     shader::compose::{Sources, compose},
     shading::Stage,
     shape::PolygonMesh,
 };
+
+/// The parameters of all objects, one table for each model in use. The row of an object is its place in
+/// the scene, the same in every table. A table has room for the most objects that a scene may have: a
+/// buffer that never grows is replaced without touching any material.
+#[derive(Default, Resource)]
+pub struct ParameterTables(HashMap<&'static str, Table>);
+
+struct Table {
+    bytes: Vec<u8>,
+    buffer: Handle<ShaderBuffer>,
+    changed: bool,
+}
+
+impl ParameterTables {
+    /// Writes the parameters of an object; the buffer of the table.
+    fn set(
+        &mut self,
+        model: &super::ModelEntry,
+        row: usize,
+        parameters: &[u8],
+        buffers: &mut Assets<ShaderBuffer>,
+    ) -> Handle<ShaderBuffer> {
+        let table = self.0.entry(model.declaration.id).or_insert_with(|| {
+            let bytes = vec![0; parameters.len() * MAX_OBJECTS];
+            let buffer = buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()));
+            Table { bytes, buffer, changed: true }
+        });
+        let start = row * parameters.len();
+        let place = &mut table.bytes[start..start + parameters.len()];
+        if place != parameters {
+            place.copy_from_slice(parameters);
+            table.changed = true;
+        }
+        table.buffer.clone()
+    }
+
+    /// Hands what changed to the renderer.
+    fn upload(&mut self, buffers: &mut Assets<ShaderBuffer>) {
+        for table in self.0.values_mut().filter(|t| t.changed) {
+            table.changed = false;
+            if let Some(mut buffer) = buffers.get_mut(&table.buffer) {
+                buffer.data = Some(table.bytes.clone());
+            }
+        }
+    }
+}
 
 /// The composed shaders by model and mode, made when first needed.
 #[derive(Default, Resource)]
@@ -125,16 +175,18 @@ pub fn swap(world: &mut World) {
         let scene = world.resource_ref::<CurrentScene>();
         let scene_changed = scene.is_changed();
         let mut pending = Vec::new();
-        let mut query = world.query::<(Entity, Ref<LitObject>, Option<&Drawn>)>();
+        let mut query = world.query::<(Ref<LitObject>, Option<&Drawn>)>();
         let scene = &world.resource::<CurrentScene>().0;
-        for (entity, object, drawn) in query.iter(world) {
+        // More objects than a table has rows are no legal scene; what is beyond is not drawn.
+        for (row, &entity) in world.resource::<SceneEntities>().objects.iter().enumerate().take(MAX_OBJECTS) {
+            let Ok((object, drawn)) = query.get(world, entity) else { continue };
             let now = || Drawn {
                 model: scene.model_of(&object.0).to_owned(),
                 mode: scene.mode_of(&object.0).to_owned(),
                 encoding: scene.display.encoding,
             };
             if object.is_changed() || drawn.is_none() || (scene_changed && drawn != Some(&now())) {
-                pending.push((entity, object.0.clone(), now()));
+                pending.push((row, entity, object.0.clone(), now()));
             }
         }
         pending
@@ -144,7 +196,7 @@ pub fn swap(world: &mut World) {
     }
     let registry = world.resource::<Registry>().clone();
     let illumination = world.resource::<IlluminationBuffer>().0.clone();
-    for (entity, object, now) in pending {
+    for (row, entity, object, now) in pending {
         // The checker refuses scenes with unknown ids; should one come from elsewhere, the object
         // keeps what it has.
         let (Some(model), Some(mode), Some(shape)) =
@@ -168,12 +220,12 @@ pub fn swap(world: &mut World) {
             composed.get(model, mode, &registry, &mut world.resource_mut::<Assets<Shader>>())
         });
         let faces = mode.declaration.stage == Stage::Polygon;
-        let ingredients = Ingredients {
-            parameters: pack(model.parameters, &object.material, now.encoding).into(),
-            illumination: illumination.clone(),
-            shader,
-            faces,
-        };
+        let bytes = pack(model.parameters, &object.material, now.encoding);
+        let table = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
+            tables.set(model, row, &bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
+        });
+        let ingredients =
+            Ingredients { parameters: table, illumination: illumination.clone(), shader, faces };
         let attachments = world.resource::<Attachments>();
         let old = world
             .get::<Drawn>(entity)
@@ -189,6 +241,9 @@ pub fn swap(world: &mut World) {
         if entity.get::<Mesh3d>().map(|m| &m.0) != Some(&mesh) {
             entity.insert(Mesh3d(mesh));
         }
-        entity.insert(now);
+        entity.insert((now, MeshTag(row as u32)));
     }
+    world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
+        tables.upload(&mut world.resource_mut::<Assets<ShaderBuffer>>());
+    });
 }

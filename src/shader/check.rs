@@ -91,7 +91,7 @@ mod tests {
     use super::*;
     use crate::{
         light::buffer::{ILLUMINATION_LAYOUT, LIGHT_LAYOUT},
-        reflection::parameter::layout,
+        reflection::parameter::{layout, stride},
         registry::Registry,
         shader::compose::{LIGHTS, Sources, TERMS, compose_evaluation},
     };
@@ -103,6 +103,13 @@ mod tests {
             let rust: Vec<_> =
                 layout(model.parameters).into_iter().map(|(n, _, at)| (n.to_owned(), at)).collect();
             assert_eq!(struct_layout(&module, "Parameters"), Some(rust), "{}", model.declaration.id);
+            let size = module.types.iter().find_map(|(_, t)| match t.inner {
+                naga::TypeInner::Struct { span, .. } if t.name.as_deref() == Some("Parameters") => {
+                    Some(span as usize)
+                }
+                _ => None,
+            });
+            assert_eq!(size, Some(stride(model.parameters)), "{}", model.declaration.id);
         }
     }
 
