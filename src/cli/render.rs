@@ -344,6 +344,11 @@ enum Output {
 /// A path that ends in `.png` is a file, unless there is a folder of that name; other picture formats
 /// are a misunderstanding; everything else is a folder.
 fn kind(path: &Path) -> Result<Output, Failure> {
+    if path == Path::new("-") {
+        return Err(Failure::Usage(
+            "-o -: pictures are not written to standard output; name a PNG file".to_owned(),
+        ));
+    }
     if path.is_dir() {
         return Ok(Output::Folder);
     }

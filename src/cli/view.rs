@@ -85,7 +85,13 @@ pub(super) fn run(arguments: Arguments, options: Options, registry: &Registry) -
                 Ok(loaded) if !loaded.missing.is_empty() && options.defaults() == Defaults::Ask => {
                     view.open = Some(path);
                 }
-                Err(LoadError::Empty { .. }) => view.open = Some(path),
+                Err(error @ LoadError::Empty { .. }) => match options.defaults() {
+                    Defaults::Ask => view.open = Some(path),
+                    Defaults::Use => {}
+                    Defaults::Refuse => {
+                        return Err(Failure::Invalid(format!("{error} --use-defaults says yes")));
+                    }
+                },
                 Ok(loaded) => {
                     view.scene = loaded.scene;
                     view.stamp = Some(loaded.stamp);

@@ -201,10 +201,13 @@ impl Dialogs {
 
     fn update(&mut self, ctx: &egui::Context, lab: &mut Lab) -> Vec<Action> {
         let mut actions = Vec::new();
+        let was_open = *self.open.state() == DialogState::Open;
         self.open.update(ctx);
         if let Some(path) = self.open.take_picked() {
             // Whoever got this far was asked about unsaved changes before.
             actions.push(Action::Open(path));
+        } else if was_open && *self.open.state() == DialogState::Cancelled {
+            lab.not_opened();
         }
         let was_open = *self.save.state() == DialogState::Open;
         self.save.update(ctx);

@@ -82,6 +82,10 @@ pub struct Lab {
     saved: Scene,
     /// What waits for the document to be saved first.
     after_save: Option<Action>,
+    /// Whether the next file that is opened may replace unsaved changes: the user was asked.
+    may_discard: bool,
+    /// Whether the file lacks parts that the document got as defaults.
+    incomplete: bool,
     /// Slots of [`Self::model_slots`] in the order of use, latest last.
     slot_use: Vec<String>,
 }
@@ -522,6 +526,8 @@ impl Lab {
             panels: Vec::new(),
             renaming: None,
             after_save: None,
+            may_discard: false,
+            incomplete: false,
             slot_use: Vec::new(),
         };
         lab.select_first();
@@ -532,7 +538,7 @@ impl Lab {
     /// Whether the document differs from its file.
     #[must_use]
     pub fn is_dirty(&self) -> bool {
-        self.scene != self.saved
+        self.incomplete || self.scene != self.saved
     }
 
     /// What the window calls the document: the name of the scene, else the name of the file.
@@ -579,6 +585,7 @@ impl Lab {
         self.remember_file(&path);
         self.path = Some(path);
         self.saved = self.scene.clone();
+        self.incomplete = false;
         let mut effects = vec![Effect::SaveSettings];
         if let Some(action) = self.after_save.take() {
             effects.extend(self.apply(action, registry));
@@ -602,6 +609,9 @@ impl Lab {
             Action::New => return self.unless_unsaved(Action::New, |lab| lab.start_new()),
             Action::Quit => return self.unless_unsaved(Action::Quit, |_| vec![Effect::Quit]),
             Action::OpenDialog => return self.unless_unsaved(Action::OpenDialog, |_| vec![Effect::PickOpen]),
+            Action::Open(path) if std::mem::take(&mut self.may_discard) => {
+                return vec![Effect::OpenFile(path)];
+            }
             Action::Open(path) => {
                 let again = Action::Open(path.clone());
                 return self.unless_unsaved(again, |_| vec![Effect::OpenFile(path)]);
@@ -710,6 +720,40 @@ impl Lab {
         go(self)
     }
 
+    /// An action whose loss of unsaved changes the user has accepted. The changes are not gone before
+    /// it succeeds: a dialog can still be cancelled, a file can turn out to be broken.
+    fn confirmed(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
+        match action {
+            Action::New => self.start_new(),
+            Action::Quit => vec![Effect::Quit],
+            Action::Open(path) => vec![Effect::OpenFile(path)],
+            Action::Reload => self.path.clone().map(Effect::OpenFile).into_iter().collect(),
+            Action::OpenDialog => {
+                self.may_discard = true;
+                vec![Effect::PickOpen]
+            }
+            other => self.apply(other, registry),
+        }
+    }
+
+    /// The dialog that chooses a file to open was closed without a choice.
+    pub fn not_opened(&mut self) {
+        self.may_discard = false;
+    }
+
+    /// Keys 1–9 choose a model from the start: the numbers that are free go to the registered models in
+    /// their order.
+    pub fn fill_model_slots(&mut self, registry: &Registry) {
+        for model in registry.models() {
+            let id = model.declaration.id;
+            if self.model_slots.len() < MODEL_SLOTS && !self.model_slots.iter().any(|m| m == id) {
+                self.model_slots.push(id.to_owned());
+                // Never used, so the first to give way.
+                self.slot_use.insert(0, id.to_owned());
+            }
+        }
+    }
+
     fn start_new(&mut self) -> Vec<Effect> {
         self.replace_document(None, Scene::default());
         vec![Effect::DocumentChanged]
@@ -721,6 +765,8 @@ impl Lab {
         self.path = path;
         self.renaming = None;
         self.after_save = None;
+        self.may_discard = false;
+        self.incomplete = false;
         self.view.terms = TermSelection::All;
         self.select_first();
         self.use_slot(&self.scene.reflection_model.clone());
@@ -735,16 +781,17 @@ impl Lab {
     fn answer(&mut self, answer: Answer, registry: &Registry) -> Vec<Effect> {
         let Some(question) = self.question.take() else { return Vec::new() };
         match (question, answer) {
-            (Question::Unsaved { then }, Answer::Discard) => {
-                // What is on screen counts as saved, so that the action goes through.
-                self.saved = self.scene.clone();
-                self.apply(*then, registry)
-            }
+            (Question::Unsaved { then }, Answer::Discard) => self.confirmed(*then, registry),
             (Question::Unsaved { then }, Answer::Save) => {
                 self.after_save = Some(*then);
                 self.apply(Action::Save, registry)
             }
-            (Question::MissingParts { path, scene, .. }, Answer::UseDefaults) => self.opened(path, *scene),
+            (Question::MissingParts { path, scene, .. }, Answer::UseDefaults) => {
+                let effects = self.opened(path, *scene);
+                // Until it is saved, the file differs from what is on screen.
+                self.incomplete = true;
+                effects
+            }
             (Question::MissingParts { path, parts, .. }, _) => {
                 let names: Vec<_> = parts.iter().map(|p| p.name.as_str()).collect();
                 self.say(

@@ -1,7 +1,7 @@
 //! Exchanging models, modes, parameters and shapes at run time: the frame after the choice shows the
 //! new one, and no frame is without the object.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use bevy::{
     asset::{Assets, Handle, RenderAssetUsages},
@@ -78,7 +78,8 @@ impl ParameterTables {
 #[derive(Default, Resource)]
 pub struct ComposedShaders {
     sources: Sources,
-    handles: HashMap<(&'static str, &'static str), Handle<Shader>>,
+    /// By model, mode, and the number of light types that were known.
+    handles: HashMap<(&'static str, &'static str, usize), Handle<Shader>>,
 }
 
 impl ComposedShaders {
@@ -90,7 +91,7 @@ impl ComposedShaders {
         registry: &Registry,
         shaders: &mut Assets<Shader>,
     ) -> Handle<Shader> {
-        let key = (model.declaration.id, mode.declaration.id);
+        let key = (model.declaration.id, mode.declaration.id, registry.lights().len());
         self.handles
             .entry(key)
             .or_insert_with(|| {
@@ -243,7 +244,26 @@ pub fn swap(world: &mut World) {
         }
         entity.insert((now, MeshTag(row as u32)));
     }
+    forget_unused_meshes(world, &registry);
     world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
         tables.upload(&mut world.resource_mut::<Assets<ShaderBuffer>>());
     });
+}
+
+/// Lets go of meshes that no object has any more: a slider over the tessellation makes hundreds.
+fn forget_unused_meshes(world: &mut World, registry: &Registry) {
+    /// As many may stay for a change back.
+    const SPARE: usize = 16;
+    let mut query = world.query::<&LitObject>();
+    let used: HashSet<_> = query
+        .iter(world)
+        .filter_map(|object| {
+            let shape = registry.shape(&object.0.kind)?;
+            Some((shape.declaration.id, shape.tessellation(object.0.tessellation)))
+        })
+        .collect();
+    let mut meshes = world.resource_mut::<ShapeMeshes>();
+    if meshes.0.len() > used.len() + SPARE {
+        meshes.0.retain(|key, _| used.contains(key));
+    }
 }

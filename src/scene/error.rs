@@ -271,7 +271,7 @@ pub enum LoadError {
         problems: Vec<Problem>,
     },
     /// Parts are missing for which there are defaults, and these were declined (R3).
-    #[error("{name}: {}", declined(.missing))]
+    #[error("{name}:{} {}", .missing.iter().find_map(|m| m.place).map_or_else(String::new, |p| format!("{p}:")), declined(.missing))]
     Missing {
         /// The file.
         name: String,

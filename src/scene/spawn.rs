@@ -176,52 +176,79 @@ pub fn reconcile(
 }
 
 /// Takes over what others changed in the entities: components and transforms become the scene's
-/// values. What [`reconcile`] wrote itself compares equal and changes nothing.
+/// values, and each other's. Where both were changed, the component counts. What [`reconcile`] wrote
+/// itself compares equal and changes nothing.
 pub fn absorb(
+    mut commands: Commands,
     mut scene: ResMut<CurrentScene>,
     mut entities: ResMut<SceneEntities>,
-    lights: Query<(Ref<LightSource>, Ref<Transform>)>,
-    objects: Query<(Ref<LitObject>, Ref<Transform>)>,
-    eyes: Query<(Ref<Eye>, Ref<Transform>)>,
+    registry: Res<Registry>,
+    mut lights: Query<(&mut LightSource, &mut Transform), (Without<LitObject>, Without<Eye>)>,
+    mut objects: Query<(&mut LitObject, &mut Transform), (Without<LightSource>, Without<Eye>)>,
+    mut eyes: Query<(&mut Eye, &mut Transform), (Without<LightSource>, Without<LitObject>)>,
 ) {
     let mut next = None;
     for (i, entity) in entities.lights.iter().enumerate() {
-        let Ok((source, transform)) = lights.get(*entity) else { continue };
+        let (Ok((mut source, mut transform)), Some(known)) = (lights.get_mut(*entity), scene.0.lights.get(i))
+        else {
+            continue;
+        };
         if !source.is_changed() && !transform.is_changed() {
             continue;
         }
-        let mut light = source.0.clone();
-        if transform.translation != light_transform(&light).translation && light.position.is_some() {
-            light.position = Some(transform.translation);
+        if source.0 != *known {
+            *transform = light_transform(&source.0);
+            if source.0.kind != known.kind {
+                let mut entity = commands.entity(*entity);
+                if let Some(old) = registry.light(&known.kind) {
+                    (old.unmark)(&mut entity);
+                }
+                if let Some(new) = registry.light(&source.0.kind) {
+                    (new.mark)(&mut entity);
+                }
+            }
+        } else if source.0.position.is_some_and(|p| p != transform.translation) {
+            source.0.position = Some(transform.translation);
         }
-        if scene.0.lights.get(i) != Some(&light) {
+        if source.0 != *known {
+            let light = source.0.clone();
+            commands.entity(*entity).insert(label(light.name.as_ref(), &light.kind, i));
             put(&mut next, &scene.0, |s| s.lights.get_mut(i).map(|l| *l = light));
         }
     }
     for (i, entity) in entities.objects.iter().enumerate() {
-        let Ok((lit, transform)) = objects.get(*entity) else { continue };
+        let (Ok((mut lit, mut transform)), Some(known)) = (objects.get_mut(*entity), scene.0.objects.get(i))
+        else {
+            continue;
+        };
         if !lit.is_changed() && !transform.is_changed() {
             continue;
         }
-        let mut object = lit.0.clone();
-        if !lit.is_changed() && *transform != object_transform(&object) {
-            object.position = transform.translation;
-            object.rotation = euler_degrees(transform.rotation);
-            object.size = transform.scale.max_element();
+        if lit.0 != *known {
+            *transform = object_transform(&lit.0);
+        } else if *transform != object_transform(&lit.0) {
+            lit.0.position = transform.translation;
+            lit.0.rotation = euler_degrees(transform.rotation);
+            lit.0.size = transform.scale.max_element();
         }
-        if scene.0.objects.get(i) != Some(&object) {
+        if lit.0 != *known {
+            let object = lit.0.clone();
+            commands.entity(*entity).insert(label(object.name.as_ref(), &object.kind, i));
             put(&mut next, &scene.0, |s| s.objects.get_mut(i).map(|o| *o = object));
         }
     }
-    if let Some((eye, transform)) = entities.observer.and_then(|e| eyes.get(e).ok())
+    if let Some((mut eye, mut transform)) = entities.observer.and_then(|e| eyes.get_mut(e).ok())
         && (eye.is_changed() || transform.is_changed())
     {
-        let mut observer = eye.0;
-        if !eye.is_changed() && *transform != observer_transform(&observer) {
-            observer.position = transform.translation;
-            observer.direction = transform.rotation * Vec3::NEG_Z;
+        let known = scene.0.observer;
+        if eye.0 != known {
+            *transform = observer_transform(&eye.0);
+        } else if *transform != observer_transform(&known) {
+            eye.0.position = transform.translation;
+            eye.0.direction = transform.rotation * Vec3::NEG_Z;
         }
-        if scene.0.observer != observer {
+        if eye.0 != known {
+            let observer = eye.0;
             put(&mut next, &scene.0, |s| {
                 s.observer = observer;
                 Some(())

@@ -22,18 +22,18 @@ use crate::{
 #[derive(Debug, Resource)]
 pub(super) struct DiskFiles {
     seen: Option<(PathBuf, Stamp)>,
+    /// A file that was read, but is not yet the document: there may be something to ask first.
+    read: Option<(PathBuf, Stamp)>,
 }
 
 impl DiskFiles {
     pub(super) fn new(file: Option<PathBuf>, stamp: Option<Stamp>) -> Self {
-        Self { seen: file.zip(stamp) }
+        Self { seen: file.zip(stamp), read: None }
     }
 
-    /// Another document is open: what was seen counts only if it is the same file.
-    pub(super) fn forget(&mut self, path: Option<&Path>) {
-        if self.seen.as_ref().map(|s| s.0.as_path()) != path {
-            self.seen = None;
-        }
+    /// Another document is open: what was read of its file is what counts from now on.
+    pub(super) fn document_changed(&mut self, path: Option<&Path>) {
+        self.seen = self.read.take().filter(|read| Some(read.0.as_path()) == path);
     }
 }
 
@@ -41,7 +41,7 @@ impl Files for DiskFiles {
     fn open(&mut self, path: &Path, registry: &Registry) -> Opened {
         match load::file(path, registry, Defaults::Ask) {
             Ok(loaded) => {
-                self.seen = Some((path.to_owned(), loaded.stamp));
+                self.read = Some((path.to_owned(), loaded.stamp));
                 if loaded.missing.is_empty() {
                     return Opened::Scene(Box::new(loaded.scene));
                 }

@@ -4,15 +4,17 @@
 //! operating system. Frames are drawn only when something changes.
 
 use std::{
+    panic::{self, AssertUnwindSafe},
     sync::{Arc, Mutex},
     time::{Duration, Instant},
 };
 
 use bevy::{
-    app::{App, AppExit, First, Last, Plugin, PluginGroup, PostUpdate, PreUpdate, Startup},
+    app::{App, AppExit, First, Last, Plugin, PluginGroup, Plugins, PostUpdate, PreUpdate, Startup},
     asset::AssetPlugin,
     camera::{Camera, Camera2d, CameraOutputMode, ClearColorConfig, Hdr, Viewport, visibility::RenderLayers},
     ecs::prelude::*,
+    input::keyboard::{Key, KeyboardInput},
     light::cluster::GlobalClusterSettings,
     log::{Level, LogPlugin},
     prelude::DefaultPlugins,
@@ -73,7 +75,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     find_adapter().map_err(|e| Failure::NoRenderer(e.to_string()))?;
     let failure = Arc::new(Mutex::new(None));
     let mut app = App::new();
-    app.add_plugins((
+    let plugins = (
         DefaultPlugins
             .set(WindowPlugin {
                 primary_window: Some(Window {
@@ -106,10 +108,14 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
         ScenePlugin,
         PanelPlugin,
         WindowSystemsPlugin,
-    ));
+    );
+    add_with_display(&mut app, plugins)?;
     let mut lab = Lab::new(options.scene.clone());
     lab.path.clone_from(&options.file);
     load_settings(&mut lab);
+    if let Some(registry) = app.world().get_resource::<Registry>() {
+        lab.fill_model_slots(registry);
+    }
     app.insert_resource(CurrentScene(options.scene.clone())).insert_resource(lab);
     app.insert_resource(files::DiskFiles::new(options.file.clone(), options.stamp));
     if let Some(path) = options.open {
@@ -140,6 +146,38 @@ fn need_display() -> Result<(), Failure> {
     Ok(())
 }
 
+/// Adds the plugins. The windowing library panics when the display that the environment names does not
+/// answer, and offers no way to ask first.
+fn add_with_display<M>(app: &mut App, plugins: impl Plugins<M>) -> Result<(), Failure> {
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let added = panic::catch_unwind(AssertUnwindSafe(|| {
+        app.add_plugins(plugins);
+    }));
+    panic::set_hook(hook);
+    added.map_err(|payload| {
+        let why = payload
+            .downcast_ref::<String>()
+            .map(String::as_str)
+            .or_else(|| payload.downcast_ref::<&str>().copied())
+            .and_then(|text| text.lines().next())
+            // What the windowing library says names its own source files, not the cause.
+            .filter(|text| !text.contains("event loop"))
+            .map_or_else(|| "it does not answer".to_owned(), str::to_owned);
+        let named = ["DISPLAY", "WAYLAND_DISPLAY"]
+            .into_iter()
+            .filter_map(|name| {
+                Some(format!("{name}={}", std::env::var(name).ok().filter(|v| !v.is_empty())?))
+            })
+            .collect::<Vec<_>>()
+            .join(", ");
+        Failure::NoRenderer(format!(
+            "the window could not be opened on the display that the environment names ({named}): {why}; \
+             `lcm render` makes pictures without one"
+        ))
+    })
+}
+
 fn log_plugin(options: &ViewOptions) -> LogPlugin {
     let (level, filter) = if options.verbose {
         (Level::INFO, "wgpu=error,naga=warn")
@@ -148,7 +186,10 @@ fn log_plugin(options: &ViewOptions) -> LogPlugin {
     } else {
         // That the renderer is a program on the CPU stands in the status line; the rest of what is
         // silenced here is no news to a user.
-        (Level::WARN, "wgpu=error,naga=error,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error")
+        (
+            Level::WARN,
+            "wgpu=error,naga=error,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",
+        )
     };
     LogPlugin { level, filter: filter.to_owned(), ..LogPlugin::default() }
 }
@@ -171,7 +212,7 @@ impl Plugin for WindowSystemsPlugin {
         .add_systems(PreUpdate, close_requested)
         .add_systems(
             PreUpdate,
-            drop_idle_events.after(EguiPreUpdateSet::ProcessInput).before(EguiPreUpdateSet::BeginPass),
+            mend_input.after(EguiPreUpdateSet::ProcessInput).before(EguiPreUpdateSet::BeginPass),
         )
         .add_systems(
             LabFrame,
@@ -245,7 +286,7 @@ fn carry_out(
             Effect::FocusSelection => camera.focus(&lab),
             Effect::ObserverFromView => camera.place_observer(&mut lab, &registry),
             Effect::DocumentChanged => {
-                files.forget(lab.path.as_deref());
+                files.document_changed(lab.path.as_deref());
                 camera.home();
             }
             Effect::Quit => {
@@ -387,8 +428,47 @@ fn redraw(
 
 /// bevy_egui 0.42 tells egui in every frame which modifier keys are held, and egui draws again after
 /// every event: the window would never rest. Only changes are news.
-fn drop_idle_events(mut contexts: Query<&mut EguiInput>, mut held: Local<egui::Modifiers>) {
+///
+/// It also gives every key of a frame the modifiers as they are at the frame's end, so that a quick
+/// Ctrl+D in a slow frame would be a D: here each key gets those that were held when it was pressed.
+fn mend_input(
+    mut contexts: Query<&mut EguiInput>,
+    mut keyboard: MessageReader<KeyboardInput>,
+    mut held: Local<egui::Modifiers>,
+    mut running: Local<egui::Modifiers>,
+) {
+    let mut keys = Vec::new();
+    for message in keyboard.read() {
+        let pressed = message.state.is_pressed();
+        match message.logical_key {
+            Key::Shift => running.shift = pressed,
+            Key::Alt => running.alt = pressed,
+            Key::Control => {
+                running.ctrl = pressed;
+                running.command = pressed && !cfg!(target_os = "macos");
+            }
+            Key::Super | Key::Meta if cfg!(target_os = "macos") => {
+                running.mac_cmd = pressed;
+                running.command = pressed;
+            }
+            _ => {}
+        }
+        let key = bevy_egui::helpers::bevy_to_egui_key(&message.logical_key)
+            .or_else(|| bevy_egui::helpers::bevy_to_egui_physical_key(&message.key_code));
+        keys.extend(key.map(|key| (key, pressed, *running)));
+    }
     for mut input in &mut contexts {
+        let mut in_order = keys.iter();
+        for event in &mut input.events {
+            if let egui::Event::Key { key, pressed, modifiers, .. } = event
+                && let Some(known) = in_order.by_ref().find(|k| k.0 == *key && k.1 == *pressed)
+            {
+                *modifiers = known.2;
+            }
+            if let egui::Event::WindowFocused(false) = event {
+                *running = egui::Modifiers::NONE;
+            }
+        }
         let mut changed = false;
         let known = *held;
         input.events.retain(|event| match event {

@@ -108,7 +108,7 @@ fn missing_parts_need_an_answer() {
         refused(
             &run,
             1,
-            "standard input: shading_model (default: gouraud) is missing; --use-defaults takes the defaults, --no-defaults",
+            "standard input:1:1: shading_model (default: gouraud) is missing; --use-defaults takes the defaults, --no-defaults",
         );
         assert_eq!(run.err.lines().count(), 1);
     }

@@ -125,6 +125,27 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
     let cube = frame(&mut renderer);
     assert!(moved != cube, "the shape shows");
 
+    // The place of a thing is in its component and in its transform: either can be changed, and the
+    // other follows.
+    let world = renderer.app().world_mut();
+    world.get_mut::<LitObject>(object).expect("the object is an entity").0.position.x += 0.5;
+    let aside = frame(&mut renderer);
+    assert!(cube != aside, "the component's place shows");
+    let world = renderer.app().world_mut();
+    world.get_mut::<bevy::prelude::Transform>(object).expect("objects have a place").translation.y = 4.5;
+    world.get_mut::<LightSource>(light).expect("the light is an entity").0.position =
+        Some(Vec3::new(4.0, 7.0, 8.0));
+    let lower = frame(&mut renderer);
+    assert!(aside != lower, "the transform's place shows");
+    renderer.step();
+    let world = renderer.app().world_mut();
+    assert_eq!(world.get::<LitObject>(object).map(|o| o.0.position), Some(Vec3::new(5.5, 4.5, 5.0)));
+    let place = world.get::<bevy::prelude::Transform>(light).map(|t| t.translation);
+    assert_eq!(place, Some(Vec3::new(4.0, 7.0, 8.0)));
+    world.get_mut::<LightSource>(light).expect("the light is an entity").0.position =
+        Some(Vec3::new(3.0, 7.0, 8.0));
+    renderer.step();
+
     let scene = &renderer.app().world().resource::<lights_camera_models::scene::spawn::CurrentScene>().0;
     assert_eq!(scene.lights[0].colour, [0, 0, 255]);
     assert_eq!(scene.lights[0].position.map(|p| p.x), Some(3.0));

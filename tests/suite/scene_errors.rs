@@ -481,7 +481,7 @@ fn what_is_missing_is_asked_for() {
     }
     assert_eq!(
         said(&text),
-        "scene.json: scene_size (default: 10 × 10 × 10 m), reflection_model (default: lambert) and \
+        "scene.json:1:1: scene_size (default: 10 × 10 × 10 m), reflection_model (default: lambert) and \
          shading_model (default: gouraud) are missing; --use-defaults takes the defaults, --no-defaults refuses them"
     );
 }
