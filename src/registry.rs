@@ -139,7 +139,7 @@ fn put<T>(list: &mut Vec<T>, entry: T, id: impl Fn(&T) -> &'static str) {
 
 impl Register for Registry {
     /// # Panics
-    /// If the parameters do not fit the uniform block, or one shares its name, but not its type, with a
+    /// If the parameters take more bytes than a model may have, or one shares its name, but not its type, with a
     /// parameter of another model: mistakes of the author of the model, found at the first start.
     fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self {
         let entry = ModelEntry::of::<M>();
