@@ -322,6 +322,18 @@ pub fn segmented(
     out
 }
 
+/// Lays out every digit in every place of a frame rate. A glyph that is drawn for the first time reaches
+/// the GPU a frame late, so that a rate that changes with every frame would show gaps.
+fn prepare_digits(ui: &Ui) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    ui.fonts_mut(|fonts| {
+        for digit in 0..10 {
+            let text = format!("{digit}{digit}{digit}{digit} fps");
+            fonts.layout_no_wrap(text, font.clone(), egui::Color32::WHITE);
+        }
+    });
+}
+
 fn renderer(ui: &mut Ui, lab: &Lab) {
     let status = &lab.status;
     let mut parts = Vec::new();
@@ -337,6 +349,7 @@ fn renderer(ui: &mut Ui, lab: &Lab) {
     if parts.is_empty() {
         return;
     }
+    prepare_digits(ui);
     let text = theme::small(ui, parts.join(" · "));
     ui.add(egui::Label::new(text).truncate()).on_hover_ui(|ui| {
         ui.label(format!("{:.2} ms per frame", status.frame_ms));

@@ -65,6 +65,9 @@ const OBSERVER: Color = Color::srgb(0.0, 0.62, 0.451);
 /// Radius of a light's mark, metres per metre of distance from the camera: the same size everywhere.
 const MARK: f32 = 0.012;
 
+/// More lights than this get small marks.
+const CROWD: usize = 24;
+
 /// Length of arrows and cones, metres per metre of distance from the camera: in a large room they
 /// would else cover the picture.
 const REACH: f32 = 0.14;
@@ -141,11 +144,17 @@ fn draw_light(
     // direction comes from everywhere and has no mark.
     let corner = scene.scene_size.corner();
     let position = light.position.unwrap_or(Vec3::new(0.5 * corner.x, 0.95 * corner.y, 0.5 * corner.z));
-    let mark = MARK * position.distance(eye).max(0.5);
+    // Where there are many, full marks would cover the picture.
+    let crowded = scene.lights.len() > CROWD && !selected;
+    let mark = MARK * position.distance(eye).max(0.5) * if crowded { 0.3 } else { 1.0 };
     let direction = light.direction.and_then(Vec3::try_normalize);
     if light.position.is_some() {
-        gizmos.sphere(Isometry3d::from_translation(position), mark, colour).resolution(16);
-        if direction.is_none() {
+        gizmos.sphere(Isometry3d::from_translation(position), mark, colour).resolution(if crowded {
+            6
+        } else {
+            16
+        });
+        if direction.is_none() && !crowded {
             for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
                 for sign in [-1.0, 1.0] {
                     gizmos.line(

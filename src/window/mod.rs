@@ -10,7 +10,7 @@ use std::{
 };
 
 use bevy::{
-    app::{App, AppExit, First, Last, Plugin, PluginGroup, Plugins, PostUpdate, PreUpdate, Startup},
+    app::{App, AppExit, Last, Plugin, PluginGroup, Plugins, PostUpdate, PreUpdate, Startup},
     asset::AssetPlugin,
     camera::{Camera, Camera2d, CameraOutputMode, ClearColorConfig, Hdr, Viewport, visibility::RenderLayers},
     ecs::prelude::*,
@@ -207,8 +207,7 @@ impl Plugin for WindowSystemsPlugin {
         .init_resource::<FrameClock>()
         .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
-        .add_systems(First, start_frame)
-        .add_systems(Last, end_frame)
+        .add_systems(Last, measure_frame)
         .add_systems(PreUpdate, close_requested)
         .add_systems(
             PreUpdate,
@@ -482,21 +481,27 @@ fn mend_input(
     }
 }
 
-/// Measures what a frame costs: from its first system to its last, drawing included.
+/// Measures what a frame costs: the time between frames that follow each other without a rest, so
+/// that the work of the GPU counts, which goes on after the last system of a frame.
 #[derive(Default, Resource)]
 struct FrameClock {
-    start: Option<Instant>,
+    /// When the last frame began, if another was to follow at once.
+    last: Option<Instant>,
     mean: f32,
 }
 
-fn start_frame(mut clock: ResMut<FrameClock>) {
-    clock.start = Some(Instant::now());
-}
-
-fn end_frame(mut clock: ResMut<FrameClock>, mut lab: ResMut<Lab>) {
-    if let Some(start) = clock.start.take() {
-        let ms = start.elapsed().as_secs_f32() * 1e3;
-        clock.mean = if clock.mean == 0.0 { ms } else { 0.9 * clock.mean + 0.1 * ms };
+fn measure_frame(
+    mut clock: ResMut<FrameClock>,
+    settling: Res<Settling>,
+    settings: Res<WinitSettings>,
+    mut lab: ResMut<Lab>,
+) {
+    let now = Instant::now();
+    if let Some(last) = clock.last.take() {
+        let ms = (now - last).as_secs_f32() * 1e3;
+        clock.mean = if clock.mean == 0.0 { ms } else { 0.8 * clock.mean + 0.2 * ms };
         lab.bypass_change_detection().status.frame_ms = clock.mean;
     }
+    let follows = settling.frames > 0 || settings.focused_mode == UpdateMode::Continuous;
+    clock.last = follows.then_some(now);
 }
