@@ -63,9 +63,14 @@ pub fn run(lab: &mut Lab, registry: &Registry, effect: Effect, files: &mut dyn F
                 Vec::new()
             }
             Opened::Failed(problems) => {
-                for problem in problems {
+                // The latest stands on top: the first problem, and above it what it means.
+                for problem in problems.into_iter().rev() {
                     lab.say(Severity::Error, problem);
                 }
+                lab.say(
+                    Severity::Error,
+                    format!("{} was not opened; {} is still shown.", path.display(), lab.title()),
+                );
                 Vec::new()
             }
         },

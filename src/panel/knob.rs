@@ -127,9 +127,10 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     if response.changed() {
         let d = draft.get_or_insert_with(|| Draft { text: String::new(), before: value, last: value });
         d.text.clone_from(&text);
-        if let Some(v) = parse(&text).filter(|v| limits.allows(*v)) {
-            out = Some(v);
-        }
+        // What was typed on the way to something illegal (3, 30, 300) was never meant: the value from
+        // before counts again.
+        let legal = parse(&text).filter(|v| limits.allows(*v));
+        out = legal.or_else(|| Some(d.before).filter(|v| *v != value && limits.allows(*v)));
     }
     if step != 0.0 {
         let base = parse(&text).filter(|v| limits.allows(*v)).unwrap_or(value);

@@ -309,6 +309,7 @@ pub fn show(
     for action in actions {
         effects.extend(lab.apply(action, registry));
     }
+    effects.extend(lab.wanted_dialog.take());
     effects.retain(|effect| !dialogs.start(effect, lab));
     for effect in &effects {
         if let Effect::CopyText(text) = effect {

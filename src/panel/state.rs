@@ -82,6 +82,9 @@ pub struct Lab {
     saved: Scene,
     /// What waits for the document to be saved first.
     after_save: Option<Action>,
+    /// A dialog that something other than the panels wants opened: what waited for the document to be
+    /// saved.
+    pub wanted_dialog: Option<Effect>,
     /// Whether the next file that is opened may replace unsaved changes: the user was asked.
     may_discard: bool,
     /// Whether the file lacks parts that the document got as defaults.
@@ -526,6 +529,7 @@ impl Lab {
             panels: Vec::new(),
             renaming: None,
             after_save: None,
+            wanted_dialog: None,
             may_discard: false,
             incomplete: false,
             slot_use: Vec::new(),
@@ -993,6 +997,23 @@ impl Lab {
         f(&mut self.scene);
     }
 
+    /// A choice for the scene does not reach an object that has its own: where that one is selected, it
+    /// looks as if nothing happened.
+    fn say_if_own(&mut self, what: &str, registry: &Registry, own: impl Fn(&Object) -> bool) {
+        let Selection::Object(i) = self.selection else { return };
+        if self.scene.objects.get(i).is_some_and(own) {
+            let name = self.name_of(self.selection, registry);
+            let text = format!(
+                "{name} has its own {what}; the choice above is for objects without one. Its own is at the \
+                 end of the panel at the right."
+            );
+            if self.messages.iter().all(|m| m.text != text) {
+                self.say(Severity::Info, text);
+                self.view.bottom_open = true;
+            }
+        }
+    }
+
     fn edit(&mut self, edit: Edit, registry: &Registry) {
         if let Err(why) = self.check(&edit, registry) {
             self.say(Severity::Warning, why);
@@ -1010,8 +1031,14 @@ impl Lab {
             Edit::SceneDescription(text) => self.change(|s| s.description = named(text)),
             Edit::SceneSize(size) => self.change(|s| s.scene_size = size),
             Edit::Display(display) => self.change(|s| s.display = display),
-            Edit::Model(id) => self.change(|s| s.reflection_model = id),
-            Edit::Mode(id) => self.change(|s| s.shading_model = id),
+            Edit::Model(id) => {
+                self.say_if_own("reflection model", registry, |o| o.reflection_model.is_some());
+                self.change(|s| s.reflection_model = id);
+            }
+            Edit::Mode(id) => {
+                self.say_if_own("shading mode", registry, |o| o.shading_model.is_some());
+                self.change(|s| s.shading_model = id);
+            }
             Edit::Observer(observer) => self.change(|s| s.observer = observer),
             Edit::Light(i, LightField::Kind(kind)) => self.change_light_kind(i, &kind, registry),
             Edit::Light(i, field) => {

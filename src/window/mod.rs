@@ -291,8 +291,9 @@ fn carry_out(
             Effect::Quit => {
                 exit.write(AppExit::Success);
             }
-            // The dialogs and the clipboard belong to the panels.
-            Effect::PickOpen | Effect::PickSave | Effect::CopyText(_) => {}
+            // The clipboard belongs to the panels, and so do the dialogs.
+            Effect::CopyText(_) => {}
+            dialog @ (Effect::PickOpen | Effect::PickSave) => lab.wanted_dialog = Some(dialog),
             other => {
                 let more = run_files(&mut lab, &registry, other.clone(), &mut *files);
                 // What comes back unchanged is nobody's.
