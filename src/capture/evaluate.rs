@@ -4,15 +4,15 @@
 use bevy::render::{
     render_resource::{
         BindGroupEntry, BindGroupLayoutEntry, BindingType, BufferBindingType, BufferDescriptor,
-        BufferInitDescriptor, BufferUsages, CommandEncoderDescriptor, ComputePassDescriptor, MapMode,
-        PipelineLayoutDescriptor, PollType, RawComputePipelineDescriptor, ShaderModuleDescriptor,
-        ShaderSource, ShaderStages,
+        BufferInitDescriptor, BufferUsages, CommandEncoderDescriptor, ComputePassDescriptor,
+        PipelineLayoutDescriptor, RawComputePipelineDescriptor, ShaderModuleDescriptor, ShaderSource,
+        ShaderStages,
     },
     settings::RenderResources,
 };
 use glam::Vec3;
 
-use super::gpu::{GpuError, device};
+use super::gpu::{GpuError, device, read_back, vector};
 use crate::{
     optics::{Terms, colour::Encoding},
     reflection::{
@@ -141,16 +141,7 @@ fn run(
     }
     encoder.copy_buffer_to_buffer(&output, 0, &staging, 0, size);
     queue.submit([encoder.finish()]);
-    let (sender, receiver) = std::sync::mpsc::channel();
-    staging.slice(..).map_async(MapMode::Read, move |result| {
-        let _ = sender.send(result);
-    });
-    device.poll(PollType::wait_indefinitely()).map_err(|e| GpuError::Copy(e.to_string()))?;
-    receiver.recv().map_err(|e| GpuError::Copy(e.to_string()))?.map_err(|e| GpuError::Copy(e.to_string()))?;
-    let mapped = staging.slice(..).get_mapped_range();
-    let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
-    let vector = |b: &[u8]| Vec3::new(float(&b[..4]), float(&b[4..8]), float(&b[8..12]));
-    Ok(mapped
+    Ok(read_back(device, &staging)?
         .chunks_exact(ANSWER_BYTES)
         .map(|b| Terms {
             ambient: vector(&b[..12]),

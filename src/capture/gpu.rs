@@ -333,24 +333,8 @@ impl GpuRenderer {
             Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 },
         );
         queue.submit([encoder.finish()]);
-        let (sender, receiver) = std::sync::mpsc::channel();
-        staging.slice(..).map_async(MapMode::Read, move |result| {
-            let _ = sender.send(result);
-        });
-        device.poll(PollType::wait_indefinitely()).map_err(|e| GpuError::Copy(e.to_string()))?;
-        receiver
-            .recv()
-            .map_err(|e| GpuError::Copy(e.to_string()))?
-            .map_err(|e| GpuError::Copy(e.to_string()))?;
-        let mut bytes = Vec::with_capacity(row as usize * self.height as usize);
-        {
-            let mapped = staging.slice(..).get_mapped_range();
-            for line in mapped.chunks_exact(padded as usize) {
-                bytes.extend_from_slice(&line[..row as usize]);
-            }
-        }
-        staging.unmap();
-        Ok(bytes)
+        let bytes = read_back(device, staging)?;
+        Ok(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
     }
 
     /// The picture as last drawn, 8-bit RGB.
@@ -366,11 +350,26 @@ impl GpuRenderer {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn read_linear(&mut self) -> Result<Vec<Vec3>, GpuError> {
-        let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
-        Ok(self
-            .read()?
-            .chunks_exact(16)
-            .map(|p| Vec3::new(float(&p[..4]), float(&p[4..8]), float(&p[8..12])))
-            .collect())
+        Ok(self.read()?.chunks_exact(16).map(vector).collect())
     }
+}
+
+/// The bytes of a buffer to which everything submitted has been copied.
+pub(super) fn read_back(device: &RenderDevice, staging: &Buffer) -> Result<Vec<u8>, GpuError> {
+    let failed = |e: &dyn std::fmt::Display| GpuError::Copy(e.to_string());
+    let (sender, receiver) = std::sync::mpsc::channel();
+    staging.slice(..).map_async(MapMode::Read, move |result| {
+        let _ = sender.send(result);
+    });
+    device.poll(PollType::wait_indefinitely()).map_err(|e| failed(&e))?;
+    receiver.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
+    let bytes = staging.slice(..).get_mapped_range().to_vec();
+    staging.unmap();
+    Ok(bytes)
+}
+
+/// Three floats, little-endian.
+pub(super) fn vector(bytes: &[u8]) -> Vec3 {
+    let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+    Vec3::new(float(&bytes[..4]), float(&bytes[4..8]), float(&bytes[8..12]))
 }

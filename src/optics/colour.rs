@@ -5,7 +5,8 @@ use glam::Vec3;
 /// Weights of linear Rec. 709 red, green and blue in luminance (ITU-R BT.709-6).
 pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-/// The surround of the picture, sRGB-encoded: a neutral grey, since colour is judged against it.
+/// What is seen where no object is, sRGB-encoded: a neutral grey, since colour is judged against it. It
+/// is not light of the scene, so exposure does not change it; tone mapping does.
 pub const BACKGROUND: [u8; 3] = [46, 46, 46];
 
 /// Whether colours are decoded on the way in and encoded on the way out.

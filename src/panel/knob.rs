@@ -105,13 +105,7 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
         .horizontal_align(Align::Max)
         .clip_text(true)
         .text_color(if wrong.is_some() { palette.error } else { palette.text })
-        .frame(
-            egui::Frame::new()
-                .fill(palette.field)
-                .stroke(stroke)
-                .corner_radius(4.0)
-                .inner_margin(egui::Margin::symmetric((4.0 * scale) as i8, (2.0 * scale) as i8)),
-        );
+        .frame(field_frame(&palette, stroke, scale));
     let response = ui.add_sized(vec2(width, 22.0 * scale), edit);
     response.widget_info(|| {
         let mut info = WidgetInfo::text_edit(ui.is_enabled(), number(value), &text, "");
@@ -557,6 +551,15 @@ fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u
     response.on_hover_text("Choose a colour. Double-click: default.")
 }
 
+/// The box around what is typed.
+fn field_frame(palette: &Palette, stroke: Stroke, scale: f32) -> egui::Frame {
+    egui::Frame::new()
+        .fill(palette.field)
+        .stroke(stroke)
+        .corner_radius(4.0)
+        .inner_margin(egui::Margin::symmetric((4.0 * scale) as i8, (2.0 * scale) as i8))
+}
+
 /// A field for a colour in hexadecimal.
 fn hex_field(
     ui: &mut Ui,
@@ -588,13 +591,7 @@ fn hex_field(
         .vertical_align(Align::Center)
         .horizontal_align(Align::Max)
         .text_color(if wrong { palette.error } else { palette.text })
-        .frame(
-            egui::Frame::new()
-                .fill(palette.field)
-                .stroke(stroke)
-                .corner_radius(4.0)
-                .inner_margin(egui::Margin::symmetric((4.0 * scale) as i8, (2.0 * scale) as i8)),
-        );
+        .frame(field_frame(&palette, stroke, scale));
     let response = ui.add_sized(vec2(width, 22.0 * scale), edit);
     response.widget_info(|| {
         let mut info = WidgetInfo::text_edit(ui.is_enabled(), &shown, &text, "");

@@ -6,15 +6,11 @@ use glam::{Vec3, Vec4};
 
 use crate::{
     optics::{
-        colour::{Encoding, srgb_decode, srgb_encode},
+        colour::{BACKGROUND, Encoding, srgb_decode, srgb_encode},
         tone::exposure_factor,
     },
     scene::Display,
 };
-
-/// What is seen where no object is: a neutral grey, sRGB. It is not light of the scene, so exposure
-/// does not change it; tone mapping does.
-pub const BACKGROUND: [u8; 3] = [46, 46, 46];
 
 /// Encodes to eight bits without a power per channel, and yet to the very code that
 /// `round(255 · srgb_encode(x))` gives.

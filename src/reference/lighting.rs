@@ -3,11 +3,11 @@
 use glam::Vec3;
 
 use crate::{
-    light::{Incident, LightRecord},
+    light::{Incident, LightRecord, buffer::record},
     optics::{Frame, TermSelection},
     reflection::Surface,
     registry::Registry,
-    scene::{Light, Scene},
+    scene::Scene,
     shading::Lighting,
 };
 
@@ -22,26 +22,14 @@ pub(super) struct Lights {
     terms: TermSelection,
 }
 
-/// A light as calculation sees it; `None` for a type that the registry does not know.
-fn record(light: &Light, scene: &Scene, registry: &Registry) -> Option<LightRecord> {
-    let entry = registry.light(&light.kind)?;
-    Some(LightRecord {
-        kind: registry.light_index(&light.kind)?,
-        position: light.position.unwrap_or_default(),
-        direction: light.direction.unwrap_or_default().normalize_or_zero(),
-        colour: scene.display.encoding.decode(light.colour),
-        intensity: light.intensity,
-        parameters: entry.numbers(&light.parameters),
-    })
-}
-
 impl Lights {
     pub(super) fn new(scene: &Scene, registry: &Registry, terms: TermSelection) -> Self {
         let lights = scene
             .lights
             .iter()
             .filter_map(|light| {
-                Some((registry.light(&light.kind)?.incident, record(light, scene, registry)?))
+                let incident = registry.light(&light.kind)?.incident;
+                Some((incident, record(light, registry, scene.display.encoding)))
             })
             .collect();
         Self { lights, observer: scene.observer.position, terms }

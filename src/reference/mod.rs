@@ -39,8 +39,9 @@ mod display;
 mod lighting;
 mod raster;
 
+pub use crate::optics::colour::BACKGROUND;
 use display::Developer;
-pub use display::{BACKGROUND, encode8};
+pub use display::encode8;
 use lighting::Lights;
 use raster::{Placed, Screen, TILE, Tile, Triangle, set_up};
 
