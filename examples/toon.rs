@@ -15,7 +15,7 @@ use lights_camera_models::{
     parameters,
     reference::{self, Settings},
     reflection::{
-        Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+        Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
         parameter::{BASE_COLOUR, Parameter, ParameterKind, Value},
     },
     registry::{Register, Registry},
@@ -52,6 +52,8 @@ impl ReflectionModel for Toon {
         summary: "Lambert in a few tones, as in a cartoon.",
         equation: &[EquationPart { term: Term::Diffuse, text: "I_d = ceil(n max(0, N·L)) C_b / n" }],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Formula,
+        anisotropic: false,
         wgsl: Source { path: "toon.wgsl", text: include_str!("toon.wgsl") },
     };
 

@@ -172,6 +172,14 @@ fn parse(parameter: &Parameter, written: &str) -> Option<Value> {
             let channels: Option<Vec<u8>> = written.split(',').map(|c| c.trim().parse().ok()).collect();
             channels?.try_into().ok().map(Value::Colour)
         }
+        ParameterKind::Triple { .. } => {
+            let numbers: Option<Vec<f32>> = written.split(',').map(|c| c.trim().parse().ok()).collect();
+            match numbers?[..] {
+                [all] => Some(Value::Triple([all; 3])),
+                [r, g, b] => Some(Value::Triple([r, g, b])),
+                _ => None,
+            }
+        }
         ParameterKind::Choice { .. } => Some(Value::Choice(written.to_owned().into())),
     }
 }

@@ -76,6 +76,11 @@ fn parameter(p: &Parameter) -> Json {
             json["max"] = (*max).into();
         }
         ParameterKind::Colour { .. } => json["type"] = "colour".into(),
+        ParameterKind::Triple { min, max, .. } => {
+            json["type"] = "triple".into();
+            json["min"] = number(*min);
+            json["max"] = number(*max);
+        }
         ParameterKind::Choice { options, .. } => {
             json["type"] = "choice".into();
             json["choices"] = options.iter().map(|(id, _)| *id).collect::<Vec<_>>().into();

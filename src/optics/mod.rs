@@ -1,9 +1,11 @@
 //! The vocabulary of every reflection model: pure functions on [`glam`] vectors, no Bevy.
 //!
-//! Each module has a twin in `assets/shaders/terms.wgsl` with the same function names. The two are
+//! Each module has a twin in `assets/shaders/terms.wgsl` or `assets/shaders/optics/` with the same function names. The two are
 //! written separately on purpose: they are witnesses of each other.
 
 pub mod colour;
+pub mod diffuse;
+pub mod fresnel;
 pub mod geometry;
 pub mod radiometry;
 pub mod tone;

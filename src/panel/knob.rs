@@ -796,7 +796,7 @@ pub fn limits_of(parameter: &Parameter) -> Option<Limits> {
             whole: true,
             because: None,
         }),
-        ParameterKind::Colour { .. } | ParameterKind::Choice { .. } => None,
+        ParameterKind::Colour { .. } | ParameterKind::Triple { .. } | ParameterKind::Choice { .. } => None,
     }
 }
 
@@ -831,6 +831,12 @@ pub fn parameter_knob(
         }
         (ParameterKind::Colour { default }, Value::Colour(rgb)) => {
             colour_knob(ui, salt, &caption, *rgb, Some(*default)).map(Value::Colour)
+        }
+        (ParameterKind::Triple { min, max, .. }, Value::Triple(v)) => {
+            let limits = [0; 3].map(|_| Limits::between(f64::from(*min), f64::from(*max)));
+            named_vector_knob(ui, salt, &caption, Vec3::from_array(*v), &limits, ["R", "G", "B"])
+                .map(|v| Value::Triple(v.to_array()))
+                .filter(|v| parameter.allows(v))
         }
         (ParameterKind::Choice { options, .. }, Value::Choice(id)) => {
             let chosen = options.iter().position(|(o, _)| *o == id.as_ref()).unwrap_or(0);

@@ -1,6 +1,8 @@
 use glam::Vec3;
 
-use super::{Declaration, EquationPart, Family, Laws, ReflectionModel, Term, parameter::BASE_COLOUR};
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term, parameter::BASE_COLOUR,
+};
 use crate::{
     optics::{Frame, Terms},
     parameters,
@@ -36,6 +38,8 @@ impl ReflectionModel for Lambert {
         summary: "The ideal matte surface: equally bright from every side. The measure for all others.",
         equation: &[EquationPart { term: Term::Diffuse, text: "I_d = max(0, N·L) C_b" }],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
+        ambient: Ambient::Formula,
+        anisotropic: false,
         wgsl: wgsl!("reflection/lambert.wgsl"),
     };
 

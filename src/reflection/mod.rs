@@ -16,6 +16,7 @@ use crate::{
 
 pub mod material;
 pub mod parameter;
+pub mod preset;
 pub mod swap;
 
 mod blinn_phong;
@@ -26,8 +27,9 @@ mod phong;
 pub use blinn_phong::BlinnPhong;
 pub use lambert::Lambert;
 pub use mod_lambert::ModLambert;
-use parameter::{Parameter, ParameterSet, Values};
+use parameter::{Parameter, ParameterSet, Value, Values};
 pub use phong::Phong;
+pub use preset::Measured;
 
 /// The built-in models, in the order in which choosers list them. The one list.
 pub fn register_builtin(to: &mut impl Register) {
@@ -56,8 +58,22 @@ pub struct Declaration {
     pub equation: &'static [EquationPart],
     /// The physical laws that the model keeps for all directions and legal parameters.
     pub laws: Laws,
+    /// How the model answers to uniform light from everywhere.
+    pub ambient: Ambient,
+    /// Whether the response depends on the tangent: turning the surface about its normal changes it.
+    pub anisotropic: bool,
     /// The twin in WGSL: `fn response` and `fn ambient_response` over a struct `Parameters`.
     pub wgsl: Source,
+}
+
+/// How a model answers to uniform light from everywhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Ambient {
+    /// By a formula of its own: [`ReflectionModel::ambient_response`] and its twin in WGSL.
+    Formula,
+    /// By its directional albedo `E(v) = ∫ f_r cos θ dω`, which is calculated from the response. The
+    /// model writes no ambient function, neither in Rust nor in WGSL.
+    Albedo,
 }
 
 /// One part of an equation in readable mathematics: `I_d = k_d max(0, N·L) C_b`. `_x` is a
@@ -149,8 +165,44 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// of the CA, their formula as published. Finite for all unit vectors and legal parameters.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
 
-    /// The response to uniform light of 1 lx from everywhere.
-    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
+    /// The response to uniform light of 1 lx from everywhere, for models that declare
+    /// [`Ambient::Formula`]; of the others it is not asked.
+    fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
+        Vec3::ZERO
+    }
+
+    /// What follows from the parameters and helps to read them: the reflectance at normal incidence, the
+    /// same roughness on another scale.
+    fn readouts(&self) -> Vec<Readout> {
+        Vec::new()
+    }
+
+    /// The parameters that make the surface a measured material; none if the model cannot be it.
+    fn preset(_material: &Measured) -> Vec<(&'static str, Value)> {
+        Vec::new()
+    }
+}
+
+/// A number or colour that follows from the parameters of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Readout {
+    /// The symbol, e.g. `F_0`.
+    pub symbol: &'static str,
+    /// What it is.
+    pub label: &'static str,
+    /// What it means, one sentence.
+    pub help: &'static str,
+    /// How much it is.
+    pub value: ReadoutValue,
+}
+
+/// The value of a [`Readout`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ReadoutValue {
+    /// A number.
+    Number(f32),
+    /// A linear reflectance in red, green and blue.
+    Reflectance(Vec3),
 }
 
 /// A model with its parameters set, ready to be asked: the object-safe half of [`ReflectionModel`].
@@ -159,6 +211,8 @@ pub trait Surface: Send + Sync {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
     /// See [`ReflectionModel::ambient_response`].
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
+    /// See [`ReflectionModel::readouts`].
+    fn readouts(&self) -> Vec<Readout>;
 }
 
 impl<M: ReflectionModel> Surface for M {
@@ -168,6 +222,10 @@ impl<M: ReflectionModel> Surface for M {
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
         ReflectionModel::ambient_response(self, v, frame)
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        ReflectionModel::readouts(self)
     }
 }
 
@@ -195,6 +253,8 @@ pub struct ModelEntry {
     pub declaration: &'static Declaration,
     /// Its parameters.
     pub parameters: &'static [Parameter],
+    /// See [`ReflectionModel::preset`].
+    pub preset: fn(&Measured) -> Vec<(&'static str, Value)>,
     instantiate: Arc<dyn Fn(&Values, Encoding) -> Box<dyn Surface> + Send + Sync>,
 }
 
@@ -205,6 +265,7 @@ impl ModelEntry {
         Self {
             declaration: const { &M::DECLARATION },
             parameters: M::PARAMETERS,
+            preset: M::preset,
             instantiate: Arc::new(|values, encoding| Box::new(M::from_values(values, encoding))),
         }
     }

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::{
-    Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
     parameter::{BASE_COLOUR, K_D, Parameter, ParameterKind},
 };
 use crate::{
@@ -60,6 +60,8 @@ impl ReflectionModel for ModLambert {
             term: Term::Diffuse, text: "I_d = max(0, (N·L) k_d + (1 − k_d))^p C_b"
         }],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Formula,
+        anisotropic: false,
         wgsl: wgsl!("reflection/mod_lambert.wgsl"),
     };
 

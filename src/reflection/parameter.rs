@@ -59,6 +59,16 @@ pub enum ParameterKind {
         /// Value when the scene does not give one.
         default: [u8; 3],
     },
+    /// Three real numbers, one for each of red, green and blue, in a closed range. Files may give one
+    /// number for all three.
+    Triple {
+        /// Smallest legal value.
+        min: f32,
+        /// Largest legal value.
+        max: f32,
+        /// Value when the scene does not give one.
+        default: [f32; 3],
+    },
     /// One of several named choices.
     Choice {
         /// The choices: name in files, name for people.
@@ -76,6 +86,7 @@ impl Parameter {
             ParameterKind::Number { default, .. } => Value::Number(default),
             ParameterKind::Integer { default, .. } => Value::Integer(default),
             ParameterKind::Colour { default } => Value::Colour(default),
+            ParameterKind::Triple { default, .. } => Value::Triple(default),
             ParameterKind::Choice { options, default } => Value::Choice(Cow::Borrowed(options[default].0)),
         }
     }
@@ -95,6 +106,9 @@ impl Parameter {
             ParameterKind::Colour { .. } => {
                 "three whole numbers from 0 to 255: [red, green, blue]".to_owned()
             }
+            ParameterKind::Triple { min, max, .. } => {
+                format!("three numbers between {min} and {max}, [red, green, blue], or one for all")
+            }
             ParameterKind::Choice { options, .. } => {
                 let names: Vec<_> = options.iter().map(|(id, _)| format!("\"{id}\"")).collect();
                 format!("one of {}", names.join(", "))
@@ -113,6 +127,9 @@ impl Parameter {
                 v >= min && max.is_none_or(|m| *v <= m)
             }
             (ParameterKind::Colour { .. }, Value::Colour(_)) => true,
+            (ParameterKind::Triple { min, max, .. }, Value::Triple(v)) => {
+                v.iter().all(|c| c.is_finite() && (min..=max).contains(&c))
+            }
             (ParameterKind::Choice { options, .. }, Value::Choice(v)) => {
                 options.iter().any(|(id, _)| *id == v.as_ref())
             }
@@ -125,7 +142,7 @@ impl Parameter {
     pub fn wgsl_type(&self) -> &'static str {
         match self.kind {
             ParameterKind::Number { .. } | ParameterKind::Integer { .. } => "f32",
-            ParameterKind::Colour { .. } => "vec3<f32>",
+            ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => "vec3<f32>",
             ParameterKind::Choice { .. } => "u32",
         }
     }
@@ -141,6 +158,8 @@ pub enum Value {
     Integer(i64),
     /// An sRGB-encoded colour.
     Colour([u8; 3]),
+    /// A number for each of red, green and blue.
+    Triple([f32; 3]),
     /// The name of a choice.
     Choice(Cow<'static, str>),
 }
@@ -151,6 +170,7 @@ impl fmt::Display for Value {
             Self::Number(v) => write!(f, "{v}"),
             Self::Integer(v) => write!(f, "{v}"),
             Self::Colour([r, g, b]) => write!(f, "{r},{g},{b}"),
+            Self::Triple([r, g, b]) => write!(f, "{r},{g},{b}"),
             Self::Choice(v) => f.write_str(v),
         }
     }
@@ -178,22 +198,25 @@ impl Values {
         self.0.insert(name.into(), value);
     }
 
-    /// The parameter as a number for calculation; colours give their luminance-free red channel.
+    /// The parameter as a number for calculation; of three the first.
     #[must_use]
     pub fn number(&self, parameter: &Parameter) -> f32 {
         match self.get(parameter) {
             Value::Number(v) => v,
             Value::Integer(v) => v as f32,
             Value::Colour([r, ..]) => f32::from(r),
+            Value::Triple([r, ..]) => r,
             Value::Choice(_) => self.choice(parameter) as f32,
         }
     }
 
-    /// The parameter as a linear colour for calculation; black when it is not a colour.
+    /// The parameter as a linear colour, or as its three numbers, for calculation; zero when it is
+    /// neither.
     #[must_use]
     pub fn colour(&self, parameter: &Parameter, encoding: Encoding) -> Vec3 {
         match self.get(parameter) {
             Value::Colour(rgb) => encoding.decode(rgb),
+            Value::Triple(v) => v.into(),
             _ => Vec3::ZERO,
         }
     }
@@ -269,7 +292,8 @@ pub trait ParameterSet: Sized + Send + Sync + 'static {
     fn from_values(values: &Values, encoding: Encoding) -> Self;
 }
 
-/// Declares the struct of a model: its fields are its parameters, each with its declaration.
+/// Declares the struct of a model: its fields are its parameters, each with its declaration. A block
+/// `derived { field: Type = function }` after it adds fields that are calculated once from the others.
 ///
 /// ```
 /// use lights_camera_models::{parameters, reflection::parameter::{BASE_COLOUR, K_D, ParameterSet}};
@@ -289,27 +313,40 @@ macro_rules! parameters {
     (
         $(#[$meta:meta])*
         pub struct $name:ident { $( $(#[$field_meta:meta])* $field:ident : $kind:ident = $declaration:expr ),* $(,)? }
+        $( derived {
+            $( $(#[$derived_meta:meta])* $derived:ident : $derived_type:ty = $derive:expr ),* $(,)?
+        } )?
     ) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct $name { $( $(#[$field_meta])* pub $field: $crate::parameters!(@type $kind) ),* }
+        pub struct $name {
+            $( $(#[$field_meta])* pub $field: $crate::parameters!(@type $kind), )*
+            $( $( $(#[$derived_meta])* pub $derived: $derived_type, )* )?
+        }
 
         impl $crate::reflection::parameter::ParameterSet for $name {
             const PARAMETERS: &'static [$crate::reflection::parameter::Parameter] = &[$($declaration),*];
 
-            #[allow(unused_variables)]
+            #[allow(unused_variables, unused_mut)]
             fn from_values(
                 values: &$crate::reflection::parameter::Values,
                 encoding: $crate::optics::colour::Encoding,
             ) -> Self {
-                Self { $( $field: $crate::parameters!(@get $kind values encoding $declaration) ),* }
+                let mut this = Self {
+                    $( $field: $crate::parameters!(@get $kind values encoding $declaration), )*
+                    $( $( $derived: <$derived_type>::default(), )* )?
+                };
+                $( $( this.$derived = ($derive)(&this); )* )?
+                this
             }
         }
     };
     (@type colour) => { glam::Vec3 };
+    (@type triple) => { glam::Vec3 };
     (@type number) => { f32 };
     (@type choice) => { u32 };
     (@get colour $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
+    (@get triple $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
     (@get number $values:ident $encoding:ident $declaration:expr) => { $values.number(&$declaration) };
     (@get choice $values:ident $encoding:ident $declaration:expr) => { $values.choice(&$declaration) };
 }

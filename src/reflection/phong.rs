@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::{
-    Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
     parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
 };
 use crate::{
@@ -61,6 +61,8 @@ impl ReflectionModel for Phong {
             EquationPart { term: Term::Specular, text: "I_s = k_s max(0, R·V)^α C_s" },
         ],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Formula,
+        anisotropic: false,
         wgsl: wgsl!("reflection/phong.wgsl"),
     };
 

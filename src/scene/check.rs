@@ -444,6 +444,7 @@ fn written(value: &Value) -> String {
         Value::Number(v) => v.to_string(),
         Value::Integer(v) => v.to_string(),
         Value::Colour([r, g, b]) => format!("[{r}, {g}, {b}]"),
+        Value::Triple([r, g, b]) => format!("[{r}, {g}, {b}]"),
         Value::Choice(v) => quoted(v),
     }
 }

@@ -427,6 +427,7 @@ impl Reader<'_> {
             ParameterKind::Number { .. } => self.number(value, path, key, &rule()).map(Value::Number),
             ParameterKind::Integer { .. } => self.integer(value, path, key, &rule()).map(Value::Integer),
             ParameterKind::Colour { .. } => self.colour(value, path, key, &rule()).map(Value::Colour),
+            ParameterKind::Triple { .. } => self.triple(value, path, key, &rule()).map(Value::Triple),
             ParameterKind::Choice { options, .. } => {
                 let id = self.string(value, path, key, &rule())?;
                 let known = options.iter().map(|(id, _)| *id).find(|known| *known == id);
@@ -605,6 +606,28 @@ impl Reader<'_> {
     }
 
     /// Three whole numbers from 0 to 255.
+    /// Three numbers, or one for all three.
+    fn triple(&mut self, value: &Ast, path: &Path, key: &'static str, rule: &str) -> Option<[f32; 3]> {
+        match value {
+            Ast::NumberLit(_) => self.number(value, path, key, rule).map(|v| [v; 3]),
+            Ast::Array(list) if list.elements.len() == 3 => {
+                let mut triple = [0.0; 3];
+                let mut good = true;
+                for (to, element) in triple.iter_mut().zip(&list.elements) {
+                    match self.number(element, path, key, rule) {
+                        Some(v) => *to = v,
+                        None => good = false,
+                    }
+                }
+                good.then_some(triple)
+            }
+            _ => {
+                self.wrong(value, path, key, rule);
+                None
+            }
+        }
+    }
+
     fn colour(&mut self, value: &Ast, path: &Path, key: &'static str, rule: &str) -> Option<[u8; 3]> {
         let Ast::Array(list) = value else {
             let hint = match value {

@@ -213,6 +213,10 @@ fn parameter(p: &Parameter) -> Json {
             "minItems": 3,
             "maxItems": 3,
         }),
+        ParameterKind::Triple { min, max, .. } => {
+            let one = json!({ "type": "number", "minimum": number(*min), "maximum": number(*max) });
+            json!({ "oneOf": [one, { "type": "array", "items": one, "minItems": 3, "maxItems": 3 }] })
+        }
         ParameterKind::Choice { options, .. } => {
             let mut field = json!({ "type": "string" });
             choose(&mut field, options.iter().map(|(id, name)| (*id, *name, "")));
@@ -231,6 +235,7 @@ pub(crate) fn value(value: &Value) -> Json {
         Value::Number(v) => number(*v),
         Value::Integer(v) => (*v).into(),
         Value::Colour(rgb) => json!(rgb),
+        Value::Triple(v) => v.iter().map(|c| number(*c)).collect(),
         Value::Choice(v) => v.as_ref().into(),
     }
 }

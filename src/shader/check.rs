@@ -93,7 +93,7 @@ mod tests {
         light::buffer::{ILLUMINATION_LAYOUT, LIGHT_LAYOUT},
         reflection::parameter::{layout, stride},
         registry::Registry,
-        shader::compose::{LIGHTS, Sources, TERMS, compose_evaluation},
+        shader::compose::{LIGHTS, OPTICS, Sources, compose_evaluation},
     };
 
     #[test]
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn lights_lie_where_rust_puts_them() {
-        let module = wgsl::parse_str(&format!("{}{}", TERMS.text, LIGHTS.text)).expect("valid WGSL");
+        let module = wgsl::parse_str(&format!("{}{}", OPTICS[0].text, LIGHTS.text)).expect("valid WGSL");
         let owned = |layout: &[(&str, usize)]| {
             layout.iter().map(|(n, at)| ((*n).to_owned(), *at)).collect::<Vec<_>>()
         };

@@ -8,10 +8,13 @@
 use std::{collections::HashMap, fmt::Write as _};
 
 use super::{Source, wgsl};
-use crate::{light::LightEntry, reflection::ModelEntry, reflection::parameter, shading::ModeEntry};
+use crate::{
+    light::LightEntry, reflection::Ambient, reflection::ModelEntry, reflection::parameter, shading::ModeEntry,
+};
 
-/// The shared sources: (path, text) of everything that is not a model, a light or a mode.
-pub const TERMS: Source = wgsl!("terms.wgsl");
+/// The vocabulary of the models, in the order of need.
+pub const OPTICS: [Source; 3] =
+    [wgsl!("terms.wgsl"), wgsl!("optics/fresnel.wgsl"), wgsl!("optics/diffuse.wgsl")];
 /// The light record.
 pub const LIGHTS: Source = wgsl!("lights.wgsl");
 /// The light loop.
@@ -122,11 +125,16 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
 pub fn compose(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[LightEntry]) -> Composed {
     let mut c = Composer::default();
     let source = |c: &mut Composer, s: &Source| c.push(s.path, sources.text(s));
-    source(&mut c, &TERMS);
+    for s in &OPTICS {
+        source(&mut c, s);
+    }
     source(&mut c, &LIGHTS);
     source(&mut c, &SHADING);
     c.push("(parameters)", &parameter_struct(model.parameters));
     source(&mut c, &model.declaration.wgsl);
+    if model.declaration.ambient == Ambient::Albedo {
+        c.push("(ambient)", AMBIENT);
+    }
     for light in lights {
         source(&mut c, &light.declaration.wgsl);
     }
@@ -137,11 +145,15 @@ pub fn compose(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: 
     c.finish()
 }
 
+const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {\n    return vec3(0.0);\n}\n";
+
 /// The source for evaluating a model alone in a compute pass: directions in, terms out.
 #[must_use]
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
     let mut c = Composer::default();
-    c.push(TERMS.path, sources.text(&TERMS));
+    for s in &OPTICS {
+        c.push(s.path, sources.text(s));
+    }
     c.push("(parameters)", &parameter_struct(model.parameters));
     c.push(model.declaration.wgsl.path, sources.text(&model.declaration.wgsl));
     c.push(EVALUATE.path, sources.text(&EVALUATE));
@@ -162,7 +174,8 @@ mod tests {
         for model in registry.models() {
             for mode in registry.modes() {
                 let composed = compose(&Sources::default(), model, mode, registry.lights());
-                let pieces = [TERMS, LOOP, WRAPPER, model.declaration.wgsl, mode.declaration.wgsl];
+                let pieces =
+                    [OPTICS[0], OPTICS[1], LOOP, WRAPPER, model.declaration.wgsl, mode.declaration.wgsl];
                 for (i, line) in composed.text.lines().enumerate() {
                     let (path, at) = composed.map.locate(i + 1).expect("every line has a place");
                     if let Some(source) = pieces.iter().find(|s| s.path == path) {

@@ -52,6 +52,8 @@ impl ReflectionModel for Toon {
         summary: "Lambert in a few tones.",
         equation: &[EquationPart { term: Term::Diffuse, text: "I_d = ceil(n max(0, N·L)) C_b / n" }],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
+        ambient: reflection::Ambient::Formula,
+        anisotropic: false,
         wgsl: Source {
             path: "toon.wgsl",
             text: "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {\n\

@@ -181,6 +181,9 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
                             (255.0 * random(&mut seed)) as u8,
                             (255.0 * random(&mut seed)) as u8,
                         ]),
+                        ParameterKind::Triple { min, max, .. } => {
+                            Value::Triple([0; 3].map(|_| min + random(&mut seed) * (max - min)))
+                        }
                         ParameterKind::Choice { options, .. } => {
                             Value::Choice(options[(r * options.len() as f32) as usize].0.into())
                         }

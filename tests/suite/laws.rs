@@ -64,6 +64,11 @@ impl Random {
             } else {
                 [0; 3].map(|_: u8| (self.unit() * 255.99) as u8)
             }),
+            ParameterKind::Triple { min, max, .. } => Value::Triple(match pick {
+                p if p < 0.15 => [*min; 3],
+                p if p < 0.3 => [*max; 3],
+                _ => [0; 3].map(|_: u8| min + self.unit() * (max - min)),
+            }),
             ParameterKind::Choice { options, .. } => {
                 let i = ((within * options.len() as f32) as usize).min(options.len() - 1);
                 Value::Choice(options[i].0.into())

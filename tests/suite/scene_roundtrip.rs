@@ -87,6 +87,9 @@ fn parameter(p: &'static Parameter) -> BoxedStrategy<Value> {
             (min..=max.unwrap_or(i64::MAX)).prop_map(Value::Integer).boxed()
         }
         ParameterKind::Colour { .. } => any::<[u8; 3]>().prop_map(Value::Colour).boxed(),
+        ParameterKind::Triple { min, max, .. } => {
+            [number(min, max), number(min, max), number(min, max)].prop_map(Value::Triple).boxed()
+        }
         ParameterKind::Choice { options, .. } => {
             prop::sample::select(options).prop_map(|(id, _)| Value::Choice(id.into())).boxed()
         }
