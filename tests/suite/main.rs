@@ -17,3 +17,4 @@ mod scene_roundtrip;
 mod schema;
 mod support;
 mod window;
+mod witness;
