@@ -25,6 +25,11 @@ fn frame_from_normal(n: vec3<f32>) -> Frame {
     return Frame(n, vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x), vec3(c, s + n.y * n.y * a, -n.y));
 }
 
+// A direction of the room in the local frame: along tangent, bitangent and normal.
+fn to_local(frame: Frame, d: vec3<f32>) -> vec3<f32> {
+    return vec3(dot(frame.t, d), dot(frame.b, d), dot(frame.n, d));
+}
+
 // The vector at length 1, or zero where it has no direction.
 fn unit_or_zero(x: vec3<f32>) -> vec3<f32> {
     let squared = dot(x, x);

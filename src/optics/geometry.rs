@@ -28,6 +28,12 @@ impl Frame {
             b: Vec3::new(c, sign + n.y * n.y * a, -n.y),
         }
     }
+
+    /// A direction of the room in the local frame: along tangent, bitangent and normal.
+    #[must_use]
+    pub fn to_local(&self, d: Vec3) -> Vec3 {
+        Vec3::new(self.t.dot(d), self.b.dot(d), self.n.dot(d))
+    }
 }
 
 /// The mirror direction `R = 2(N·L)N − L` (law of reflection, T1: the angle of incidence equals the

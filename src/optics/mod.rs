@@ -5,8 +5,10 @@
 
 pub mod colour;
 pub mod diffuse;
+pub mod distribution;
 pub mod fresnel;
 pub mod geometry;
+pub mod masking;
 pub mod radiometry;
 pub mod tone;
 

@@ -13,8 +13,13 @@ use crate::{
 };
 
 /// The vocabulary of the models, in the order of need.
-pub const OPTICS: [Source; 3] =
-    [wgsl!("terms.wgsl"), wgsl!("optics/fresnel.wgsl"), wgsl!("optics/diffuse.wgsl")];
+pub const OPTICS: &[Source] = &[
+    wgsl!("terms.wgsl"),
+    wgsl!("optics/fresnel.wgsl"),
+    wgsl!("optics/distribution.wgsl"),
+    wgsl!("optics/masking.wgsl"),
+    wgsl!("optics/diffuse.wgsl"),
+];
 /// The light record.
 pub const LIGHTS: Source = wgsl!("lights.wgsl");
 /// The light loop.
@@ -125,7 +130,7 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
 pub fn compose(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[LightEntry]) -> Composed {
     let mut c = Composer::default();
     let source = |c: &mut Composer, s: &Source| c.push(s.path, sources.text(s));
-    for s in &OPTICS {
+    for s in OPTICS {
         source(&mut c, s);
     }
     source(&mut c, &LIGHTS);
@@ -151,7 +156,7 @@ const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parame
 #[must_use]
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
     let mut c = Composer::default();
-    for s in &OPTICS {
+    for s in OPTICS {
         c.push(s.path, sources.text(s));
     }
     c.push("(parameters)", &parameter_struct(model.parameters));
