@@ -6,6 +6,7 @@
 pub mod colour;
 pub mod diffuse;
 pub mod distribution;
+pub mod equivalence;
 pub mod fresnel;
 pub mod geometry;
 pub mod masking;
