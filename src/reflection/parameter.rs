@@ -462,6 +462,26 @@ pub const REFLECTANCE: Parameter = Parameter {
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
 };
 
+/// Roughness along the tangent: root mean square slope, times √2, of the microfacets in that direction.
+pub const ALPHA_X: Parameter = Parameter {
+    name: "alpha_x",
+    symbol: "α_x",
+    label: "roughness along the tangent",
+    unit: "",
+    help: "How steep the microfacets are along the brushing: the smaller, the sharper the reflection in that direction.",
+    kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.3 },
+};
+
+/// Roughness across the tangent: as [`ALPHA_X`], along the bitangent.
+pub const ALPHA_Y: Parameter = Parameter {
+    name: "alpha_y",
+    symbol: "α_y",
+    label: "roughness across the tangent",
+    unit: "",
+    help: "How steep the microfacets are across the brushing. Equal to the roughness along it, the surface looks the same from all sides.",
+    kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.3 },
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;
