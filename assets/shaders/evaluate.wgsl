@@ -6,9 +6,12 @@ struct Pair {
     v: vec3<f32>,
 }
 
-@group(0) @binding(0) var<uniform> parameters: Parameters;
+// One row.
+@group(0) @binding(0) var<storage, read> parameter_table: array<Row>;
 @group(0) @binding(1) var<storage, read> pairs: array<Pair>;
 @group(0) @binding(2) var<storage, read_write> answers: array<Terms>;
+
+const object_row: u32 = 0u;
 
 @compute @workgroup_size(64)
 fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -17,5 +20,5 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let pair = pairs[id.x];
     let frame = Frame(vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
-    answers[id.x] = response(pair.l, pair.v, frame, parameters);
+    answers[id.x] = response(pair.l, pair.v, frame, parameter_table[object_row].parameters);
 }

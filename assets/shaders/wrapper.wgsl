@@ -3,12 +3,14 @@
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
 
-// The parameters of all objects under the model; an object's row is its mesh tag.
-@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> parameter_table: array<Parameters>;
+// The parameters of all objects under the model, with what follows from them; an object's row is its
+// mesh tag.
+@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> parameter_table: array<Row>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
 
 // The parameters of the object that is being drawn.
 var<private> parameters: Parameters;
+var<private> object_row: u32;
 
 struct VertexIn {
     @builtin(instance_index) instance_index: u32,
@@ -35,8 +37,8 @@ fn observer_position() -> vec3<f32> {
 
 @vertex
 fn vertex(in: VertexIn) -> Stages {
-    let row = mesh_functions::get_tag(in.instance_index);
-    parameters = parameter_table[row];
+    object_row = mesh_functions::get_tag(in.instance_index);
+    parameters = parameter_table[object_row].parameters;
     let room_from_local = mesh_functions::get_world_from_local(in.instance_index);
     let centre = room_from_local[3].xyz;
     var corner: Corner;
@@ -54,13 +56,14 @@ fn vertex(in: VertexIn) -> Stages {
     out.normal = passed.normal;
     out.colour = passed.colour;
     out.offset = (room_from_local * vec4(in.position, 0.0)).xyz;
-    out.row = row;
+    out.row = object_row;
     return out;
 }
 
 @fragment
 fn fragment(in: Stages) -> @location(0) vec4<f32> {
-    parameters = parameter_table[in.row];
+    object_row = in.row;
+    parameters = parameter_table[object_row].parameters;
     let linear = shade_pixel(Varying(in.position, in.normal, in.colour, in.offset)) * illumination.exposure;
     if illumination.gamma_naive != 0u {
         // The display encodes what it gets; decoding first undoes that, and the numbers stand as they are.

@@ -15,6 +15,9 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// The frame in which models are measured: normal +z, tangent +x.
+    pub const LOCAL: Self = Self { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
+
     /// A frame around a normal alone, for surfaces without a preferred direction: the branchless
     /// basis of T. Duff et al. (2017), *Building an Orthonormal Basis, Revisited*.
     #[must_use]

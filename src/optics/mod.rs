@@ -3,6 +3,7 @@
 //! Each module has a twin in `assets/shaders/terms.wgsl` or `assets/shaders/optics/` with the same function names. The two are
 //! written separately on purpose: they are witnesses of each other.
 
+pub mod albedo;
 pub mod colour;
 pub mod diffuse;
 pub mod distribution;

@@ -20,7 +20,7 @@
 //! face normal and centre of its [`Corner`] are then the vertex's own normal and position. A mode of
 //! [`Stage::Polygon`] is asked once per polygon, at its centre.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, sync::Arc};
 
 use glam::{EulerRot, Mat3, Mat4, Vec3, Vec4};
 use rayon::prelude::*;
@@ -143,7 +143,7 @@ struct Draw<'a> {
     object: &'a Object,
     shape: &'a Prepared,
     mode: &'a ModeEntry,
-    surface: Box<dyn Surface>,
+    surface: Arc<dyn Surface>,
 }
 
 /// Polygons that are held at a time: bounds the memory of scenes of any size.
@@ -210,7 +210,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
         rest = later;
 
         let draws: Vec<Draw> = batch
-            .iter()
+            .par_iter()
             .filter_map(|&(object, shape)| {
                 Some(Draw {
                     object,

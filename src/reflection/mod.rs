@@ -4,12 +4,20 @@
 //! [`register_builtin`]. Everything else (scene files, knobs, hot-swap, laws, parity, CPU renderer,
 //! README row) follows from the declaration.
 
-use std::{fmt, sync::Arc};
+use std::{
+    collections::HashMap,
+    fmt,
+    sync::{Arc, Mutex, OnceLock, PoisonError},
+};
 
 use glam::Vec3;
 
 use crate::{
-    optics::{Frame, Terms, colour::Encoding, equivalence},
+    optics::{
+        Frame, Terms,
+        albedo::{self, AlbedoCurve, LobeAlbedo, NODES},
+        colour::Encoding, equivalence,
+    },
     registry::Register,
     shader::Source,
 };
@@ -27,7 +35,7 @@ mod phong;
 pub use blinn_phong::BlinnPhong;
 pub use lambert::Lambert;
 pub use mod_lambert::ModLambert;
-use parameter::{Parameter, ParameterSet, Value, Values};
+use parameter::{Parameter, ParameterSet, Value, Values, pack};
 pub use phong::Phong;
 pub use preset::Measured;
 
@@ -62,7 +70,8 @@ pub struct Declaration {
     pub ambient: Ambient,
     /// Whether the response depends on the tangent: turning the surface about its normal changes it.
     pub anisotropic: bool,
-    /// The twin in WGSL: `fn response` and `fn ambient_response` over a struct `Parameters`.
+    /// The twin in WGSL: `fn response` over a struct `Parameters`, and `fn ambient_response` for models
+    /// that declare [`Ambient::Formula`].
     pub wgsl: Source,
 }
 
@@ -161,6 +170,10 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// Name, source, laws, equation, shader.
     const DECLARATION: Declaration;
 
+    /// Whether [`lobe`](Self::lobe) may be asked for; then the WGSL of the model may call
+    /// `lobe_albedo(mu)` and `average_lobe_albedo()`.
+    const LOBE: bool = false;
+
     /// The response `π f_r(l, v) cos θ_i` to a light of unit intensity, in terms; or, for the models
     /// of the CA, their formula as published. Finite for all unit vectors and legal parameters.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
@@ -169,6 +182,13 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// [`Ambient::Formula`]; of the others it is not asked.
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
         Vec3::ZERO
+    }
+
+    /// The albedo of the specular lobe alone with F = 1, for models that compensate multiple scattering
+    /// and set [`LOBE`](Self::LOBE). A model keeps it as a derived field (see
+    /// [`parameters!`](crate::parameters)); the shader is handed the same numbers.
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        None
     }
 
     /// What follows from the parameters and helps to read them: the reflectance at normal incidence, the
@@ -232,11 +252,17 @@ pub enum ReadoutValue {
 pub trait Surface: Send + Sync {
     /// See [`ReflectionModel::response`].
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
-    /// See [`ReflectionModel::ambient_response`].
+    /// The response to uniform light of 1 lx from everywhere, by formula or by albedo.
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
+    /// The directional albedo over the view, of models that declare [`Ambient::Albedo`].
+    fn curve(&self) -> Option<AlbedoCurve>;
+    /// See [`ReflectionModel::lobe`].
+    fn lobe(&self) -> Option<LobeAlbedo>;
     /// See [`ReflectionModel::readouts`].
     fn readouts(&self) -> Vec<Readout>;
 }
+
+/// A model alone: it calculates its albedo anew whenever it is asked, to [`albedo::ACCURACY`].
 
 impl<M: ReflectionModel> Surface for M {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
@@ -244,11 +270,60 @@ impl<M: ReflectionModel> Surface for M {
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
-        ReflectionModel::ambient_response(self, v, frame)
+        match M::DECLARATION.ambient {
+            Ambient::Formula => ReflectionModel::ambient_response(self, v, frame),
+            Ambient::Albedo => {
+                albedo::directional(|l| ReflectionModel::response(self, l, v, frame), v, frame).as_vec3()
+            }
+        }
+    }
+
+    fn curve(&self) -> Option<AlbedoCurve> {
+        (M::DECLARATION.ambient == Ambient::Albedo).then(|| {
+            AlbedoCurve::new(
+                |l, v| ReflectionModel::response(self, l, v, &Frame::LOCAL),
+                M::DECLARATION.anisotropic,
+            )
+        })
+    }
+
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        ReflectionModel::lobe(self)
     }
 
     fn readouts(&self) -> Vec<Readout> {
         ReflectionModel::readouts(self)
+    }
+}
+
+/// A model that calculates its curve when it is first asked, and answers by it: what pictures need.
+struct Instance<M> {
+    model: M,
+    curve: OnceLock<Option<AlbedoCurve>>,
+}
+
+impl<M: ReflectionModel> Surface for Instance<M> {
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        ReflectionModel::response(&self.model, l, v, frame)
+    }
+
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        match self.curve.get_or_init(|| self.model.curve()) {
+            Some(curve) => curve.at(v, frame),
+            None => ReflectionModel::ambient_response(&self.model, v, frame),
+        }
+    }
+
+    fn curve(&self) -> Option<AlbedoCurve> {
+        *self.curve.get_or_init(|| self.model.curve())
+    }
+
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        ReflectionModel::lobe(&self.model)
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        ReflectionModel::readouts(&self.model)
     }
 }
 
@@ -278,8 +353,14 @@ pub struct ModelEntry {
     pub parameters: &'static [Parameter],
     /// See [`ReflectionModel::preset`].
     pub preset: fn(&Measured) -> Vec<(&'static str, Value)>,
-    instantiate: Arc<dyn Fn(&Values, Encoding) -> Box<dyn Surface> + Send + Sync>,
+    lobe: bool,
+    instantiate: Arc<dyn Fn(&Values, Encoding) -> Arc<dyn Surface> + Send + Sync>,
+    /// Surfaces with curves, by their packed parameters: objects of one material share one.
+    kept: Arc<Mutex<HashMap<Vec<u8>, Arc<dyn Surface>>>>,
 }
+
+/// How many surfaces with curves are kept.
+const KEPT: usize = 1024;
 
 impl ModelEntry {
     /// The entry of a model type.
@@ -289,14 +370,67 @@ impl ModelEntry {
             declaration: const { &M::DECLARATION },
             parameters: M::PARAMETERS,
             preset: M::preset,
-            instantiate: Arc::new(|values, encoding| Box::new(M::from_values(values, encoding))),
+            lobe: M::LOBE,
+            instantiate: Arc::new(|values, encoding| {
+                Arc::new(Instance { model: M::from_values(values, encoding), curve: OnceLock::new() })
+            }),
+            kept: Arc::default(),
         }
     }
 
     /// The model with the parameters of one object.
     #[must_use]
-    pub fn instantiate(&self, values: &Values, encoding: Encoding) -> Box<dyn Surface> {
-        (self.instantiate)(values, encoding)
+    pub fn instantiate(&self, values: &Values, encoding: Encoding) -> Arc<dyn Surface> {
+        if !self.has_curve() {
+            return (self.instantiate)(values, encoding);
+        }
+        let key = pack(self.parameters, values, encoding);
+        let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(surface) = kept().get(&key) {
+            return surface.clone();
+        }
+        let surface = (self.instantiate)(values, encoding);
+        let mut kept = kept();
+        if kept.len() >= KEPT {
+            kept.clear();
+        }
+        kept.entry(key).or_insert(surface).clone()
+    }
+
+    /// Whether the row of an object holds a curve beside the parameters.
+    #[must_use]
+    pub fn has_curve(&self) -> bool {
+        self.lobe || self.declaration.ambient == Ambient::Albedo
+    }
+
+    /// How many harmonics of the azimuth a curve has.
+    #[must_use]
+    pub fn harmonics(&self) -> usize {
+        if self.declaration.anisotropic { 3 } else { 1 }
+    }
+
+    /// The row of an object in the table that the shader reads, laid out as the WGSL struct `Row` (see
+    /// [`row_struct`](crate::shader::compose::row_struct)): the parameters, and for models that have
+    /// one the curve. Its colours are zero unless `everywhere`, when light from everywhere shines.
+    #[must_use]
+    pub fn row(&self, values: &Values, encoding: Encoding, everywhere: bool) -> Vec<u8> {
+        let mut row = pack(self.parameters, values, encoding);
+        if !self.has_curve() {
+            return row;
+        }
+        let surface = self.instantiate(values, encoding);
+        let curve = if everywhere { surface.curve() } else { None };
+        let lobe = surface.lobe().unwrap_or_default();
+        row.resize(row.len().next_multiple_of(16), 0);
+        for harmonic in 0..self.harmonics() {
+            for node in 0..NODES {
+                let rgb = curve.map_or(Vec3::ZERO, |c| c.harmonics[harmonic][node]);
+                let w = if harmonic == 0 { lobe.nodes[node] } else { 0.0 };
+                row.extend(rgb.extend(w).to_array().into_iter().flat_map(f32::to_le_bytes));
+            }
+        }
+        row.extend([lobe.average(), 0.0, 0.0, 0.0].into_iter().flat_map(f32::to_le_bytes));
+        row
     }
 
     /// The parameter of that name, if the model uses it.

@@ -10,17 +10,15 @@ use bevy::{
     render::storage::ShaderBuffer,
     shader::Shader,
 };
+use rayon::prelude::*;
 
-use super::{
-    material::{Attachments, FACE_CENTRE, FACE_NORMAL, Ingredients},
-    parameter::pack,
-};
+use super::material::{Attachments, FACE_CENTRE, FACE_NORMAL, Ingredients};
 use crate::{
-    light::buffer::IlluminationBuffer,
+    light::{Incident, buffer::IlluminationBuffer, buffer::record},
     optics::colour::Encoding,
     registry::Registry,
     scene::{
-        MAX_OBJECTS,
+        MAX_OBJECTS, Scene,
         spawn::{CurrentScene, LitObject, SceneEntities},
     },
     shader::compose::{Sources, compose},
@@ -167,6 +165,17 @@ pub struct Drawn {
     model: String,
     mode: String,
     encoding: Encoding,
+    everywhere: bool,
+}
+
+/// Whether some light of a scene shines from everywhere alike, so that albedos are asked for.
+fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
+    scene.lights.iter().any(|light| {
+        registry.light(&light.kind).is_some_and(|entry| {
+            let record = record(light, registry, scene.display.encoding);
+            matches!((entry.incident)(&record, glam::Vec3::ZERO), Incident::Everywhere { .. })
+        })
+    })
 }
 
 /// Gives every object whose shape, model, mode or parameters changed its mesh and its material. Exclusive, so that
@@ -178,6 +187,7 @@ pub fn swap(world: &mut World) {
         let mut pending = Vec::new();
         let mut query = world.query::<(Ref<LitObject>, Option<&Drawn>)>();
         let scene = &world.resource::<CurrentScene>().0;
+        let everywhere = shines_from_everywhere(scene, world.resource::<Registry>());
         // More objects than a table has rows are no legal scene; what is beyond is not drawn.
         for (row, &entity) in world.resource::<SceneEntities>().objects.iter().enumerate().take(MAX_OBJECTS) {
             let Ok((object, drawn)) = query.get(world, entity) else { continue };
@@ -185,6 +195,7 @@ pub fn swap(world: &mut World) {
                 model: scene.model_of(&object.0).to_owned(),
                 mode: scene.mode_of(&object.0).to_owned(),
                 encoding: scene.display.encoding,
+                everywhere,
             };
             if object.is_changed() || drawn.is_none() || (scene_changed && drawn != Some(&now())) {
                 pending.push((row, entity, object.0.clone(), now()));
@@ -197,11 +208,19 @@ pub fn swap(world: &mut World) {
     }
     let registry = world.resource::<Registry>().clone();
     let illumination = world.resource::<IlluminationBuffer>().0.clone();
-    for (row, entity, object, now) in pending {
+    // Curves take about a millisecond each; equal parameters share one.
+    let rows: Vec<_> = pending
+        .par_iter()
+        .map(|(_, _, object, now)| {
+            let model = registry.model(&now.model)?;
+            Some(model.row(&object.material, now.encoding, now.everywhere))
+        })
+        .collect();
+    for ((row, entity, object, now), bytes) in pending.into_iter().zip(rows) {
         // The checker refuses scenes with unknown ids; should one come from elsewhere, the object
         // keeps what it has.
-        let (Some(model), Some(mode), Some(shape)) =
-            (registry.model(&now.model), registry.mode(&now.mode), registry.shape(&object.kind))
+        let (Some(model), Some(mode), Some(shape), Some(bytes)) =
+            (registry.model(&now.model), registry.mode(&now.mode), registry.shape(&object.kind), bytes)
         else {
             continue;
         };
@@ -221,7 +240,6 @@ pub fn swap(world: &mut World) {
             composed.get(model, mode, &registry, &mut world.resource_mut::<Assets<Shader>>())
         });
         let faces = mode.declaration.stage == Stage::Polygon;
-        let bytes = pack(model.parameters, &object.material, now.encoding);
         let table = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
             tables.set(model, row, &bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
         });

@@ -1,15 +1,18 @@
 //! Joining the shader sources: pure text to text.
 //!
-//! One composed source holds, in this order: terms, the light record, the parameters of the model
-//! (generated from its declaration), the wrapper with the bindings, the model, the light types, the
-//! dispatch over light types (generated), the light loop, the shading mode and the entry points. A
-//! [`LineMap`] leads from a line of the composed text back to the author's file.
+//! One composed source holds, in this order: terms, the light record, the row of an object (generated
+//! from the declaration of the model), the reading of curves where rows have them, the model, the light
+//! types, the dispatch over light types (generated), the light loop, the shading mode, and the wrapper
+//! with bindings and entry points. A [`LineMap`] leads from a line of the composed text back to the author's file.
 
 use std::{collections::HashMap, fmt::Write as _};
 
 use super::{Source, wgsl};
 use crate::{
-    light::LightEntry, reflection::Ambient, reflection::ModelEntry, reflection::parameter, shading::ModeEntry,
+    light::LightEntry,
+    optics::albedo::NODES,
+    reflection::{Ambient, ModelEntry, parameter},
+    shading::ModeEntry,
 };
 
 /// The vocabulary of the models, in the order of need.
@@ -20,6 +23,8 @@ pub const OPTICS: &[Source] = &[
     wgsl!("optics/masking.wgsl"),
     wgsl!("optics/diffuse.wgsl"),
 ];
+/// The directional albedo from the curve in a row, for models that have one.
+pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
 /// The light record.
 pub const LIGHTS: Source = wgsl!("lights.wgsl");
 /// The light loop.
@@ -112,6 +117,55 @@ pub fn parameter_struct(parameters: &[parameter::Parameter]) -> String {
     text
 }
 
+/// The WGSL struct `Row` of a model, what one object has in the table that the shader reads, and the
+/// functions that read the curve in it. The array of rows is `parameter_table`, the index of the
+/// object's own `object_row`. Curves are read in place: a copy would cost every pixel.
+#[must_use]
+pub fn row_struct(model: &ModelEntry) -> String {
+    let mut text = parameter_struct(model.parameters);
+    if !model.has_curve() {
+        text.push_str("struct Row {\n    parameters: Parameters,\n}\n");
+        return text;
+    }
+    let harmonics = model.harmonics();
+    let _ = write!(
+        text,
+        "struct Row {{
+    parameters: Parameters,
+    curve: array<vec4<f32>, {}>,
+    lobe_mean: f32,
+}}
+const HARMONICS: u32 = {harmonics}u;
+fn curve_node(i: u32) -> vec4<f32> {{
+    return parameter_table[object_row].curve[i];
+}}
+fn lobe_mean() -> f32 {{
+    return parameter_table[object_row].lobe_mean;
+}}
+",
+        harmonics * NODES
+    );
+    text
+}
+
+/// The row of a model, and the model.
+fn push_model(c: &mut Composer, sources: &Sources, model: &ModelEntry) {
+    c.push("(row)", &row_struct(model));
+    if model.has_curve() {
+        c.push(ALBEDO.path, sources.text(&ALBEDO));
+    }
+    c.push(model.declaration.wgsl.path, sources.text(&model.declaration.wgsl));
+    if model.declaration.ambient == Ambient::Albedo {
+        c.push("(ambient)", AMBIENT);
+    }
+}
+
+/// How models answer to light from everywhere that declare to do so by their albedo.
+const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    return directional_albedo(v, frame);
+}
+";
+
 /// The function that hands a light to its type, by the index of the type in the registry.
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
@@ -135,11 +189,7 @@ pub fn compose(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: 
     }
     source(&mut c, &LIGHTS);
     source(&mut c, &SHADING);
-    c.push("(parameters)", &parameter_struct(model.parameters));
-    source(&mut c, &model.declaration.wgsl);
-    if model.declaration.ambient == Ambient::Albedo {
-        c.push("(ambient)", AMBIENT);
-    }
+    push_model(&mut c, sources, model);
     for light in lights {
         source(&mut c, &light.declaration.wgsl);
     }
@@ -150,8 +200,6 @@ pub fn compose(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: 
     c.finish()
 }
 
-const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {\n    return vec3(0.0);\n}\n";
-
 /// The source for evaluating a model alone in a compute pass: directions in, terms out.
 #[must_use]
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
@@ -159,8 +207,7 @@ pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
     for s in OPTICS {
         c.push(s.path, sources.text(s));
     }
-    c.push("(parameters)", &parameter_struct(model.parameters));
-    c.push(model.declaration.wgsl.path, sources.text(&model.declaration.wgsl));
+    push_model(&mut c, sources, model);
     c.push(EVALUATE.path, sources.text(&EVALUATE));
     c.finish()
 }
