@@ -16,7 +16,8 @@ use crate::{
     optics::{
         Frame, Terms,
         albedo::{self, AlbedoCurve, LobeAlbedo, NODES},
-        colour::Encoding, equivalence,
+        colour::Encoding,
+        equivalence,
     },
     registry::Register,
     shader::Source,
@@ -32,6 +33,7 @@ mod blinn_phong;
 mod burley_diffuse;
 mod eon;
 mod lambert;
+mod microfacet;
 mod mod_lambert;
 mod oren_nayar;
 mod phong;
@@ -43,9 +45,10 @@ pub use blinn_phong::BlinnPhong;
 pub use burley_diffuse::BurleyDiffuse;
 pub use eon::Eon;
 pub use lambert::Lambert;
+pub use microfacet::Microfacet;
 pub use mod_lambert::ModLambert;
-use parameter::{Parameter, ParameterSet, Value, Values, pack};
 pub use oren_nayar::OrenNayar;
+use parameter::{Parameter, ParameterSet, Value, Values, pack};
 pub use phong::Phong;
 pub use preset::Measured;
 pub use ward::Ward;
@@ -63,6 +66,7 @@ pub fn register_builtin(to: &mut impl Register) {
     to.add_reflection_model::<OrenNayar>();
     to.add_reflection_model::<Eon>();
     to.add_reflection_model::<BurleyDiffuse>();
+    to.add_reflection_model::<Microfacet>();
 }
 
 /// What a model is called, where it comes from and what it claims.
