@@ -5,6 +5,7 @@
 
 pub mod colour;
 pub mod diffuse;
+pub mod equivalence;
 pub mod fresnel;
 pub mod geometry;
 pub mod radiometry;

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term,
     parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
 };
 use crate::{
@@ -83,5 +83,9 @@ impl ReflectionModel for BlinnPhong {
 
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
         self.k_a * self.base_colour
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        Readout::of_exponent(self.alpha)
     }
 }

@@ -9,7 +9,7 @@ use std::{fmt, sync::Arc};
 use glam::Vec3;
 
 use crate::{
-    optics::{Frame, Terms, colour::Encoding},
+    optics::{Frame, Terms, colour::Encoding, equivalence},
     registry::Register,
     shader::Source,
 };
@@ -194,6 +194,29 @@ pub struct Readout {
     pub help: &'static str,
     /// How much it is.
     pub value: ReadoutValue,
+}
+
+impl Readout {
+    /// The width of the highlight on the scales of the microfacet models, from the exponent of the
+    /// Blinn–Phong lobe that is as sharp; see [`equivalence`].
+    #[must_use]
+    pub fn of_exponent(exponent: f32) -> Vec<Self> {
+        let alpha = equivalence::alpha_of_exponent(exponent);
+        vec![
+            Self {
+                symbol: "α_GGX",
+                label: "about the width α",
+                help: "The width of the GGX or Beckmann distribution that is as sharp as this highlight: √(2/(n + 2)) for Blinn–Phong's exponent n, and Phong's n counts as 4n, since H turns half as far as R.",
+                value: ReadoutValue::Number(alpha),
+            },
+            Self {
+                symbol: "r",
+                label: "about the roughness",
+                help: "The roughness of metallic-roughness models that is as sharp as this highlight: the root of the width, r² = α.",
+                value: ReadoutValue::Number(equivalence::roughness_of_alpha(alpha)),
+            },
+        ]
+    }
 }
 
 /// The value of a [`Readout`].

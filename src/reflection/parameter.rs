@@ -411,6 +411,57 @@ pub const ALPHA: Parameter = Parameter {
     kind: ParameterKind::Integer { min: 0, max: None, slider_max: 512, default: 32 },
 };
 
+/// The refractive index n of the material, for red, green and blue light.
+pub const IOR: Parameter = Parameter {
+    name: "ior",
+    symbol: "n",
+    label: "refractive index",
+    unit: "",
+    help: "How many times slower light is inside than outside, at 630, 532 and 465 nm. Water 1.33, glass 1.5, diamond 2.4; metals also need an extinction coefficient.",
+    kind: ParameterKind::Triple { min: 0.01, max: 6.0, default: [1.5; 3] },
+};
+
+/// The extinction coefficient k: the imaginary part of the refractive index n + ik.
+pub const EXTINCTION: Parameter = Parameter {
+    name: "extinction",
+    symbol: "k",
+    label: "extinction coefficient",
+    unit: "",
+    help: "How fast light dies away inside, at 630, 532 and 465 nm. 0 for glass and water; 2 to 8 for metals, which is why they mirror and hide what is behind them.",
+    kind: ParameterKind::Triple { min: 0.0, max: 12.0, default: [0.0; 3] },
+};
+
+/// Perceptual roughness r (Burley 2012, *Physically-Based Shading at Disney*): `α = r²`.
+pub const ROUGHNESS: Parameter = Parameter {
+    name: "roughness",
+    symbol: "r",
+    label: "roughness",
+    unit: "",
+    help: "From 0, a mirror, to 1, a matt surface, in steps that look even. The width of the slopes of the microfacets is its square, α = r².",
+    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
+};
+
+/// How much the material is a metal (Burley 2012).
+pub const METALLIC: Parameter = Parameter {
+    name: "metallic",
+    symbol: "m",
+    label: "metallic",
+    unit: "",
+    help: "1 for a metal: nothing is scattered from inside, and the base colour is the colour of the reflection. 0 for everything else. Values between are mixtures, such as dust on metal.",
+    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.0 },
+};
+
+/// Reflectance of what is not metal on a scale that looks even (Lagarde and de Rousiers 2014, *Moving
+/// Frostbite to Physically Based Rendering*): `F_0 = 0.16 s²`.
+pub const REFLECTANCE: Parameter = Parameter {
+    name: "reflectance",
+    symbol: "s",
+    label: "reflectance",
+    unit: "",
+    help: "How strongly the surface mirrors when seen straight on, where it is not metal: F_0 = 0.16 s². 0.5 gives 4 %, as of plastic and glass; water 0.36, diamond 1.",
+    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,11 +1,11 @@
 use glam::Vec3;
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term,
     parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
 };
 use crate::{
-    optics::{Frame, Terms, geometry::mirror},
+    optics::{Frame, Terms, equivalence, geometry::mirror},
     parameters,
     shader::wgsl,
 };
@@ -82,5 +82,9 @@ impl ReflectionModel for Phong {
 
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
         self.k_a * self.base_colour
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        Readout::of_exponent(equivalence::blinn_of_phong(self.alpha))
     }
 }
