@@ -8,6 +8,7 @@ pub mod diffuse;
 pub mod equivalence;
 pub mod fresnel;
 pub mod geometry;
+pub mod lobe;
 pub mod radiometry;
 pub mod tone;
 

@@ -20,16 +20,28 @@ pub mod preset;
 pub mod swap;
 
 mod blinn_phong;
+mod blinn_phong_normalised;
+mod hapke;
 mod lambert;
+mod lommel_seeliger;
+mod minnaert;
 mod mod_lambert;
+mod modified_phong;
 mod phong;
+mod strauss;
 
 pub use blinn_phong::BlinnPhong;
+pub use blinn_phong_normalised::BlinnPhongNormalised;
+pub use hapke::Hapke;
 pub use lambert::Lambert;
+pub use lommel_seeliger::LommelSeeliger;
+pub use minnaert::Minnaert;
 pub use mod_lambert::ModLambert;
+pub use modified_phong::ModifiedPhong;
 use parameter::{Parameter, ParameterSet, Value, Values};
 pub use phong::Phong;
 pub use preset::Measured;
+pub use strauss::Strauss;
 
 /// The built-in models, in the order in which choosers list them. The one list.
 pub fn register_builtin(to: &mut impl Register) {
@@ -37,6 +49,12 @@ pub fn register_builtin(to: &mut impl Register) {
     to.add_reflection_model::<ModLambert>();
     to.add_reflection_model::<Phong>();
     to.add_reflection_model::<BlinnPhong>();
+    to.add_reflection_model::<BlinnPhongNormalised>();
+    to.add_reflection_model::<ModifiedPhong>();
+    to.add_reflection_model::<Strauss>();
+    to.add_reflection_model::<Minnaert>();
+    to.add_reflection_model::<LommelSeeliger>();
+    to.add_reflection_model::<Hapke>();
 }
 
 /// What a model is called, where it comes from and what it claims.

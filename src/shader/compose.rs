@@ -13,8 +13,12 @@ use crate::{
 };
 
 /// The vocabulary of the models, in the order of need.
-pub const OPTICS: [Source; 3] =
-    [wgsl!("terms.wgsl"), wgsl!("optics/fresnel.wgsl"), wgsl!("optics/diffuse.wgsl")];
+pub const OPTICS: [Source; 4] = [
+    wgsl!("terms.wgsl"),
+    wgsl!("optics/fresnel.wgsl"),
+    wgsl!("optics/diffuse.wgsl"),
+    wgsl!("optics/lobe.wgsl"),
+];
 /// The light record.
 pub const LIGHTS: Source = wgsl!("lights.wgsl");
 /// The light loop.
