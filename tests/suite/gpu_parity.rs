@@ -68,7 +68,7 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
             }
         }
     }
-    assert!(report.is_empty(), "{} of 256 cases differ:\n{}", report.len(), report.join("\n"));
+    assert!(report.is_empty(), "{} cases differ:\n{}", report.len(), report.join("\n"));
 }
 
 #[test]
@@ -165,6 +165,8 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
     let registry = Registry::builtin();
     let mut seed = 7;
     for model in registry.models() {
+        // Over all sets: a surface that is nearly black tells nothing.
+        let mut wrong_twin_noticed = false;
         for _ in 0..8 {
             let mut values = Values::default();
             for p in model.parameters {
@@ -194,7 +196,6 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
             let answers = evaluate(model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
             let surface = model.instantiate(&values, Encoding::Srgb);
             let frame = Frame { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
-            let mut wrong_twin_noticed = false;
             for ((l, v), gpu) in pairs.iter().zip(answers) {
                 let cpu = surface.response(*l, *v, &frame);
                 for (g, c) in
@@ -211,7 +212,7 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
                     wrong_twin_noticed |= twin > 1e-4;
                 }
             }
-            assert!(wrong_twin_noticed, "{}: 0.05 % more goes unnoticed", model.declaration.id);
         }
+        assert!(wrong_twin_noticed, "{}: 0.05 % more goes unnoticed", model.declaration.id);
     }
 }

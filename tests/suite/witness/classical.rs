@@ -4,9 +4,15 @@
 use std::f64::consts::{LN_2, PI};
 
 use glam::Vec3;
-use lights_camera_models::reflection::{
-    BlinnPhong, BlinnPhongNormalised, Hapke, LommelSeeliger, Minnaert, ModifiedPhong, Phong, Strauss,
-    Surface, brdf,
+use lights_camera_models::{
+    capture::evaluate::evaluate,
+    optics::colour::Encoding,
+    reflection::{
+        BlinnPhong, BlinnPhongNormalised, Hapke, LommelSeeliger, Minnaert, ModifiedPhong, Phong, Strauss,
+        Surface, brdf,
+        parameter::{Value, Values},
+    },
+    registry::Registry,
 };
 
 use super::{LOCAL, Row, assert_rows, direction, near, rows};
@@ -46,8 +52,8 @@ fn at(surface: &dyn Surface, i: f64, r: f64, phi: f64) -> f64 {
     f64::from(brdf(surface, direction(i, 0.0), direction(r, phi), &LOCAL).x)
 }
 
-/// The directional albedo `∫ f cos θ dω` at a cosine, by Gauss's rule of 2 points in cos² θ and φ each
-/// over many steps: exact enough for BRDFs without narrow lobes.
+/// The directional albedo `∫ f cos θ dω` at a cosine, by Gauss's rule of two points in each of many steps
+/// of cos θ and of φ: exact enough for BRDFs without narrow lobes.
 fn albedo(surface: &dyn Surface, mu: f64) -> f64 {
     const STEPS: usize = 400;
     let view = direction(mu.acos().to_degrees(), 0.0);
@@ -58,9 +64,8 @@ fn albedo(surface: &dyn Surface, mu: f64) -> f64 {
     let mut sum = 0.0;
     for u in points(STEPS) {
         for v in points(16) {
-            // cos θ dω = dφ d(cos² θ)/2; squared once more to resolve the horizon.
-            let theta = (1.0 - u * u).sqrt().asin().to_degrees();
-            let l = direction(theta, 360.0 * v);
+            // dω = dφ d(cos θ).
+            let l = direction(u.acos().to_degrees(), 360.0 * v);
             sum += f64::from(brdf(surface, l, view, &LOCAL).x) * 2.0 * PI * u;
         }
     }
@@ -123,6 +128,33 @@ fn narrow_lobes_have_the_height_and_width_of_the_formula() {
         assert!(
             tilt < 0.02 || tilt > 0.15 || !near(naive, off.cos().powf(n) * (n + 2.0) / (2.0 * PI), noise)
         );
+    }
+}
+
+#[test]
+fn narrow_lobes_are_the_same_on_the_gpu() {
+    let registry = Registry::builtin();
+    for (id, tilt) in [("modified_phong", 1.0), ("blinn_phong_normalised", 2.0)] {
+        let model = registry.model(id).unwrap();
+        for alpha in [1_000, 30_000, 1_000_000] {
+            let mut values = Values::default();
+            values.set("alpha", Value::Integer(alpha));
+            let width = tilt / (alpha as f64).sqrt();
+            let pairs: Vec<_> = (0..400)
+                .map(|i| {
+                    let (i, off) = (f64::from(i % 20), f64::from(i / 20) * 0.1 * width);
+                    let incident = 4.0 * i + 0.5;
+                    (direction(incident, 0.0), direction(incident + off.to_degrees(), 180.0))
+                })
+                .collect();
+            let surface = model.instantiate(&values, Encoding::Srgb);
+            let answers = evaluate(model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
+            for ((l, v), gpu) in pairs.iter().zip(answers) {
+                let cpu = surface.response(*l, *v, &LOCAL).specular.x;
+                let error = (gpu.specular.x - cpu).abs() / cpu.max(1e-2);
+                assert!(error <= 1e-4, "{id} {alpha} {l} {v}: GPU {}, CPU {cpu}", gpu.specular.x);
+            }
+        }
     }
 }
 
