@@ -20,6 +20,10 @@ const LIMB_DARKENING: Parameter = Parameter {
     kind: ParameterKind::Number { min: 0.5, max: 2.0, default: 0.6 },
 };
 
+/// The smallest cosine that is raised to a power, within 0.06° of the horizon: for k < 1 the formula has no
+/// bound there, and rounding would decide how bright a rim is.
+const RIM: f32 = 1e-3;
+
 parameters! {
     /// **Minnaert** — the simplest reciprocal law for the brightness of a planet's disc.
     ///
@@ -34,11 +38,12 @@ parameters! {
     /// | `limb_darkening` | k | – | 0.5–2 | 0.6 |
     ///
     /// Minnaert asked which powers of the two cosines are reciprocal. The factor (k + 1)/2π makes the
-    /// directional albedo E(μ) = C_b μ^{k − 1}: all light at normal incidence for white.
+    /// directional albedo E(μ) = C_b μ^{k − 1}: all light at normal incidence for white. Cosines below 0.001
+    /// are raised as 0.001, so that rims stay finite.
     ///
     /// Use it for moons and planets without an atmosphere (k between 0.5 and 1) and to see that one
     /// exponent turns a ball into a disc. Reciprocal; not energy conserving for k < 1, where E grows
-    /// without bound towards grazing angles.
+    /// towards grazing angles.
     ///
     /// Source: M. Minnaert (1941), *The Reciprocity Principle in Lunar Photometry*, Astrophysical Journal
     /// 93, 403–410.
@@ -73,7 +78,8 @@ impl ReflectionModel for Minnaert {
             return Terms::default();
         }
         let k = self.limb_darkening;
-        let diffuse = self.base_colour * (0.5 * (k + 1.0) * cos_i.powf(k) * cos_o.powf(k - 1.0));
+        let raised = (cos_i.max(RIM) * cos_o.max(RIM)).powf(k - 1.0);
+        let diffuse = self.base_colour * (0.5 * (k + 1.0) * cos_i * raised);
         Terms { diffuse, ..Terms::default() }
     }
 }
