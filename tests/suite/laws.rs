@@ -85,12 +85,30 @@ impl Random {
     }
 }
 
-/// Every model with its defaults and with random parameters, in the frame of a random normal.
+/// White, and every number at its smallest.
+fn least(model: &ModelEntry) -> Values {
+    let mut values = Values::default();
+    for parameter in model.parameters {
+        match parameter.kind {
+            ParameterKind::Number { min, .. } => values.set(parameter.name, Value::Number(min)),
+            ParameterKind::Integer { min, .. } => values.set(parameter.name, Value::Integer(min)),
+            _ => {}
+        }
+    }
+    values
+}
+
+/// Every model with its defaults, with its smallest numbers and with random parameters, in the frame of a
+/// random normal.
 fn surfaces(seed: u64, mut visit: impl FnMut(&ModelEntry, &Values, &dyn Surface, &Frame, &mut Random)) {
     for model in Registry::builtin().models() {
         let mut random = Random(seed);
         for set in 0..SETS {
-            let values = if set == 0 { Values::default() } else { random.values(model) };
+            let values = match set {
+                0 => Values::default(),
+                1 => least(model),
+                _ => random.values(model),
+            };
             let surface = model.instantiate(&values, Encoding::Srgb);
             let frame = Frame::from_normal(random.direction());
             visit(model, &values, &*surface, &frame, &mut random);
@@ -228,7 +246,8 @@ fn no_light_is_made_where_that_is_declared_and_somewhere_it_is_where_not() {
         if laws.energy_conserving {
             assert!(most < 1.01, "{id} reflects {most} of the light");
         } else {
-            assert!(most > 1.02, "{id} declares that it makes light, but reflects {most} at most");
+            // The finer grid is right to 3e-4 for wide lobes; Strauss's makes 0.5 % too much at most.
+            assert!(most > 1.003, "{id} declares that it makes light, but reflects {most} at most");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Every model against values that other programs calculated (`tests/data/golden/`), and against closed
 //! forms. One file for each group of models.
 
+mod classical;
 mod microfacet;
 mod rough;
 
