@@ -1,11 +1,13 @@
 //! The vocabulary of every reflection model: pure functions on [`glam`] vectors, no Bevy.
 //!
-//! Each module has a twin in `assets/shaders/terms.wgsl` with the same function names. The two are
+//! What shaders need has a twin in `assets/shaders/terms.wgsl` with the same function names. The two are
 //! written separately on purpose: they are witnesses of each other.
 
 pub mod colour;
 pub mod geometry;
 pub mod radiometry;
+pub mod table;
+pub mod temperature;
 pub mod tone;
 
 pub use geometry::Frame;
