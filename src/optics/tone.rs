@@ -305,7 +305,8 @@ mod tests {
                 let spread = g.max_element() - g.min_element();
                 assert!(spread < 0.01, "{tone:?}: step {i} is {g}");
             }
-            assert!(greys.windows(2).all(|g| g[1].y >= g[0].y - 1e-4), "{tone:?} falls somewhere");
+            // The tables hold nine bits.
+            assert!(greys.windows(2).all(|g| g[1].y >= g[0].y - 3e-3), "{tone:?} falls somewhere");
         }
     }
 

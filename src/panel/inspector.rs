@@ -493,31 +493,31 @@ fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightFiel
     // Rounded where it is converted, to what can be told apart.
     let flux = light.luminous_flux.map_or_else(|| limits::significant(intensity * solid_angle, 6), f64::from);
     let as_flux = light.luminous_flux.is_some();
+    let rounded = |v: f64| limits::number(limits::significant(v, 4));
+    let conversion = if as_flux {
+        format!("I = Φ / {} sr = {} cd", rounded(solid_angle), rounded(intensity))
+    } else {
+        format!("Φ = I · {} sr = {} lm", rounded(solid_angle), rounded(flux))
+    };
+    maths::equation_of(ui, &[(Term::Total, &conversion)], |symbol| match symbol {
+        "I" => Some("the intensity of the light: what it sends into each direction".to_owned()),
+        "Φ" => Some("the luminous flux: what it sends out in all directions together".to_owned()),
+        _ => None,
+    });
     let mut other_unit = None;
     let units = [["cd", "candela"], ["lm", "lumen"]];
-    let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, "unit", usize::from(as_flux), &units);
+    let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
     let out = if as_flux {
         let caption =
             Caption { symbol: "Φ", label: "luminous flux", unit: "lm", help: unit_help("lm"), ..caption };
         let default = limits::significant(default * solid_angle, 3);
-        let limits = limits::luminous_flux(kind);
+        let limits = limits::luminous_flux(d);
         knob::number_knob_beside(ui, "flux", &caption, flux, Some(default), &limits, beside)
             .map(|v| LightField::LuminousFlux(v as f32))
     } else {
         knob::number_knob_beside(ui, "intensity", &caption, intensity, Some(default), &limits, beside)
             .map(|v| LightField::Intensity(v as f32))
     };
-    let sr = limits::number(limits::significant(solid_angle, 4));
-    let equation = if as_flux {
-        format!("I = Φ / {sr} sr = {} cd", limits::number(limits::significant(intensity, 4)))
-    } else {
-        format!("Φ = I · {sr} sr = {} lm", limits::number(limits::significant(flux, 4)))
-    };
-    ui.label(theme::small(ui, equation)).on_hover_text(
-        "The luminous flux is the light sent out in all directions together: the intensity times the solid angle \
-         that it fills.",
-    );
-    ui.add_space(6.0 * theme::scale_here(ui));
     match other_unit {
         Some(0) => Some(LightField::Intensity(limits::significant(intensity, 6) as f32)),
         Some(_) => Some(LightField::LuminousFlux(flux as f32)),

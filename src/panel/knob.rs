@@ -382,28 +382,34 @@ fn unit(ui: &mut Ui, text: &str) {
     ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, palette.weak);
 }
 
-/// A list of units where a knob has its unit: each is a sign and a word. Returns the index of a new
-/// choice.
-pub fn unit_choice(ui: &mut Ui, salt: &str, chosen: usize, units: &[[&str; 2]]) -> Option<usize> {
+/// The unit as a choice: each option is a sign and a word. As wide as [`unit`], so that fields stay in
+/// line. Returns the index of a new choice.
+pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<usize> {
     let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    let [sign, word] = options.get(chosen).copied().unwrap_or(["–", "unknown"]);
+    let (rect, response) = ui.allocate_exact_size(vec2(18.0, 22.0) * scale, Sense::click());
+    response
+        .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, ui.is_enabled(), format!("unit: {word}")));
+    let hot = response.hovered() || response.has_focus();
+    let colour = if hot { palette.accent } else { palette.text };
+    let font = TextStyle::Small.resolve(ui.style());
+    let at = rect.center() - vec2(0.0, 3.0 * scale);
+    ui.painter().text(at, egui::Align2::CENTER_CENTER, sign, font, colour);
+    let tip = rect.center_bottom() - vec2(0.0, 2.0 * scale);
+    let corners = [tip, tip + vec2(-3.5, -4.0) * scale, tip + vec2(3.5, -4.0) * scale];
+    ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), colour, Stroke::NONE));
     let mut out = None;
-    ui.spacing_mut().button_padding.x = 4.0 * scale;
-    let [sign, word] = units.get(chosen).copied().unwrap_or(["–", "unknown"]);
-    let combo = egui::ComboBox::from_id_salt(salt)
-        .width(44.0 * scale)
-        .selected_text(theme::small(ui, sign))
-        .show_ui(ui, |ui| {
-            for (i, [sign, word]) in units.iter().enumerate() {
-                let text = format!("{sign}  {word}");
-                if ui.selectable_label(i == chosen, text).clicked() && i != chosen {
-                    out = Some(i);
-                }
+    egui::Popup::menu(&response).show(|ui| {
+        for (i, [sign, word]) in options.iter().enumerate() {
+            if ui.selectable_label(i == chosen, format!("{sign}  {word}")).clicked() && i != chosen {
+                out = Some(i);
             }
-        });
-    combo.response.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("unit: {word}")));
-    combo
-        .response
-        .on_hover_text(format!("In {word} ({sign}). Choose another unit: the light stays the same."));
+        }
+    });
+    response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text(format!("In {word}. Choose another unit: the light stays the same."));
     out
 }
 

@@ -2,9 +2,12 @@
 //! is typed, and for [`Lab::apply`](super::state::Lab::apply), which refuses what breaks it.
 
 use crate::{
-    light::{self, LightEntry},
-    optics::temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
-    reflection::parameter::{ABOVE_ZERO, Values},
+    light,
+    optics::{
+        radiometry::SPHERE,
+        temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
+    },
+    reflection::parameter::ABOVE_ZERO,
     scene::{MAX_DIMENSION, Scene, SceneSize, check},
     shape,
 };
@@ -149,11 +152,10 @@ pub fn intensity(light: &light::Declaration) -> Limits {
 }
 
 /// The luminous flux of a light, lumen. The slider reaches as far as that of the intensity does for a
-/// light with default parameters.
+/// light that shines in every direction.
 #[must_use]
-pub fn luminous_flux(light: &LightEntry) -> Limits {
-    let solid_angle = light.solid_angle(&Values::default()).unwrap_or(1.0);
-    let end = f64::from(light.declaration.slider_max) * solid_angle;
+pub fn luminous_flux(light: &light::Declaration) -> Limits {
+    let end = f64::from(light.slider_max) * SPHERE;
     Limits::between(0.0, f64::INFINITY).slider(0.0, significant(end, 1))
 }
 
@@ -231,7 +233,7 @@ mod tests {
         assert_eq!(significant(251.327, 3), 251.0);
         assert_eq!(significant(2513.27, 1), 3000.0);
         assert_eq!(significant(0.076_349, 2), 0.076);
-        assert_eq!(significant(-1.5e-7, 1), -2e-7);
+        assert_eq!(significant(-1.6e-7, 1), -2e-7);
         assert_eq!(significant(0.0, 3), 0.0);
     }
 

@@ -1183,9 +1183,11 @@ impl Lab {
                     },
                     LightField::LuminousFlux(v) => match entry {
                         Some(e) if !e.has_flux() => Err(format!("{} has no luminous flux.", name(part))),
-                        Some(e) => {
-                            legal(format!("{}: the luminous flux", name(part)), *v, limits::luminous_flux(e))
-                        }
+                        Some(e) => legal(
+                            format!("{}: the luminous flux", name(part)),
+                            *v,
+                            limits::luminous_flux(e.declaration),
+                        ),
                         None => Ok(()),
                     },
                     LightField::ColourTemperature(v) => legal(

@@ -700,6 +700,15 @@ fn a_panel_from_outside_gets_a_tab() {
 
 // ── pictures ──
 
+/// A spotlight as printed on its box.
+fn lamp(bench: &mut Bench) {
+    bench.apply(Action::AddLight("spot".to_owned()));
+    let light = bench.lab.scene.lights.len() - 1;
+    for field in [LightField::LuminousFlux(800.0), LightField::ColourTemperature(2700.0)] {
+        bench.apply(Action::Edit(Edit::Light(light, field)));
+    }
+}
+
 #[test]
 fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
     let Some(folder) = std::env::var_os("LCM_PANEL_PICTURES").map(PathBuf::from) else { return Ok(()) };
@@ -764,6 +773,24 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         }),
         ("room", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Room))),
         ("observer", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Observer))),
+        ("candela", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Light(0)))),
+        ("units", (1280.0, 720.0), |b| {
+            b.apply(Action::Select(Selection::Light(0)));
+            b.click("unit: candela");
+        }),
+        ("lumen", (1280.0, 720.0), lamp),
+        ("lumen-wide", (1920.0, 1080.0), lamp),
+        ("lumen-large", (1280.0, 720.0), |b| {
+            b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
+            b.apply(Action::View(ViewChange::LargeType(true)));
+            lamp(b);
+        }),
+        ("tones", (1280.0, 720.0), |b| {
+            b.apply(Action::Select(Selection::Room));
+            b.click("tone mapping: None (clip)");
+            let row = b.find("Khronos PBR Neutral").map(|s| s.rect.center());
+            b.frame(vec![Event::PointerMoved(row.unwrap_or_default())]);
+        }),
         ("chooser", (1280.0, 720.0), |b| b.key(Key::R, Modifiers::NONE)),
         ("menu", (1280.0, 720.0), |b| b.click("View")),
         ("file-menu", (1280.0, 720.0), |b| b.click("File")),
