@@ -204,7 +204,7 @@ fn agx(c: Vec3) -> Vec3 {
         0.079_166_13,
         0.042_375_65,
         0.078_433_6,
-        0.879_142_97,
+        0.879_143,
     ])
     .transpose();
     AGX.at(log2_shaper(inwards * c.max(Vec3::ZERO), -10.0, 6.5))

@@ -11,6 +11,7 @@ use bevy_egui::egui::{
     vec2,
 };
 use lights_camera_models::{
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     panel::{
         self, Dialogs, Panels,
         state::{
@@ -512,7 +513,6 @@ fn a_light_is_coloured_by_temperature_and_back() {
 
 #[test]
 fn exposure_and_every_tone_mapping_can_be_chosen() {
-    use lights_camera_models::optics::tone::ToneMapping;
     let mut bench = Bench::new(Lab::default());
     bench.apply(Action::Select(Selection::Room));
     bench.type_into("exposure", "1.5");
@@ -784,6 +784,18 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
             b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
             b.apply(Action::View(ViewChange::LargeType(true)));
             lamp(b);
+        }),
+        ("caption", (1280.0, 720.0), |b| {
+            b.apply(Action::View(ViewChange::LargeType(true)));
+            b.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+            b.apply(Action::Edit(Edit::Mode("derivative".to_owned())));
+            b.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
+            let display = Display {
+                tone_mapping: ToneMapping::KhronosPbrNeutral,
+                exposure: 1.5,
+                encoding: Encoding::Off,
+            };
+            b.apply(Action::Edit(Edit::Display(display)));
         }),
         ("tones", (1280.0, 720.0), |b| {
             b.apply(Action::Select(Selection::Room));
