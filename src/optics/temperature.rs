@@ -35,7 +35,8 @@ pub fn colour_matching(nm: f64) -> DVec3 {
 
 /// CIE 1931 XYZ of a black body of a temperature in kelvin, of no particular brightness: M. Planck's law
 /// (1901), `B(λ) ∝ λ⁻⁵ / (exp(hc / λkT) − 1)`, weighted by [`colour_matching`] and added up from 380 to
-/// 780 nm in steps of 5 nm.
+/// 780 nm in steps of 5 nm. The fit of the weights leaves an error of chromaticity of 0.0002 at 6500 K
+/// and above, and of 0.003 at 2000 K.
 #[must_use]
 pub fn black_body_xyz(kelvin: f64) -> DVec3 {
     // Relative to 560 nm, so that no temperature overflows or vanishes.

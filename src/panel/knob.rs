@@ -382,7 +382,7 @@ fn unit(ui: &mut Ui, text: &str) {
     ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, palette.weak);
 }
 
-/// The unit as a choice: each option is a sign and a word. As wide as [`unit`], so that fields stay in
+/// The unit as a choice: each option is a sign and a word. As wide as a plain unit, so that fields stay in
 /// line. Returns the index of a new choice.
 pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<usize> {
     let scale = theme::scale_here(ui);
