@@ -8,6 +8,9 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> parameter_table: array<Row>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
 
+// The largest half float; the twin of `BRIGHTEST` in src/optics/tone.rs.
+const BRIGHTEST: f32 = 65504.0;
+
 // The parameters of the object that is being drawn.
 var<private> parameters: Parameters;
 var<private> object_row: u32;
@@ -64,7 +67,9 @@ fn vertex(in: VertexIn) -> Stages {
 fn fragment(in: Stages) -> @location(0) vec4<f32> {
     object_row = in.row;
     parameters = parameter_table[object_row].parameters;
-    let linear = shade_pixel(Varying(in.position, in.normal, in.colour, in.offset)) * illumination.exposure;
+    let light = shade_pixel(Varying(in.position, in.normal, in.colour, in.offset)) * illumination.exposure;
+    // What the target's half floats cannot hold would become infinite, and black when tone mapped.
+    let linear = clamp(light, vec3(-BRIGHTEST), vec3(BRIGHTEST));
     if illumination.gamma_naive != 0u {
         // The display encodes what it gets; decoding first undoes that, and the numbers stand as they are.
         let c = clamp(linear, vec3(0.0), vec3(1.0));

@@ -382,6 +382,37 @@ fn unit(ui: &mut Ui, text: &str) {
     ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, palette.weak);
 }
 
+/// The unit as a choice: each option is a sign and a word. As wide as a plain unit, so that fields stay in
+/// line. Returns the index of a new choice.
+pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<usize> {
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    let [sign, word] = options.get(chosen).copied().unwrap_or(["–", "unknown"]);
+    let (rect, response) = ui.allocate_exact_size(vec2(18.0, 22.0) * scale, Sense::click());
+    response
+        .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, ui.is_enabled(), format!("unit: {word}")));
+    let hot = response.hovered() || response.has_focus();
+    let colour = if hot { palette.accent } else { palette.text };
+    let font = TextStyle::Small.resolve(ui.style());
+    let at = rect.center() - vec2(0.0, 3.0 * scale);
+    ui.painter().text(at, egui::Align2::CENTER_CENTER, sign, font, colour);
+    let tip = rect.center_bottom() - vec2(0.0, 2.0 * scale);
+    let corners = [tip, tip + vec2(-3.5, -4.0) * scale, tip + vec2(3.5, -4.0) * scale];
+    ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), colour, Stroke::NONE));
+    let mut out = None;
+    egui::Popup::menu(&response).show(|ui| {
+        for (i, [sign, word]) in options.iter().enumerate() {
+            if ui.selectable_label(i == chosen, format!("{sign}  {word}")).clicked() && i != chosen {
+                out = Some(i);
+            }
+        }
+    });
+    response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text(format!("In {word}. Choose another unit: the light stays the same."));
+    out
+}
+
 /// A knob for a number: returns a new legal value.
 pub fn number_knob(
     ui: &mut Ui,
@@ -391,13 +422,26 @@ pub fn number_knob(
     default: Option<f64>,
     limits: &Limits,
 ) -> Option<f64> {
+    number_knob_beside(ui, salt, caption, value, default, limits, |ui| unit(ui, caption.unit))
+}
+
+/// The same with something of its own where the unit stands.
+pub fn number_knob_beside(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: f64,
+    default: Option<f64>,
+    limits: &Limits,
+    beside: impl FnOnce(&mut Ui),
+) -> Option<f64> {
     let id = ui.make_persistent_id(salt);
     let mut out = None;
     let response = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let scale = theme::scale_here(ui);
         let (label, field) = head(ui, caption, |ui| {
-            unit(ui, caption.unit);
+            beside(ui);
             field(ui, id, caption.label, value, limits, 64.0 * scale)
         });
         out = field.value;
@@ -549,6 +593,16 @@ fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u
             }
         });
     response.on_hover_text("Choose a colour. Double-click: default.")
+}
+
+/// A colour that follows from something else.
+pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
+    let palette = Palette::here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0) * theme::scale_here(ui), Sense::hover());
+    let [r, g, b] = rgb;
+    let stroke = Stroke::new(1.0, palette.line);
+    ui.painter().rect(rect, 4.0, Color32::from_rgb(r, g, b), stroke, egui::StrokeKind::Inside);
+    response.on_hover_text(format!("The colour in sRGB: {r}, {g}, {b}"));
 }
 
 /// The box around what is typed.
@@ -744,6 +798,26 @@ pub fn choice_knob(
     chosen: usize,
     options: &[&str],
 ) -> Option<usize> {
+    let plain: Vec<_> = options.iter().map(|name| [*name, "", ""]).collect();
+    told_choice_knob(ui, salt, caption, chosen, &plain)
+}
+
+/// The same where each option is a name, its author and what it does; the latter two may be empty.
+pub fn told_choice_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    chosen: usize,
+    options: &[[&str; 3]],
+) -> Option<usize> {
+    let tip = |ui: &mut Ui, [name, author, summary]: [&str; 3]| {
+        ui.set_max_width(300.0 * theme::scale_here(ui));
+        ui.label(theme::strong(ui, name));
+        ui.label(summary);
+        if !author.is_empty() {
+            ui.label(theme::small(ui, author));
+        }
+    };
     let mut out = None;
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         let scale = theme::scale_here(ui);
@@ -751,21 +825,29 @@ pub fn choice_knob(
         let (label, ()) = head(ui, caption, |ui| {
             ui.add_space(22.0 * scale);
             let width = (ui.available_width() - 4.0 * scale).clamp(80.0 * scale, 190.0 * scale);
-            let shown = options.get(chosen).copied().unwrap_or("–");
+            let now = options.get(chosen).copied();
+            let [shown, _, told] = now.unwrap_or(["–", "", ""]);
             let combo = egui::ComboBox::from_id_salt(id)
                 .width(width)
                 .truncate()
                 .selected_text(shown)
                 .show_ui(ui, |ui| {
                     for (i, option) in options.iter().enumerate() {
-                        if ui.selectable_label(i == chosen, *option).clicked() && i != chosen {
+                        let response = ui.selectable_label(i == chosen, option[0]);
+                        if response.clicked() && i != chosen {
                             out = Some(i);
+                        }
+                        if !option[2].is_empty() {
+                            response.on_hover_ui(|ui| tip(ui, *option));
                         }
                     }
                 });
             combo.response.widget_info(|| {
                 WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
             });
+            if !told.is_empty() {
+                combo.response.on_hover_ui(|ui| now.into_iter().for_each(|now| tip(ui, now)));
+            }
         });
         if label.hovered() && !caption.symbol.is_empty() {
             maths::highlight(ui.ctx(), caption.symbol);

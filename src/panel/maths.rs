@@ -259,6 +259,12 @@ pub fn term_sample(painter: &egui::Painter, from: Pos2, to: Pos2, term: Term, pa
 /// An equation, a line for each part, coloured by term. `name` says what a symbol means; it is the
 /// tooltip. Hovering a symbol highlights it; so does [`highlight`].
 pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
+    let parts: Vec<_> = parts.iter().map(|p| (p.term, p.text)).collect();
+    equation_of(ui, &parts, name)
+}
+
+/// The same for text that is made while the program runs.
+pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> Option<String>) -> Response {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let size = 17.0 * scale;
@@ -278,10 +284,10 @@ pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Opti
     let mut placed: Vec<Placed> = Vec::new();
     let mut line = 0;
     let mut firsts = Vec::new();
-    for (part, p) in parts.iter().enumerate() {
+    for (part, (term, text)) in parts.iter().enumerate() {
         firsts.push(line);
-        let colour = palette.term_text(p.term);
-        let atoms = parse(p.text);
+        let colour = palette.term_text(*term);
+        let atoms = parse(text);
         // A continued line begins under what follows the equals sign.
         let mut x = sample;
         let mut hang = sample + 24.0 * scale;
@@ -332,22 +338,22 @@ pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Opti
     }
 
     let (rect, response) = ui.allocate_exact_size(vec2(width, line_height * line as f32), Sense::hover());
-    let spoken: Vec<_> = parts.iter().map(|p| p.text).collect();
+    let spoken: Vec<_> = parts.iter().map(|(_, text)| *text).collect();
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, spoken.join("; ")));
     if !ui.is_rect_visible(rect) {
         return response;
     }
     let painter = ui.painter_at(rect.expand(2.0));
-    for (part, first) in parts.iter().zip(&firsts) {
+    for ((term, _), first) in parts.iter().zip(&firsts) {
         if sample > 0.0 {
             let y = rect.top() + line_height * (*first as f32 + 0.52);
             let x = rect.left();
-            term_sample(&painter, pos2(x, y), pos2(x + sample - 6.0 * scale, y), part.term, &palette);
+            term_sample(&painter, pos2(x, y), pos2(x + sample - 6.0 * scale, y), *term, &palette);
         }
     }
     for (i, p) in placed.iter().enumerate() {
         let baseline = pos2(rect.left() + p.x, rect.top() + line_height * (p.line as f32 + 0.68));
-        let colour = palette.term_text(parts[p.part].term);
+        let colour = palette.term_text(parts[p.part].0);
         let line = rect.top() + line_height * p.line as f32;
         let raised = p.laid.pieces.last().filter(|_| p.power.is_some());
         let base_width = raised.map_or(p.laid.width, |piece| piece.offset.x);

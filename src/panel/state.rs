@@ -433,10 +433,14 @@ pub enum LightField {
     Position(Vec3),
     /// Where it shines.
     Direction(Vec3),
-    /// Colour.
+    /// Colour, instead of a colour temperature.
     Colour([u8; 3]),
-    /// Intensity.
+    /// Colour temperature in kelvin, instead of a colour.
+    ColourTemperature(f32),
+    /// Intensity, instead of a luminous flux.
     Intensity(f32),
+    /// Luminous flux in lumen, instead of an intensity.
+    LuminousFlux(f32),
     /// A parameter of the type.
     Parameter(&'static str, Value),
 }
@@ -1045,14 +1049,28 @@ impl Lab {
                 if let LightField::Name(_) = field {
                     self.renaming = None;
                 }
-                self.change(|s| match field {
-                    LightField::Name(name) => s.lights[i].name = named(name),
-                    LightField::Kind(kind) => s.lights[i].kind = kind,
-                    LightField::Position(p) => s.lights[i].position = Some(p),
-                    LightField::Direction(d) => s.lights[i].direction = Some(d),
-                    LightField::Colour(c) => s.lights[i].colour = c,
-                    LightField::Intensity(v) => s.lights[i].intensity = v,
-                    LightField::Parameter(name, value) => s.lights[i].parameters.set(name, value),
+                self.change(|s| {
+                    let light = &mut s.lights[i];
+                    // What is not given has the value that it has when the file is read again.
+                    match field {
+                        LightField::Name(name) => light.name = named(name),
+                        LightField::Kind(kind) => light.kind = kind,
+                        LightField::Position(p) => light.position = Some(p),
+                        LightField::Direction(d) => light.direction = Some(d),
+                        LightField::Colour(c) => (light.colour, light.colour_temperature) = (c, None),
+                        LightField::ColourTemperature(kelvin) => {
+                            (light.colour, light.colour_temperature) =
+                                (Light::default().colour, Some(kelvin));
+                        }
+                        LightField::Intensity(v) => (light.intensity, light.luminous_flux) = (v, None),
+                        LightField::LuminousFlux(v) => {
+                            let kind = registry.light(&light.kind);
+                            light.intensity =
+                                kind.map_or(light.intensity, |k| k.declaration.default_intensity);
+                            light.luminous_flux = Some(v);
+                        }
+                        LightField::Parameter(name, value) => light.parameters.set(name, value),
+                    }
                 });
             }
             Edit::Object(i, field) => {
@@ -1082,23 +1100,17 @@ impl Lab {
     }
 
     fn change_light_kind(&mut self, i: usize, kind: &str, registry: &Registry) {
-        let Some(new) = registry.light(kind).map(|e| e.declaration) else { return };
-        let old = registry.light(&self.scene.lights[i].kind).map(|e| e.declaration);
+        let Some(new) = registry.light(kind) else { return };
         let position = match self.scene.lights[i].position {
             Some(p) => p,
             None => self.free_place(self.scene.scene_size.corner() * Vec3::new(0.75, 0.8, 0.9)),
         };
         let direction = self.scene.lights[i].direction.unwrap_or_else(|| self.towards_centre(position));
         self.change(|s| {
+            let room = s.scene_size;
             let light = &mut s.lights[i];
-            kind.clone_into(&mut light.kind);
-            light.position = new.has_position.then_some(position);
-            light.direction = new.has_direction.then_some(direction);
-            // 20 cd and 20 lx are worlds apart: another unit starts from its own default.
-            if old.is_none_or(|o| o.unit != new.unit) {
-                light.intensity = new.default_intensity;
-            }
-            light.parameters.0.retain(|name, _| new.parameters.iter().any(|p| p.name == name));
+            (light.position, light.direction) = (Some(position), Some(direction));
+            light.set_type(new, registry, room);
         });
     }
 
@@ -1158,7 +1170,8 @@ impl Lab {
             Edit::Light(i, field) => {
                 let light = light(*i)?;
                 let part = Selection::Light(*i);
-                let declaration = registry.light(&light.kind).map(|e| e.declaration);
+                let entry = registry.light(&light.kind);
+                let declaration = entry.map(|e| e.declaration);
                 match field {
                     LightField::Name(_) | LightField::Colour(_) => Ok(()),
                     LightField::Kind(id) => known(registry.light(id).is_some(), "light type", id),
@@ -1168,6 +1181,20 @@ impl Lab {
                         Some(d) => legal(format!("{}: the intensity", name(part)), *v, limits::intensity(d)),
                         None => Ok(()),
                     },
+                    LightField::LuminousFlux(v) => match entry {
+                        Some(e) if !e.has_flux() => Err(format!("{} has no luminous flux.", name(part))),
+                        Some(e) => legal(
+                            format!("{}: the luminous flux", name(part)),
+                            *v,
+                            limits::luminous_flux(e.declaration),
+                        ),
+                        None => Ok(()),
+                    },
+                    LightField::ColourTemperature(v) => legal(
+                        format!("{}: the colour temperature", name(part)),
+                        *v,
+                        limits::colour_temperature(),
+                    ),
                     LightField::Parameter(id, value) => {
                         let parameter = declaration.and_then(|d| d.parameters.iter().find(|p| p.name == *id));
                         match parameter {

@@ -11,6 +11,7 @@ use bevy_egui::egui::{
     vec2,
 };
 use lights_camera_models::{
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     panel::{
         self, Dialogs, Panels,
         state::{
@@ -20,7 +21,7 @@ use lights_camera_models::{
     },
     reflection::parameter::Value,
     registry::Registry,
-    scene::{Light, Object, Scene},
+    scene::{Display, Light, Object, Scene},
 };
 
 /// A window that exists in memory only.
@@ -426,6 +427,9 @@ fn illegal_edits_are_refused_with_the_reason() {
         Edit::Model("nonsense".to_owned()),
         Edit::Light(0, LightField::Position(observer)),
         Edit::Light(0, LightField::Intensity(-1.0)),
+        Edit::Light(0, LightField::LuminousFlux(-1.0)),
+        Edit::Light(0, LightField::ColourTemperature(999.0)),
+        Edit::Display(Display { exposure: 17.0, ..Display::default() }),
         Edit::Object(0, ObjectField::Position(glam::Vec3::splat(20.0))),
         Edit::Object(0, ObjectField::Material("k_d", Value::Number(0.1))),
         Edit::Object(7, ObjectField::Size(1.0)),
@@ -446,6 +450,79 @@ fn another_type_of_light_has_what_the_type_needs() {
         assert_eq!(now.position.is_some(), light.declaration.has_position);
         assert_eq!(now.direction.is_some(), light.declaration.has_direction);
         assert_eq!(now.intensity, light.declaration.default_intensity);
+    }
+}
+
+#[test]
+fn brightness_is_read_and_typed_in_candela_or_lumen() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Select(Selection::Light(0)));
+    assert!(bench.says("= 251.3 lm"), "20 cd are 80π lm");
+    bench.click("unit: candela");
+    bench.click("lm  lumen");
+    let light = |b: &Bench| b.lab.scene.lights[0].clone();
+    assert_eq!(light(&bench).luminous_flux, Some(251.327));
+    bench.type_into("luminous flux", "800");
+    assert_eq!(light(&bench).luminous_flux, Some(800.0));
+    assert!(bench.says("= 63.66 cd"));
+    // What is saved is what was typed, and reading it gives the same light.
+    let text = crate::support::written(&bench.lab.scene);
+    assert!(text.contains("\"luminous_flux\": 800") && !text.contains("intensity"), "{text}");
+    assert_eq!(crate::support::read(&text), bench.lab.scene);
+    bench.click("unit: lumen");
+    bench.click("cd  candela");
+    assert_eq!((light(&bench).luminous_flux, light(&bench).intensity), (None, 63.662));
+    // Lights without a flux have no choice.
+    bench.apply(Action::Edit(Edit::Light(0, LightField::Kind("directional".to_owned()))));
+    assert!(!bench.says("unit: ") && !bench.says(" lm"));
+    let refused = bench.lab.messages.len() + 1;
+    bench.apply(Action::Edit(Edit::Light(0, LightField::LuminousFlux(800.0))));
+    assert_eq!(bench.lab.messages.len(), refused);
+}
+
+#[test]
+fn a_lamp_keeps_its_lumen_while_it_is_point_or_spot() {
+    let mut bench = Bench::new(Lab::default());
+    let mut now = |field: LightField| {
+        bench.apply(Action::Edit(Edit::Light(0, field)));
+        let light = bench.lab.scene.lights[0].clone();
+        (light.luminous_flux, light.intensity)
+    };
+    assert_eq!(now(LightField::LuminousFlux(800.0)), (Some(800.0), 20.0));
+    assert_eq!(now(LightField::Kind("spot".to_owned())), (Some(800.0), 20.0));
+    assert_eq!(now(LightField::Kind("ambient".to_owned())), (None, 1.0));
+    assert_eq!(now(LightField::Kind("point".to_owned())), (None, 20.0));
+}
+
+#[test]
+fn a_light_is_coloured_by_temperature_and_back() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Select(Selection::Light(0)));
+    bench.click("Colour by: temperature");
+    let light = |b: &Bench| b.lab.scene.lights[0].clone();
+    let kelvin = light(&bench).colour_temperature;
+    assert!(kelvin.is_some_and(|k| (6200.0..=6800.0).contains(&k)), "white is about 6500 K: {kelvin:?}");
+    bench.type_into("colour temperature", "2700");
+    assert_eq!(light(&bench).colour_temperature, Some(2700.0));
+    bench.type_into("colour temperature", "900");
+    assert!(bench.says("between 1000 and 40000"));
+    let shown = light(&bench).rgb8();
+    bench.click("Colour by: RGB");
+    assert_eq!((light(&bench).colour_temperature, light(&bench).colour), (None, shown));
+}
+
+#[test]
+fn exposure_and_every_tone_mapping_can_be_chosen() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Select(Selection::Room));
+    bench.type_into("exposure", "1.5");
+    assert_eq!(bench.lab.scene.display.exposure, 1.5);
+    let mut shown = ToneMapping::None;
+    for tone in ToneMapping::ALL.into_iter().skip(1) {
+        bench.click(&format!("tone mapping: {}", shown.name()));
+        bench.click(tone.name());
+        assert_eq!(bench.lab.scene.display.tone_mapping, tone);
+        shown = tone;
     }
 }
 
@@ -623,6 +700,15 @@ fn a_panel_from_outside_gets_a_tab() {
 
 // ── pictures ──
 
+/// A spotlight as printed on its box.
+fn lamp(bench: &mut Bench) {
+    bench.apply(Action::AddLight("spot".to_owned()));
+    let light = bench.lab.scene.lights.len() - 1;
+    for field in [LightField::LuminousFlux(800.0), LightField::ColourTemperature(2700.0)] {
+        bench.apply(Action::Edit(Edit::Light(light, field)));
+    }
+}
+
 #[test]
 fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
     let Some(folder) = std::env::var_os("LCM_PANEL_PICTURES").map(PathBuf::from) else { return Ok(()) };
@@ -687,6 +773,36 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         }),
         ("room", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Room))),
         ("observer", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Observer))),
+        ("candela", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Light(0)))),
+        ("units", (1280.0, 720.0), |b| {
+            b.apply(Action::Select(Selection::Light(0)));
+            b.click("unit: candela");
+        }),
+        ("lumen", (1280.0, 720.0), lamp),
+        ("lumen-wide", (1920.0, 1080.0), lamp),
+        ("lumen-large", (1280.0, 720.0), |b| {
+            b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
+            b.apply(Action::View(ViewChange::LargeType(true)));
+            lamp(b);
+        }),
+        ("caption", (1280.0, 720.0), |b| {
+            b.apply(Action::View(ViewChange::LargeType(true)));
+            b.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
+            b.apply(Action::Edit(Edit::Mode("derivative".to_owned())));
+            b.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
+            let display = Display {
+                tone_mapping: ToneMapping::KhronosPbrNeutral,
+                exposure: 1.5,
+                encoding: Encoding::Off,
+            };
+            b.apply(Action::Edit(Edit::Display(display)));
+        }),
+        ("tones", (1280.0, 720.0), |b| {
+            b.apply(Action::Select(Selection::Room));
+            b.click("tone mapping: None (clip)");
+            let row = b.find("Khronos PBR Neutral").map(|s| s.rect.center());
+            b.frame(vec![Event::PointerMoved(row.unwrap_or_default())]);
+        }),
         ("chooser", (1280.0, 720.0), |b| b.key(Key::R, Modifiers::NONE)),
         ("menu", (1280.0, 720.0), |b| b.click("View")),
         ("file-menu", (1280.0, 720.0), |b| b.click("File")),
