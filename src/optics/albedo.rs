@@ -550,13 +550,13 @@ mod tests {
         for mu in [0.001, 0.02, 0.1, 0.5, 0.9, 1.0] {
             let m = f64::from(mu);
             let lambert = |l: Vec3, _: Vec3| Terms { diffuse: Vec3::splat(l.z), ..Terms::default() };
-            assert!((albedo(lambert, mu) - 1.0).abs() < 1e-5);
+            assert!((albedo(lambert, mu) - 1.0).abs() < 3e-5);
             // GGX with α = 1 is the law of Lommel and Seeliger.
             let correlated = albedo(specular(ggx(1.0, true)), mu);
-            assert!((correlated - ln(m)).abs() < 1e-5, "{mu}: {correlated} {}", ln(m));
+            assert!((correlated - ln(m)).abs() < 3e-5, "{mu}: {correlated} {}", ln(m));
             let separable = albedo(specular(ggx(1.0, false)), mu);
             let expected = 2.0 * (1.0 - 2f64.ln()) / (1.0 + m);
-            assert!((separable - expected).abs() < 1e-5, "{mu}: {separable} {expected}");
+            assert!((separable - expected).abs() < 3e-5, "{mu}: {separable} {expected}");
             twin = twin.max((separable - correlated).abs());
         }
         assert!(twin > 1e-2);
@@ -605,8 +605,8 @@ mod tests {
 
     #[test]
     fn ridges_of_anisotropic_lobes_are_found_wherever_they_lie() {
-        // A Gaussian in the slopes (D = Ward's), of which at normal incidence the half vectors keep all:
-        // f = D/(4 h·l … ) such that (1/π)∫ response dω_l = ∫ D cos θ_h dω_h = 1.
+        // A Gaussian of the slopes of facets, D, and the response π D cos θ_h / (4 v·h): the integral is
+        // that of D cos θ_h over half vectors, which is 1.
         for (a, b) in [(0.2, 0.2), (0.3, 0.01), (0.003, 0.4), (0.001, 0.1)] {
             let response = |l: Vec3, v: Vec3| {
                 let (l, v) = (l.as_dvec3(), v.as_dvec3());

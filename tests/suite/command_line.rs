@@ -231,13 +231,13 @@ fn albedo_integrates_on_both_machines() {
             assert_eq!((cells[0], e[2]), (mu, 0.0));
             assert!((e[0] - 1.0).abs() < 1e-4 && (e[1] - 0.502_886).abs() < 1e-4, "{line}");
         }
-        // A narrow lobe: k_d C_b + k_s 2/(α + 2) at normal incidence, since α falls where l does.
+        // A narrow lobe at normal incidence. The response of this family has no cosine of its own.
         let set = ["k_d=0.5", "k_s=1", "alpha=998", "base_colour=0,0,0"];
         let mut arguments = vec!["albedo", "phong", "--on", machine];
         arguments.extend(set.iter().flat_map(|s| ["--set", *s]));
         let run = lcm(&arguments, "mu\n1\n");
         let e: f32 = run.out.lines().nth(1).and_then(|l| l.split(',').nth(1)).unwrap().parse().unwrap();
-        // ∫ cos^998 over the hemisphere, over π: 2/999. A lobe of α + 1 is told apart.
+        // ∫ cos^998 over the hemisphere, over π. An exponent of 999 is told apart.
         assert!((e - 2.0 / 999.0).abs() < 5e-7, "{e}");
     }
 }
