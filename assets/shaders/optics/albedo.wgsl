@@ -2,13 +2,13 @@
 // src/optics/albedo.rs; where they come from is calculated there alone. `curve_node(i)`, `lobe_mean()`
 // and HARMONICS are generated for the layout of the row.
 
-// Nodes at μ = (i/15)⁴.
+// Nodes at μ = (i/15)³.
 const NODES: u32 = 16u;
 
 // The values at μ = cos θ of the harmonic of that index: red, green, blue, and the lobe's. The cubic of
-// E. Catmull and R. Rom (1974) over the fourth root of μ, continued in a straight line at both ends.
+// E. Catmull and R. Rom (1974) over the cube root of μ, continued in a straight line at both ends.
 fn curve_at(mu: f32, harmonic: u32) -> vec4<f32> {
-    let x = sqrt(sqrt(clamp(mu, 0.0, 1.0))) * f32(NODES - 1u);
+    let x = power(clamp(mu, 0.0, 1.0), 1.0 / 3.0) * f32(NODES - 1u);
     let i = min(u32(x), NODES - 2u);
     let f = x - f32(i);
     let at = harmonic * NODES + i;
