@@ -178,14 +178,19 @@ fn attach<M: ReflectionModel>(entity: &mut EntityWorldMut, ingredients: Ingredie
         let key = ingredients.shader.id();
         world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
         world.resource_scope(|world, mut shared: Mut<SharedMaterials<M>>| {
-            shared
-                .0
-                .entry(key)
-                .or_insert_with(|| {
-                    let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
-                    materials.add(ModelMaterial::<M>::from(ingredients))
-                })
-                .clone()
+            let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
+            let Some(handle) = shared.0.get(&key) else {
+                let handle = materials.add(ModelMaterial::<M>::from(ingredients));
+                shared.0.insert(key, handle.clone());
+                return handle;
+            };
+            // A table that was made anew, for more objects.
+            if let Some(material) = materials.get(handle)
+                && material.parameters != ingredients.parameters
+            {
+                let _ = materials.insert(handle.id(), ModelMaterial::<M>::from(ingredients));
+            }
+            handle.clone()
         })
     });
     if entity.get::<MeshMaterial3d<ModelMaterial<M>>>().map(|m| &m.0) != Some(&handle) {

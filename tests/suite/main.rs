@@ -1,6 +1,7 @@
 //! The integration tests, in one binary: linking Bevy once is enough.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod albedo;
 mod command_line;
 mod extension;
 mod golden;
