@@ -16,4 +16,5 @@ mod scene_errors;
 mod scene_roundtrip;
 mod schema;
 mod support;
+mod tangents;
 mod window;
