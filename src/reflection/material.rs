@@ -29,9 +29,15 @@ use bevy::{
 
 use super::ReflectionModel;
 
+/// The tangent of the vertex. Three numbers, not Bevy's four: the bitangent is always `n × t`.
+pub const TANGENT: MeshVertexAttribute =
+    MeshVertexAttribute::new("BrushTangent", 0x4c43_4d03, VertexFormat::Float32x3);
 /// The normal of the polygon (DD8), on meshes for modes that calculate per polygon.
 pub const FACE_NORMAL: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceNormal", 0x4c43_4d01, VertexFormat::Float32x3);
+/// The tangent of the polygon, on meshes for modes that calculate per polygon.
+pub const FACE_TANGENT: MeshVertexAttribute =
+    MeshVertexAttribute::new("FaceTangent", 0x4c43_4d04, VertexFormat::Float32x3);
 /// The centre of the polygon, on meshes for modes that calculate per polygon.
 pub const FACE_CENTRE: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceCentre", 0x4c43_4d02, VertexFormat::Float32x3);
@@ -45,7 +51,7 @@ pub struct Ingredients {
     pub illumination: Handle<ShaderBuffer>,
     /// The composed shader of model and mode.
     pub shader: Handle<Shader>,
-    /// Whether the mesh carries [`FACE_NORMAL`] and [`FACE_CENTRE`].
+    /// Whether the mesh carries [`FACE_NORMAL`], [`FACE_TANGENT`] and [`FACE_CENTRE`].
     pub faces: bool,
 }
 
@@ -117,10 +123,12 @@ impl<M: ReflectionModel> Material for ModelMaterial<M> {
         let mut attributes = vec![
             Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
             Mesh::ATTRIBUTE_NORMAL.at_shader_location(1),
+            TANGENT.at_shader_location(2),
         ];
         if key.bind_group_data.faces {
-            attributes.push(FACE_NORMAL.at_shader_location(2));
-            attributes.push(FACE_CENTRE.at_shader_location(3));
+            attributes.push(FACE_NORMAL.at_shader_location(3));
+            attributes.push(FACE_TANGENT.at_shader_location(4));
+            attributes.push(FACE_CENTRE.at_shader_location(5));
             descriptor.vertex.shader_defs.push("FACES".into());
         }
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];

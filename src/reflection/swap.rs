@@ -12,7 +12,7 @@ use bevy::{
 };
 use rayon::prelude::*;
 
-use super::material::{Attachments, FACE_CENTRE, FACE_NORMAL, Ingredients};
+use super::material::{Attachments, FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, Ingredients, TANGENT};
 use crate::{
     light::{Incident, buffer::IlluminationBuffer, buffer::record},
     optics::colour::Encoding,
@@ -140,26 +140,30 @@ pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&mesh.positions))
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&mesh.vertex_normals()))
+        .with_inserted_attribute(TANGENT, arrays(&mesh.vertex_tangents()))
         .with_inserted_indices(Indices::U32(indices))
 }
 
 /// The mesh for modes that calculate per polygon: no vertex is shared, and each knows its polygon.
 #[must_use]
 pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
-    let vertex_normals = mesh.vertex_normals();
+    let (vertex_normals, vertex_tangents) = (mesh.vertex_normals(), mesh.vertex_tangents());
+    let (polygon_normals, polygon_tangents) = (mesh.polygon_normals(), mesh.polygon_tangents());
     let mut positions = Vec::new();
     let mut normals = Vec::new();
+    let mut tangents = Vec::new();
     let mut face_normals = Vec::new();
+    let mut face_tangents = Vec::new();
     let mut face_centres = Vec::new();
     let mut indices = Vec::new();
-    for ((polygon, normal), centre) in
-        mesh.polygons.iter().zip(mesh.polygon_normals()).zip(mesh.polygon_centres())
-    {
+    for (i, (polygon, centre)) in mesh.polygons.iter().zip(mesh.polygon_centres()).enumerate() {
         let first = positions.len() as u32;
         for &corner in polygon.corners() {
             positions.push(mesh.positions[corner as usize]);
             normals.push(vertex_normals[corner as usize]);
-            face_normals.push(normal);
+            tangents.push(vertex_tangents[corner as usize]);
+            face_normals.push(polygon_normals[i]);
+            face_tangents.push(polygon_tangents[i]);
             face_centres.push(centre);
         }
         indices.extend(polygon.triangles().iter().flatten().map(|&i| first + i as u32));
@@ -167,7 +171,9 @@ pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&positions))
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&normals))
+        .with_inserted_attribute(TANGENT, arrays(&tangents))
         .with_inserted_attribute(FACE_NORMAL, arrays(&face_normals))
+        .with_inserted_attribute(FACE_TANGENT, arrays(&face_tangents))
         .with_inserted_attribute(FACE_CENTRE, arrays(&face_centres))
         .with_inserted_indices(Indices::U32(indices))
 }

@@ -17,5 +17,6 @@ mod scene_errors;
 mod scene_roundtrip;
 mod schema;
 mod support;
+mod tangents;
 mod window;
 mod witness;
