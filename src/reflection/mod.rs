@@ -20,16 +20,24 @@ pub mod preset;
 pub mod swap;
 
 mod blinn_phong;
+mod cook_torrance;
+mod disney;
 mod lambert;
+mod metallic_roughness;
 mod mod_lambert;
 mod phong;
+mod torrance_sparrow;
 
 pub use blinn_phong::BlinnPhong;
+pub use cook_torrance::CookTorrance;
+pub use disney::Disney;
 pub use lambert::Lambert;
+pub use metallic_roughness::MetallicRoughness;
 pub use mod_lambert::ModLambert;
 use parameter::{Parameter, ParameterSet, Value, Values};
 pub use phong::Phong;
 pub use preset::Measured;
+pub use torrance_sparrow::TorranceSparrow;
 
 /// The built-in models, in the order in which choosers list them. The one list.
 pub fn register_builtin(to: &mut impl Register) {
@@ -37,6 +45,10 @@ pub fn register_builtin(to: &mut impl Register) {
     to.add_reflection_model::<ModLambert>();
     to.add_reflection_model::<Phong>();
     to.add_reflection_model::<BlinnPhong>();
+    to.add_reflection_model::<TorranceSparrow>();
+    to.add_reflection_model::<CookTorrance>();
+    to.add_reflection_model::<MetallicRoughness>();
+    to.add_reflection_model::<Disney>();
 }
 
 /// What a model is called, where it comes from and what it claims.
@@ -197,6 +209,28 @@ pub struct Readout {
 }
 
 impl Readout {
+    /// The reflectance at normal incidence.
+    #[must_use]
+    pub fn of_f0(f0: Vec3) -> Self {
+        Self {
+            symbol: "F_0",
+            label: "reflectance at normal incidence",
+            help: "How much of the light the surface mirrors when seen straight on, in red, green and blue.",
+            value: ReadoutValue::Reflectance(f0),
+        }
+    }
+
+    /// The width of the distribution of microfacets.
+    #[must_use]
+    pub fn of_alpha(alpha: f32) -> Self {
+        Self {
+            symbol: "α",
+            label: "width of the highlight",
+            help: "The width of the slopes of the microfacets, on the scale of GGX and Beckmann; the square of the perceptual roughness.",
+            value: ReadoutValue::Number(alpha),
+        }
+    }
+
     /// The width of the highlight on the scales of the microfacet models, from the exponent of the
     /// Blinn–Phong lobe that is as sharp; see [`equivalence`].
     #[must_use]
