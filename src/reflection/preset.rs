@@ -174,8 +174,7 @@ mod tests {
     fn presets_are_legal_values_of_the_shared_parameters() {
         let declared: [Parameter; 5] = [IOR, EXTINCTION, BASE_COLOUR, METALLIC, REFLECTANCE];
         for m in all() {
-            for (name, value) in
-                [conductor(m), dielectric(m), base_colour_metallic(m)].into_iter().flatten()
+            for (name, value) in [conductor(m), dielectric(m), base_colour_metallic(m)].into_iter().flatten()
             {
                 let Some(p) = declared.iter().find(|p| p.name == name) else { panic!("{name}") };
                 assert!(p.allows(&value), "{}: {name} {value}", m.name);
