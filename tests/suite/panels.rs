@@ -533,13 +533,9 @@ fn three_numbers_are_typed_one_by_one_or_at_once() {
     assert_eq!(value(&bench), Value::Triple([1.33, 2.0, 1.33]));
     // The end of the range is legal, what lies beyond is not.
     bench.type_into("refractive index B", "0.01");
-    eprintln!("{:?} {:?} {:?}", bench.lab.messages, bench.ctx.memory(|m| m.focused()), value(&bench));
-    for text in ["0.02", "0.0101", "3", "0.01"] {
-        bench.type_into("refractive index B", text);
-        eprintln!("{text} {:?} {:?} {:?}", bench.lab.messages, bench.ctx.memory(|m| m.focused()), value(&bench));
-    }
     assert_eq!(value(&bench), Value::Triple([1.33, 2.0, 0.01]));
     for field in ["refractive index B", "refractive index: all three"] {
+        bench.key(Key::Enter, Modifiers::NONE);
         bench.type_into(field, "7");
         assert_eq!(value(&bench), Value::Triple([1.33, 2.0, 0.01]));
         assert!(bench.says("between 0.01 and 6"), "{field}");
