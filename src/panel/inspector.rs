@@ -6,7 +6,7 @@ use bevy_egui::egui::{
 use glam::Vec3;
 
 use super::{
-    Panel, Place,
+    Panel, Place, chooser,
     icon::{self, Icon},
     knob::{self, Caption},
     limits::{self, Limits},
@@ -18,9 +18,9 @@ use super::{
 use crate::{
     light::LightEntry,
     optics::{TermSelection, colour::Encoding, temperature, tone::ToneMapping},
-    reflection::{EquationPart, ModelEntry, Term},
+    reflection::{EquationPart, Measured, ModelEntry, Term, parameter::Value, preset},
     registry::Registry,
-    scene::{Display, Light, Observer, SceneSize},
+    scene::{Display, Light, Object, Observer, SceneSize},
     shading::ModeEntry,
 };
 
@@ -211,7 +211,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
     section(ui, "Reflection", true, |ui| {
         if let Some(model) = model {
             model_header(ui, model);
-            equation(ui, lab, registry, model, actions);
+            equation(ui, lab, model, actions);
         }
         if let Some(mode) = mode {
             stage(ui, mode);
@@ -223,11 +223,15 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             ui.label("The reflection model of this object is not known here; choose another one.");
             return;
         };
+        if let Some(values) = measured(ui, model, object) {
+            actions.push(set(ObjectField::Preset(values)));
+        }
         for p in model.parameters {
             if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), None) {
                 actions.push(set(ObjectField::Material(p.name, v)));
             }
         }
+        readouts(ui, lab, model, object);
         let unused: Vec<_> = registry
             .material_parameters()
             .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
@@ -291,21 +295,20 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             let scene_model =
                 registry.model(&lab.scene.reflection_model).map_or("–", |m| m.declaration.name);
             let of_scene = format!("as the scene: {scene_model}");
-            let options: Vec<&str> = std::iter::once(of_scene.as_str())
-                .chain(registry.models().iter().map(|m| m.declaration.name))
-                .collect();
-            let chosen = object.reflection_model.as_ref().map_or(Some(0), |id| {
-                registry.models().iter().position(|m| m.declaration.id == id).map(|k| k + 1)
-            });
+            let own = object.reflection_model.as_deref();
+            let shown =
+                own.map_or(of_scene.as_str(), |id| registry.model(id).map_or(id, |m| m.declaration.name));
             let caption = Caption {
                 label: "reflection",
                 help: "The reflection model of this object: the scene’s, or its own.",
                 ..Caption::default()
             };
-            if let Some(k) = knob::choice_knob(ui, "model", &caption, chosen.unwrap_or(usize::MAX), &options)
-            {
-                let id = k.checked_sub(1).map(|k| registry.models()[k].declaration.id.to_owned());
-                actions.push(set(ObjectField::Model(id)));
+            let chosen = knob::list_knob(ui, "model", &caption, shown, |ui, id| {
+                let height = 0.45 * ui.ctx().content_rect().height();
+                chooser::models(ui, id, height, lab, registry, own, Some(&of_scene))
+            });
+            if let Some(model) = chosen {
+                actions.push(set(ObjectField::Model(model.map(|m| m.declaration.id.to_owned()))));
             }
             let scene_mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
             let of_scene = format!("as the scene: {scene_mode}");
@@ -328,10 +331,102 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
     );
 }
 
+/// The chooser of measured materials, for models that can be one. Returns the parameters of the chosen.
+fn measured(ui: &mut Ui, model: &ModelEntry, object: &Object) -> Option<Vec<(&'static str, Value)>> {
+    let offered: Vec<_> = preset::all().iter().filter(|m| !(model.preset)(m).is_empty()).collect();
+    if offered.is_empty() {
+        return None;
+    }
+    let is = |m: &Measured| {
+        (model.preset)(m)
+            .iter()
+            .all(|(name, value)| model.parameter(name).is_some_and(|p| object.material.get(p) == *value))
+    };
+    let present = offered.iter().find(|m| is(m)).copied();
+    let caption = Caption {
+        label: "measured material",
+        help: "Sets the knobs below to what was measured on a real material. It shows “none” as soon as one of them is turned away.",
+        ..Caption::default()
+    };
+    let words = chooser::Words {
+        label: "Search measured materials",
+        hint: "Search: name, author, year",
+        none: "No material has that in its name or source.",
+        foot: "The numbers are F₀ in red, green and blue: what the surface reflects when seen straight on.",
+    };
+    let chosen =
+        knob::list_knob(ui, "measured material", &caption, present.map_or("none", |m| m.name), |ui, id| {
+            let height = 0.45 * ui.ctx().content_rect().height();
+            let find = |search: &str| -> Vec<&'static Measured> {
+                let hit =
+                    |m: &&&'static Measured| chooser::matches(&[m.name, m.id, m.source].join(" "), search);
+                offered.iter().filter(hit).copied().collect()
+            };
+            let entry = |m: &&'static Measured| chooser::Entry {
+                heading: if m.metal { "Metals and semiconductors" } else { "Dielectrics" },
+                name: m.name,
+                note: m.f0.to_array().map(|v| format!("{v:.2}")).join("  "),
+                number: None,
+                swatch: Some(theme::swatch(m.f0)),
+                current: present == Some(*m),
+            };
+            chooser::list(ui, id, words, height, find, entry, |ui, m| measurement(ui, m))
+        });
+    chosen.map(model.preset)
+}
+
+/// What was measured on a material, and by whom.
+fn measurement(ui: &mut Ui, material: &Measured) {
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    ui.label(theme::strong(ui, material.name));
+    egui::Grid::new("measurement").num_columns(5).spacing(vec2(14.0, 3.0) * scale).show(ui, |ui| {
+        ui.label("");
+        for wavelength in ["630 nm", "532 nm", "465 nm"] {
+            ui.label(theme::small(ui, wavelength));
+        }
+        ui.end_row();
+        let rows = [("n", material.n), ("k", material.k), ("F_0", material.f0.to_array())];
+        for (symbol, values) in rows {
+            maths::symbol(ui, symbol, 15.0 * scale);
+            for v in values {
+                // The k of glass and water is about 10⁻⁸.
+                let text = if v > 0.0 && v < 5e-4 {
+                    format!("{v:.0e}").replace('-', "−")
+                } else {
+                    format!("{v:.3}")
+                };
+                ui.label(text);
+            }
+            if symbol == "F_0" {
+                let (rect, _) = ui.allocate_exact_size(vec2(30.0, 16.0) * scale, Sense::hover());
+                let stroke = egui::Stroke::new(1.0, palette.weak);
+                ui.painter().rect(rect, 3.0, theme::swatch(material.f0), stroke, egui::StrokeKind::Inside);
+            }
+            ui.end_row();
+        }
+    });
+    ui.label(theme::small(ui, "F₀ is a linear sRGB colour of the whole spectrum"));
+    ui.label(theme::small(ui, format!("Measured by {}", material.source)));
+}
+
+/// What follows from the values of the knobs.
+fn readouts(ui: &mut Ui, lab: &Lab, model: &ModelEntry, object: &Object) {
+    let readouts = model.instantiate(&object.material, lab.scene.display.encoding).readouts();
+    if readouts.is_empty() {
+        return;
+    }
+    ui.add_space(2.0);
+    ui.label(theme::small(ui, "What follows from these"));
+    for readout in &readouts {
+        knob::readout(ui, readout);
+    }
+    ui.add_space(4.0);
+}
+
 /// Name, author and year of a model; the whole story is the tooltip.
 fn model_header(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
-    let palette = Palette::here(ui);
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(d.name).heading());
         ui.label(theme::small(ui, d.author));
@@ -339,25 +434,24 @@ fn model_header(ui: &mut Ui, model: &ModelEntry) {
     .response
     .on_hover_ui(|ui| {
         ui.set_max_width(320.0 * theme::scale_here(ui));
-        ui.label(d.summary);
-        for (law, holds) in d.laws.list() {
-            let text = if holds { format!("✓ {law}") } else { format!("✗ not {law}") };
-            ui.label(RichText::new(text).small().color(if holds { palette.text } else { palette.weak }));
-        }
-        ui.label(theme::small(ui, d.source));
+        chooser::about(ui, model);
     });
 }
 
-fn equation(ui: &mut Ui, lab: &Lab, registry: &Registry, model: &ModelEntry, actions: &mut Vec<Action>) {
+fn equation(ui: &mut Ui, lab: &Lab, model: &ModelEntry, actions: &mut Vec<Action>) {
     let d = model.declaration;
     let name = |symbol: &str| -> Option<String> {
         let parameter = model.parameters.iter().find(|p| maths::same_symbol(p.symbol, symbol));
         match parameter {
             Some(p) => Some(format!("{}: {}", p.label, p.help)),
-            None => maths::meaning(symbol).map(str::to_owned).or_else(|| {
-                let other = registry.material_parameters().find(|p| maths::same_symbol(p.symbol, symbol))?;
-                Some(other.label.to_owned())
-            }),
+            None => {
+                let defined =
+                    maths::definition(d.equation, symbol).map(|text| format!("defined here: {text}"));
+                let general = maths::meaning(symbol).map(str::to_owned);
+                // A letter that the equation uses for something of its own does not mean what it usually does.
+                let terms = ["I", "I_a", "I_d", "I_s"];
+                if terms.contains(&symbol) { general.or(defined) } else { defined.or(general) }
+            }
         }
     };
     maths::equation(ui, d.equation, name);

@@ -59,7 +59,9 @@ impl Limits {
     /// Whether a value is legal.
     #[must_use]
     pub fn allows(&self, value: f64) -> bool {
-        value.is_finite() && value >= self.min && value <= self.max && (!self.whole || value.fract() == 0.0)
+        // In f32, which the scene holds: 0.1 is legal where the limit is the f32 next to it.
+        let within = value as f32 >= self.min as f32 && value as f32 <= self.max as f32;
+        value.is_finite() && within && (!self.whole || value.fract() == 0.0)
     }
 
     /// Whether zero is excluded though everything above it is legal.

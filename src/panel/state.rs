@@ -466,6 +466,8 @@ pub enum ObjectField {
     Mode(Option<String>),
     /// A parameter of the material.
     Material(&'static str, Value),
+    /// Several parameters of the material at once: a measured material.
+    Preset(Vec<(&'static str, Value)>),
 }
 
 /// What needs files, entities or the operating system; the app carries these out.
@@ -560,6 +562,51 @@ impl Lab {
     #[must_use]
     pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
         name_of(&self.scene, part, registry)
+    }
+
+    /// The selected object, if it has a reflection model of its own: the choice at the top is then about
+    /// that one, since a choice for the scene would not reach it.
+    #[must_use]
+    pub fn own_model(&self) -> Option<(usize, &str)> {
+        let Selection::Object(i) = self.selection else { return None };
+        Some((i, self.scene.objects.get(i)?.reflection_model.as_deref()?))
+    }
+
+    /// The same for its shading mode.
+    #[must_use]
+    pub fn own_mode(&self) -> Option<(usize, &str)> {
+        let Selection::Object(i) = self.selection else { return None };
+        Some((i, self.scene.objects.get(i)?.shading_model.as_deref()?))
+    }
+
+    /// Id of the reflection model that the top of the window shows and changes.
+    #[must_use]
+    pub fn model_shown(&self) -> &str {
+        self.own_model().map_or(&self.scene.reflection_model, |(_, id)| id)
+    }
+
+    /// Id of the shading mode that the top of the window shows and changes.
+    #[must_use]
+    pub fn mode_shown(&self) -> &str {
+        self.own_mode().map_or(&self.scene.shading_model, |(_, id)| id)
+    }
+
+    /// The edit that chooses another reflection model at the top of the window.
+    #[must_use]
+    pub fn edit_model(&self, id: &str) -> Edit {
+        match self.own_model() {
+            Some((i, _)) => Edit::Object(i, ObjectField::Model(Some(id.to_owned()))),
+            None => Edit::Model(id.to_owned()),
+        }
+    }
+
+    /// The edit that chooses another shading mode at the top of the window.
+    #[must_use]
+    pub fn edit_mode(&self, id: &str) -> Edit {
+        match self.own_mode() {
+            Some((i, _)) => Edit::Object(i, ObjectField::Mode(Some(id.to_owned()))),
+            None => Edit::Mode(id.to_owned()),
+        }
     }
 
     /// Adds a message; an error unfolds the strip that shows it.
@@ -657,8 +704,8 @@ impl Lab {
             Action::CancelRename => self.renaming = None,
             Action::Edit(edit) => self.edit(edit, registry),
             Action::RecentModel(slot) => {
-                if let Some(id) = self.model_slots.get(slot).cloned() {
-                    self.edit(Edit::Model(id), registry);
+                if let Some(edit) = self.model_slots.get(slot).map(|id| self.edit_model(id)) {
+                    self.edit(edit, registry);
                 }
             }
             Action::Expose(ev) => {
@@ -1001,23 +1048,6 @@ impl Lab {
         f(&mut self.scene);
     }
 
-    /// A choice for the scene does not reach an object that has its own: where that one is selected, it
-    /// looks as if nothing happened.
-    fn say_if_own(&mut self, what: &str, registry: &Registry, own: impl Fn(&Object) -> bool) {
-        let Selection::Object(i) = self.selection else { return };
-        if self.scene.objects.get(i).is_some_and(own) {
-            let name = self.name_of(self.selection, registry);
-            let text = format!(
-                "{name} has its own {what}; the choice above is for objects without one. Its own is at the \
-                 end of the panel at the right."
-            );
-            if self.messages.iter().all(|m| m.text != text) {
-                self.say(Severity::Info, text);
-                self.view.bottom_open = true;
-            }
-        }
-    }
-
     fn edit(&mut self, edit: Edit, registry: &Registry) {
         if let Err(why) = self.check(&edit, registry) {
             self.say(Severity::Warning, why);
@@ -1035,14 +1065,8 @@ impl Lab {
             Edit::SceneDescription(text) => self.change(|s| s.description = named(text)),
             Edit::SceneSize(size) => self.change(|s| s.scene_size = size),
             Edit::Display(display) => self.change(|s| s.display = display),
-            Edit::Model(id) => {
-                self.say_if_own("reflection model", registry, |o| o.reflection_model.is_some());
-                self.change(|s| s.reflection_model = id);
-            }
-            Edit::Mode(id) => {
-                self.say_if_own("shading mode", registry, |o| o.shading_model.is_some());
-                self.change(|s| s.shading_model = id);
-            }
+            Edit::Model(id) => self.change(|s| s.reflection_model = id),
+            Edit::Mode(id) => self.change(|s| s.shading_model = id),
             Edit::Observer(observer) => self.change(|s| s.observer = observer),
             Edit::Light(i, LightField::Kind(kind)) => self.change_light_kind(i, &kind, registry),
             Edit::Light(i, field) => {
@@ -1093,6 +1117,9 @@ impl Lab {
                         ObjectField::Model(id) => o.reflection_model = id,
                         ObjectField::Mode(id) => o.shading_model = id,
                         ObjectField::Material(name, value) => o.material.set(name, value),
+                        ObjectField::Preset(all) => {
+                            all.into_iter().for_each(|(name, value)| o.material.set(name, value));
+                        }
                     }
                 });
             }
@@ -1143,6 +1170,11 @@ impl Lab {
                 }
                 None => Ok(()),
             }
+        };
+        let material = |id: &str, value: &Value| match registry.material_parameter(id) {
+            Some(p) if p.allows(value) => Ok(()),
+            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+            None => Err(format!("No model has a parameter “{id}”.")),
         };
         let direction = |part: Selection, d: Vec3| {
             if d.is_finite() && d.length() > SAME_PLACE {
@@ -1230,11 +1262,8 @@ impl Lab {
                     },
                     ObjectField::Model(id) => id.as_deref().map_or(Ok(()), model),
                     ObjectField::Mode(id) => id.as_deref().map_or(Ok(()), mode),
-                    ObjectField::Material(id, value) => match registry.material_parameter(id) {
-                        Some(p) if p.allows(value) => Ok(()),
-                        Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
-                        None => Err(format!("No model has a parameter “{id}”.")),
-                    },
+                    ObjectField::Material(id, value) => material(id, value),
+                    ObjectField::Preset(all) => all.iter().try_for_each(|(id, value)| material(id, value)),
                 }
             }
         }
