@@ -244,9 +244,9 @@ mod tests {
         let (tangents, centres) = (mesh.polygon_tangents(), mesh.polygon_centres());
         // The pole of the bottom, the last vertex of the body: the axis goes through it.
         let axis = mesh.positions[4 * n * 4 * n];
-        for i in 0..16 * n * n {
-            let around = Vec3::Y.cross(centres[i] - axis).normalize();
-            assert!(tangents[i].dot(around) > 0.98, "{} {around}", tangents[i]);
+        for (tangent, centre) in tangents.iter().zip(&centres).take(16 * n * n) {
+            let around = Vec3::Y.cross(*centre - axis).normalize();
+            assert!(tangent.dot(around) > 0.98, "{tangent} {around}");
         }
         // Around a tube the tangents come back: they add up to little.
         for start in [24 * n * n, 28 * n * n] {
