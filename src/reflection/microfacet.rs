@@ -186,10 +186,10 @@ parameters! {
 /// Nodes and weights of Gauss and Legendre's rule on [0, 1] with eight points, the upper half: it is
 /// symmetric about ½.
 const GAUSS: [(f32, f32); 4] = [
-    (0.591_717_32, 0.181_341_89),
+    (0.591_717_3, 0.181_341_89),
     (0.762_766_2, 0.156_853_32),
     (0.898_333_24, 0.111_190_52),
-    (0.980_144_93, 0.050_614_268),
+    (0.980_144_9, 0.050_614_268),
 ];
 
 impl Microfacet {
