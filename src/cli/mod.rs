@@ -22,6 +22,7 @@ mod models;
 mod new;
 mod render;
 mod scenes;
+mod study;
 mod view;
 
 pub use view::ViewOptions;
@@ -109,6 +110,8 @@ enum Command {
     },
     /// Evaluate the BRDF of a model: angles from standard input, values to standard output, as CSV
     Evaluate(evaluate::Arguments),
+    /// Compare Blinn–Phong with physically based models: four phenomena as a report with numbers
+    Study(study::Arguments),
     /// Print the JSON Schema of scene files
     Schema,
 }
@@ -200,6 +203,7 @@ fn run(cli: Cli) -> Outcome {
         Some(Command::New { file }) => new::run(&file, options, &registry),
         Some(Command::Models { json }) => models::run(json, &registry),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &registry),
+        Some(Command::Study(arguments)) => study::run(&arguments, options, &registry),
         Some(Command::Schema) => print(&crate::scene::schema::text(&registry)),
     }
 }
