@@ -57,6 +57,12 @@ fn half_vector(l: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
     return unit_or_zero(l + v);
 }
 
+// The slope of the facet that mirrors l to v: (H·T, H·B)/(H·N); its squared length is tan² θ_h.
+fn half_slope(l: vec3<f32>, v: vec3<f32>, frame: Frame) -> vec2<f32> {
+    let across = vec2(dot(l, frame.t) + dot(v, frame.t), dot(l, frame.b) + dot(v, frame.b));
+    return across / max(dot(l, frame.n) + dot(v, frame.n), 1e-12);
+}
+
 // Squared distances below (1 mm)² count as (1 mm)²: the guard against division by zero.
 const MINIMUM_DISTANCE_SQUARED: f32 = 1e-6;
 

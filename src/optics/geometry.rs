@@ -1,7 +1,7 @@
 //! Directions at a surface point (R8). All vectors are unit vectors; `l` points from the surface
 //! **to** the light, `v` to the observer.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// The local frame of a surface point: normal, tangent, bitangent; orthonormal, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +51,15 @@ pub fn mirror(l: Vec3, n: Vec3) -> Vec3 {
 #[must_use]
 pub fn half_vector(l: Vec3, v: Vec3) -> Vec3 {
     (l + v).normalize_or_zero()
+}
+
+/// The slope of the facet that mirrors `l` to `v`: `(H·T, H·B) / (H·N)`. Its squared length is tan² θ_h.
+/// It is made of `L + V` as it is, since tan² θ_h from a cosine, 1/cos² θ_h − 1, would lose its digits where
+/// highlights are. Finite also where the two are opposite.
+#[must_use]
+pub fn half_slope(l: Vec3, v: Vec3, frame: &Frame) -> Vec2 {
+    let h = l + v;
+    Vec2::new(h.dot(frame.t), h.dot(frame.b)) / h.dot(frame.n).max(1e-12)
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ pub mod distribution;
 pub mod equivalence;
 pub mod fresnel;
 pub mod geometry;
+pub mod lobe;
 pub mod masking;
 pub mod radiometry;
 pub mod tone;

@@ -482,6 +482,17 @@ pub const ALPHA_Y: Parameter = Parameter {
     kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.3 },
 };
 
+/// Standard deviation of the angle of the slopes (Oren, Nayar 1994). Their full equation falls below zero
+/// from 36° on, so the range ends at 35°.
+pub const SIGMA: Parameter = Parameter {
+    name: "sigma",
+    symbol: "σ",
+    label: "slope deviation",
+    unit: "°",
+    help: "How far the facets of the surface are tilted, as a standard deviation. 0° is smooth; plaster and sand have about 30°.",
+    kind: ParameterKind::Number { min: 0.0, max: 35.0, default: 20.0 },
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;

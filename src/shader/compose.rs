@@ -22,6 +22,7 @@ pub const OPTICS: &[Source] = &[
     wgsl!("optics/distribution.wgsl"),
     wgsl!("optics/masking.wgsl"),
     wgsl!("optics/diffuse.wgsl"),
+    wgsl!("optics/lobe.wgsl"),
 ];
 /// The directional albedo from the curve in a row, for models that have one.
 pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");

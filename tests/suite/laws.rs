@@ -85,12 +85,30 @@ impl Random {
     }
 }
 
-/// Every model with its defaults and with random parameters, in the frame of a random normal.
+/// White, and every number at its smallest.
+fn least(model: &ModelEntry) -> Values {
+    let mut values = Values::default();
+    for parameter in model.parameters {
+        match parameter.kind {
+            ParameterKind::Number { min, .. } => values.set(parameter.name, Value::Number(min)),
+            ParameterKind::Integer { min, .. } => values.set(parameter.name, Value::Integer(min)),
+            _ => {}
+        }
+    }
+    values
+}
+
+/// Every model with its defaults, with its smallest numbers and with random parameters, in the frame of a
+/// random normal.
 fn surfaces(seed: u64, mut visit: impl FnMut(&ModelEntry, &Values, &dyn Surface, &Frame, &mut Random)) {
     for model in Registry::builtin().models() {
         let mut random = Random(seed);
         for set in 0..SETS {
-            let values = if set == 0 { Values::default() } else { random.values(model) };
+            let values = match set {
+                0 => Values::default(),
+                1 => least(model),
+                _ => random.values(model),
+            };
             let surface = model.instantiate(&values, Encoding::Srgb);
             let frame = Frame::from_normal(random.direction());
             visit(model, &values, &*surface, &frame, &mut random);
@@ -180,25 +198,29 @@ fn light_may_go_backwards_where_that_is_declared_and_somewhere_it_may_not_where_
 }
 
 /// The fraction of light from direction `v` that leaves the surface in any direction, largest channel:
-/// `∫ f_r cos θ dω` by the midpoint rule in polar coordinates around the mirror direction, with `rows`
-/// steps of the polar angle and twice as many of the azimuth.
+/// `∫ f_r cos θ dω` over the slopes of the facets that mirror `v` to `l`, by the midpoint rule with `rows`
+/// steps along the tangent and as many along the bitangent.
 fn albedo(surface: &dyn Surface, v: Vec3, frame: &Frame, rows: usize) -> f32 {
+    // Slopes are spaced as u³/(1 − u²), so that lobes that are narrow in one direction or both are
+    // resolved: those of all models lie around the slope 0.
+    let steps: Vec<_> = (0..rows)
+        .map(|i| {
+            let u = 2.0 * (i as f32 + 0.5) / rows as f32 - 1.0;
+            let rest = 1.0 - u * u;
+            (u.powi(3) / rest, u * u * (3.0 - u * u) / (rest * rest) * 2.0 / rows as f32)
+        })
+        .collect();
     let mut sum = Vec3::ZERO;
-    // Polar coordinates around the mirror direction, spaced cubically, so that narrow lobes are
-    // resolved: dω = sin θ dθ dφ, θ = π t³.
-    let axis = Frame::from_normal(2.0 * frame.n.dot(v) * frame.n - v);
-    let columns = 2 * rows;
-    for i in 0..rows {
-        let t = (i as f32 + 0.5) / rows as f32;
-        let theta = PI * t.powi(3);
-        let weight = theta.sin() * PI * 3.0 * t * t / rows as f32 * TAU / columns as f32;
-        for j in 0..columns {
-            let (sin, cos) = (TAU * (j as f32 + 0.5) / columns as f32).sin_cos();
-            let l = theta.cos() * axis.n + theta.sin() * (cos * axis.t + sin * axis.b);
-            if frame.n.dot(l) > 0.0 {
-                // Response is π f_r cos θ.
+    for (x, width) in &steps {
+        for (y, height) in &steps {
+            let scale = (1.0 + x * x + y * y).sqrt().recip();
+            let h = scale * (frame.n + x * frame.t + y * frame.b);
+            let cos_d = v.dot(h);
+            let l = 2.0 * cos_d * h - v;
+            if cos_d > 0.0 && frame.n.dot(l) > 0.0 {
+                // dω_l = 4 L·H dω_h and dω_h = dx dy (N·H)³. Response is π f_r cos θ.
                 let terms = surface.response(l, v, frame);
-                sum += (terms.diffuse + terms.specular) * weight;
+                sum += (terms.diffuse + terms.specular) * (4.0 * cos_d * scale.powi(3) * width * height);
             }
         }
     }
@@ -224,7 +246,8 @@ fn no_light_is_made_where_that_is_declared_and_somewhere_it_is_where_not() {
         if laws.energy_conserving {
             assert!(most < 1.01, "{id} reflects {most} of the light");
         } else {
-            assert!(most > 1.02, "{id} declares that it makes light, but reflects {most} at most");
+            // The finer grid is right to 3e-4 for wide lobes; Strauss's makes 0.5 % too much at most.
+            assert!(most > 1.003, "{id} declares that it makes light, but reflects {most} at most");
         }
     }
 }

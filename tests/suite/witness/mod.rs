@@ -1,6 +1,10 @@
 //! Every model against values that other programs calculated (`tests/data/golden/`), and against closed
 //! forms. One file for each group of models.
 
+mod classical;
+mod microfacet;
+mod rough;
+
 use glam::{DVec3, Vec3};
 use lights_camera_models::{
     optics::Frame,

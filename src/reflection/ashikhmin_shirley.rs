@@ -1,0 +1,130 @@
+use glam::Vec3;
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR},
+};
+use crate::{
+    optics::{Frame, Terms, fresnel::schlick, geometry::half_slope},
+    parameters,
+    shader::wgsl,
+};
+
+/// The exponent of the highlight along the tangent.
+const EXPONENT_U: Parameter = Parameter {
+    name: "exponent_u",
+    symbol: "n_u",
+    label: "exponent along the tangent",
+    unit: "",
+    help: "How sharp the highlight is along the brushing: the larger, the smaller it is in that direction.",
+    kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 10 },
+};
+
+/// The exponent of the highlight along the bitangent.
+const EXPONENT_V: Parameter = Parameter {
+    name: "exponent_v",
+    symbol: "n_v",
+    label: "exponent across the tangent",
+    unit: "",
+    help: "How sharp the highlight is across the brushing. Equal to the exponent along it, the surface looks the same from all sides.",
+    kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 200 },
+};
+
+parameters! {
+    /// **Ashikhmin–Shirley** — an anisotropic Phong highlight over a base that gives way to it.
+    ///
+    /// ```text
+    /// f_d = 28 R_d/(23π) (1 − R_s) (1 − (1 − N·L/2)⁵) (1 − (1 − N·V/2)⁵)
+    /// f_s = √((n_u + 1)(n_v + 1))/(8π) (N·H)^n F / (H·L max(N·L, N·V))
+    /// n = (n_u (H·T)² + n_v (H·B)²) / (1 − (N·H)²),  F = R_s + (1 − R_s)(1 − H·L)⁵
+    /// R_d = C_b,  R_s = k_s C_s
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `specular_colour` | C_s | sRGB | 0–255 | white |
+    /// | `k_s` | k_s | – | 0–1 | 0.5 |
+    /// | `exponent_u` | n_u | – | whole, ≥ 0 | 10 |
+    /// | `exponent_v` | n_v | – | whole, ≥ 0 | 200 |
+    ///
+    /// Source: M. Ashikhmin, P. Shirley (2000), *An Anisotropic Phong BRDF Model*, journal of graphics tools
+    /// 5(2). The highlight follows Schlick's approximation of the Fresnel equations, so it becomes white
+    /// and strong at grazing angles; the base receives what the highlight leaves. The factor 28/23 makes
+    /// its albedo `R_d (1 − R_s)(1 − (1 − μ/2)⁵)`, close below what the Fresnel factor leaves.
+    ///
+    /// Use it for varnished, lacquered and brushed surfaces. It keeps all three laws for all exponents; rough
+    /// highlights lose light, since facets below the horizon are not made up for.
+    pub struct AshikhminShirley {
+        /// `R_d`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `C_s`, linear.
+        specular_colour: colour = SPECULAR_COLOUR,
+        /// `k_s`.
+        k_s: number = K_S,
+        /// `n_u`.
+        exponent_u: number = EXPONENT_U,
+        /// `n_v`.
+        exponent_v: number = EXPONENT_V,
+    }
+}
+
+impl ReflectionModel for AshikhminShirley {
+    const DECLARATION: Declaration = Declaration {
+        id: "ashikhmin_shirley",
+        name: "Ashikhmin–Shirley",
+        family: Family::Classical,
+        author: "Ashikhmin, Shirley 2000",
+        source: "M. Ashikhmin, P. Shirley (2000), An Anisotropic Phong BRDF Model, journal of graphics tools 5(2), 25–32",
+        summary: "A highlight with a Fresnel factor, stretched where the surface is brushed, over a base that gives way to it: lacquer, polished wood.",
+        equation: &[
+            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart {
+                term: Term::Diffuse,
+                text: "I_d = 28/23 C_b (1 − k_s C_s) (1 − (1 − N·L/2)^5) (1 − (1 − N·V/2)^5) N·L",
+            },
+            EquationPart {
+                term: Term::Specular,
+                text: "I_s = √((n_u + 1)(n_v + 1))/8 (N·H)^n F N·L / (H·L max(N·L, N·V))",
+            },
+            EquationPart {
+                term: Term::Specular, text: "n = (n_u (H·T)^2 + n_v (H·B)^2) / (1 − (N·H)^2)"
+            },
+            EquationPart { term: Term::Specular, text: "F = k_s C_s + (1 − k_s C_s) (1 − H·L)^5" },
+        ],
+        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: true,
+        wgsl: wgsl!("reflection/ashikhmin_shirley.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
+        if cos_l <= 0.0 || cos_v <= 0.0 {
+            return Terms::default();
+        }
+        let r_s = self.k_s * self.specular_colour;
+        let slope = half_slope(l, v, frame);
+        let squared = slope * slope;
+        let tan2 = squared.x + squared.y;
+        // (N·H)^n by cos² θ_h = 1/(1 + tan² θ_h): large exponents need all digits of the angle.
+        let n = if tan2 > 0.0 {
+            self.exponent_u * (squared.x / tan2) + self.exponent_v * (squared.y / tan2)
+        } else {
+            0.0
+        };
+        let lobe = (self.exponent_u + 1.0).sqrt() * (self.exponent_v + 1.0).sqrt() / 8.0
+            * (-0.5 * n * tan2.ln_1p()).exp();
+        let cos_d = (0.5 * (l + v).length()).clamp(1e-12, 1.0);
+        // 1 − (1 − μ/2)⁵
+        let left = |mu: f32| {
+            let x = 0.5 * mu;
+            x * (5.0 + x * (-10.0 + x * (10.0 + x * (-5.0 + x))))
+        };
+        Terms {
+            ambient: Vec3::ZERO,
+            diffuse: 28.0 / 23.0 * cos_l * left(cos_l) * left(cos_v) * self.base_colour * (1.0 - r_s),
+            specular: lobe * (cos_l / cos_l.max(cos_v)) / cos_d * schlick(r_s, cos_d),
+        }
+    }
+}

@@ -1,0 +1,96 @@
+use glam::Vec3;
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term,
+    parameter::{ALPHA, BASE_COLOUR, K_S, SPECULAR_COLOUR},
+};
+use crate::{
+    optics::{
+        Frame, Terms,
+        lobe::{half_tangent_squared, power_of_cosine},
+    },
+    parameters,
+    shader::wgsl,
+};
+
+parameters! {
+    /// **Normalised Blinn–Phong** — Blinn's highlight as a BRDF that keeps account of the light.
+    ///
+    /// ```text
+    /// f_r = (1 − k_s C_s) C_b/π + k_s C_s (α + 2)(α + 4)/(8π (2^{−α/2} + α)) (N·H)^α
+    /// response = π f_r max(0, N·L), 0 where N·V ≤ 0
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `specular_colour` | C_s | sRGB | 0–255 | white |
+    /// | `k_s` | k_s | – | 0–1 | 0.5 |
+    /// | `alpha` | α | – | whole, ≥ 0 | 32 |
+    ///
+    /// The factor makes the lobe reflect all light that falls on it along the normal, whatever α is; at
+    /// other angles it reflects less. So a sharper highlight is a brighter one, as on real surfaces. Often
+    /// the approximation (α + 8)/8π stands in its place, which is 7 % too large at α = 16. What the lobe
+    /// may reflect, `k_s C_s`, is taken from the diffuse part: light is shared, not added. α = 0 is
+    /// Lambert.
+    ///
+    /// Use it to see what Blinn–Phong lacks: exchange the two and turn α. Keeps all laws; at grazing
+    /// angles it loses light, where real surfaces reflect more.
+    ///
+    /// Source: the lobe is J. F. Blinn's (1977), *Models of Light Reflection for Computer Synthesized
+    /// Pictures*; the exact factor is derived in F. Giesen (2009), *Phong Normalization Factor
+    /// Derivation*.
+    pub struct BlinnPhongNormalised {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `C_s`, linear.
+        specular_colour: colour = SPECULAR_COLOUR,
+        /// `k_s`.
+        k_s: number = K_S,
+        /// `α`.
+        alpha: number = ALPHA,
+    }
+}
+
+impl ReflectionModel for BlinnPhongNormalised {
+    const DECLARATION: Declaration = Declaration {
+        id: "blinn_phong_normalised",
+        name: "Normalised Blinn–Phong",
+        family: Family::Classical,
+        author: "Blinn 1977, Giesen 2009",
+        source: "J. F. Blinn (1977), Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH '77; normalised as in F. Giesen (2009), Phong Normalization Factor Derivation",
+        summary: "Blinn–Phong that never makes light: sharper highlights are brighter, and what they take the diffuse part lacks.",
+        equation: &[
+            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s C_s) C_b max(0, N·L)" },
+            EquationPart {
+                term: Term::Specular,
+                text: "I_s = k_s C_s (α + 2)(α + 4)/(8 (2^{−α/2} + α)) (N·H)^α max(0, N·L)",
+            },
+        ],
+        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: false,
+        wgsl: wgsl!("reflection/blinn_phong_normalised.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let cos_i = frame.n.dot(l);
+        if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
+            return Terms::default();
+        }
+        let n = self.alpha;
+        let mirrored = self.k_s * self.specular_colour;
+        let norm = (n + 2.0) * ((n + 4.0) / (8.0 * ((-0.5 * n).exp2() + n)));
+        let lobe = power_of_cosine(half_tangent_squared(l, v, frame.n), n);
+        Terms {
+            ambient: Vec3::ZERO,
+            diffuse: (1.0 - mirrored) * self.base_colour * cos_i,
+            specular: mirrored * (norm * lobe * cos_i),
+        }
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        Readout::of_exponent(self.alpha)
+    }
+}

@@ -1,0 +1,73 @@
+use glam::Vec3;
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
+};
+use crate::{
+    optics::{Frame, Terms, diffuse::burley, geometry::half_vector},
+    parameters,
+    shader::wgsl,
+};
+
+parameters! {
+    /// **Burley diffuse** — the base of Disney's model: smooth surfaces darken at the edge, rough ones brighten.
+    ///
+    /// ```text
+    /// f_r = C_b/π (1 + (F_90 − 1)(1 − N·L)⁵) (1 + (F_90 − 1)(1 − N·V)⁵)
+    /// F_90 = 1/2 + 2 r (H·L)²
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `roughness` | r | – | 0–1 | 0.5 |
+    ///
+    /// Source: B. Burley (2012), *Physically-Based Shading at Disney*, SIGGRAPH course *Practical Physically-Based
+    /// Shading in Film and Game Production*. An empirical fit to measured materials: light that enters a
+    /// smooth surface at grazing angles is weakened by the Fresnel factor on the way in and out, F_90 = 1/2;
+    /// rough surfaces send it back at grazing angles, up to F_90 = 5/2.
+    ///
+    /// Use it as the base under a highlight, in looks matched to production renderers. Reciprocal and
+    /// non-negative. Not energy conserving: the fit ignores the sum (r = 1, white: E = 1.380 at cos θ = 0.1).
+    pub struct BurleyDiffuse {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `r`.
+        roughness: number = Parameter {
+            help: "From 0, a smooth surface whose edge darkens, to 1, a rough one whose edge shines back the light.",
+            ..ROUGHNESS
+        },
+    }
+}
+
+impl ReflectionModel for BurleyDiffuse {
+    const DECLARATION: Declaration = Declaration {
+        id: "burley_diffuse",
+        name: "Burley diffuse",
+        family: Family::Diffuse,
+        author: "B. Burley 2012",
+        source: "B. Burley (2012), Physically-Based Shading at Disney, SIGGRAPH course Practical Physically-Based Shading in Film and Game Production",
+        summary: "The base of Disney's model, fitted to measured materials: smooth surfaces darken at the edge, rough ones brighten.",
+        equation: &[
+            EquationPart {
+                term: Term::Diffuse,
+                text: "I_d = C_b N·L (1 + (F_{90} − 1)(1 − N·L)^5) (1 + (F_{90} − 1)(1 − N·V)^5)",
+            },
+            EquationPart { term: Term::Diffuse, text: "F_{90} = 1/2 + 2 r (H·L)^2" },
+        ],
+        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: false,
+        wgsl: wgsl!("reflection/burley_diffuse.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
+        if cos_l <= 0.0 || cos_v <= 0.0 {
+            return Terms::default();
+        }
+        let factor = burley(cos_l, cos_v, l.dot(half_vector(l, v)), self.roughness);
+        Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
+    }
+}

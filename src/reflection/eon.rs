@@ -1,0 +1,82 @@
+use glam::Vec3;
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
+};
+use crate::{
+    optics::{Frame, Terms, diffuse::eon},
+    parameters,
+    shader::wgsl,
+};
+
+parameters! {
+    /// **EON** — energy-preserving Oren–Nayar: rough and matt, and no light is lost.
+    ///
+    /// ```text
+    /// f_r = C_b/π A (1 + r s/t) + ρ_m/π (1 − E(L)) (1 − E(V)) / (1 − ⟨E⟩)
+    /// s = L·V − N·L N·V,  t = max(N·L, N·V) where s > 0, else 1
+    /// A = 1 / (1 + (1/2 − 2/(3π)) r),  ⟨E⟩ = A (1 + (2/3 − 28/(15π)) r)
+    /// E(μ) = A (1 + r/π (sin θ (θ − sin θ cos θ) + 2/3 (tan θ (1 − sin³ θ) − sin θ))),  μ = cos θ
+    /// ρ_m = C_b² ⟨E⟩ / (1 − C_b (1 − ⟨E⟩))
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `roughness` | r | – | 0–1 | 0.5 |
+    ///
+    /// Source: J. Portsmouth, P. Kutz, S. Hill (2024), *EON: A Practical Energy-Preserving Rough Diffuse BRDF*,
+    /// arXiv 2410.18026; Journal of Computer Graphics Techniques 14(1), 2025. The first term is Y. Fujii's
+    /// variant of Oren–Nayar, whose albedo E has a closed form; the second gives back what that lacks, once
+    /// more coloured by every further reflection, so rough surfaces are not darker but more saturated.
+    /// The exact E is used, not the authors' polynomial.
+    ///
+    /// Use it wherever Oren–Nayar was used. At r = 0 it is Lambert. It keeps all three laws; a white surface
+    /// reflects exactly what arrives (E = 1), whatever its roughness.
+    pub struct Eon {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `r`.
+        roughness: number = Parameter {
+            help: "From 0, matt and smooth as in Lambert's law, to 1, matt and very rough: flatter shading, darker towards the side that faces away from the light.",
+            ..ROUGHNESS
+        },
+    }
+}
+
+impl ReflectionModel for Eon {
+    const DECLARATION: Declaration = Declaration {
+        id: "eon",
+        name: "EON",
+        family: Family::Diffuse,
+        author: "Portsmouth, Kutz, Hill 2024",
+        source: "J. Portsmouth, P. Kutz, S. Hill (2024), EON: A Practical Energy-Preserving Rough Diffuse BRDF, arXiv 2410.18026; Journal of Computer Graphics Techniques 14(1), 2025",
+        summary: "Energy-preserving Oren–Nayar: flat and rough without growing dark. A white surface reflects exactly what arrives.",
+        equation: &[
+            EquationPart {
+                term: Term::Diffuse,
+                text: "I_d = N·L (C_b A (1 + r s/t) + ρ_m (1 − E_L) (1 − E_V) / (1 − E_m))",
+            },
+            EquationPart {
+                term: Term::Diffuse,
+                text: "s = L·V − N·L N·V ,  t = max(N·L, N·V) , or 1 where s < 0",
+            },
+            EquationPart { term: Term::Diffuse, text: "A = 1 / (1 + (1/2 − 2/(3π)) r)" },
+            EquationPart { term: Term::Diffuse, text: "ρ_m = C_b^2 E_m / (1 − C_b (1 − E_m))" },
+        ],
+        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: false,
+        wgsl: wgsl!("reflection/eon.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
+        if cos_l <= 0.0 || cos_v <= 0.0 {
+            return Terms::default();
+        }
+        let factor = eon(cos_l, cos_v, l.dot(v), self.roughness, self.base_colour);
+        Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
+    }
+}

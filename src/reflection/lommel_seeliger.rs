@@ -1,0 +1,65 @@
+use glam::Vec3;
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term, parameter::BASE_COLOUR,
+};
+use crate::{
+    optics::{Frame, Terms},
+    parameters,
+    shader::wgsl,
+};
+
+parameters! {
+    /// **Lommel–Seeliger** — light that is scattered once in a deep, dark powder.
+    ///
+    /// ```text
+    /// f_r = C_b/2π · 1/(cos θ_i + cos θ_r)
+    /// response = π f_r max(0, N·L), 0 where N·V ≤ 0
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    ///
+    /// Light and view each die away exponentially inside the powder; the sum over all depths of what is
+    /// scattered once is 1/(cos θ_i + cos θ_r). For particles of single-scattering albedo w, which scatter
+    /// evenly, f_r = w/4π · 1/(cos θ_i + cos θ_r): here w = 2 C_b, the normalisation under which white
+    /// reflects everything at grazing angles. The directional albedo is
+    /// E(μ) = C_b (1 − μ ln(1 + 1/μ)), from 0.31 C_b straight on to C_b. By coincidence the same BRDF is
+    /// that of GGX microfacets with α = 1, height-correlated masking and F = 1.
+    ///
+    /// Use it for the Moon: lit from behind the observer every point of a ball is equally bright. Keeps
+    /// all laws.
+    ///
+    /// Source: H. Seeliger (1888), *Zur Photometrie zerstreut reflectirender Substanzen*,
+    /// Sitzungsberichte der Bayerischen Akademie der Wissenschaften 18; E. Lommel (1889), *Die Photometrie
+    /// der diffusen Zurückwerfung*, Annalen der Physik 272(2), 473–502.
+    pub struct LommelSeeliger {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+    }
+}
+
+impl ReflectionModel for LommelSeeliger {
+    const DECLARATION: Declaration = Declaration {
+        id: "lommel_seeliger",
+        name: "Lommel–Seeliger",
+        family: Family::Classical,
+        author: "Seeliger 1888, Lommel 1889",
+        source: "H. Seeliger (1888), Zur Photometrie zerstreut reflectirender Substanzen, Sitzungsberichte der Bayerischen Akademie der Wissenschaften 18; E. Lommel (1889), Die Photometrie der diffusen Zurückwerfung, Annalen der Physik 272(2)",
+        summary: "Single scattering in a dark powder, such as the ground of the Moon: under full light a ball looks like a flat disc.",
+        equation: &[EquationPart { term: Term::Diffuse, text: "I_d = C_b/2 N·L/(N·L + N·V)" }],
+        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: false,
+        wgsl: wgsl!("reflection/lommel_seeliger.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
+        if cos_i <= 0.0 || cos_o <= 0.0 {
+            return Terms::default();
+        }
+        Terms { diffuse: self.base_colour * (0.5 * cos_i / (cos_i + cos_o)), ..Terms::default() }
+    }
+}

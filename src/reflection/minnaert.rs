@@ -1,0 +1,85 @@
+use glam::Vec3;
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, Parameter, ParameterKind},
+};
+use crate::{
+    optics::{Frame, Terms},
+    parameters,
+    shader::wgsl,
+};
+
+/// Minnaert's exponent.
+const LIMB_DARKENING: Parameter = Parameter {
+    name: "limb_darkening",
+    symbol: "k",
+    label: "limb darkening",
+    unit: "",
+    help: "1 is Lambert. Below 1 the rim of a ball brightens: at 0.5 the full moon is a flat disc. Above 1 it darkens, as on velvet lit from the front.",
+    kind: ParameterKind::Number { min: 0.5, max: 2.0, default: 0.6 },
+};
+
+/// The smallest cosine that is raised to a power, within 0.06° of the horizon: for k < 1 the formula has no
+/// bound there, and rounding would decide how bright a rim is.
+const RIM: f32 = 1e-3;
+
+parameters! {
+    /// **Minnaert** — the simplest reciprocal law for the brightness of a planet's disc.
+    ///
+    /// ```text
+    /// f_r = C_b (k + 1)/2π · (cos θ_i cos θ_r)^{k − 1}
+    /// response = π f_r max(0, N·L), 0 where N·V ≤ 0
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `limb_darkening` | k | – | 0.5–2 | 0.6 |
+    ///
+    /// Minnaert asked which powers of the two cosines are reciprocal. The factor (k + 1)/2π makes the
+    /// directional albedo E(μ) = C_b μ^{k − 1}: all light at normal incidence for white. Cosines below 0.001
+    /// are raised as 0.001, so that rims stay finite.
+    ///
+    /// Use it for moons and planets without an atmosphere (k between 0.5 and 1) and to see that one
+    /// exponent turns a ball into a disc. Reciprocal; not energy conserving for k < 1, where E grows
+    /// towards grazing angles.
+    ///
+    /// Source: M. Minnaert (1941), *The Reciprocity Principle in Lunar Photometry*, Astrophysical Journal
+    /// 93, 403–410.
+    pub struct Minnaert {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `k`.
+        limb_darkening: number = LIMB_DARKENING,
+    }
+}
+
+impl ReflectionModel for Minnaert {
+    const DECLARATION: Declaration = Declaration {
+        id: "minnaert",
+        name: "Minnaert",
+        family: Family::Classical,
+        author: "M. Minnaert 1941",
+        source: "M. Minnaert (1941), The Reciprocity Principle in Lunar Photometry, Astrophysical Journal 93, 403–410",
+        summary: "A power of both cosines: from a moon that looks like a flat disc to cloth with dark edges.",
+        equation: &[EquationPart {
+            term: Term::Diffuse, text: "I_d = C_b (k + 1)/2 (N·L)^k (N·V)^{k − 1}"
+        }],
+        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: false,
+        wgsl: wgsl!("reflection/minnaert.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
+        if cos_i <= 0.0 || cos_o <= 0.0 {
+            return Terms::default();
+        }
+        let k = self.limb_darkening;
+        let raised = (cos_i.max(RIM) * cos_o.max(RIM)).powf(k - 1.0);
+        let diffuse = self.base_colour * (0.5 * (k + 1.0) * cos_i * raised);
+        Terms { diffuse, ..Terms::default() }
+    }
+}

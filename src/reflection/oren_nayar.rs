@@ -1,0 +1,105 @@
+use glam::Vec3;
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, Parameter, ParameterKind, SIGMA},
+};
+use crate::{
+    optics::{
+        Frame, Terms,
+        diffuse::{oren_nayar_full, oren_nayar_qualitative},
+    },
+    parameters,
+    shader::wgsl,
+};
+
+/// Which of the two equations of the paper.
+const OREN_NAYAR_FORM: Parameter = Parameter {
+    name: "oren_nayar_form",
+    symbol: "",
+    label: "form",
+    unit: "",
+    help: "The full equation of the paper, with light that facets pass to each other, or its short form, which most programs use.",
+    kind: ParameterKind::Choice {
+        options: &[("full", "full, with interreflection"), ("qualitative", "qualitative")],
+        default: 0,
+    },
+};
+
+parameters! {
+    /// **Oren–Nayar** — Lambert for rough surfaces: plaster, sand, clay, the moon.
+    ///
+    /// ```text
+    /// qualitative:  f_r = C_b/π (A + B max(0, cos φ) sin α tan β)
+    ///   A = 1 − σ²/2 / (σ² + 0.33),  B = 0.45 σ² / (σ² + 0.09)
+    /// full:  f_r = C_b/π (C₁ + cos φ C₂ tan β + (1 − |cos φ|) C₃ tan((α + β)/2) + 0.17 C_b C₄)
+    ///   C₁ = A,  C₂ = B (sin α − [cos φ < 0] (2β/π)³)
+    ///   C₃ = 0.125 σ²/(σ² + 0.09) (4αβ/π²)²,  C₄ = σ²/(σ² + 0.13) (1 − cos φ (2β/π)²)
+    /// α, β: the larger and the smaller of the polar angles of L and V;  φ: the azimuth between them
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `sigma` | σ | ° (radians in the equation) | 0–35 | 20 |
+    /// | `oren_nayar_form` | – | – | `full`, `qualitative` | `full` |
+    ///
+    /// Source: M. Oren, S. K. Nayar (1994), *Generalization of Lambert's Reflectance Model*, SIGGRAPH '94.
+    /// The surface is made of long V-shaped grooves with Lambertian walls, which mask and shadow each other;
+    /// σ is the standard deviation of the angle of the walls. The equations are fits to integrals over all
+    /// grooves. Walls that face the light are seen from where the light comes from, so a sphere looks flat,
+    /// as bright at its edge as in its middle.
+    ///
+    /// Use it for matt rough materials. At σ = 0 it is Lambert. Reciprocal and, up to σ = 35°, where the range
+    /// ends, non-negative. Not energy conserving: the fit of the full form gives more than arrives at small
+    /// σ (σ = 0.2 rad, white: E = 1.0255 at cos θ = 0.1), while large σ lose light.
+    pub struct OrenNayar {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `σ`, degrees.
+        sigma: number = SIGMA,
+        /// 0: full, 1: qualitative.
+        oren_nayar_form: choice = OREN_NAYAR_FORM,
+    }
+}
+
+impl ReflectionModel for OrenNayar {
+    const DECLARATION: Declaration = Declaration {
+        id: "oren_nayar",
+        name: "Oren–Nayar",
+        family: Family::Diffuse,
+        author: "Oren, Nayar 1994",
+        source: "M. Oren, S. K. Nayar (1994), Generalization of Lambert's Reflectance Model, SIGGRAPH '94, 239–246",
+        summary: "Rough matt surfaces such as plaster and the moon: they shine back to where the light comes from, so spheres look flat.",
+        equation: &[
+            EquationPart {
+                term: Term::Diffuse,
+                text: "I_d = C_b N·L (C_1 + cos φ C_2 tan β + (1 − |cos φ|) C_3 tan((α + β)/2) + 0.17 C_b C_4)",
+            },
+            EquationPart { term: Term::Diffuse, text: "C_1 = 1 − 0.5 σ^2/(σ^2 + 0.33)" },
+            EquationPart {
+                term: Term::Diffuse,
+                text: "C_2 = 0.45 σ^2/(σ^2 + 0.09) (sin α − (2β/π)^3) ,  (2β/π)^3 only where cos φ < 0",
+            },
+            EquationPart { term: Term::Diffuse, text: "C_3 = 0.125 σ^2/(σ^2 + 0.09) (4 α β/π^2)^2" },
+            EquationPart { term: Term::Diffuse, text: "C_4 = σ^2/(σ^2 + 0.13) (1 − cos φ (2β/π)^2)" },
+        ],
+        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: false,
+        wgsl: wgsl!("reflection/oren_nayar.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
+        if cos_l <= 0.0 || cos_v <= 0.0 {
+            return Terms::default();
+        }
+        let sigma = self.sigma.to_radians();
+        let factor = match self.oren_nayar_form {
+            0 => oren_nayar_full(cos_l, cos_v, l.dot(v), sigma, self.base_colour),
+            _ => Vec3::splat(oren_nayar_qualitative(cos_l, cos_v, l.dot(v), sigma)),
+        };
+        Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
+    }
+}

@@ -1,0 +1,162 @@
+use std::f32::consts::FRAC_2_PI;
+
+use glam::Vec3;
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind},
+};
+use crate::{
+    optics::{
+        Frame, Terms,
+        lobe::{mirror_tangent_squared, power_of_cosine},
+    },
+    parameters,
+    shader::wgsl,
+};
+
+/// Strauss's smoothness.
+const SMOOTHNESS: Parameter = Parameter {
+    name: "smoothness",
+    symbol: "s",
+    label: "smoothness",
+    unit: "",
+    help: "0 is dull, 1 is a mirror. It sharpens the highlight and takes light from the diffuse part: both follow from the one number.",
+    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.6 },
+};
+
+/// Strauss's transparency.
+const TRANSPARENCY: Parameter = Parameter {
+    name: "transparency",
+    symbol: "t",
+    label: "transparency",
+    unit: "",
+    help: "The share of the light that would pass through and is lost here: what lies behind is not shown.",
+    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.0 },
+};
+
+/// Shape of F, the stand-in for Fresnel's equations, as published.
+const K_F: f32 = 1.12;
+/// Shape of G, the stand-in for masking, as published.
+const K_G: f32 = 1.01;
+/// How much even dull surfaces mirror at grazing angles, as published.
+const K_J: f32 = 0.1;
+/// The largest exponent of the highlight, in place of infinity at s = 1.
+const SHARPEST: f32 = 30_000.0;
+
+parameters! {
+    /// **Strauss** — few knobs that mean something to an animator.
+    ///
+    /// ```text
+    /// I_d = r_d (1 − m s) C_b max(0, N·L)             r_d = (1 − s³)(1 − t)
+    /// I_s = r_j C_s max(0, R·V)^h                     h = 3/(1 − s)
+    /// r_j = min(1, r_n + (r_n + k_j) F(α) G(α) G(γ))  r_n = 1 − t − r_d
+    /// C_s = 1 + m (1 − F(α)) (C_b − 1)
+    /// F(x) = (1/(x − k_f)² − 1/k_f²)/(1/(1 − k_f)² − 1/k_f²)
+    /// G(x) = (1/(1 − k_g)² − 1/(x − k_g)²)/(1/(1 − k_g)² − 1/k_g²)
+    /// ```
+    ///
+    /// α and γ are the angles of light and view from the normal in right angles (0–1); k_f = 1.12,
+    /// k_g = 1.01, k_j = 0.1. F rises from 0 to 1 as Fresnel reflection does, G falls from 1 to 0 as
+    /// masking does. 0 where N·L ≤ 0 or N·V ≤ 0. At s = 1 the exponent is 30 000 instead of infinite.
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `smoothness` | s | – | 0–1 | 0.6 |
+    /// | `metallic` | m | – | 0–1 | 0 |
+    /// | `transparency` | t | – | 0–1 | 0 |
+    ///
+    /// Published as a colour per unit of light, not as a BRDF, so the formula is taken as the response
+    /// as it is: the highlight has no factor N·L. It is the ancestor of today's smoothness and
+    /// metalness. Use it next to the metallic–roughness model to see which ideas are older.
+    ///
+    /// Not reciprocal, since F asks for the angle of the light alone and the highlight is in effect
+    /// divided by N·L. Energy is conserved but for dull surfaces (s < 0.15), which reflect up to 0.5 %
+    /// too much: the part k_j comes on top. The highlight of smooth surfaces loses light, for its
+    /// brightness does not grow as it narrows.
+    ///
+    /// Source: P. S. Strauss (1990), *A Realistic Lighting Model for Computer Animators*, IEEE Computer
+    /// Graphics and Applications 10(6), 56–64.
+    pub struct Strauss {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `s`.
+        smoothness: number = SMOOTHNESS,
+        /// `m`.
+        metallic: number = METALLIC,
+        /// `t`.
+        transparency: number = TRANSPARENCY,
+    }
+}
+
+/// The angle of a direction above the surface, in right angles: 1 − x of the published functions. Taken
+/// from the side that is exact near the horizon, where F and G are steep.
+fn elevation(cosine: f32, d: Vec3, n: Vec3) -> f32 {
+    FRAC_2_PI * cosine.atan2((d - cosine * n).length())
+}
+
+/// F(x) of x = 1 − `elevation`, multiplied out so that nothing cancels.
+fn strauss_fresnel(elevation: f32) -> f32 {
+    let (x, e) = (1.0 - elevation, K_F - 1.0);
+    let q = e / (e + elevation);
+    x * (2.0 * K_F - x) * q * q / (K_F * K_F - e * e)
+}
+
+/// G(x) of x = 1 − `elevation`, multiplied out so that nothing cancels.
+fn strauss_masking(elevation: f32) -> f32 {
+    let e = K_G - 1.0;
+    let q = K_G / (e + elevation);
+    elevation * (2.0 * e + elevation) * q * q / (K_G * K_G - e * e)
+}
+
+impl ReflectionModel for Strauss {
+    const DECLARATION: Declaration = Declaration {
+        id: "strauss",
+        name: "Strauss",
+        family: Family::Classical,
+        author: "P. S. Strauss 1990",
+        source: "P. S. Strauss (1990), A Realistic Lighting Model for Computer Animators, IEEE Computer Graphics and Applications 10(6), 56–64",
+        summary: "Smoothness and metalness instead of coefficients: the first model with the knobs of today.",
+        equation: &[
+            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart {
+                term: Term::Diffuse, text: "I_d = (1 − s^3)(1 − t)(1 − m s) C_b max(0, N·L)"
+            },
+            EquationPart {
+                term: Term::Specular,
+                text: "I_s = r_j (1 + m (1 − F(α))(C_b − 1)) max(0, R·V)^{3/(1 − s)}",
+            },
+            EquationPart {
+                term: Term::Specular,
+                text: "r_j = min(1, r_n + (r_n + 0.1) F(α) G(α) G(γ)), r_n = s^3 (1 − t)",
+            },
+        ],
+        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: false,
+        wgsl: wgsl!("reflection/strauss.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
+        if cos_i <= 0.0 || cos_o <= 0.0 {
+            return Terms::default();
+        }
+        let (s, m) = (self.smoothness, self.metallic);
+        let diffuse = (1.0 - s * s * s) * (1.0 - self.transparency);
+        let straight = s * s * s * (1.0 - self.transparency);
+        let (up_l, up_v) = (elevation(cos_i, l, frame.n), elevation(cos_o, v, frame.n));
+        let f = strauss_fresnel(up_l);
+        let mirrored =
+            (straight + (straight + K_J) * f * strauss_masking(up_l) * strauss_masking(up_v)).min(1.0);
+        let exponent = 3.0 / (1.0 - s).max(3.0 / SHARPEST);
+        let lobe = power_of_cosine(mirror_tangent_squared(l, v, frame.n), exponent);
+        let tint = Vec3::ONE + m * (1.0 - f) * (self.base_colour - 1.0);
+        Terms {
+            ambient: Vec3::ZERO,
+            diffuse: self.base_colour * (diffuse * (1.0 - m * s) * cos_i),
+            specular: tint * (mirrored * lobe),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+use glam::Vec3;
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
+    parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR},
+};
+use crate::{
+    optics::{Frame, Terms, geometry::half_slope},
+    parameters,
+    shader::wgsl,
+};
+
+/// How the lobe is divided by the cosines of light and view.
+const WARD_FORM: Parameter = Parameter {
+    name: "ward_form",
+    symbol: "",
+    label: "form",
+    unit: "",
+    help: "As Ward published it, the highlight fades at grazing angles; Dür's division by both cosines brightens it there, beyond what arrives.",
+    kind: ParameterKind::Choice { options: &[("ward", "Ward 1992"), ("duer", "Dür 2006")], default: 0 },
+};
+
+parameters! {
+    /// **Ward** — a Gaussian highlight, stretched on brushed surfaces.
+    ///
+    /// ```text
+    /// f_r = ρ_d/π + ρ_s exp(−(x²/α_x² + y²/α_y²)) / (4π α_x α_y √(N·L N·V))      form "ward"
+    /// f_r = ρ_d/π + ρ_s exp(−(x²/α_x² + y²/α_y²)) / (4π α_x α_y N·L N·V)         form "duer"
+    /// x = H·T / H·N,  y = H·B / H·N;  ρ_d = (1 − k_s) C_b,  ρ_s = k_s C_s
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `specular_colour` | C_s | sRGB | 0–255 | white |
+    /// | `k_s` | k_s | – | 0–1 | 0.5 |
+    /// | `alpha_x` | α_x | – | 0.001–1 | 0.3 |
+    /// | `alpha_y` | α_y | – | 0.001–1 | 0.3 |
+    /// | `ward_form` | – | – | `ward`, `duer` | `ward` |
+    ///
+    /// Source: G. J. Ward (1992), *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH '92; the other
+    /// form: A. Dür (2006), *An Improved Normalization for the Ward Reflectance Model*, journal of graphics
+    /// tools 11(1). x and y are the slopes of the facet that mirrors L to V, so x² + y² = tan² θ_h; α_x and α_y
+    /// are their root mean squares, times √2. Ward chose the constants so that few numbers, read off a
+    /// measurement, suffice; he asks for ρ_d + ρ_s ≤ 1, which the sharing by k_s grants.
+    ///
+    /// Use it for brushed metal and varnished wood, and to compare with the models that mended it. It has
+    /// no Fresnel factor and no masking. Reciprocal. Not energy conserving: near grazing view, Ward's form
+    /// grows like 1/√cos θ, beyond 1 on anisotropic surfaces, and loses light elsewhere; Dür's is right
+    /// for small α (E = 1) and grows like 1/cos θ near grazing (α = 0.3: E = 1.161 at cos θ = 0.1).
+    pub struct Ward {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `C_s`, linear.
+        specular_colour: colour = SPECULAR_COLOUR,
+        /// `k_s`.
+        k_s: number = K_S,
+        /// `α_x`.
+        alpha_x: number = ALPHA_X,
+        /// `α_y`.
+        alpha_y: number = ALPHA_Y,
+        /// 0: Ward's form, 1: Dür's.
+        ward_form: choice = WARD_FORM,
+    }
+}
+
+impl ReflectionModel for Ward {
+    const DECLARATION: Declaration = Declaration {
+        id: "ward",
+        name: "Ward",
+        family: Family::Classical,
+        author: "G. J. Ward 1992",
+        source: "G. J. Ward (1992), Measuring and Modeling Anisotropic Reflection, SIGGRAPH '92, 265–272; A. Dür (2006), An Improved Normalization for the Ward Reflectance Model, journal of graphics tools 11(1), 51–59",
+        summary: "A Gaussian highlight made to fit measurements, stretched where the surface is brushed. Dür's form keeps small highlights whole and makes light at grazing angles.",
+        equation: &[
+            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s) C_b N·L" },
+            EquationPart {
+                term: Term::Specular,
+                text: "I_s = k_s C_s exp(−(x^2/α_x^2 + y^2/α_y^2)) / (4 α_x α_y) √(N·L / N·V)",
+            },
+            EquationPart { term: Term::Specular, text: "x = H·T / H·N ,  y = H·B / H·N" },
+        ],
+        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: true,
+        wgsl: wgsl!("reflection/ward.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
+        if cos_l <= 0.0 || cos_v <= 0.0 {
+            return Terms::default();
+        }
+        let slope = half_slope(l, v, frame);
+        let lobe = (-(slope.x / self.alpha_x).powi(2) - (slope.y / self.alpha_y).powi(2)).exp()
+            / (4.0 * self.alpha_x * self.alpha_y);
+        // π cos θ_l / π over the cosines.
+        let cosines = match self.ward_form {
+            0 => (cos_l / cos_v.max(1e-12)).sqrt(),
+            _ => 1.0 / cos_v.max(1e-12),
+        };
+        Terms {
+            ambient: Vec3::ZERO,
+            diffuse: (1.0 - self.k_s) * cos_l * self.base_colour,
+            specular: self.k_s * lobe * cosines * self.specular_colour,
+        }
+    }
+}
