@@ -40,15 +40,8 @@ pub fn paint(id: &str) -> Vec<Measurement> {
             return None;
         }
         let mut number = || cells.next()?.parse::<f64>().ok();
-        let [theta_i, phi_i, theta_o, phi_o, r, g, b] = [
-            number()?,
-            number()?,
-            number()?,
-            number()?,
-            number()?,
-            number()?,
-            number()?,
-        ];
+        let [theta_i, phi_i, theta_o, phi_o, r, g, b] =
+            [number()?, number()?, number()?, number()?, number()?, number()?, number()?];
         Some(Measurement {
             theta_i: theta_i as f32,
             theta_o: theta_o as f32,

@@ -193,8 +193,7 @@ mod tests {
             }
             // The lobe of another distribution does not fit as well: the error notices.
             let beckmann = |width: f64, samples: &[Sample]| {
-                let d =
-                    |s: &Sample| distribution::beckmann(half_vector(s.l, s.v), Vec2::splat(width as f32));
+                let d = |s: &Sample| distribution::beckmann(half_vector(s.l, s.v), Vec2::splat(width as f32));
                 samples.iter().map(|s| f64::from(d(s)) / f64::from(4.0 * s.l.z * s.v.z)).collect()
             };
             let wrong = fit(&samples, (0.01, 1.0), beckmann);

@@ -4,9 +4,9 @@ use glam::Vec3;
 use maud::html;
 
 use super::{
-    Chapter, Lab, StudyError, Table, albedo_at, alpha, choice, fixed, image,
+    Chapter, Lab, StudyError, Table, albedo_at, alpha, choice, fixed, image, pictures,
     plot::{Axis, Line, Mark, Plot, Series},
-    pictures, svg,
+    svg,
 };
 use crate::{
     optics::{
@@ -15,11 +15,7 @@ use crate::{
         fresnel::{conductor, normal_reflectance, schlick},
     },
     reference::Picture,
-    reflection::{
-        Measured,
-        parameter::Value,
-        preset,
-    },
+    reflection::{Measured, parameter::Value, preset},
 };
 
 const SCENE: &str = include_str!("../../scenes/fresnel_effect.json");
@@ -105,7 +101,13 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         let Some((m, name)) = materials.iter().find(|(m, _)| m.id == id) else { continue };
         let curve = |f: &dyn Fn(f64) -> f64| (0..=90).map(|a| (f64::from(a), f(f64::from(a)))).collect();
         let mark = [Mark::None, Mark::None, Mark::None][0];
-        series.push(Series { name: (*name).to_owned(), points: curve(&|a| exact(m, a)), colour, line: Line::Solid, mark });
+        series.push(Series {
+            name: (*name).to_owned(),
+            points: curve(&|a| exact(m, a)),
+            colour,
+            line: Line::Solid,
+            mark,
+        });
         series.push(Series {
             name: "… after Schlick".to_owned(),
             points: curve(&|a| approximate(m, a)),
@@ -146,12 +148,17 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     );
 
     // The same of the lobes that the models make.
-    let mut settings = vec![choice("fresnel", "dielectric"), choice("diffuse", "none"), ("ior", Value::Triple([1.5; 3]))];
+    let mut settings =
+        vec![choice("fresnel", "dielectric"), choice("diffuse", "none"), ("ior", Value::Triple([1.5; 3]))];
     settings.extend(alpha(ALPHA));
     let glass = lab.surface("microfacet", &settings)?;
     let plastic = lab.surface(
         "blinn_phong",
-        &[("alpha", Value::Integer(EXPONENT)), ("k_s", Value::Number(1.0)), ("base_colour", Value::Colour([0; 3]))],
+        &[
+            ("alpha", Value::Integer(EXPONENT)),
+            ("k_s", Value::Number(1.0)),
+            ("base_colour", Value::Colour([0; 3])),
+        ],
     )?;
     let step = if lab.settings.quick { 15.0 } else { 5.0 };
     let mut angles: Vec<f64> = (0..=(85.0 / step) as u32).map(|i| f64::from(i) * step).collect();
@@ -162,7 +169,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         angles.iter().map(|a| (*a, albedo_at(surface, *a).1 / start)).collect()
     };
     let (glass_lobe, plastic_lobe) = (lobe(&*glass), lobe(&*plastic));
-    let ideal: Vec<(f64, f64)> = angles.iter().map(|a| (*a, f64::from(conductor(1.5, 0.0, cosine(*a))) / 0.04)).collect();
+    let ideal: Vec<(f64, f64)> =
+        angles.iter().map(|a| (*a, f64::from(conductor(1.5, 0.0, cosine(*a))) / 0.04)).collect();
     let mut lobes = Table::new("fresnel_lobes", "angle_deg,smooth_glass,microfacet,blinn_phong");
     for i in 0..angles.len() {
         lobes.row(&[], &[angles[i], ideal[i].1, glass_lobe[i].1, plastic_lobe[i].1]);
@@ -177,9 +185,27 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         x: Axis::new("angle of view (°)", 0.0, 90.0, 10),
         y: Axis::log("reflection relative to 0°", 0.01, 30.0),
         series: vec![
-            Series { name: "smooth glass, exact".to_owned(), points: ideal, colour: 6, line: Line::Dotted, mark: Mark::None },
-            Series { name: "microfacet, α = 0.1".to_owned(), points: glass_lobe, colour: 0, line: Line::Solid, mark: Mark::Disc },
-            Series { name: "Blinn–Phong, n = 198".to_owned(), points: plastic_lobe, colour: 1, line: Line::Dashed, mark: Mark::Triangle },
+            Series {
+                name: "smooth glass, exact".to_owned(),
+                points: ideal,
+                colour: 6,
+                line: Line::Dotted,
+                mark: Mark::None,
+            },
+            Series {
+                name: "microfacet, α = 0.1".to_owned(),
+                points: glass_lobe,
+                colour: 0,
+                line: Line::Solid,
+                mark: Mark::Disc,
+            },
+            Series {
+                name: "Blinn–Phong, n = 198".to_owned(),
+                points: plastic_lobe,
+                colour: 1,
+                line: Line::Dashed,
+                mark: Mark::Triangle,
+            },
         ],
         size: (760, 360),
         legend: true,
@@ -200,7 +226,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let mut peaks = Vec::new();
     for (id, words) in both {
         let picture = lab.render(&scene, id, TermSelection::All, size);
-        shown.push((image(&picture.to_rgb8(&scene.display), size, &format!("Black glass under {words}"))?, words));
+        shown.push((
+            image(&picture.to_rgb8(&scene.display), size, &format!("Black glass under {words}"))?,
+            words,
+        ));
         let alone = |keep: &dyn Fn(usize) -> bool| {
             let mut scene = scene.clone();
             let mut i = 0;
@@ -294,7 +323,13 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             }
         }
     };
-    Ok(Chapter { title: "Fresnel effect", body, finding, shown: confirmed, tables: vec![raw, lobes, from_pictures] })
+    Ok(Chapter {
+        title: "Fresnel effect",
+        body,
+        finding,
+        shown: confirmed,
+        tables: vec![raw, lobes, from_pictures],
+    })
 }
 
 /// By how much the reflectance of gold changes up to 60°, rounded up to a hundredth.

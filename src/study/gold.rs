@@ -11,10 +11,7 @@ use super::{
 use crate::{
     optics::{TermSelection, colour::luminance},
     reference::Picture,
-    reflection::{
-        parameter::Value,
-        preset,
-    },
+    reflection::{parameter::Value, preset},
     scene::{Light, Object, Scene},
 };
 
@@ -63,7 +60,8 @@ fn bounded(a: &[f64], b: &[f64], y: &[f64]) -> (f64, f64, f64) {
         candidates.push((edge, over(by - edge * ab, bb)));
         candidates.push((over(ay - edge * ab, aa), edge));
     }
-    let best = candidates.into_iter().min_by(|p, q| sum(p.0, p.1).total_cmp(&sum(q.0, q.1))).unwrap_or_default();
+    let best =
+        candidates.into_iter().min_by(|p, q| sum(p.0, p.1).total_cmp(&sum(q.0, q.1))).unwrap_or_default();
     (best.0, best.1, sum(best.0, best.1))
 }
 
@@ -133,13 +131,18 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         ("C", "cool light, grazing from behind", case(&shipped, 2)),
     ];
     let mut sky = case(&shipped, 0);
-    sky.lights = vec![Light { kind: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() }];
+    sky.lights =
+        vec![Light { kind: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() }];
     cases.push(("D", "uniform light from everywhere", sky));
 
     let wanted: Vec<Picture> =
         cases.iter().map(|(_, _, scene)| lab.render(scene, "microfacet", TermSelection::All, size)).collect();
-    let tuned: Vec<Blinn> =
-        cases.iter().zip(&wanted).take(3).map(|((_, _, scene), wanted)| tune(lab, scene, wanted, size)).collect();
+    let tuned: Vec<Blinn> = cases
+        .iter()
+        .zip(&wanted)
+        .take(3)
+        .map(|((_, _, scene), wanted)| tune(lab, scene, wanted, size))
+        .collect();
     let with = |lab: &Lab, scene: &Scene, blinn: &Blinn| {
         let mut scene = scene.clone();
         scene.objects.iter_mut().for_each(|o| blinn.put(o));
@@ -165,7 +168,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         let pair = [(&wanted[i], "microfacet, measured gold"), (&kept[i], "Blinn–Phong, tuned under A")];
         for (picture, model) in pair {
             let alt = format!("Gold teapot, {name}, {model}");
-            figure.push((image(&picture.to_rgb8(&scene.display), size, &alt)?, format!("{id}, {name}: {model}")));
+            figure.push((
+                image(&picture.to_rgb8(&scene.display), size, &alt)?,
+                format!("{id}, {name}: {model}"),
+            ));
         }
     }
     let figure: Vec<_> = figure.iter().map(|(m, w)| (m.clone(), w.as_str())).collect();

@@ -69,9 +69,16 @@ impl Contestant {
 
     /// Those of the comparison.
     pub(super) fn all() -> Vec<Self> {
-        let simple = |name, id, settings, width, style| Self { name, id, settings, instead: None, width, style };
+        let simple =
+            |name, id, settings, width, style| Self { name, id, settings, instead: None, width, style };
         vec![
-            simple("Blinn–Phong", "blinn_phong", vec![number("k_s", 1.0)], exponent, (1, Line::Dashed, Mark::Triangle)),
+            simple(
+                "Blinn–Phong",
+                "blinn_phong",
+                vec![number("k_s", 1.0)],
+                exponent,
+                (1, Line::Dashed, Mark::Triangle),
+            ),
             simple("Ward", "ward", vec![number("k_s", 1.0)], both, (4, Line::Dotted, Mark::Square)),
             Self::microfacet("Cook–Torrance", "beckmann", "v_cavity", (2, Line::Dashed, Mark::Cross)),
             Self::microfacet("GGX", "ggx", "smith_height_correlated", (0, Line::Solid, Mark::Disc)),
@@ -143,9 +150,8 @@ impl Contestant {
 /// angle of the light.
 pub(super) fn paint_samples(id: &str, keep: impl Fn(f32) -> bool) -> Result<Vec<Sample>, StudyError> {
     let all = data::paint(id);
-    let good = |m: &data::Measurement| {
-        m.theta_i <= LARGEST_ANGLE && m.theta_o <= LARGEST_ANGLE && keep(m.theta_i)
-    };
+    let good =
+        |m: &data::Measurement| m.theta_i <= LARGEST_ANGLE && m.theta_o <= LARGEST_ANGLE && keep(m.theta_i);
     let samples = data::samples(&all, data::brightest(&all), good);
     if samples.is_empty() { Err(StudyError::Data(format!("there is no paint {id}"))) } else { Ok(samples) }
 }
@@ -175,7 +181,8 @@ fn merl_directions() -> Vec<Sample> {
                 let d = direction(theta_d, phi_d);
                 // Turned from the normal to the half vector, about y.
                 let (s, c) = theta_h.to_radians().sin_cos();
-                let turn = |d: glam::Vec3| glam::Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x).normalize();
+                let turn =
+                    |d: glam::Vec3| glam::Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x).normalize();
                 let l = turn(d);
                 let v = (2.0 * l.dot(h) * h - l).normalize();
                 let least = LARGEST_ANGLE.to_radians().cos();
@@ -195,7 +202,12 @@ struct MerlFit {
     matte: f64,
 }
 
-fn merl_fit(material: &Sgd, directions: &[Sample], contestants: &[Contestant], registry: &Registry) -> MerlFit {
+fn merl_fit(
+    material: &Sgd,
+    directions: &[Sample],
+    contestants: &[Contestant],
+    registry: &Registry,
+) -> MerlFit {
     let samples: Vec<Sample> = directions
         .iter()
         .map(|s| Sample { value: material.luminance(s.l, s.v), ..*s })
@@ -249,7 +261,13 @@ fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, S
             Sample { l: direction(theta_i, 0.0), v: direction(theta, phi), value: 1.0 }
         })
         .collect();
-    let mut series = vec![Series { name: "measured".to_owned(), points: measured.clone(), colour: 6, line: Line::None, mark: Mark::Ring }];
+    let mut series = vec![Series {
+        name: "measured".to_owned(),
+        points: measured.clone(),
+        colour: 6,
+        line: Line::None,
+        mark: Mark::Ring,
+    }];
     for c in Contestant::all() {
         if lab.registry.model(c.id).is_none() || c.name == "Ward" {
             continue;
@@ -257,7 +275,13 @@ fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, S
         let found = c.fit(lab.registry, &samples);
         let predicted = c.predict(lab.registry, &c.settings, &found, &dense);
         let points = (-71..=71).map(f64::from).zip(predicted).collect();
-        series.push(Series { name: c.name.to_owned(), points, colour: c.style.0, line: c.style.1, mark: Mark::None });
+        series.push(Series {
+            name: c.name.to_owned(),
+            points,
+            colour: c.style.0,
+            line: c.style.1,
+            mark: Mark::None,
+        });
     }
     let top = measured.iter().map(|p| p.1).fold(0.1, f64::max);
     let plot = Plot {
@@ -272,7 +296,12 @@ fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, S
 }
 
 /// The lobes of a MERL fit by the angle of the half vector.
-fn merl_plot(lab: &Lab, material: &Sgd, found: &MerlFit, contestants: &[Contestant]) -> Result<Markup, StudyError> {
+fn merl_plot(
+    lab: &Lab,
+    material: &Sgd,
+    found: &MerlFit,
+    contestants: &[Contestant],
+) -> Result<Markup, StudyError> {
     // The difference angle is 30°, across, so that both directions stay above the surface.
     let angles: Vec<f32> = (0..=80u8).map(|i| 50.0 * (f32::from(i) / 80.0).powi(2)).collect();
     let samples: Vec<Sample> = angles
@@ -296,12 +325,22 @@ fn merl_plot(lab: &Lab, material: &Sgd, found: &MerlFit, contestants: &[Contesta
     }];
     for (c, (fit, settings)) in contestants.iter().zip(&found.fits) {
         let values = c.predict(lab.registry, settings, fit, &samples);
-        series.push(Series { name: c.name.to_owned(), points: points(values), colour: c.style.0, line: c.style.1, mark: Mark::None });
+        series.push(Series {
+            name: c.name.to_owned(),
+            points: points(values),
+            colour: c.style.0,
+            line: c.style.1,
+            mark: Mark::None,
+        });
     }
     let plot = Plot {
         title: format!("Lobe of {}", material.name),
         x: Axis::new("θ_h (°)", 0.0, 50.0, 6),
-        y: Axis::log("f (sr⁻¹)", 10f64.powf((0.5 * low).log10().floor()), 10f64.powf((1.2 * high).log10().ceil())),
+        y: Axis::log(
+            "f (sr⁻¹)",
+            10f64.powf((0.5 * low).log10().floor()),
+            10f64.powf((1.2 * high).log10().ceil()),
+        ),
         series,
         size: (420, 320),
         legend: false,
@@ -373,7 +412,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let medians: Vec<f64> =
         (0..contestants.len()).map(|i| median(fits.iter().map(|f| f.fits[i].0.error).collect())).collect();
     let matte = median(fits.iter().map(|f| f.matte).collect());
-    let mut merl_rows = vec![vec!["Lambert".to_owned(), "1".to_owned(), fixed(matte, 3), "–".to_owned(), "–".to_owned()]];
+    let mut merl_rows =
+        vec![vec!["Lambert".to_owned(), "1".to_owned(), fixed(matte, 3), "–".to_owned(), "–".to_owned()]];
     for (i, c) in contestants.iter().enumerate() {
         let better = fits.iter().filter(|f| f.fits[i].0.error < f.fits[0].0.error).count();
         merl_rows.push(vec![
@@ -537,7 +577,13 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             }
         }
     };
-    Ok(Chapter { title: "Shape of the specular lobe", body, finding, shown: confirmed, tables: vec![raw_paints, raw_merl] })
+    Ok(Chapter {
+        title: "Shape of the specular lobe",
+        body,
+        finding,
+        shown: confirmed,
+        tables: vec![raw_paints, raw_merl],
+    })
 }
 
 /// What the lines of the panels are.
@@ -569,8 +615,26 @@ mod tests {
         let registry = Registry::builtin();
         let lab = Lab { registry: &registry, settings: Settings::default(), figures: 0, tables: 0 };
         let cases = [
-            ("krylon_blue", [("GGX distribution", 0.060), ("Blinn’s distribution", 0.090), ("Beckmann’s distribution", 0.092), ("Lambert", 0.366)], 0.005),
-            ("garnet_red", [("GGX distribution", 0.147), ("Blinn’s distribution", 0.173), ("Beckmann’s distribution", 0.181), ("Lambert", 0.547)], 0.025),
+            (
+                "krylon_blue",
+                [
+                    ("GGX distribution", 0.060),
+                    ("Blinn’s distribution", 0.090),
+                    ("Beckmann’s distribution", 0.092),
+                    ("Lambert", 0.366),
+                ],
+                0.005,
+            ),
+            (
+                "garnet_red",
+                [
+                    ("GGX distribution", 0.147),
+                    ("Blinn’s distribution", 0.173),
+                    ("Beckmann’s distribution", 0.181),
+                    ("Lambert", 0.547),
+                ],
+                0.025,
+            ),
         ];
         for (paint, expected, tolerance) in cases {
             let fits = paint_errors(&lab, paint).expect("can be fitted");

@@ -4,7 +4,7 @@
 //! It is the chapter of results that E. James (2022), *Physically Based Shading Models in Real-time
 //! Rendering*, asks for. Every sentence of a conclusion that depends on a number is chosen by that number.
 
-use std::{fmt::Write as _, fs, io, path::Path};
+use std::{fmt::Write as _, fs, io, path::Path, sync::Arc};
 
 use glam::Vec3;
 use maud::{Markup, PreEscaped, html};
@@ -174,7 +174,7 @@ fn view(degrees: f64) -> Vec3 {
 
 impl Lab<'_> {
     /// A model with settings, each of which it must have and allow.
-    fn surface(&self, id: &str, settings: &[Setting]) -> Result<Box<dyn Surface>, StudyError> {
+    fn surface(&self, id: &str, settings: &[Setting]) -> Result<Arc<dyn Surface>, StudyError> {
         let model = self.registry.model(id).ok_or_else(|| StudyError::NoModel(id.to_owned()))?;
         let mut values = Values::default();
         for (name, value) in settings {
@@ -203,7 +203,13 @@ impl Lab<'_> {
     }
 
     /// The light of a scene with one model for every object.
-    fn render(&self, scene: &Scene, model: &str, terms: TermSelection, (width, height): (u32, u32)) -> Picture {
+    fn render(
+        &self,
+        scene: &Scene,
+        model: &str,
+        terms: TermSelection,
+        (width, height): (u32, u32),
+    ) -> Picture {
         let mut scene = scene.clone();
         if !model.is_empty() {
             model.clone_into(&mut scene.reflection_model);

@@ -130,7 +130,13 @@ impl Axis {
     fn text(&self, at: f64) -> String {
         if !self.log {
             let step = (self.to - self.from) / self.ticks.max(1) as f64;
-            let digits = if step >= 1.0 { 0 } else if step >= 0.1 { 1 } else { 2 };
+            let digits = if step >= 1.0 {
+                0
+            } else if step >= 0.1 {
+                1
+            } else {
+                2
+            };
             return format!("{:.digits$}", at + 0.0).replace('-', "−");
         }
         if (at - at.round()).abs() > 1e-6 {
@@ -155,14 +161,14 @@ impl Plot {
     /// What the library says.
     pub fn svg(&self) -> Result<String, String> {
         let mut text = String::new();
-        self.draw(&mut text).map_err(|e| e.to_string())?;
+        self.draw(&mut text)?;
         // In a page, and named.
         let start = text.find("<svg").ok_or("there is no <svg>")?;
         let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
         Ok(text[start..].replacen("<svg", &format!("<svg role=\"img\" aria-label=\"{title}\""), 1))
     }
 
-    fn draw(&self, to: &mut String) -> Result<(), Box<dyn std::error::Error + '_>> {
+    fn draw(&self, to: &mut String) -> Result<(), String> {
         let root = SVGBackend::with_string(to, self.size).into_drawing_area();
         let (width, height) = (self.size.0 as i32, self.size.1 as i32);
         let (area, _) = root.split_horizontally(if self.legend { width - LEGEND } else { width });
@@ -171,7 +177,8 @@ impl Plot {
             .margin_right(14)
             .x_label_area_size(46)
             .y_label_area_size(62)
-            .build_cartesian_2d(self.x.range(), self.y.range())?;
+            .build_cartesian_2d(self.x.range(), self.y.range())
+            .map_err(said)?;
         let font = |size: i32| ("sans-serif", size).into_font().color(&INK);
         chart
             .configure_mesh()
@@ -186,26 +193,33 @@ impl Plot {
             .y_desc(&self.y.label)
             .label_style(font(FONT))
             .axis_desc_style(font(FONT))
-            .draw()?;
+            .draw()
+            .map_err(said)?;
         let inside = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
         for series in &self.series {
             let colour = COLOURS[series.colour % COLOURS.len()];
             let points: Vec<(f64, f64)> = series
                 .points
                 .iter()
-                .map(|(x, y)| (self.x.place(*x), self.y.place(*y).clamp(self.y.range().start, self.y.range().end)))
+                .map(|(x, y)| {
+                    (self.x.place(*x), self.y.place(*y).clamp(self.y.range().start, self.y.range().end))
+                })
                 .filter(inside)
                 .collect();
             let stroke = colour.stroke_width(2);
             match series.line {
                 Line::Solid => {
-                    chart.draw_series(LineSeries::new(points.iter().copied(), stroke))?;
+                    chart.draw_series(LineSeries::new(points.iter().copied(), stroke)).map_err(said)?;
                 }
                 Line::Dashed => {
-                    chart.draw_series(DashedLineSeries::new(points.iter().copied(), 8, 5, stroke))?;
+                    chart
+                        .draw_series(DashedLineSeries::new(points.iter().copied(), 8, 5, stroke))
+                        .map_err(said)?;
                 }
                 Line::Dotted => {
-                    chart.draw_series(DashedLineSeries::new(points.iter().copied(), 2, 4, stroke))?;
+                    chart
+                        .draw_series(DashedLineSeries::new(points.iter().copied(), 2, 4, stroke))
+                        .map_err(said)?;
                 }
                 Line::None => {}
             }
@@ -216,12 +230,11 @@ impl Plot {
         if self.legend {
             self.key(&root, width - LEGEND, height)?;
         }
-        root.present()?;
-        Ok(())
+        root.present().map_err(said)
     }
 
     /// The legend.
-    fn key<'a>(&self, root: &Canvas<'a>, left: i32, height: i32) -> Result<(), Box<dyn std::error::Error + 'a>> {
+    fn key(&self, root: &Canvas, left: i32, height: i32) -> Result<(), String> {
         let row = 24;
         let top = ((height - 46 - row * self.series.len() as i32) / 2).max(12);
         for (i, series) in self.series.iter().enumerate() {
@@ -236,12 +249,14 @@ impl Plot {
             let mut x = 2;
             while x < 32 && dash > 0 {
                 let end = (x + dash).min(32);
-                root.draw(&PathElement::new(vec![(left + x, y), (left + end, y)], colour.stroke_width(2)))?;
+                root.draw(&PathElement::new(vec![(left + x, y), (left + end, y)], colour.stroke_width(2)))
+                    .map_err(said)?;
                 x = end + gap;
             }
             mark(root, (left + 17, y), series.mark, colour)?;
-            let style = ("sans-serif", FONT - 1).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-            root.draw(&Text::new(series.name.clone(), (left + 40, y), style))?;
+            let style =
+                ("sans-serif", FONT - 1).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+            root.draw(&Text::new(series.name.clone(), (left + 40, y), style)).map_err(said)?;
         }
         Ok(())
     }
@@ -249,22 +264,24 @@ impl Plot {
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
+/// What a library says.
+fn said(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
 /// Draws a marker.
-fn mark<'a>(
-    to: &Canvas<'a>,
-    (x, y): (i32, i32),
-    mark: Mark,
-    colour: RGBColor,
-) -> Result<(), Box<dyn std::error::Error + 'a>> {
+fn mark(to: &Canvas, (x, y): (i32, i32), mark: Mark, colour: RGBColor) -> Result<(), String> {
     match mark {
         Mark::None => {}
-        Mark::Disc => to.draw(&Circle::new((x, y), 3, colour.filled()))?,
-        Mark::Ring => to.draw(&Circle::new((x, y), 4, colour.stroke_width(2)))?,
-        Mark::Triangle => to.draw(&TriangleMarker::new((x, y), 5, colour.filled()))?,
-        Mark::Square => to.draw(&Rectangle::new([(x - 3, y - 3), (x + 3, y + 3)], colour.filled()))?,
+        Mark::Disc => to.draw(&Circle::new((x, y), 3, colour.filled())).map_err(said)?,
+        Mark::Ring => to.draw(&Circle::new((x, y), 4, colour.stroke_width(2))).map_err(said)?,
+        Mark::Triangle => to.draw(&TriangleMarker::new((x, y), 5, colour.filled())).map_err(said)?,
+        Mark::Square => {
+            to.draw(&Rectangle::new([(x - 3, y - 3), (x + 3, y + 3)], colour.filled())).map_err(said)?
+        }
         Mark::Cross => {
             for (from, to_) in [((x - 4, y - 4), (x + 4, y + 4)), ((x - 4, y + 4), (x + 4, y - 4))] {
-                to.draw(&PathElement::new(vec![from, to_], colour.stroke_width(2)))?;
+                to.draw(&PathElement::new(vec![from, to_], colour.stroke_width(2))).map_err(said)?;
             }
         }
     }
@@ -277,16 +294,21 @@ mod tests {
 
     fn plot(log: bool) -> Plot {
         let y = if log { Axis::log("f (sr⁻¹)", 0.001, 10.0) } else { Axis::new("E", 0.0, 1.0, 5) };
-        let mut marks = [Mark::None, Mark::Disc, Mark::Ring, Mark::Triangle, Mark::Cross, Mark::Square].into_iter();
-        let series = [Line::Solid, Line::Dashed, Line::Dotted, Line::None].into_iter().enumerate().map(|(i, line)| {
-            Series {
-                name: format!("a < b & {i}"),
-                points: (1..20u8).map(|x| (f64::from(x), 0.05 * f64::from(x))).chain([(5.0, f64::NAN)]).collect(),
-                colour: i,
-                line,
-                mark: marks.next().unwrap_or(Mark::None),
-            }
-        });
+        let mut marks =
+            [Mark::None, Mark::Disc, Mark::Ring, Mark::Triangle, Mark::Cross, Mark::Square].into_iter();
+        let series =
+            [Line::Solid, Line::Dashed, Line::Dotted, Line::None].into_iter().enumerate().map(|(i, line)| {
+                Series {
+                    name: format!("a < b & {i}"),
+                    points: (1..20u8)
+                        .map(|x| (f64::from(x), 0.05 * f64::from(x)))
+                        .chain([(5.0, f64::NAN)])
+                        .collect(),
+                    colour: i,
+                    line,
+                    mark: marks.next().unwrap_or(Mark::None),
+                }
+            });
         Plot {
             title: "a \"test\" & more".to_owned(),
             x: Axis::new("θ (°)", 0.0, 90.0, 7),
@@ -340,7 +362,10 @@ mod tests {
     #[test]
     fn logarithmic_axes_are_labelled_at_powers_of_ten_only() {
         let axis = Axis::log("f", 1e-4, 1e4);
-        assert_eq!(["0.01", "1", "1000", "10⁻⁴", "10⁴", ""], [-2.0, 0.0, 3.0, -4.0, 4.0, 0.5].map(|x| axis.text(x)));
+        assert_eq!(
+            ["0.01", "1", "1000", "10⁻⁴", "10⁴", ""],
+            [-2.0, 0.0, 3.0, -4.0, 4.0, 0.5].map(|x| axis.text(x))
+        );
         assert_eq!(Axis::new("θ", -90.0, 90.0, 6).text(-30.0), "−30");
     }
 }

@@ -21,8 +21,18 @@ fn date(days: i64) -> String {
     let month = if month < 10 { month + 3 } else { month - 9 };
     let year = year_of_era + era * 400 + i64::from(month <= 2);
     let names = [
-        "January", "February", "March", "April", "May", "June", "July", "August", "September", "October",
-        "November", "December",
+        "January",
+        "February",
+        "March",
+        "April",
+        "May",
+        "June",
+        "July",
+        "August",
+        "September",
+        "October",
+        "November",
+        "December",
     ];
     format!("{day} {} {year}", names[(month - 1) as usize])
 }
@@ -34,15 +44,39 @@ fn today() -> String {
 
 /// Words that the text uses, explained.
 const GLOSSARY: &[(&str, &str)] = &[
-    ("BRDF", "bidirectional reflectance distribution function, f(l, v): how much of the light that arrives from direction l leaves towards v, per steradian (sr⁻¹)."),
-    ("Directional albedo", "E(v) = ∫ f(l, v) cos θ dl: the fraction of uniform light from everywhere that is sent towards v. For a reciprocal BRDF it is also the fraction of a beam from v that is reflected at all. A passive surface has E ≤ 1."),
-    ("Fresnel reflectance", "the fraction of light that a smooth boundary between two media reflects. It follows from the refractive index n and, for metals, the extinction coefficient k."),
-    ("Lobe", "the part of a BRDF that is concentrated about the mirror direction, which is seen as the highlight."),
-    ("Microfacet model", "a BRDF made of a distribution D of tiny mirrors (Beckmann, GGX), their masking G and their Fresnel reflectance F: f = D G F / (4 (n·l)(n·v))."),
+    (
+        "BRDF",
+        "bidirectional reflectance distribution function, f(l, v): how much of the light that arrives from direction l leaves towards v, per steradian (sr⁻¹).",
+    ),
+    (
+        "Directional albedo",
+        "E(v) = ∫ f(l, v) cos θ dl: the fraction of uniform light from everywhere that is sent towards v. For a reciprocal BRDF it is also the fraction of a beam from v that is reflected at all. A passive surface has E ≤ 1.",
+    ),
+    (
+        "Fresnel reflectance",
+        "the fraction of light that a smooth boundary between two media reflects. It follows from the refractive index n and, for metals, the extinction coefficient k.",
+    ),
+    (
+        "Lobe",
+        "the part of a BRDF that is concentrated about the mirror direction, which is seen as the highlight.",
+    ),
+    (
+        "Microfacet model",
+        "a BRDF made of a distribution D of tiny mirrors (Beckmann, GGX), their masking G and their Fresnel reflectance F: f = D G F / (4 (n·l)(n·v)).",
+    ),
     ("Reciprocity", "f(l, v) = f(v, l): light and viewer can be exchanged."),
-    ("Roughness α", "the width of the distribution of microfacets; about the typical slope of the surface. Blinn–Phong's exponent n is as sharp as α = √(2/(n + 2))."),
-    ("White furnace", "a test: in uniform light from everywhere, a surface that absorbs nothing cannot be told from its surroundings."),
-    ("Log error", "root mean square of the difference of natural logarithms between model and data. 0.10 means that the model is typically 10 % off, 0.7 a factor of two."),
+    (
+        "Roughness α",
+        "the width of the distribution of microfacets; about the typical slope of the surface. Blinn–Phong's exponent n is as sharp as α = √(2/(n + 2)).",
+    ),
+    (
+        "White furnace",
+        "a test: in uniform light from everywhere, a surface that absorbs nothing cannot be told from its surroundings.",
+    ),
+    (
+        "Log error",
+        "root mean square of the difference of natural logarithms between model and data. 0.10 means that the model is typically 10 % off, 0.7 a factor of two.",
+    ),
 ];
 
 /// What the report rests on.
@@ -232,9 +266,12 @@ mod tests {
 
     #[test]
     fn dates_are_those_of_the_calendar() {
-        for (days, expected) in
-            [(0, "1 January 1970"), (19_782, "29 February 2024"), (19_783, "1 March 2024"), (20_453, "31 December 2025")]
-        {
+        for (days, expected) in [
+            (0, "1 January 1970"),
+            (19_782, "29 February 2024"),
+            (19_783, "1 March 2024"),
+            (20_453, "31 December 2025"),
+        ] {
             assert_eq!(date(days), expected);
         }
     }
