@@ -1,10 +1,20 @@
 //! Frames of the GPU renderer at 1280×720, one sample per pixel: against a frame of the same app with
-//! nothing in the room, and over objects and lights.
+//! nothing in the room, over objects and lights, by model, and against Bevy's own material.
 
+use bevy::{
+    asset::Assets,
+    color::Color,
+    light::{GlobalAmbientLight, PointLight},
+    mesh::{Mesh, Mesh3d},
+    pbr::{MeshMaterial3d, StandardMaterial},
+    transform::components::Transform,
+};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::Vec3;
 use lights_camera_models::{
     capture::gpu::{GpuRenderer, Output},
+    reflection::swap::shared_mesh,
+    registry::Registry,
     scene::{Light, Object, Observer, Scene},
 };
 
@@ -74,5 +84,92 @@ fn frames(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, frames);
+/// A sphere so close that it fills the picture, under one point light, shaded per pixel.
+fn full_screen(model: &str) -> Scene {
+    Scene {
+        objects: vec![Object {
+            position: CENTRE,
+            size: DIAMETER,
+            tessellation: Some(TESSELLATION),
+            ..Object::default()
+        }],
+        lights: vec![Light { position: Some(LIGHT), intensity: 9.0, ..Light::default() }],
+        observer: Observer { position: EYE, field_of_view: 40.0, ..Observer::default() },
+        reflection_model: model.to_owned(),
+        shading_model: "phong".to_owned(),
+        ..Scene::default()
+    }
+}
+
+const CENTRE: Vec3 = Vec3::new(5.0, 5.0, 3.0);
+const DIAMETER: f32 = 5.0;
+const TESSELLATION: u32 = 32;
+const LIGHT: Vec3 = Vec3::new(6.5, 7.0, 8.0);
+const EYE: Vec3 = Vec3::new(5.0, 5.0, 6.7);
+
+/// The same sphere, light and camera in Bevy's own material, light and light loop: no shadows, no ambient
+/// light. Its lights are clustered on the CPU, which for one light is the cheaper way.
+fn standard_material() -> GpuRenderer {
+    let empty = Scene { objects: Vec::new(), lights: Vec::new(), ..full_screen("lambert") };
+    let mut renderer =
+        GpuRenderer::new(1280, 720, 1, Output::Display).expect("a Vulkan driver, software will do");
+    renderer.set_scene(empty);
+    let registry = Registry::builtin();
+    let sphere = registry.shape("sphere").expect("built in");
+    let mesh = shared_mesh(&sphere.mesh(TESSELLATION));
+    let world = renderer.app().world_mut();
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+    let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {
+        base_color: Color::WHITE,
+        perceptual_roughness: 0.5,
+        metallic: 0.0,
+        reflectance: 0.5,
+        ..StandardMaterial::default()
+    });
+    world.insert_resource(GlobalAmbientLight::NONE);
+    let at = Transform::from_translation(CENTRE).with_scale(Vec3::splat(DIAMETER));
+    world.spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
+    let light = PointLight { intensity: 4e6, shadow_maps_enabled: false, ..PointLight::default() };
+    world.spawn((light, Transform::from_translation(LIGHT)));
+    renderer.settle().expect("the GPU draws");
+    renderer
+}
+
+/// Asserts that the picture is filled by something lit: the background has 46.
+fn assert_lit(renderer: &mut GpuRenderer, what: &str) {
+    let rgb = renderer.read_rgb8().expect("the picture can be read");
+    let middle = rgb[3 * (1280 * 360 + 640)];
+    let corner = rgb[0];
+    assert!(middle > 60 && corner != 46, "{what}: the middle is {middle}, the corner {corner}");
+}
+
+fn models(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("full screen");
+    group.sample_size(30);
+    let mut renderer = renderer(full_screen("lambert"));
+    for model in Registry::builtin().models() {
+        let id = model.declaration.id;
+        renderer.set_scene(full_screen(id));
+        renderer.settle().expect("the GPU draws");
+        group.bench_function(id, |b| b.iter(|| frame(&mut renderer)));
+    }
+    drop(renderer);
+    // The comparison back to back, each in an app of its own.
+    for round in 1..=2 {
+        let mut ours = self::renderer(full_screen("metallic_roughness"));
+        assert_lit(&mut ours, "metallic_roughness");
+        group.bench_function(BenchmarkId::new("against Bevy: metallic_roughness", round), |b| {
+            b.iter(|| frame(&mut ours));
+        });
+        drop(ours);
+        let mut bevys = standard_material();
+        assert_lit(&mut bevys, "StandardMaterial");
+        group.bench_function(BenchmarkId::new("against Bevy: StandardMaterial", round), |b| {
+            b.iter(|| frame(&mut bevys));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, models, frames);
 criterion_main!(benches);

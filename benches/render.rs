@@ -7,9 +7,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use glam::Vec3;
 use lights_camera_models::{
     capture::png,
-    optics::{Frame, colour::Encoding},
     reference::{Settings, render_rgb8},
-    reflection::parameter::Values,
     registry::Registry,
     scene::{Light, Object, Scene},
 };
@@ -80,19 +78,5 @@ fn lights(c: &mut Criterion) {
     group.finish();
 }
 
-fn models(c: &mut Criterion) {
-    let mut group = c.benchmark_group("one evaluation");
-    group.sample_size(20);
-    let frame = Frame::from_normal(Vec3::new(0.1, 0.2, 0.9).normalize());
-    let (l, v) = (Vec3::new(0.4, 0.3, 0.8).normalize(), Vec3::new(-0.3, 0.1, 0.9).normalize());
-    for model in Registry::builtin().models() {
-        let surface = model.instantiate(&Values::default(), Encoding::Srgb);
-        group.bench_function(model.declaration.id, |b| {
-            b.iter(|| surface.response(black_box(l), black_box(v), black_box(&frame)));
-        });
-    }
-    group.finish();
-}
-
-criterion_group!(benches, default_scene, objects, lights, models);
+criterion_group!(benches, default_scene, objects, lights);
 criterion_main!(benches);

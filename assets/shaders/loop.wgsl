@@ -1,8 +1,8 @@
-// The light loop: the colour of a point with a unit normal under all lights, linear, before
-// exposure. `illumination`, `parameters` and `observer_position` come from the wrapper.
-fn illuminate(position: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+// The light loop: the colour of a point with a unit normal and a tangent under all lights, linear,
+// before exposure. `illumination`, `parameters` and `observer_position` come from the wrapper.
+fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {
     let v = unit_or_zero(observer_position() - position);
-    let frame = frame_from_normal(normal);
+    let frame = frame_new(normal, tangent);
     var colour = vec3(0.0);
     for (var i = 0u; i < min(illumination.count, MAX_LIGHTS); i++) {
         let light = illumination.lights[i];

@@ -30,6 +30,18 @@ fn to_local(frame: Frame, d: vec3<f32>) -> vec3<f32> {
     return vec3(dot(frame.t, d), dot(frame.b, d), dot(frame.n, d));
 }
 
+// The frame of a shading normal and a tangent of any length (Gram and Schmidt); that of the normal
+// alone where the tangent vanishes or runs along it.
+fn frame_new(n: vec3<f32>, tangent: vec3<f32>) -> Frame {
+    let across = tangent - dot(n, tangent) * n;
+    let squared = dot(across, across);
+    if squared > max(1e-8 * dot(tangent, tangent), 1e-30) {
+        let t = across * inverseSqrt(squared);
+        return Frame(n, t, cross(n, t));
+    }
+    return frame_from_normal(n);
+}
+
 // The vector at length 1, or zero where it has no direction.
 fn unit_or_zero(x: vec3<f32>) -> vec3<f32> {
     let squared = dot(x, x);

@@ -8,6 +8,9 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> parameter_table: array<Row>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
 
+// The largest half float; the twin of `BRIGHTEST` in src/optics/tone.rs.
+const BRIGHTEST: f32 = 65504.0;
+
 // The parameters of the object that is being drawn.
 var<private> parameters: Parameters;
 var<private> object_row: u32;
@@ -16,9 +19,11 @@ struct VertexIn {
     @builtin(instance_index) instance_index: u32,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
+    @location(2) tangent: vec3<f32>,
 #ifdef FACES
-    @location(2) face_normal: vec3<f32>,
-    @location(3) face_centre: vec3<f32>,
+    @location(3) face_normal: vec3<f32>,
+    @location(4) face_tangent: vec3<f32>,
+    @location(5) face_centre: vec3<f32>,
 #endif
 }
 
@@ -26,9 +31,10 @@ struct Stages {
     @builtin(position) clip_position: vec4<f32>,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
-    @location(2) colour: vec3<f32>,
-    @location(3) offset: vec3<f32>,
-    @location(4) @interpolate(flat) row: u32,
+    @location(2) tangent: vec3<f32>,
+    @location(3) colour: vec3<f32>,
+    @location(4) offset: vec3<f32>,
+    @location(5) @interpolate(flat) row: u32,
 }
 
 fn observer_position() -> vec3<f32> {
@@ -43,10 +49,13 @@ fn vertex(in: VertexIn) -> Stages {
     let centre = room_from_local[3].xyz;
     var corner: Corner;
     corner.position = (room_from_local * vec4(in.position, 1.0)).xyz;
-    // Objects are scaled alike in all directions, so normals turn as positions do.
+    // Objects are scaled alike in all directions, so normals turn as positions do. A tangent
+    // keeps its length, which says how much it counts between corners.
     corner.normal = unit_or_zero((room_from_local * vec4(in.normal, 0.0)).xyz);
+    corner.tangent = (room_from_local * vec4(in.tangent, 0.0)).xyz;
 #ifdef FACES
     corner.face_normal = unit_or_zero((room_from_local * vec4(in.face_normal, 0.0)).xyz);
+    corner.face_tangent = (room_from_local * vec4(in.face_tangent, 0.0)).xyz;
     corner.face_centre = (room_from_local * vec4(in.face_centre, 1.0)).xyz;
 #endif
     let passed = shade_vertex(corner);
@@ -54,6 +63,7 @@ fn vertex(in: VertexIn) -> Stages {
     out.clip_position = position_world_to_clip(corner.position);
     out.position = passed.position;
     out.normal = passed.normal;
+    out.tangent = passed.tangent;
     out.colour = passed.colour;
     out.offset = (room_from_local * vec4(in.position, 0.0)).xyz;
     out.row = object_row;
@@ -64,7 +74,10 @@ fn vertex(in: VertexIn) -> Stages {
 fn fragment(in: Stages) -> @location(0) vec4<f32> {
     object_row = in.row;
     parameters = parameter_table[object_row].parameters;
-    let linear = shade_pixel(Varying(in.position, in.normal, in.colour, in.offset)) * illumination.exposure;
+    let passed = Varying(in.position, in.normal, in.tangent, in.colour, in.offset);
+    let light = shade_pixel(passed) * illumination.exposure;
+    // What the target's half floats cannot hold would become infinite, and black when tone mapped.
+    let linear = clamp(light, vec3(-BRIGHTEST), vec3(BRIGHTEST));
     if illumination.gamma_naive != 0u {
         // The display encodes what it gets; decoding first undoes that, and the numbers stand as they are.
         let c = clamp(linear, vec3(0.0), vec3(1.0));

@@ -51,8 +51,17 @@ pub fn albedos(
     encoding: Encoding,
     views: &[Vec3],
 ) -> Result<Vec<DVec3>, GpuError> {
+    /// As many views have their batches in memory at a time.
+    const VIEWS: usize = 64;
+    if views.is_empty() {
+        return Ok(Vec::new());
+    }
     let evaluator = Evaluator::new(model, values, encoding)?;
-    directional_in_batches(views, |pairs| evaluator.evaluate(pairs))
+    let mut albedos = Vec::with_capacity(views.len());
+    for views in views.chunks(VIEWS) {
+        albedos.extend(directional_in_batches(views, |pairs| evaluator.evaluate(pairs))?);
+    }
+    Ok(albedos)
 }
 
 /// Bytes of `Pair` in `evaluate.wgsl`: two vec3, each padded to 16.

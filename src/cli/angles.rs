@@ -3,7 +3,10 @@
 use std::io::{self, Read};
 
 use super::Failure;
-use crate::scene::{error::quoted, load::STDIN};
+use crate::{
+    reflection::parameter::ABOVE_ZERO,
+    scene::{error::quoted, load::STDIN},
+};
 
 /// One line of a table: the text as it was written, and its numbers.
 pub(super) struct Row<const N: usize> {
@@ -17,7 +20,8 @@ pub(super) struct Row<const N: usize> {
 pub(super) struct Column {
     /// As the header must say.
     pub name: &'static str,
-    /// Smallest and largest legal value; any finite number if there are none.
+    /// Smallest and largest legal value; any finite number if there are none. [`ABOVE_ZERO`] is the
+    /// smallest number that is greater than zero.
     pub range: Option<(f64, f64)>,
 }
 
@@ -87,6 +91,9 @@ fn legal(cell: &str, column: &Column) -> Result<f64, String> {
     let value: f64 =
         cell.parse().ok().filter(|v: &f64| v.is_finite()).ok_or("it must be a finite number".to_owned())?;
     match column.range {
+        Some((min, max)) if min == f64::from(ABOVE_ZERO) && !(min..=max).contains(&value) => {
+            Err(format!("it must be greater than 0 and at most {max}"))
+        }
         Some((min, max)) if !(min..=max).contains(&value) => {
             Err(format!("it must be between {min} and {max}"))
         }

@@ -47,7 +47,7 @@ pub(super) struct Settings {
 
 /// Who evaluates a model.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Machine {
+pub(super) enum Machine {
     /// The Rust functions
     Cpu,
     /// The WGSL functions, in a compute pass; software Vulkan will do
@@ -89,7 +89,7 @@ pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
             (direction(theta_i, phi_i), direction(theta_o, phi_o))
         })
         .collect();
-    let frame = Frame { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
+    let frame = Frame::LOCAL;
     let brdfs: Vec<Vec3> = match arguments.on {
         Machine::Cpu => {
             let surface = model.instantiate(&values, Encoding::Srgb);

@@ -15,6 +15,7 @@ use clap::{Args, Parser, Subcommand, error::ErrorKind};
 
 use crate::{registry::Registry, scene::load::Defaults};
 
+mod albedo;
 mod angles;
 mod check;
 mod evaluate;
@@ -112,6 +113,9 @@ enum Command {
     Evaluate(evaluate::Arguments),
     /// Compare Blinn–Phong with physically based models: four phenomena as a report with numbers
     Study(study::Arguments),
+    /// Integrate a model: cosines of the view, `mu`, above 0 up to 1, from standard input, its directional
+    /// albedos to standard output, as CSV; of an anisotropic model as seen along the tangent
+    Albedo(albedo::Arguments),
     /// Print the JSON Schema of scene files
     Schema,
 }
@@ -204,6 +208,7 @@ fn run(cli: Cli) -> Outcome {
         Some(Command::Models { json }) => models::run(json, &registry),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &registry),
         Some(Command::Study(arguments)) => study::run(&arguments, options, &registry),
+        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &registry),
         Some(Command::Schema) => print(&crate::scene::schema::text(&registry)),
     }
 }

@@ -49,8 +49,9 @@ pub(super) struct Arguments {
     /// Use this shading model for every object
     #[arg(long, value_name = "ID")]
     shading: Option<String>,
-    /// Use this tone mapping
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = format!(
+        "Use this tone mapping: {}", check::listed(&ToneMapping::ALL.map(ToneMapping::id), "or")
+    ))]
     tone_mapping: Option<String>,
     /// Use this exposure
     #[arg(long, value_name = "EV", allow_hyphen_values = true)]

@@ -52,8 +52,8 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
         kind,
         position: light.position.unwrap_or(Vec3::ZERO),
         direction: light.direction.unwrap_or(Vec3::ZERO).normalize_or_zero(),
-        colour: encoding.decode(light.colour),
-        intensity: light.intensity,
+        colour: light.colour_under(encoding),
+        intensity: light.intensity_as(entry),
         parameters: entry.numbers(&light.parameters),
     }
 }

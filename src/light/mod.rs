@@ -55,7 +55,8 @@ pub struct Declaration {
     pub has_position: bool,
     /// Whether it shines in a direction.
     pub has_direction: bool,
-    /// The unit of its intensity: `cd` or `lx`.
+    /// The unit of its intensity: `cd` or `lx`. For a type in `cd`, [`LightType::solid_angle`] says what
+    /// that is in lumen.
     pub unit: &'static str,
     /// Its intensity when the scene does not give one.
     pub default_intensity: f32,
@@ -112,6 +113,13 @@ pub trait LightType: Component + Default {
 
     /// The light that arrives at `p` (room coordinates).
     fn incident(light: &LightRecord, p: Vec3) -> Incident;
+
+    /// The integral of its profile over all directions, sr, given the declared parameters in order:
+    /// luminous flux (lm) over intensity (cd), `Φ = I Ω`. `None` for types that have no flux, such as
+    /// light from infinitely far away.
+    fn solid_angle(_parameters: &[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64> {
+        None
+    }
 }
 
 /// A registered light type.
@@ -121,6 +129,8 @@ pub struct LightEntry {
     pub declaration: &'static Declaration,
     /// See [`LightType::incident`].
     pub incident: fn(&LightRecord, Vec3) -> Incident,
+    /// See [`LightType::solid_angle`].
+    solid_angle: fn(&[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64>,
     /// Puts the marker component on an entity.
     pub mark: fn(&mut bevy::ecs::system::EntityCommands),
     /// Takes the marker component off an entity.
@@ -134,6 +144,7 @@ impl LightEntry {
         Self {
             declaration: const { &L::DECLARATION },
             incident: L::incident,
+            solid_angle: L::solid_angle,
             mark: |entity| {
                 entity.insert(L::default());
             },
@@ -141,6 +152,18 @@ impl LightEntry {
                 entity.remove::<L>();
             },
         }
+    }
+
+    /// Luminous flux over intensity of a light with these parameters, sr; `None` if the type has no flux.
+    #[must_use]
+    pub fn solid_angle(&self, values: &Values) -> Option<f64> {
+        (self.solid_angle)(&self.numbers(values))
+    }
+
+    /// Whether lights of the type have a luminous flux.
+    #[must_use]
+    pub fn has_flux(&self) -> bool {
+        self.solid_angle(&Values::default()).is_some()
     }
 
     /// The declared parameters of a light as numbers, in order.

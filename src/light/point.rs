@@ -1,10 +1,14 @@
 use bevy::ecs::component::Component;
 use glam::Vec3;
 
-use super::{Declaration, Incident, LightRecord, LightType};
-use crate::{optics::radiometry::inverse_square, shader::wgsl};
+use super::{Declaration, Incident, LightRecord, LightType, MAX_LIGHT_PARAMETERS};
+use crate::{
+    optics::radiometry::{SPHERE, inverse_square},
+    shader::wgsl,
+};
 
-/// **Point light**: shines alike in every direction; `I(p) = I / |p − p₀|²` (CA DD7), I in candela.
+/// **Point light**: shines alike in every direction; `I(p) = I / |p − p₀|²` (CA DD7), I in candela. Its
+/// luminous flux is `Φ = 4π I` lumen.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Point;
 
@@ -31,5 +35,9 @@ impl LightType for Point {
             l: to_light.normalize_or_zero(),
             intensity: light.intensity * inverse_square(to_light),
         }
+    }
+
+    fn solid_angle(_parameters: &[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64> {
+        Some(SPHERE)
     }
 }

@@ -1,9 +1,9 @@
 use bevy::ecs::component::Component;
 use glam::Vec3;
 
-use super::{Declaration, Incident, LightRecord, LightType};
+use super::{Declaration, Incident, LightRecord, LightType, MAX_LIGHT_PARAMETERS};
 use crate::{
-    optics::radiometry::{cone, inverse_square},
+    optics::radiometry::{cone, cone_solid_angle, inverse_square},
     reflection::parameter::{ABOVE_ZERO, Parameter, ParameterKind},
     shader::wgsl,
 };
@@ -29,7 +29,8 @@ const PENUMBRA: Parameter = Parameter {
 };
 
 /// **Spotlight**: a point light within a cone; `I(p) = I · cone(θ) / |p − p₀|²`
-/// ([`cone`]), I in candela.
+/// ([`cone`]), I in candela, on the axis. Its luminous flux is `Φ = I ∫ cone dω` lumen
+/// ([`cone_solid_angle`]).
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Spot;
 
@@ -56,5 +57,9 @@ impl LightType for Spot {
         let [cone_angle, penumbra, ..] = light.parameters;
         let profile = cone(light.direction.dot(-l), cone_angle, penumbra);
         Incident::From { l, intensity: light.intensity * profile * inverse_square(to_light) }
+    }
+
+    fn solid_angle(&[cone_angle, penumbra, ..]: &[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64> {
+        Some(cone_solid_angle(cone_angle, penumbra))
     }
 }

@@ -77,6 +77,10 @@ pub fn tonemapping(tone: ToneMapping) -> Tonemapping {
         ToneMapping::Reinhard => Tonemapping::Reinhard,
         ToneMapping::ReinhardLuminance => Tonemapping::ReinhardLuminance,
         ToneMapping::Aces => Tonemapping::AcesFitted,
+        ToneMapping::AgX => Tonemapping::AgX,
+        ToneMapping::TonyMcMapface => Tonemapping::TonyMcMapface,
+        ToneMapping::BlenderFilmic => Tonemapping::BlenderFilmic,
+        ToneMapping::KhronosPbrNeutral => Tonemapping::KhronosPbrNeutral,
     }
 }
 

@@ -18,6 +18,22 @@ impl Frame {
     /// The frame in which models are measured: normal +z, tangent +x.
     pub const LOCAL: Self = Self { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
 
+    /// The frame of a surface point with a shading normal and a tangent, which need neither be
+    /// perpendicular nor have length 1: J. Gram and E. Schmidt's `t = T − (N·T) N`, normalised. Where the
+    /// tangent vanishes or runs along the normal (the sine of their angle is below 10⁻⁴), the frame
+    /// [from the normal](Self::from_normal) alone.
+    #[must_use]
+    pub fn new(n: Vec3, tangent: Vec3) -> Self {
+        let across = tangent - n.dot(tangent) * n;
+        let squared = across.length_squared();
+        if squared > (1e-8 * tangent.length_squared()).max(1e-30) {
+            let t = across / squared.sqrt();
+            Self { n, t, b: n.cross(t) }
+        } else {
+            Self::from_normal(n)
+        }
+    }
+
     /// A frame around a normal alone, for surfaces without a preferred direction: the branchless
     /// basis of T. Duff et al. (2017), *Building an Orthonormal Basis, Revisited*.
     #[must_use]
@@ -110,5 +126,31 @@ mod tests {
             }
             assert!(f.n.cross(f.t).dot(f.b) > 0.999);
         }
+    }
+
+    #[test]
+    fn a_frame_turns_its_tangent_onto_the_surface() {
+        for (i, n) in directions().enumerate() {
+            // Of any length, leaning to the normal by any angle but the last 0.3°.
+            let beside = Frame::from_normal(n).t;
+            let lean = 1.57 * (i as f32 / 200.0 - 1.0);
+            let f = Frame::new(n, 10f32.powi(i as i32 % 9 - 4) * (lean.cos() * beside + lean.sin() * n));
+            assert!((f.t - beside).length() < 1e-3, "{n} {lean}: {f:?}");
+            assert!((f.b - n.cross(beside)).length() < 1e-3 && f.n == n);
+            assert!(f.t.dot(n).abs() < 1e-3 && (f.t.length() - 1.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn without_a_tangent_the_frame_is_that_of_the_normal() {
+        for n in directions() {
+            for tangent in [Vec3::ZERO, n, -3.0 * n, 1e-20 * n, Vec3::splat(1e-25), Vec3::NAN, Vec3::INFINITY]
+            {
+                assert_eq!(Frame::new(n, tangent), Frame::from_normal(n), "{n} {tangent}");
+            }
+        }
+        // No normal at all, as of a degenerate polygon: finite.
+        let f = Frame::new(Vec3::ZERO, Vec3::X);
+        assert!(f.t.is_finite() && f.b.is_finite());
     }
 }

@@ -65,7 +65,7 @@ mod tests {
         use crate::optics::geometry::{half_vector, mirror};
         let n = Vec3::new(0.3, -0.5, 0.8).normalize();
         let l = Vec3::new(0.6, 0.1, 0.7).normalize();
-        for v in [Vec3::new(-0.2, -0.9, 0.5), Vec3::new(0.1, -0.3, 0.9), Vec3::new(0.9, 0.3, 0.8)] {
+        for v in [Vec3::new(-0.2, -0.9, 0.5), Vec3::new(0.1, -0.3, 0.9), Vec3::new(0.3, -0.6, 0.7)] {
             let v = v.normalize();
             let tan_squared = |cosine: f32| 1.0 / (cosine * cosine) - 1.0;
             let half = tan_squared(n.dot(half_vector(l, v)));

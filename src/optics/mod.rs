@@ -1,6 +1,7 @@
 //! The vocabulary of every reflection model: pure functions on [`glam`] vectors, no Bevy.
 //!
-//! Each module has a twin in `assets/shaders/terms.wgsl` or `assets/shaders/optics/` with the same function names. The two are
+//! What shaders need has a twin in `assets/shaders/terms.wgsl` or `assets/shaders/optics/` with the same
+//! function names. The two are
 //! written separately on purpose: they are witnesses of each other.
 
 pub mod albedo;
@@ -13,6 +14,8 @@ pub mod geometry;
 pub mod lobe;
 pub mod masking;
 pub mod radiometry;
+pub mod table;
+pub mod temperature;
 pub mod tone;
 
 pub use geometry::Frame;

@@ -1,5 +1,7 @@
 //! How much light arrives: distance and cones (R9).
 
+use std::f64::consts::PI;
+
 use glam::Vec3;
 
 /// The guard against division by zero in [`inverse_square`]: squared distances below (1 mm)² count
@@ -30,9 +32,63 @@ pub fn cone(cos_angle: f32, cone_angle: f32, penumbra: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// The solid angle of all directions, sr: what turns the intensity of a point light (cd) into its
+/// luminous flux (lm), `Φ = 4π I`.
+pub const SPHERE: f64 = 4.0 * PI;
+
+/// The integral of [`cone`] over all directions, sr: what turns the intensity of a spotlight (cd) into
+/// its luminous flux (lm), `Φ = I ∫ cone dω`.
+///
+/// With `c = cos θ` and `dω = 2π dc`, the inside contributes `2π (1 − c_inner)`; over the penumbra the
+/// cubic is `½` on average, whatever its width, so `2π (c_inner − c_outer) / 2` is added. The sum
+/// `2π (1 − (c_inner + c_outer) / 2)` is `2π (sin²(inner/2) + sin²(outer/2))`, which loses no digits for
+/// narrow cones.
+#[must_use]
+pub fn cone_solid_angle(cone_angle: f32, penumbra: f32) -> f64 {
+    let sin_squared = |degrees: f64| (0.5 * degrees.to_radians()).sin().powi(2);
+    let outer = sin_squared(f64::from(cone_angle));
+    let inner = sin_squared(f64::from(cone_angle) * (1.0 - f64::from(penumbra)));
+    // As in `cone`, where the edge is too narrow to be soft.
+    if 2.0 * (outer - inner) < 1e-6 {
+        return SPHERE * outer;
+    }
+    2.0 * PI * (inner + outer)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_flux_of_a_cone_is_the_integral_of_its_profile() {
+        for cone_angle in [1.0, 15.0, 30.0, 60.0, 90.0] {
+            for penumbra in [0.0, 0.1, 0.5, 1.0] {
+                // Midpoint rule over the cosine, from the edge to the axis.
+                let n = 200_000;
+                let depth = 2.0 * (0.5 * f64::from(cone_angle).to_radians()).sin().powi(2);
+                let sum: f64 = (0..n)
+                    .map(|i| 1.0 - depth * (f64::from(i) + 0.5) / f64::from(n))
+                    .map(|c| f64::from(cone(c as f32, cone_angle, penumbra)))
+                    .sum();
+                let integral = 2.0 * PI * depth * sum / f64::from(n);
+                let error = |solid_angle: f64| (solid_angle / integral - 1.0).abs();
+                assert!(error(cone_solid_angle(cone_angle, penumbra)) < 1e-3, "{cone_angle}° {penumbra}");
+                // A wrong twin: the cone without its soft edge.
+                if penumbra > 0.0 {
+                    assert!(error(cone_solid_angle(cone_angle, 0.0)) > 1e-2, "{cone_angle}° {penumbra}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn cones_have_the_solid_angles_of_the_books() {
+        // A hemisphere, and a cone whose half angle is 60°: 2π (1 − cos 60°).
+        assert!((cone_solid_angle(90.0, 0.0) - 2.0 * PI).abs() < 1e-12);
+        assert!((cone_solid_angle(60.0, 0.0) - PI).abs() < 1e-6);
+        assert!((SPHERE - 12.566_370_6).abs() < 1e-6);
+        assert!(cone_solid_angle(f32::MIN_POSITIVE, 0.5) > 0.0, "the narrowest cone can be divided by");
+    }
 
     #[test]
     fn twice_the_distance_is_a_quarter_of_the_light() {

@@ -1,36 +1,126 @@
 //! From scene-referred light to what a display can show: exposure and tone mapping.
 
-use super::colour::luminance;
+use std::sync::LazyLock;
+
+use super::{colour::luminance, table::Table};
 use glam::{Mat3, Vec3};
 
-/// A curve that maps light from 0 to ∞ into the display's 0 to 1. The formulas are those of the
-/// renderer's pass of the same name, so that both renderers agree.
+/// The brightest light that tone mapping gets, the largest half float: the renderer for graphics cards
+/// holds the picture in half floats before its pass of tone mapping. What is brighter counts as this.
+pub const BRIGHTEST: f32 = 65_504.0;
+
+/// A curve that maps light from 0 to ∞ into the display's 0 to 1. The formulas and tables are those of
+/// the renderer's pass of the same name, so that both renderers agree; input and output are linear
+/// Rec. 709.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ToneMapping {
     /// No curve: what exceeds 1 is clipped. Values stay comparable, so this is the default.
     #[default]
     None,
-    /// `c / (1 + c)` per channel (E. Reinhard et al. 2002, *Photographic Tone Reproduction*).
+    /// `c / (1 + c)` per channel (E. Reinhard, M. Stark, P. Shirley, J. Ferwerda 2002, *Photographic Tone
+    /// Reproduction for Digital Images*).
     Reinhard,
-    /// Reinhard's curve on luminance alone, which keeps hue.
+    /// `c / (1 + Y)` with the luminance `Y` of `c`: Reinhard's curve on luminance alone, which keeps hue
+    /// and saturation.
     ReinhardLuminance,
-    /// The fit of the ACES RRT and ODT by S. Hill (2017).
+    /// The fit of the ACES RRT and ODT by S. Hill (2017, in M. Pettineo's *BakingLab*):
+    /// `M₂ · (v (v + 0.0245786) − 0.000090537) / (v (0.983729 v + 0.4329510) + 0.238081)` with `v = M₁ c`.
     Aces,
+    /// AgX (T. Sobotka 2022), default contrast: `T(s(M c))`, where `M` moves the primaries inwards,
+    /// `s(v) = (log₂(v / 0.18) + 10) / 16.5`, clamped to [0, 1], and `T` is a table of 32³ colours.
+    AgX,
+    /// Tony McMapface (T. Stachowiak 2023): `T(c / (1 + c))` with a table `T` of 48³ colours.
+    TonyMcMapface,
+    /// Filmic as in Blender 2.79 to 3.6 (T. Sobotka 2017): `T(s(c))` with
+    /// `s(v) = (log₂(v / 0.18) + 11) / 23`, clamped to [0, 1], and a table `T` of 64³ colours.
+    BlenderFilmic,
+    /// Khronos PBR Neutral (The Khronos Group 2024, *PBR Neutral Tone Mapping*, by E. Lalish and others).
+    ///
+    /// With the smallest channel `x` of `c`, `f = x − 6.25 x²` for `x < 0.08` and `0.04` above takes away
+    /// what a dielectric adds by Fresnel reflection: `c' = c − f`. Where the largest channel `p` of `c'`
+    /// is below `k = 0.76`, that is the answer. Above, `p' = 1 − (1 − k)² / (p + 1 − 2k)` compresses it,
+    /// and `c' p' / p` goes to white `p'` by the fraction `1 − 1 / (0.15 (p − p') + 1)`.
+    KhronosPbrNeutral,
+}
+
+/// What a choice is called and what it does.
+struct About {
+    id: &'static str,
+    name: &'static str,
+    author: &'static str,
+    summary: &'static str,
 }
 
 impl ToneMapping {
     /// Every choice, in the order in which they are offered.
-    pub const ALL: [Self; 4] = [Self::None, Self::Reinhard, Self::ReinhardLuminance, Self::Aces];
+    pub const ALL: [Self; 8] = [
+        Self::None,
+        Self::Reinhard,
+        Self::ReinhardLuminance,
+        Self::Aces,
+        Self::AgX,
+        Self::TonyMcMapface,
+        Self::BlenderFilmic,
+        Self::KhronosPbrNeutral,
+    ];
+
+    const fn about(self) -> About {
+        match self {
+            Self::None => About {
+                id: "none",
+                name: "None (clip)",
+                author: "",
+                summary: "No curve: what exceeds 1 is cut off, and numbers stay comparable.",
+            },
+            Self::Reinhard => About {
+                id: "reinhard",
+                name: "Reinhard",
+                author: "E. Reinhard and others 2002",
+                summary: "c / (1 + c) per channel. Bright colours shift in hue towards their secondary colours.",
+            },
+            Self::ReinhardLuminance => About {
+                id: "reinhard_luminance",
+                name: "Reinhard, luminance",
+                author: "E. Reinhard and others 2002",
+                summary: "The same curve on luminance alone: keeps hue and saturation, so bright colours do not pale.",
+            },
+            Self::Aces => About {
+                id: "aces",
+                name: "ACES (fitted)",
+                author: "S. Hill 2017",
+                summary: "A fit of the film industry's reference transform: much contrast, bright colours pale and shift in hue.",
+            },
+            Self::AgX => About {
+                id: "agx",
+                name: "AgX",
+                author: "T. Sobotka 2022",
+                summary: "Soft contrast over 16.5 EV; bright colours pale gently and hardly shift in hue.",
+            },
+            Self::TonyMcMapface => About {
+                id: "tony_mc_mapface",
+                name: "Tony McMapface",
+                author: "T. Stachowiak 2023",
+                summary: "Adds no contrast and stays near the input; compresses brightness as it is perceived, and bright colours pale.",
+            },
+            Self::BlenderFilmic => About {
+                id: "blender_filmic",
+                name: "Blender Filmic",
+                author: "T. Sobotka 2017",
+                summary: "The curve of Blender 2.79 to 3.6, over 23 EV: low contrast, bright colours pale, some shift in hue.",
+            },
+            Self::KhronosPbrNeutral => About {
+                id: "khronos_pbr_neutral",
+                name: "Khronos PBR Neutral",
+                author: "Khronos Group 2024",
+                summary: "Shows colours up to 0.8 as they are, less the 0.04 of a dielectric's reflection: for goods whose colour must be right.",
+            },
+        }
+    }
 
     /// The name in scene files and on the command line.
     #[must_use]
     pub fn id(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Reinhard => "reinhard",
-            Self::ReinhardLuminance => "reinhard_luminance",
-            Self::Aces => "aces",
-        }
+        self.about().id
     }
 
     /// The choice of that name.
@@ -42,17 +132,25 @@ impl ToneMapping {
     /// The name that people read.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "None (clip)",
-            Self::Reinhard => "Reinhard",
-            Self::ReinhardLuminance => "Reinhard, luminance",
-            Self::Aces => "ACES (fitted)",
-        }
+        self.about().name
+    }
+
+    /// Who published it, and when; empty for no curve.
+    #[must_use]
+    pub fn author(self) -> &'static str {
+        self.about().author
+    }
+
+    /// One or two sentences: what it does.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        self.about().summary
     }
 
     /// Maps one linear colour; the result is within [0, 1] up to clipping by the display.
     #[must_use]
     pub fn map(self, c: Vec3) -> Vec3 {
+        let c = c.clamp(Vec3::splat(-BRIGHTEST), Vec3::splat(BRIGHTEST));
         match self {
             Self::None => c,
             Self::Reinhard => c / (1.0 + c),
@@ -64,15 +162,73 @@ impl ToneMapping {
                 c * (1.0 / (1.0 + old))
             }
             Self::Aces => aces(c),
+            Self::AgX => agx(c),
+            Self::TonyMcMapface => TONY_MC_MAPFACE.at(c / (c + 1.0)),
+            Self::BlenderFilmic => BLENDER_FILMIC.at(log2_shaper(c, -11.0, 12.0)),
+            Self::KhronosPbrNeutral => khronos_pbr_neutral(c),
         }
     }
+}
+
+// The tables (see assets/tone/README.md), read when a curve that needs one is first used.
+static AGX: LazyLock<Table> = LazyLock::new(|| table(include_bytes!("../../assets/tone/agx.ktx2")));
+static TONY_MC_MAPFACE: LazyLock<Table> =
+    LazyLock::new(|| table(include_bytes!("../../assets/tone/tony_mc_mapface.ktx2")));
+static BLENDER_FILMIC: LazyLock<Table> =
+    LazyLock::new(|| table(include_bytes!("../../assets/tone/blender_filmic.ktx2")));
+
+/// A table that is part of the program.
+#[allow(clippy::expect_used)]
+fn table(file: &[u8]) -> Table {
+    Table::from_ktx2(file).expect("the tables in assets/tone are whole; a test reads them")
+}
+
+/// Numbers from 0 to ∞ on a logarithmic scale around middle grey, 0.18: 0 at `min` EV from it and 1 at
+/// `max` EV. Below 2⁻¹⁵ a small number is added instead of falling to −∞.
+fn log2_shaper(c: Vec3, min: f32, max: f32) -> Vec3 {
+    c.max(Vec3::ZERO).map(|v| {
+        let v = if v < 3.051_757e-5 { 1.525_878e-5 + v } else { v };
+        ((v / 0.18).log2().clamp(min, max) - min) / (max - min)
+    })
+}
+
+/// AgX: primaries moved inwards, so that pure colours pale when they get bright, a logarithmic scale from
+/// 10 EV below middle grey to 6.5 EV above, and the table.
+fn agx(c: Vec3) -> Vec3 {
+    let inwards = Mat3::from_cols_array(&[
+        0.842_479_06,
+        0.078_433_6,
+        0.079_223_75,
+        0.042_328_24,
+        0.878_468_64,
+        0.079_166_13,
+        0.042_375_65,
+        0.078_433_6,
+        0.879_143,
+    ])
+    .transpose();
+    AGX.at(log2_shaper(inwards * c.max(Vec3::ZERO), -10.0, 6.5))
+}
+
+/// Khronos PBR Neutral; the formula is at [`ToneMapping::KhronosPbrNeutral`].
+fn khronos_pbr_neutral(c: Vec3) -> Vec3 {
+    const START: f32 = 0.8 - 0.04;
+    const DESATURATION: f32 = 0.15;
+    let x = c.min_element();
+    let c = c - if x < 0.08 { x - 6.25 * x * x } else { 0.04 };
+    let peak = c.max_element();
+    if peak < START {
+        return c;
+    }
+    let d = 1.0 - START;
+    let compressed = 1.0 - d * d / (peak + d - START);
+    let pale = 1.0 - 1.0 / (DESATURATION * (peak - compressed) + 1.0);
+    (c * (compressed / peak)).lerp(Vec3::splat(compressed), pale)
 }
 
 /// S. Hill's fit (2017, in M. Pettineo's *BakingLab*): sRGB → AP1 with the reference rendering
 /// transform's saturation, a rational curve, and back.
 fn aces(c: Vec3) -> Vec3 {
-    // The curve is flat long before; beyond, its squares would overflow to ∞/∞.
-    let c = c.min(Vec3::splat(1e8));
     // Rows as published; glam wants columns, hence the transposes.
     let input = Mat3::from_cols_array(&[
         0.59719, 0.35458, 0.04823, 0.07600, 0.90834, 0.01566, 0.02840, 0.13383, 0.83777,
@@ -119,6 +275,38 @@ mod tests {
                 }
             }
             assert_eq!(ToneMapping::from_id(tone.id()), Some(tone));
+        }
+    }
+
+    #[test]
+    fn curves_are_known_where_they_are_published() {
+        let near = |tone: ToneMapping, c: Vec3, expected: Vec3, tolerance: f32| {
+            let error = (tone.map(c) - expected).abs().max_element();
+            assert!(error < tolerance, "{tone:?} maps {c} to {}", tone.map(c));
+        };
+        // Khronos: up to 0.8 only the 0.04 is taken away; black stays, and white is never reached.
+        near(ToneMapping::KhronosPbrNeutral, Vec3::splat(0.5), Vec3::splat(0.46), 1e-6);
+        near(ToneMapping::KhronosPbrNeutral, Vec3::new(0.8, 0.5, 0.2), Vec3::new(0.76, 0.46, 0.16), 1e-6);
+        // At 0.08 the two pieces meet.
+        near(ToneMapping::KhronosPbrNeutral, Vec3::splat(0.08), Vec3::splat(0.04), 1e-6);
+        // AgX shows middle grey as 0.5 encoded, 0.214 linear; Filmic as about 0.18.
+        near(ToneMapping::AgX, Vec3::splat(0.18), Vec3::splat(0.2), 0.03);
+        near(ToneMapping::BlenderFilmic, Vec3::splat(0.18), Vec3::splat(0.2), 0.04);
+        // Tony McMapface resembles Reinhard's curve for greys.
+        near(ToneMapping::TonyMcMapface, Vec3::splat(0.5), Vec3::splat(1.0 / 3.0), 0.06);
+    }
+
+    #[test]
+    fn greys_stay_grey_and_brighter_stays_brighter() {
+        for tone in ToneMapping::ALL {
+            let greys: Vec<_> =
+                (-80..80).map(|i| tone.map(Vec3::splat(0.1 * i as f32).map(f32::exp2))).collect();
+            for (i, g) in greys.iter().enumerate() {
+                let spread = g.max_element() - g.min_element();
+                assert!(spread < 0.01, "{tone:?}: step {i} is {g}");
+            }
+            // The tables hold nine bits.
+            assert!(greys.windows(2).all(|g| g[1].y >= g[0].y - 3e-3), "{tone:?} falls somewhere");
         }
     }
 

@@ -1,23 +1,29 @@
 //! The chooser of reflection models: families as headings, name, author and year; type to search.
 
 use bevy_egui::egui::{
-    self, Button, Id, Key, Modifiers, Popup, PopupCloseBehavior, RichText, ScrollArea, Sense, TextEdit, Ui,
-    WidgetInfo, WidgetType, pos2, vec2,
+    self, Button, Color32, Id, Key, Modifiers, Popup, PopupCloseBehavior, Rect, RectAlign, RichText,
+    ScrollArea, Sense, Stroke, TextEdit, Tooltip, Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 
 use super::{
-    state::{Action, Edit, Lab, ViewChange},
+    state::{Action, Lab, ViewChange},
     theme::{self, Palette},
 };
 use crate::{reflection::ModelEntry, registry::Registry};
+
+/// Whether every word of a search occurs in a text, in any order.
+#[must_use]
+pub fn matches(text: &str, search: &str) -> bool {
+    let plain = |s: &str| s.to_lowercase().replace(['–', '-', '_'], " ");
+    let text = plain(text);
+    plain(search).split_whitespace().all(|word| text.contains(word))
+}
 
 /// The models that a search finds, in the order in which the chooser lists them: by family, then in
 /// the order of registration. Every word of the search must occur in name, id, author, family or
 /// summary.
 #[must_use]
 pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
-    let plain = |s: &str| s.to_lowercase().replace(['–', '-', '_'], " ");
-    let words: Vec<String> = plain(search).split_whitespace().map(str::to_owned).collect();
     let mut families = Vec::new();
     for model in registry.models() {
         if !families.contains(&model.declaration.family) {
@@ -26,8 +32,7 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
     }
     let hit = |m: &&ModelEntry| {
         let d = m.declaration;
-        let all = plain(&[d.name, d.id, d.author, d.family.name(), d.summary].join(" "));
-        words.iter().all(|w| all.contains(w.as_str()))
+        matches(&[d.name, d.id, d.author, d.family.name(), d.summary].join(" "), search)
     };
     families
         .iter()
@@ -36,50 +41,65 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
         .collect()
 }
 
-/// The button and, when it is open, the list.
-pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
-    let mut actions = Vec::new();
+/// One line of a [`list`].
+#[derive(Clone, Debug, Default)]
+pub struct Entry<'a> {
+    /// The group; a heading stands where it changes. Empty for none.
+    pub heading: &'a str,
+    /// What it is.
+    pub name: &'a str,
+    /// What else is worth reading, at the right.
+    pub note: String,
+    /// The key that chooses it.
+    pub number: Option<usize>,
+    /// Its colour.
+    pub swatch: Option<Color32>,
+    /// Whether it is what is chosen now.
+    pub current: bool,
+}
+
+/// What a [`list`] says.
+#[derive(Clone, Copy, Debug)]
+pub struct Words {
+    /// What is searched, for screen readers: "Search reflection models".
+    pub label: &'static str,
+    /// In the empty field.
+    pub hint: &'static str,
+    /// Where nothing was found.
+    pub none: &'static str,
+    /// Below the list.
+    pub foot: &'static str,
+}
+
+/// Forgets what was typed into a [`list`], so that it opens fresh.
+pub fn forget(ctx: &egui::Context, id: Id) {
+    ctx.data_mut(|d| {
+        d.remove::<String>(id.with("search"));
+        d.remove::<usize>(id.with("row"));
+    });
+}
+
+/// A list that is searched by typing and walked by arrow keys, at most `height` points high. Returns what
+/// was chosen. Call [`forget`] while it is not shown.
+pub fn list<'e, T>(
+    ui: &mut Ui,
+    id: Id,
+    words: Words,
+    height: f32,
+    find: impl Fn(&str) -> Vec<T>,
+    entry: impl Fn(&T) -> Entry<'e>,
+    tip: impl Fn(&mut Ui, &T),
+) -> Option<T> {
     let scale = theme::scale_here(ui);
-    let palette = Palette::here(ui);
-    let id = Id::new("reflection chooser");
-    let current = registry.model(&lab.scene.reflection_model).map(|m| m.declaration);
-    let name = current.map_or(lab.scene.reflection_model.as_str(), |d| d.name);
-    let button = Button::new(theme::strong(ui, name))
-        .right_text(RichText::new("▾").color(palette.weak))
-        .min_size(vec2(132.0, 24.0) * scale)
-        .truncate();
-    let response = ui.add(button);
-    response
-        .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Reflection model: {name}")));
-    if response.clicked() {
-        actions.push(Action::View(ViewChange::Chooser(!lab.view.chooser_open)));
-    }
-    if !lab.view.chooser_open
-        && let Some(d) = current
-    {
-        response.clone().on_hover_ui(|ui| {
-            ui.set_max_width(320.0 * scale);
-            ui.label(theme::strong(ui, d.name));
-            ui.label(d.summary);
-            ui.label(theme::small(ui, format!("{} · key R chooses another", d.source)));
-        });
-    }
-    let search_id = id.with("search");
-    let row_id = id.with("row");
-    if !lab.view.chooser_open {
-        ui.data_mut(|d| {
-            d.remove::<String>(search_id);
-            d.remove::<usize>(row_id);
-        });
-        return actions;
-    }
+    let (search_id, row_id) = (id.with("search"), id.with("row"));
     let mut search: String = ui.data(|d| d.get_temp(search_id)).unwrap_or_default();
-    let found = find(registry, &search);
-    let start = found.iter().position(|m| m.declaration.id == lab.scene.reflection_model).unwrap_or(0);
+    let mut found = find(&search);
     let before: Option<usize> = ui.data(|d| d.get_temp(row_id));
+    let start = found.iter().position(|t| entry(t).current).unwrap_or(0);
     let mut row = before.unwrap_or(start).min(found.len().saturating_sub(1));
-    let mut chosen = None;
     let mut moved = before.is_none();
+    let mut chosen = None;
+    // Taken before the text field sees them.
     ui.input_mut(|i| {
         if i.consume_key(Modifiers::NONE, Key::ArrowDown) && row + 1 < found.len() {
             (row, moved) = (row + 1, true);
@@ -87,12 +107,201 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         if i.consume_key(Modifiers::NONE, Key::ArrowUp) && row > 0 {
             (row, moved) = (row - 1, true);
         }
-        if i.consume_key(Modifiers::NONE, Key::Enter) {
-            chosen = found.get(row).map(|m| m.declaration.id);
+        if i.consume_key(Modifiers::NONE, Key::Enter) && row < found.len() {
+            chosen = Some(row);
         }
     });
+    let edit = TextEdit::singleline(&mut search)
+        .id(id.with("text"))
+        .hint_text(words.hint)
+        .desired_width(f32::INFINITY);
+    let edit = ui.add(edit);
+    edit.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(true, "", &search, words.hint);
+        info.label = Some(words.label.to_owned());
+        info
+    });
+    if before.is_none() {
+        edit.request_focus();
+    }
+    ui.add_space(4.0 * scale);
+    ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        // The scroll bar floats over this margin.
+        ui.set_width(ui.available_width() - 8.0 * scale);
+        ui.spacing_mut().item_spacing.y = 2.0 * scale;
+        if found.is_empty() {
+            ui.weak(words.none);
+        }
+        let mut heading = "";
+        for (i, item) in found.iter().enumerate() {
+            let entry = entry(item);
+            if heading != entry.heading {
+                heading = entry.heading;
+                ui.add_space(if i == 0 { 0.0 } else { 6.0 * scale });
+                ui.label(theme::strong(ui, heading).small());
+            }
+            let response = list_row(ui, &entry, i == row);
+            if i == row && moved {
+                response.scroll_to_me(None);
+            }
+            if response.hovered() && ui.input(|i| i.pointer.delta() != egui::Vec2::ZERO) {
+                row = i;
+            }
+            if response.clicked() {
+                chosen = Some(i);
+            }
+            // Beside the list: below, it would hide what is read next.
+            let mut tooltip = Tooltip::for_enabled(&response);
+            let popup = tooltip.popup.align(RectAlign::RIGHT_START);
+            tooltip.popup = popup.align_alternatives(&[RectAlign::LEFT_START]).gap(16.0 * scale);
+            tooltip.show(|ui| {
+                ui.set_max_width(320.0 * scale);
+                tip(ui, item);
+            });
+        }
+    });
+    ui.separator();
+    ui.add(egui::Label::new(theme::small(ui, words.foot)).wrap());
+    if edit.changed() {
+        row = 0;
+    }
+    ui.data_mut(|d| {
+        d.insert_temp(row_id, row);
+        d.insert_temp(search_id, search);
+    });
+    chosen.map(|i| found.swap_remove(i))
+}
+
+fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> egui::Response {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0 * scale), Sense::click());
+    response
+        .widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, entry.current, entry.name));
+    if !ui.is_rect_visible(rect) {
+        return response;
+    }
+    let painter = ui.painter_at(rect);
+    if marked {
+        painter.rect_filled(rect, 4.0, palette.chosen);
+    }
+    if entry.current {
+        let bar = Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
+        painter.rect_filled(bar, 1.0, palette.accent);
+    }
+    let y = rect.center().y;
+    if let Some(number) = entry.number {
+        let small = egui::TextStyle::Small.resolve(ui.style());
+        let at = pos2(rect.left() + 16.0 * scale, y);
+        painter.text(at, egui::Align2::CENTER_CENTER, number, small, palette.weak);
+    }
+    let mut left = rect.left() + 30.0 * scale;
+    if let Some(colour) = entry.swatch {
+        left = rect.left() + 10.0 * scale;
+        let sample = Rect::from_min_size(pos2(left, y - 7.0 * scale), vec2(22.0, 14.0) * scale);
+        painter.rect(sample, 3.0, colour, Stroke::new(1.0, palette.weak), egui::StrokeKind::Inside);
+        left += 30.0 * scale;
+    }
+    let right = rect.right() - 6.0 * scale;
+    let name = theme::elided(ui, entry.name, egui::TextStyle::Body, palette.text, right - left);
+    let room = right - left - name.size().x - 12.0 * scale;
+    painter.galley(pos2(left, y - name.size().y / 2.0), name, palette.text);
+    let note = theme::elided(ui, &entry.note, egui::TextStyle::Small, palette.weak, room);
+    painter.galley(pos2(right - note.size().x, y - note.size().y / 2.0), note, palette.weak);
+    response
+}
+
+const MODELS: Words = Words {
+    label: "Search reflection models",
+    hint: "Search: name, author, year",
+    none: "No model has that in its name, author, year or description.",
+    foot: "↑ ↓ Enter choose · Esc closes · 1–9 without this list",
+};
+
+/// The list of models; `current` is the id of the chosen one. `first` is offered before all of them and
+/// stands for no model in particular: the answer `None` within the answer.
+pub fn models<'a>(
+    ui: &mut Ui,
+    id: Id,
+    height: f32,
+    lab: &Lab,
+    registry: &'a Registry,
+    current: Option<&str>,
+    first: Option<&'a str>,
+) -> Option<Option<&'a ModelEntry>> {
+    let found = |search: &str| {
+        let plain = first.filter(|_| search.trim().is_empty()).map(|_| None);
+        plain.into_iter().chain(find(registry, search).into_iter().map(Some)).collect()
+    };
+    let entry = |model: &Option<&'a ModelEntry>| -> Entry<'a> {
+        let Some(d) = model.map(|m| m.declaration) else {
+            let current = current.is_none();
+            return Entry { name: first.unwrap_or_default(), current, ..Entry::default() };
+        };
+        Entry {
+            heading: d.family.name(),
+            name: d.name,
+            note: d.author.to_owned(),
+            number: lab.model_slots.iter().position(|m| m == d.id).map(|slot| slot + 1),
+            swatch: None,
+            current: current == Some(d.id),
+        }
+    };
+    list(ui, id, MODELS, height, found, entry, |ui, model| {
+        if let Some(model) = model {
+            about(ui, model);
+        }
+    })
+}
+
+/// What a tooltip says about a model.
+pub fn about(ui: &mut Ui, model: &ModelEntry) {
+    let d = model.declaration;
+    let palette = Palette::here(ui);
+    ui.label(theme::strong(ui, d.name));
+    ui.label(d.summary);
+    for (law, holds) in d.laws.list() {
+        let text = if holds { format!("✓ {law}") } else { format!("✗ not {law}") };
+        ui.label(RichText::new(text).small().color(if holds { palette.text } else { palette.weak }));
+    }
+    ui.label(theme::small(ui, d.source));
+}
+
+/// The button and, when it is open, the list. They are about the model that the selected object has of its
+/// own, else about that of the scene.
+pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    let mut actions = Vec::new();
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    let id = Id::new("reflection chooser");
+    let shown = lab.model_shown();
+    let current = registry.model(shown);
+    let name = current.map_or(shown, |m| m.declaration.name);
+    let button = Button::new(theme::strong(ui, name))
+        .right_text(RichText::new("▾").color(palette.weak))
+        .min_size(vec2(132.0, 24.0) * scale)
+        .truncate();
+    let response = ui.add_sized(vec2(160.0, 24.0) * scale, button);
+    response
+        .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Reflection model: {name}")));
+    if response.clicked() {
+        actions.push(Action::View(ViewChange::Chooser(!lab.view.chooser_open)));
+    }
+    if !lab.view.chooser_open {
+        forget(ui.ctx(), id);
+        if let Some(model) = current {
+            response.on_hover_ui(|ui| {
+                ui.set_max_width(320.0 * scale);
+                about(ui, model);
+                ui.label(theme::small(ui, "key R chooses another"));
+            });
+        }
+        return actions;
+    }
     let mut open = true;
-    let width = 400.0 * scale;
+    let mut chosen = None;
+    let width = 460.0 * scale;
+    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 120.0 * scale;
     Popup::from_response(&response)
         .id(id)
         .open_bool(&mut open)
@@ -100,115 +309,16 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .show(|ui| {
             ui.set_width(width);
-            let edit = TextEdit::singleline(&mut search)
-                .id(id.with("text"))
-                .hint_text("Search: name, author, year")
-                .desired_width(f32::INFINITY);
-            let edit = ui.add(edit);
-            edit.widget_info(|| {
-                let mut info = WidgetInfo::text_edit(true, "", &search, "");
-                info.label = Some("Search reflection models".to_owned());
-                info
-            });
-            if before.is_none() {
-                edit.request_focus();
-            }
-            if edit.changed() {
-                row = 0;
-                ui.data_mut(|d| d.insert_temp(search_id, search.clone()));
-            }
-            ui.add_space(4.0 * scale);
-            ScrollArea::vertical().max_height(420.0 * scale).show(ui, |ui| {
-                ui.set_width(ui.available_width());
-                if found.is_empty() {
-                    ui.weak("No model has that in its name, author, year or description.");
-                }
-                let mut family = None;
-                for (i, model) in found.iter().enumerate() {
-                    let d = model.declaration;
-                    if family != Some(d.family) {
-                        family = Some(d.family);
-                        ui.add_space(if i == 0 { 0.0 } else { 6.0 * scale });
-                        ui.label(theme::small(ui, d.family.name()));
-                    }
-                    let response = model_row(ui, lab, model, i == row);
-                    if i == row && moved {
-                        response.scroll_to_me(None);
-                    }
-                    if response.hovered() && ui.input(|i| i.pointer.delta() != egui::Vec2::ZERO) {
-                        row = i;
-                    }
-                    if response.clicked() {
-                        chosen = Some(d.id);
-                    }
-                    response.on_hover_ui(|ui| {
-                        ui.set_max_width(320.0 * scale);
-                        ui.label(d.summary);
-                        for (law, holds) in d.laws.list() {
-                            ui.label(theme::small(
-                                ui,
-                                format!("{} {law}", if holds { "✓" } else { "✗ not" }),
-                            ));
-                        }
-                        ui.label(theme::small(ui, d.source));
-                    });
-                }
-            });
-            ui.separator();
-            ui.label(theme::small(
-                ui,
-                "↑ ↓ Enter choose · Esc closes · 1–9 choose the numbered ones without this list",
-            ));
+            chosen = models(ui, id, height, lab, registry, Some(shown), None).flatten();
         });
-    ui.data_mut(|d| d.insert_temp(row_id, row));
     if let Some(model) = chosen {
-        actions.push(Action::Edit(Edit::Model(model.to_owned())));
+        actions.push(Action::Edit(lab.edit_model(model.declaration.id)));
         open = false;
     }
     if !open {
         actions.push(Action::View(ViewChange::Chooser(false)));
     }
     actions
-}
-
-fn model_row(ui: &mut Ui, lab: &Lab, model: &ModelEntry, marked: bool) -> egui::Response {
-    let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let d = model.declaration;
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 26.0 * scale), Sense::click());
-    let current = d.id == lab.scene.reflection_model;
-    response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, current, d.name));
-    if ui.is_rect_visible(rect) {
-        let painter = ui.painter_at(rect);
-        if marked {
-            painter.rect_filled(rect, 4.0, palette.chosen);
-        }
-        if current {
-            painter.rect_filled(
-                egui::Rect::from_min_size(rect.min, vec2(3.0, rect.height())),
-                1.0,
-                palette.accent,
-            );
-        }
-        let y = rect.center().y;
-        let body = egui::TextStyle::Body.resolve(ui.style());
-        let small = egui::TextStyle::Small.resolve(ui.style());
-        if let Some(slot) = lab.model_slots.iter().position(|m| m == d.id) {
-            painter.text(
-                pos2(rect.left() + 16.0 * scale, y),
-                egui::Align2::CENTER_CENTER,
-                slot + 1,
-                small.clone(),
-                palette.weak,
-            );
-        }
-        let at = pos2(rect.left() + 30.0 * scale, y);
-        let name = painter.text(at, egui::Align2::LEFT_CENTER, d.name, body, palette.text);
-        let author = ui.painter().layout_no_wrap(d.author.to_owned(), small, palette.weak);
-        let x = (rect.right() - 6.0 * scale - author.size().x).max(name.right() + 8.0 * scale);
-        painter.galley(pos2(x, y - author.size().y / 2.0), author, palette.weak);
-    }
-    response
 }
 
 #[cfg(test)]

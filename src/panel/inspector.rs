@@ -6,7 +6,7 @@ use bevy_egui::egui::{
 use glam::Vec3;
 
 use super::{
-    Panel, Place,
+    Panel, Place, chooser,
     icon::{self, Icon},
     knob::{self, Caption},
     limits::{self, Limits},
@@ -16,10 +16,11 @@ use super::{
     top::segmented,
 };
 use crate::{
-    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    reflection::{EquationPart, ModelEntry, Term},
+    light::LightEntry,
+    optics::{TermSelection, colour::Encoding, temperature, tone::ToneMapping},
+    reflection::{EquationPart, Measured, ModelEntry, Term, parameter::Value, preset},
     registry::Registry,
-    scene::{Display, Observer, SceneSize},
+    scene::{Display, Light, Object, Observer, SceneSize},
     shading::ModeEntry,
 };
 
@@ -210,7 +211,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
     section(ui, "Reflection", true, |ui| {
         if let Some(model) = model {
             model_header(ui, model);
-            equation(ui, lab, registry, model, actions);
+            equation(ui, lab, model, actions);
         }
         if let Some(mode) = mode {
             stage(ui, mode);
@@ -222,11 +223,15 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             ui.label("The reflection model of this object is not known here; choose another one.");
             return;
         };
+        if let Some(values) = measured(ui, model, object) {
+            actions.push(set(ObjectField::Preset(values)));
+        }
         for p in model.parameters {
             if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), None) {
                 actions.push(set(ObjectField::Material(p.name, v)));
             }
         }
+        readouts(ui, lab, model, object);
         let unused: Vec<_> = registry
             .material_parameters()
             .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
@@ -290,21 +295,20 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             let scene_model =
                 registry.model(&lab.scene.reflection_model).map_or("–", |m| m.declaration.name);
             let of_scene = format!("as the scene: {scene_model}");
-            let options: Vec<&str> = std::iter::once(of_scene.as_str())
-                .chain(registry.models().iter().map(|m| m.declaration.name))
-                .collect();
-            let chosen = object.reflection_model.as_ref().map_or(Some(0), |id| {
-                registry.models().iter().position(|m| m.declaration.id == id).map(|k| k + 1)
-            });
+            let own = object.reflection_model.as_deref();
+            let shown =
+                own.map_or(of_scene.as_str(), |id| registry.model(id).map_or(id, |m| m.declaration.name));
             let caption = Caption {
                 label: "reflection",
                 help: "The reflection model of this object: the scene’s, or its own.",
                 ..Caption::default()
             };
-            if let Some(k) = knob::choice_knob(ui, "model", &caption, chosen.unwrap_or(usize::MAX), &options)
-            {
-                let id = k.checked_sub(1).map(|k| registry.models()[k].declaration.id.to_owned());
-                actions.push(set(ObjectField::Model(id)));
+            let chosen = knob::list_knob(ui, "model", &caption, shown, |ui, id| {
+                let height = 0.45 * ui.ctx().content_rect().height();
+                chooser::models(ui, id, height, lab, registry, own, Some(&of_scene))
+            });
+            if let Some(model) = chosen {
+                actions.push(set(ObjectField::Model(model.map(|m| m.declaration.id.to_owned()))));
             }
             let scene_mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
             let of_scene = format!("as the scene: {scene_mode}");
@@ -327,10 +331,102 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
     );
 }
 
+/// The chooser of measured materials, for models that can be one. Returns the parameters of the chosen.
+fn measured(ui: &mut Ui, model: &ModelEntry, object: &Object) -> Option<Vec<(&'static str, Value)>> {
+    let offered: Vec<_> = preset::all().iter().filter(|m| !(model.preset)(m).is_empty()).collect();
+    if offered.is_empty() {
+        return None;
+    }
+    let is = |m: &Measured| {
+        (model.preset)(m)
+            .iter()
+            .all(|(name, value)| model.parameter(name).is_some_and(|p| object.material.get(p) == *value))
+    };
+    let present = offered.iter().find(|m| is(m)).copied();
+    let caption = Caption {
+        label: "measured material",
+        help: "Sets the knobs below to what was measured on a real material. It shows “none” as soon as one of them is turned away.",
+        ..Caption::default()
+    };
+    let words = chooser::Words {
+        label: "Search measured materials",
+        hint: "Search: name, author, year",
+        none: "No material has that in its name or source.",
+        foot: "The numbers are F₀ in red, green and blue: what the surface reflects when seen straight on.",
+    };
+    let chosen =
+        knob::list_knob(ui, "measured material", &caption, present.map_or("none", |m| m.name), |ui, id| {
+            let height = 0.45 * ui.ctx().content_rect().height();
+            let find = |search: &str| -> Vec<&'static Measured> {
+                let hit =
+                    |m: &&&'static Measured| chooser::matches(&[m.name, m.id, m.source].join(" "), search);
+                offered.iter().filter(hit).copied().collect()
+            };
+            let entry = |m: &&'static Measured| chooser::Entry {
+                heading: if m.metal { "Metals and semiconductors" } else { "Dielectrics" },
+                name: m.name,
+                note: m.f0.to_array().map(|v| format!("{v:.2}")).join("  "),
+                number: None,
+                swatch: Some(theme::swatch(m.f0)),
+                current: present == Some(*m),
+            };
+            chooser::list(ui, id, words, height, find, entry, |ui, m| measurement(ui, m))
+        });
+    chosen.map(model.preset)
+}
+
+/// What was measured on a material, and by whom.
+fn measurement(ui: &mut Ui, material: &Measured) {
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    ui.label(theme::strong(ui, material.name));
+    egui::Grid::new("measurement").num_columns(5).spacing(vec2(14.0, 3.0) * scale).show(ui, |ui| {
+        ui.label("");
+        for wavelength in ["630 nm", "532 nm", "465 nm"] {
+            ui.label(theme::small(ui, wavelength));
+        }
+        ui.end_row();
+        let rows = [("n", material.n), ("k", material.k), ("F_0", material.f0.to_array())];
+        for (symbol, values) in rows {
+            maths::symbol(ui, symbol, 15.0 * scale);
+            for v in values {
+                // The k of glass and water is about 10⁻⁸.
+                let text = if v > 0.0 && v < 5e-4 {
+                    format!("{v:.0e}").replace('-', "−")
+                } else {
+                    format!("{v:.3}")
+                };
+                ui.label(text);
+            }
+            if symbol == "F_0" {
+                let (rect, _) = ui.allocate_exact_size(vec2(30.0, 16.0) * scale, Sense::hover());
+                let stroke = egui::Stroke::new(1.0, palette.weak);
+                ui.painter().rect(rect, 3.0, theme::swatch(material.f0), stroke, egui::StrokeKind::Inside);
+            }
+            ui.end_row();
+        }
+    });
+    ui.label(theme::small(ui, "F₀ is a linear sRGB colour of the whole spectrum"));
+    ui.label(theme::small(ui, format!("Measured by {}", material.source)));
+}
+
+/// What follows from the values of the knobs.
+fn readouts(ui: &mut Ui, lab: &Lab, model: &ModelEntry, object: &Object) {
+    let readouts = model.instantiate(&object.material, lab.scene.display.encoding).readouts();
+    if readouts.is_empty() {
+        return;
+    }
+    ui.add_space(2.0);
+    ui.label(theme::small(ui, "What follows from these"));
+    for readout in &readouts {
+        knob::readout(ui, readout);
+    }
+    ui.add_space(4.0);
+}
+
 /// Name, author and year of a model; the whole story is the tooltip.
 fn model_header(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
-    let palette = Palette::here(ui);
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(d.name).heading());
         ui.label(theme::small(ui, d.author));
@@ -338,25 +434,24 @@ fn model_header(ui: &mut Ui, model: &ModelEntry) {
     .response
     .on_hover_ui(|ui| {
         ui.set_max_width(320.0 * theme::scale_here(ui));
-        ui.label(d.summary);
-        for (law, holds) in d.laws.list() {
-            let text = if holds { format!("✓ {law}") } else { format!("✗ not {law}") };
-            ui.label(RichText::new(text).small().color(if holds { palette.text } else { palette.weak }));
-        }
-        ui.label(theme::small(ui, d.source));
+        chooser::about(ui, model);
     });
 }
 
-fn equation(ui: &mut Ui, lab: &Lab, registry: &Registry, model: &ModelEntry, actions: &mut Vec<Action>) {
+fn equation(ui: &mut Ui, lab: &Lab, model: &ModelEntry, actions: &mut Vec<Action>) {
     let d = model.declaration;
     let name = |symbol: &str| -> Option<String> {
         let parameter = model.parameters.iter().find(|p| maths::same_symbol(p.symbol, symbol));
         match parameter {
             Some(p) => Some(format!("{}: {}", p.label, p.help)),
-            None => maths::meaning(symbol).map(str::to_owned).or_else(|| {
-                let other = registry.material_parameters().find(|p| maths::same_symbol(p.symbol, symbol))?;
-                Some(other.label.to_owned())
-            }),
+            None => {
+                let defined =
+                    maths::definition(d.equation, symbol).map(|text| format!("defined here: {text}"));
+                let general = maths::meaning(symbol).map(str::to_owned);
+                // A letter that the equation uses for something of its own does not mean what it usually does.
+                let terms = ["I", "I_a", "I_d", "I_s"];
+                if terms.contains(&symbol) { general.or(defined) } else { defined.or(general) }
+            }
         }
     };
     maths::equation(ui, d.equation, name);
@@ -415,17 +510,18 @@ fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Ve
     header(ui, lab, registry, Selection::Light(i), light.name.as_deref(), actions);
     let kinds: Vec<_> = registry.lights().iter().map(|l| l.declaration).collect();
     let names: Vec<_> = kinds.iter().map(|d| d.name).collect();
-    let chosen = kinds.iter().position(|d| d.id == light.kind);
+    let chosen = registry.light_index(&light.kind).map(|k| k as usize);
     section(ui, "Light", true, |ui| {
         let help = chosen.map_or("", |k| kinds[k].summary);
         let caption = Caption { label: "type", help, ..Caption::default() };
         if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
             actions.push(set(LightField::Kind(kinds[k].id.to_owned())));
         }
-        let Some(d) = chosen.map(|k| kinds[k]) else {
+        let Some(kind) = registry.light(&light.kind) else {
             ui.label("This type of light is not known here; choose another one.");
             return;
         };
+        let d = kind.declaration;
         if !d.summary.is_empty() {
             ui.add(egui::Label::new(theme::small(ui, d.summary)).wrap());
         }
@@ -434,33 +530,8 @@ fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Ve
             "I" => Some("the intensity of the light".to_owned()),
             other => maths::meaning(other).map(str::to_owned),
         });
-        let caption = Caption {
-            symbol: "I",
-            label: "intensity",
-            unit: d.unit,
-            help: unit_help(d.unit),
-            ..Caption::default()
-        };
-        let default = Some(f64::from(d.default_intensity));
-        if let Some(v) = knob::number_knob(
-            ui,
-            "intensity",
-            &caption,
-            f64::from(light.intensity),
-            default,
-            &limits::intensity(d),
-        ) {
-            actions.push(set(LightField::Intensity(v as f32)));
-        }
-        let caption = Caption {
-            label: "colour",
-            unit: "sRGB",
-            help: "The colour of the light; white leaves the materials as they are.",
-            ..Caption::default()
-        };
-        if let Some(c) = knob::colour_knob(ui, "colour", &caption, light.colour, Some([255; 3])) {
-            actions.push(set(LightField::Colour(c)));
-        }
+        actions.extend(brightness(ui, light, kind).map(set));
+        actions.extend(light_colour(ui, light).map(set));
         for p in d.parameters {
             if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), None) {
                 actions.push(set(LightField::Parameter(p.name, v)));
@@ -496,9 +567,120 @@ fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Ve
     }
 }
 
+/// How bright a light is: its intensity, or, for types that have one, its luminous flux.
+fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightField> {
+    let d = kind.declaration;
+    let intensity = f64::from(light.intensity_as(kind));
+    let caption = Caption {
+        symbol: "I",
+        label: "intensity",
+        unit: d.unit,
+        help: unit_help(d.unit),
+        ..Caption::default()
+    };
+    let default = f64::from(d.default_intensity);
+    let limits = limits::intensity(d);
+    let Some(solid_angle) = kind.solid_angle(&light.parameters) else {
+        let new = knob::number_knob(ui, "intensity", &caption, intensity, Some(default), &limits);
+        return new.map(|v| LightField::Intensity(v as f32));
+    };
+    // Rounded where it is converted, to what can be told apart.
+    let flux = light.luminous_flux.map_or_else(|| limits::significant(intensity * solid_angle, 6), f64::from);
+    let as_flux = light.luminous_flux.is_some();
+    let rounded = |v: f64| limits::number(limits::significant(v, 4));
+    let conversion = if as_flux {
+        format!("I = Φ / {} sr = {} cd", rounded(solid_angle), rounded(intensity))
+    } else {
+        format!("Φ = I · {} sr = {} lm", rounded(solid_angle), rounded(flux))
+    };
+    maths::equation_of(ui, &[(Term::Total, &conversion)], |symbol| match symbol {
+        "I" => Some("the intensity of the light: what it sends into each direction".to_owned()),
+        "Φ" => Some("the luminous flux: what it sends out in all directions together".to_owned()),
+        _ => None,
+    });
+    let mut other_unit = None;
+    let units = [["cd", "candela"], ["lm", "lumen"]];
+    let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
+    let out = if as_flux {
+        let caption =
+            Caption { symbol: "Φ", label: "luminous flux", unit: "lm", help: unit_help("lm"), ..caption };
+        let default = limits::significant(default * solid_angle, 3);
+        let limits = limits::luminous_flux(d);
+        knob::number_knob_beside(ui, "flux", &caption, flux, Some(default), &limits, beside)
+            .map(|v| LightField::LuminousFlux(v as f32))
+    } else {
+        knob::number_knob_beside(ui, "intensity", &caption, intensity, Some(default), &limits, beside)
+            .map(|v| LightField::Intensity(v as f32))
+    };
+    match other_unit {
+        Some(0) => Some(LightField::Intensity(limits::significant(intensity, 6) as f32)),
+        Some(_) => Some(LightField::LuminousFlux(flux as f32)),
+        None => out,
+    }
+}
+
+/// The colour of a light: sRGB, or the temperature of a black body.
+fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
+    let mut out = None;
+    let scale = theme::scale_here(ui);
+    ui.horizontal(|ui| {
+        ui.set_min_height(30.0 * scale);
+        ui.label(theme::small(ui, "colour by"));
+        let chosen = usize::from(light.colour_temperature.is_some());
+        let tip = |ui: &mut Ui, i: usize| {
+            ui.label(if i == 0 {
+                "Red, green and blue, as on a display."
+            } else {
+                "The temperature of a black body that glows in this colour."
+            });
+        };
+        match segmented(ui, "Colour by", &["RGB", "temperature"], Some(chosen), tip) {
+            Some(0) => out = Some(LightField::Colour(light.rgb8())),
+            Some(_) => {
+                out = Some(LightField::ColourTemperature(temperature::nearest_temperature(light.colour)))
+            }
+            None => {}
+        }
+        if light.colour_temperature.is_some() {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.add_space(22.0 * scale);
+                knob::colour_sample(ui, light.rgb8());
+            });
+        }
+    });
+    let field = match light.colour_temperature {
+        Some(kelvin) => {
+            let caption = Caption {
+                symbol: "T",
+                label: "colour temperature",
+                unit: "K",
+                help: "The colour of a black body of this temperature: a candle has 1900 K, a light bulb 2700 K, the \
+                       midday sun about 5500 K, a blue sky 10 000 K and more; 6500 K is white. How bright the \
+                       light is does not change.",
+                ..Caption::default()
+            };
+            let default = Some(f64::from(temperature::WHITE_TEMPERATURE));
+            let limits = limits::colour_temperature();
+            knob::number_knob(ui, "temperature", &caption, f64::from(kelvin), default, &limits)
+                .map(|v| LightField::ColourTemperature(v as f32))
+        }
+        None => {
+            let caption = Caption {
+                label: "colour",
+                unit: "sRGB",
+                help: "The colour of the light; white leaves the materials as they are.",
+                ..Caption::default()
+            };
+            knob::colour_knob(ui, "colour", &caption, light.colour, Some([255; 3])).map(LightField::Colour)
+        }
+    };
+    out.or(field)
+}
+
 fn unit_help(unit: &str) -> &'static str {
     match unit {
         "cd" => "In candela: the light sent into each direction. At 1 m, 1 cd gives an illuminance of 1 lx.",
+        "lm" => "In lumen: the light sent out in all directions together, as printed on light bulbs.",
         "lx" => "In lux: the light that arrives on a surface that faces it.",
         _ => "How strong the light is.",
     }
@@ -622,14 +804,14 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
         {
             actions.push(set(Display { exposure: v as f32, ..d }));
         }
-        let names: Vec<_> = ToneMapping::ALL.iter().map(|t| t.name()).collect();
+        let told: Vec<_> = ToneMapping::ALL.iter().map(|t| [t.name(), t.author(), t.summary()]).collect();
         let chosen = ToneMapping::ALL.iter().position(|t| *t == d.tone_mapping).unwrap_or(0);
         let caption = Caption {
             label: "tone mapping",
             help: "How light brighter than the display can show is brought into its range. None: it is cut off, and values stay comparable.",
             ..Caption::default()
         };
-        if let Some(i) = knob::choice_knob(ui, "tone mapping", &caption, chosen, &names) {
+        if let Some(i) = knob::told_choice_knob(ui, "tone mapping", &caption, chosen, &told) {
             actions.push(set(Display { tone_mapping: ToneMapping::ALL[i], ..d }));
         }
         let names: Vec<_> = Encoding::ALL

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::{self, Key, Modifiers};
 
-use super::state::{Action, Edit, Lab, ViewChange};
+use super::state::{Action, Lab, ViewChange};
 use crate::registry::Registry;
 
 /// A key and what it does.
@@ -72,14 +72,7 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
         let d = mode.declaration;
         if let Some(key) = Key::from_name(&d.key.to_string()) {
             let label = format!("{} shading", d.name);
-            add(
-                "Reflection and shading",
-                false,
-                false,
-                key,
-                &label,
-                Action::Edit(Edit::Mode(d.id.to_owned())),
-            );
+            add("Reflection and shading", false, false, key, &label, Action::Edit(lab.edit_mode(d.id)));
         }
     }
     let chooser = Action::View(ViewChange::Chooser(!lab.view.chooser_open));
@@ -180,6 +173,7 @@ pub fn pressed(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Actio
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::panel::state::Edit;
 
     #[test]
     fn no_key_does_two_things() {

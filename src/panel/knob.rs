@@ -4,17 +4,22 @@
 //! style and with the rule beside it, until it is corrected or given up with Escape.
 
 use bevy_egui::egui::{
-    self, Align, Color32, CursorIcon, FontId, Id, Key, Rect, Response, Sense, Stroke, TextEdit, TextStyle,
-    Ui, WidgetInfo, WidgetType, pos2, vec2,
+    self, Align, Align2, Area, Button, Color32, CursorIcon, FontId, Id, Key, Order, Popup,
+    PopupCloseBehavior, Rect, RectAlign, Response, RichText, Sense, Stroke, TextEdit, TextStyle, Ui,
+    WidgetInfo, WidgetType, pos2, vec2,
 };
 use glam::Vec3;
 
 use super::{
+    chooser,
     limits::{Limits, number},
     maths,
     theme::{self, Palette},
 };
-use crate::reflection::parameter::{Parameter, ParameterKind, Value};
+use crate::reflection::{
+    Readout, ReadoutValue,
+    parameter::{Parameter, ParameterKind, Value},
+};
 
 /// What a knob says about itself.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,11 +48,11 @@ struct Draft {
 
 /// What a field says.
 #[derive(Debug)]
-pub struct Field {
+pub struct Field<T = f64> {
     /// The response of the text field.
     pub response: Response,
     /// A new legal value.
-    pub value: Option<f64>,
+    pub value: Option<T>,
     /// The rule that the text in the field breaks.
     pub error: Option<String>,
 }
@@ -295,52 +300,45 @@ fn slider(
     (response, out.filter(|v| limits.allows(*v) && *v as f32 != value as f32))
 }
 
-/// The first line of a knob: symbol and word at the left, what `right` adds at the right.
-fn head<R>(ui: &mut Ui, caption: &Caption, right: impl FnOnce(&mut Ui) -> R) -> (Response, R) {
+/// The first line of a knob: symbol and word at the left, what `right` adds at the right, which has
+/// `reserved` points for itself.
+fn head<R>(ui: &mut Ui, caption: &Caption, reserved: f32, right: impl FnOnce(&mut Ui) -> R) -> (Response, R) {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let marked = !caption.symbol.is_empty()
         && maths::highlighted(ui.ctx()).is_some_and(|m| maths::same_symbol(&m, caption.symbol));
-    let mut label_response = None;
-    let out = ui
-        .horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0 * scale;
-            let height = 22.0 * scale;
-            let symbol_column = if caption.symbol.is_empty() { 0.0 } else { 30.0 * scale };
-            let colour =
-                if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
-            let galley = ui.painter().layout_no_wrap(
-                caption.label.to_owned(),
-                TextStyle::Body.resolve(ui.style()),
-                colour,
-            );
-            let room = (ui.available_width() - 96.0 * scale).max(40.0 * scale);
-            let (rect, response) = ui.allocate_exact_size(
-                vec2((symbol_column + galley.size().x).min(room), height),
-                Sense::hover(),
-            );
-            if marked {
-                ui.painter().rect_filled(rect.expand2(vec2(4.0, 0.0)), 3.0, palette.chosen);
-            }
-            if !caption.symbol.is_empty() {
-                let at = pos2(rect.left(), rect.center().y + 5.0 * scale);
-                maths::paint_symbol(ui, at, caption.symbol, 16.0 * scale, colour);
-            }
-            let clip = ui.painter_at(rect.expand(1.0));
-            clip.galley(
-                pos2(rect.left() + symbol_column, rect.center().y - galley.size().y / 2.0),
-                galley,
-                colour,
-            );
-            label_response = Some(response);
-            ui.with_layout(egui::Layout::right_to_left(Align::Center), right).inner
-        })
-        .inner;
-    match label_response {
-        Some(response) => (response, out),
-        None => (ui.response(), out),
-    }
+    let row = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0 * scale;
+        let height = 22.0 * scale;
+        let symbol_size = 16.0 * scale;
+        let symbol_column = if caption.symbol.is_empty() {
+            0.0
+        } else {
+            (maths::symbol_width(ui, caption.symbol, symbol_size) + 6.0 * scale).max(30.0 * scale)
+        };
+        let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
+        let room = (ui.available_width() - reserved * scale).max(symbol_column + 40.0 * scale);
+        let galley = theme::elided(ui, caption.label, TextStyle::Body, colour, room - symbol_column);
+        let size = vec2(symbol_column + galley.size().x, height);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+        if marked {
+            ui.painter().rect_filled(rect.expand2(vec2(4.0, 0.0)), 3.0, palette.chosen);
+        }
+        if !caption.symbol.is_empty() {
+            let at = pos2(rect.left(), rect.center().y + 5.0 * scale);
+            maths::paint_symbol(ui, at, caption.symbol, symbol_size, colour);
+        }
+        let at = pos2(rect.left() + symbol_column, rect.center().y - galley.size().y / 2.0);
+        ui.painter().galley(at, galley, colour);
+        (response, ui.with_layout(egui::Layout::right_to_left(Align::Center), right).inner)
+    });
+    row.inner
 }
+
+/// The points that a number and its unit take at the right of a knob.
+const NUMBER: f32 = 96.0;
+/// The points that a choice takes at the right of a knob.
+const CHOICE: f32 = 150.0;
 
 /// The tooltip of a knob: what it does, what is legal, the default.
 fn tooltip(ui: &mut Ui, caption: &Caption, rule: &str, default: &str) {
@@ -362,13 +360,29 @@ fn capitalised(text: &str) -> String {
     chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
 }
 
-/// The sentence under a field that holds something illegal.
-fn complaint(ui: &mut Ui, error: &str, kept: &str) {
+/// The sentence under a field that holds something illegal. It lies over what is below, so that nothing
+/// moves while one types, and is gone when one goes elsewhere; the field stays red.
+fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
+    if !(field.has_focus() || field.hovered()) || !ui.is_rect_visible(field.rect) {
+        return;
+    }
     let palette = Palette::here(ui);
-    let text = format!("{error} — the picture keeps {kept}");
-    let label = egui::Label::new(egui::RichText::new(text).small().color(palette.error)).wrap();
-    let response = ui.add(label);
-    response.scroll_to_me(None);
+    let scale = theme::scale_here(ui);
+    let gap = vec2(0.0, 4.0 * scale);
+    let below = field.rect.bottom() + 56.0 * scale < ui.ctx().content_rect().bottom();
+    let (pivot, at) = if below {
+        (Align2::RIGHT_TOP, field.rect.right_bottom() + gap)
+    } else {
+        (Align2::RIGHT_BOTTOM, field.rect.right_top() - gap)
+    };
+    let area = Area::new(field.id.with("complaint")).order(Order::Tooltip).interactable(false);
+    area.pivot(pivot).fixed_pos(at).constrain(true).show(ui.ctx(), |ui| {
+        egui::Frame::popup(ui.style()).stroke(Stroke::new(1.0, palette.error)).show(ui, |ui| {
+            ui.set_max_width(300.0 * scale);
+            let text = format!("{error}; the picture keeps {kept}");
+            ui.add(egui::Label::new(RichText::new(text).small().color(palette.error)).wrap());
+        });
+    });
 }
 
 /// The unit, outside the field, in a column of its own.
@@ -382,6 +396,37 @@ fn unit(ui: &mut Ui, text: &str) {
     ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, palette.weak);
 }
 
+/// The unit as a choice: each option is a sign and a word. As wide as a plain unit, so that fields stay in
+/// line. Returns the index of a new choice.
+pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<usize> {
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    let [sign, word] = options.get(chosen).copied().unwrap_or(["–", "unknown"]);
+    let (rect, response) = ui.allocate_exact_size(vec2(18.0, 22.0) * scale, Sense::click());
+    response
+        .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, ui.is_enabled(), format!("unit: {word}")));
+    let hot = response.hovered() || response.has_focus();
+    let colour = if hot { palette.accent } else { palette.text };
+    let font = TextStyle::Small.resolve(ui.style());
+    let at = rect.center() - vec2(0.0, 3.0 * scale);
+    ui.painter().text(at, egui::Align2::CENTER_CENTER, sign, font, colour);
+    let tip = rect.center_bottom() - vec2(0.0, 2.0 * scale);
+    let corners = [tip, tip + vec2(-3.5, -4.0) * scale, tip + vec2(3.5, -4.0) * scale];
+    ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), colour, Stroke::NONE));
+    let mut out = None;
+    egui::Popup::menu(&response).show(|ui| {
+        for (i, [sign, word]) in options.iter().enumerate() {
+            if ui.selectable_label(i == chosen, format!("{sign}  {word}")).clicked() && i != chosen {
+                out = Some(i);
+            }
+        }
+    });
+    response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text(format!("In {word}. Choose another unit: the light stays the same."));
+    out
+}
+
 /// A knob for a number: returns a new legal value.
 pub fn number_knob(
     ui: &mut Ui,
@@ -391,13 +436,26 @@ pub fn number_knob(
     default: Option<f64>,
     limits: &Limits,
 ) -> Option<f64> {
+    number_knob_beside(ui, salt, caption, value, default, limits, |ui| unit(ui, caption.unit))
+}
+
+/// The same with something of its own where the unit stands.
+pub fn number_knob_beside(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: f64,
+    default: Option<f64>,
+    limits: &Limits,
+    beside: impl FnOnce(&mut Ui),
+) -> Option<f64> {
     let id = ui.make_persistent_id(salt);
     let mut out = None;
     let response = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let scale = theme::scale_here(ui);
-        let (label, field) = head(ui, caption, |ui| {
-            unit(ui, caption.unit);
+        let (label, field) = head(ui, caption, NUMBER, |ui| {
+            beside(ui);
             field(ui, id, caption.label, value, limits, 64.0 * scale)
         });
         out = field.value;
@@ -414,7 +472,9 @@ pub fn number_knob(
                 let left = if limits.is_above_zero() { format!(">{left}") } else { left };
                 let right = if limits.max > limits.slider_max { format!("{right}…") } else { right };
                 let end = 30.0 * scale;
-                range_end(ui, &left, end, Align::Max);
+                let more =
+                    |there: bool| there.then(|| format!("The slider ends here. More can be typed: {rule}."));
+                range_end(ui, &left, end, Align::Max, more(limits.min < limits.slider_min));
                 let width = (ui.available_width() - end - 26.0 * scale).max(24.0);
                 let (slider, new) = slider(ui, caption.label, value, default, limits, width);
                 out = new.or(out);
@@ -425,11 +485,11 @@ pub fn number_knob(
                 slider
                     .on_hover_ui(|ui| tooltip(ui, caption, &rule, &default_text))
                     .on_disabled_hover_ui(|ui| tooltip(ui, caption, &rule, &default_text));
-                range_end(ui, &right, end, Align::Min);
+                range_end(ui, &right, end, Align::Min, more(limits.max > limits.slider_max));
             });
         }
         if let Some(error) = &field.error {
-            complaint(ui, &capitalised(error), &number(value));
+            complaint(ui, &field.response, &capitalised(error), &number(value));
         }
         ui.add_space(6.0 * scale);
     });
@@ -439,14 +499,18 @@ pub fn number_knob(
     out
 }
 
-fn range_end(ui: &mut Ui, text: &str, width: f32, align: Align) {
+/// The number at an end of a slider; `more` says that the field takes what lies beyond.
+fn range_end(ui: &mut Ui, text: &str, width: f32, align: Align, more: Option<String>) {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let font = FontId::proportional(10.5 * scale);
-    let (rect, _) = ui.allocate_exact_size(vec2(width, 16.0 * scale), Sense::hover());
-    let anchor = if align == Align::Max { egui::Align2::RIGHT_CENTER } else { egui::Align2::LEFT_CENTER };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 16.0 * scale), Sense::hover());
+    let anchor = if align == Align::Max { Align2::RIGHT_CENTER } else { Align2::LEFT_CENTER };
     let at = if align == Align::Max { rect.right_center() } else { rect.left_center() };
     ui.painter().text(at, anchor, text, font, palette.weak);
+    if let Some(more) = more {
+        response.on_hover_text(more);
+    }
 }
 
 /// A knob for a whole colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
@@ -464,11 +528,18 @@ pub fn colour_knob(
         let scale = theme::scale_here(ui);
         let rule = "three whole numbers from 0 to 255: red, green, blue";
         let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
-        let (label, hex) = head(ui, caption, |ui| {
+        let [r, g, b] = value;
+        let (label, hex) = head(ui, caption, NUMBER, |ui| {
             unit(ui, "");
-            hex_field(ui, id.with("hex"), caption.label, value, 72.0 * scale)
+            let name = format!("{} in hexadecimal", caption.label);
+            let shown = format!("#{r:02x}{g:02x}{b:02x}");
+            let read = |text: &str| {
+                parse_hex(text)
+                    .ok_or_else(|| "is not a colour; must be # and six hexadecimal digits".to_owned())
+            };
+            text_field(ui, id.with("hex"), &name, &shown, "", 72.0 * scale, read)
         });
-        out = hex.0;
+        out = hex.value;
         let mut hot = label.hovered();
         label.on_hover_ui(|ui| {
             ui.set_max_width(300.0 * scale);
@@ -481,7 +552,7 @@ pub fn colour_knob(
                 format!("{}, encoded as sRGB. Default {default_text}.", capitalised(rule)),
             ));
         });
-        let mut errors = hex.1;
+        let mut wrong = hex.error.map(|e| (e, hex.response));
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0 * scale;
             let mut rgb = value;
@@ -504,16 +575,15 @@ pub fn colour_knob(
                     rgb[channel] = v as u8;
                     out = Some(rgb);
                 }
-                errors = errors.take().or(f.error);
+                wrong = wrong.take().or(f.error.map(|e| (e, f.response)));
             }
             unit(ui, caption.unit);
         });
         if hot && !caption.symbol.is_empty() {
             maths::highlight(ui.ctx(), caption.symbol);
         }
-        if let Some(error) = errors {
-            let [r, g, b] = value;
-            complaint(ui, &capitalised(&error), &format!("{r}, {g}, {b}"));
+        if let Some((error, field)) = wrong {
+            complaint(ui, &field, &capitalised(&error), &format!("{r}, {g}, {b}"));
         }
         ui.add_space(6.0 * scale);
     });
@@ -551,6 +621,16 @@ fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u
     response.on_hover_text("Choose a colour. Double-click: default.")
 }
 
+/// A colour that follows from something else.
+pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
+    let palette = Palette::here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0) * theme::scale_here(ui), Sense::hover());
+    let [r, g, b] = rgb;
+    let stroke = Stroke::new(1.0, palette.line);
+    ui.painter().rect(rect, 4.0, Color32::from_rgb(r, g, b), stroke, egui::StrokeKind::Inside);
+    response.on_hover_text(format!("The colour in sRGB: {r}, {g}, {b}"));
+}
+
 /// The box around what is typed.
 fn field_frame(palette: &Palette, stroke: Stroke, scale: f32) -> egui::Frame {
     egui::Frame::new()
@@ -560,23 +640,24 @@ fn field_frame(palette: &Palette, stroke: Stroke, scale: f32) -> egui::Frame {
         .inner_margin(egui::Margin::symmetric((4.0 * scale) as i8, (2.0 * scale) as i8))
 }
 
-/// A field for a colour in hexadecimal.
-fn hex_field(
+/// A field for a value that is not one number: `read` takes what is typed or says what is wrong. What is
+/// not legal is gone when the field is left. `name` is what a screen reader says.
+fn text_field<T>(
     ui: &mut Ui,
     id: Id,
-    label: &str,
-    value: [u8; 3],
+    name: &str,
+    shown: &str,
+    hint: &str,
     width: f32,
-) -> (Option<[u8; 3]>, Option<String>) {
+    read: impl Fn(&str) -> Result<T, String>,
+) -> Field<T> {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
-    let [r, g, b] = value;
-    let shown = format!("#{r:02x}{g:02x}{b:02x}");
     let draft_id = id.with("draft");
     let draft: Option<String> = ui.data(|d| d.get_temp(draft_id));
     let focused = ui.memory(|m| m.has_focus(id));
-    let mut text = draft.clone().filter(|_| focused).unwrap_or_else(|| shown.clone());
-    let wrong = focused && parse_hex(&text).is_none();
+    let mut text = draft.filter(|_| focused).unwrap_or_else(|| shown.to_owned());
+    let wrong = focused && text != shown && read(&text).is_err();
     let stroke = if wrong {
         Stroke::new(1.5, palette.error)
     } else if focused {
@@ -586,6 +667,7 @@ fn hex_field(
     };
     let edit = TextEdit::singleline(&mut text)
         .id(id)
+        .hint_text(RichText::new(hint).color(palette.weak))
         .desired_width(width - 10.0 * scale)
         .min_size(vec2(width, 22.0 * scale))
         .vertical_align(Align::Center)
@@ -594,23 +676,23 @@ fn hex_field(
         .frame(field_frame(&palette, stroke, scale));
     let response = ui.add_sized(vec2(width, 22.0 * scale), edit);
     response.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(ui.is_enabled(), &shown, &text, "");
-        info.label = Some(format!("{label} in hexadecimal"));
+        let mut info = WidgetInfo::text_edit(ui.is_enabled(), shown, &text, hint);
+        info.label = Some(name.to_owned());
         info
     });
     if response.gained_focus() {
         select_all(ui, id, &text);
     }
-    let mut out = None;
+    let mut value = None;
     if response.changed() {
-        out = parse_hex(&text).filter(|c| *c != value);
+        value = read(&text).ok();
         ui.data_mut(|d| d.insert_temp(draft_id, text.clone()));
     }
     if response.lost_focus() {
         ui.data_mut(|d| d.remove::<String>(draft_id));
     }
-    let error = wrong.then(|| "is not a colour; must be # and six hexadecimal digits".to_owned());
-    (out, error)
+    let error = if wrong { read(&text).err() } else { None };
+    Field { response, value, error }
 }
 
 /// Reads `#rrggbb`, `rrggbb` or `#rgb`.
@@ -639,7 +721,7 @@ fn axis_letter(ui: &mut Ui, letter: &str, name: &str, limits: &Limits, value: f6
     let font = TextStyle::Small.resolve(ui.style());
     ui.painter().text(
         rect.right_center() - vec2(2.0 * scale, 0.0),
-        egui::Align2::RIGHT_CENTER,
+        Align2::RIGHT_CENTER,
         letter,
         font,
         colour,
@@ -666,6 +748,41 @@ fn axis_letter(ui: &mut Ui, letter: &str, name: &str, limits: &Limits, value: f6
         .on_hover_text("Drag sideways to change the value");
 }
 
+/// Three letters with a field each, from where the line is to the unit at its end. Returns the new
+/// value, and the first complaint with the field that it is about.
+fn three_fields(
+    ui: &mut Ui,
+    id: Id,
+    caption: &Caption,
+    letters: [&str; 3],
+    value: Vec3,
+    limits: &[Limits; 3],
+) -> (Option<Vec3>, Option<(String, f64, Response)>) {
+    let scale = theme::scale_here(ui);
+    let mut out = None;
+    let mut wrong = None;
+    // Three letters, three fields, the unit, and the gaps between the seven.
+    let room = ui.available_width() - (3.0 * 14.0 + 18.0 + 6.0 * 4.0) * scale;
+    let width = (room / 3.0).clamp(36.0 * scale, 96.0 * scale).floor();
+    for axis in 0..3 {
+        let component = f64::from(value.to_array()[axis]);
+        let name = format!("{} {}", caption.label, letters[axis]);
+        let mut set = |v: f64| {
+            let mut new = value.to_array();
+            new[axis] = v as f32;
+            out = Some(Vec3::from_array(new));
+        };
+        axis_letter(ui, letters[axis], &name, &limits[axis], component, &mut set);
+        let f = field(ui, id.with(axis), &name, component, &limits[axis], width);
+        if let Some(v) = f.value {
+            set(v);
+        }
+        wrong = wrong.or(f.error.map(|e| (format!("{} {e}", letters[axis]), component, f.response)));
+    }
+    unit(ui, caption.unit);
+    (out.filter(|v| *v != value), wrong)
+}
+
 /// A field for three numbers, each with its own limits.
 pub fn vector_knob(
     ui: &mut Ui,
@@ -674,25 +791,12 @@ pub fn vector_knob(
     value: Vec3,
     limits: &[Limits; 3],
 ) -> Option<Vec3> {
-    named_vector_knob(ui, salt, caption, value, limits, ["x", "y", "z"])
-}
-
-/// The same with other names for the three.
-pub fn named_vector_knob(
-    ui: &mut Ui,
-    salt: &str,
-    caption: &Caption,
-    value: Vec3,
-    limits: &[Limits; 3],
-    letters: [&str; 3],
-) -> Option<Vec3> {
+    const LETTERS: [&str; 3] = ["x", "y", "z"];
     let id = ui.make_persistent_id(salt);
     let mut out = None;
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let scale = theme::scale_here(ui);
-        let rules: Vec<_> = (0..3).map(|i| format!("{}: {}", letters[i], limits[i].rule())).collect();
-        let mut error = None;
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0 * scale;
             let font = TextStyle::Body.resolve(ui.style());
@@ -704,36 +808,164 @@ pub fn named_vector_knob(
             label.on_hover_ui(|ui| {
                 ui.set_max_width(300.0 * scale);
                 ui.label(caption.help);
-                for rule in &rules {
-                    ui.label(theme::small(ui, rule));
+                for (letter, limits) in LETTERS.iter().zip(limits) {
+                    ui.label(theme::small(ui, format!("{letter}: {}", limits.rule())));
                 }
             });
-            // Three letters, three fields, the unit, and the gaps between the seven.
-            let room = ui.available_width() - (3.0 * 14.0 + 18.0 + 6.0 * 4.0) * scale;
-            let width = (room / 3.0).clamp(36.0 * scale, 96.0 * scale).floor();
-            for axis in 0..3 {
-                let component = f64::from(value.to_array()[axis]);
-                let name = format!("{} {}", caption.label, letters[axis]);
-                let mut set = |v: f64| {
-                    let mut new = value.to_array();
-                    new[axis] = v as f32;
-                    out = Some(Vec3::from_array(new));
-                };
-                axis_letter(ui, letters[axis], &name, &limits[axis], component, &mut set);
-                let f = field(ui, id.with(axis), &name, component, &limits[axis], width);
-                if let Some(v) = f.value {
-                    set(v);
-                }
-                error = error.take().or(f.error.map(|e| (format!("{} {e}", letters[axis]), component)));
+            let (new, wrong) = three_fields(ui, id, caption, LETTERS, value, limits);
+            out = new;
+            if let Some((error, kept, field)) = wrong {
+                complaint(ui, &field, &error, &number(kept));
             }
-            unit(ui, caption.unit);
         });
-        if let Some((error, kept)) = error {
-            complaint(ui, &error, &number(kept));
+        ui.add_space(6.0 * scale);
+    });
+    out
+}
+
+/// A knob for a number in red, green and blue: a field for all three at once, and one for each.
+pub fn triple_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: [f32; 3],
+    default: [f32; 3],
+    limits: &Limits,
+) -> Option<[f32; 3]> {
+    let id = ui.make_persistent_id(salt);
+    let mut out = None;
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let scale = theme::scale_here(ui);
+        let plain = |v: f32| number(f64::from(v));
+        let list = |v: [f32; 3]| v.map(plain).join(", ");
+        let same = value[0] == value[1] && value[1] == value[2];
+        let (label, all) = head(ui, caption, NUMBER, |ui| {
+            unit(ui, "");
+            let shown = if same { plain(value[0]) } else { String::new() };
+            let read = |text: &str| match parse(text) {
+                Some(v) if limits.allows(v) => Ok([v as f32; 3]),
+                Some(_) => Err(format!("must be {}", limits.rule())),
+                None => Err(format!("is not a number; must be {}", limits.rule())),
+            };
+            let name = format!("{}: all three", caption.label);
+            text_field(ui, id.with("all"), &name, &shown, "all", 64.0 * scale, read)
+        });
+        out = all.value;
+        if (label.hovered() || all.response.hovered()) && !caption.symbol.is_empty() {
+            maths::highlight(ui.ctx(), caption.symbol);
+        }
+        label.on_hover_ui(|ui| {
+            ui.set_max_width(300.0 * scale);
+            if let Some(reason) = caption.disabled {
+                ui.label(theme::strong(ui, reason));
+            }
+            ui.label(caption.help);
+            let rule = format!("Each {}. Default {}.", limits.rule(), list(default));
+            ui.label(theme::small(ui, rule));
+        });
+        let mut wrong = all.error.map(|e| (capitalised(&e), list(value), all.response));
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0 * scale;
+            let bounds = [limits.clone(), limits.clone(), limits.clone()];
+            let (new, bad) = three_fields(ui, id, caption, ["R", "G", "B"], value.into(), &bounds);
+            out = new.map(Into::into).or(out);
+            wrong = wrong.take().or(bad.map(|(e, kept, field)| (e, number(kept), field)));
+        });
+        if let Some((error, kept, field)) = wrong {
+            complaint(ui, &field, &error, &kept);
         }
         ui.add_space(6.0 * scale);
     });
     out.filter(|v| *v != value)
+}
+
+/// What follows from the knobs: symbol, word, and the value with a sample of its colour.
+pub fn readout(ui: &mut Ui, readout: &Readout) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let caption = Caption { symbol: readout.symbol, label: readout.label, ..Caption::default() };
+    let digits = |v: f32| format!("{v:.3}");
+    let text = match readout.value {
+        ReadoutValue::Number(v) => digits(v),
+        ReadoutValue::Reflectance(rgb) => rgb.to_array().map(digits).join("  "),
+    };
+    let value = |ui: &mut Ui| {
+        unit(ui, "");
+        if let ReadoutValue::Reflectance(rgb) = readout.value {
+            let (rect, _) = ui.allocate_exact_size(vec2(22.0, 14.0) * scale, Sense::hover());
+            let stroke = Stroke::new(1.0, palette.weak);
+            ui.painter().rect(rect, 3.0, theme::swatch(rgb), stroke, egui::StrokeKind::Inside);
+        }
+        let value = ui.label(&text);
+        let spoken = format!("{}: {text}", readout.label);
+        value.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &spoken));
+        value
+    };
+    let tip = |ui: &mut Ui| {
+        ui.set_max_width(300.0 * scale);
+        ui.label(theme::strong(ui, readout.label));
+        ui.label(readout.help);
+    };
+    let (label, value) = match readout.value {
+        ReadoutValue::Number(_) => head(ui, &caption, NUMBER, value),
+        // Three numbers and the sample have a line of their own.
+        ReadoutValue::Reflectance(_) => {
+            let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+            let (label, ()) = head(ui, &caption, 0.0, |_| ());
+            let row = vec2(ui.available_width(), 20.0 * scale);
+            let layout = egui::Layout::right_to_left(Align::Center);
+            let value = ui.allocate_ui_with_layout(row, layout, value).inner;
+            ui.spacing_mut().item_spacing.y = spacing;
+            (label, value)
+        }
+    };
+    label.on_hover_ui(tip);
+    value.on_hover_ui(tip);
+}
+
+/// One of many: word at the left; the button at the right opens what `list` shows, until that returns
+/// something. `list` gets an id of its own.
+pub fn list_knob<R>(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    shown: &str,
+    list: impl FnOnce(&mut Ui, Id) -> Option<R>,
+) -> Option<R> {
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    let id = ui.make_persistent_id(salt);
+    let (label, button) = head(ui, caption, CHOICE, |ui| {
+        ui.add_space(22.0 * scale);
+        let width = (ui.available_width() - 4.0 * scale).clamp(80.0 * scale, 190.0 * scale);
+        let button = Button::new(shown).right_text(RichText::new("▾").color(palette.weak)).truncate();
+        let button = ui.add_sized(vec2(width, 24.0 * scale), button);
+        button.widget_info(|| {
+            WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
+        });
+        button
+    });
+    label.on_hover_ui(|ui| tooltip(ui, caption, "", ""));
+    let width = 352.0 * scale;
+    let mut out = None;
+    let popup = Popup::from_toggle_button_response(&button)
+        .id(id)
+        .align(RectAlign::BOTTOM_END)
+        .width(width)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.set_width(width);
+            out = list(ui, id.with("list"));
+        });
+    if popup.is_none() {
+        chooser::forget(ui.ctx(), id.with("list"));
+    }
+    if out.is_some() {
+        Popup::close_id(ui.ctx(), id);
+    }
+    ui.add_space(4.0 * scale);
+    out
 }
 
 /// One of several: word at the left, list at the right. Returns the index of a new choice.
@@ -744,28 +976,56 @@ pub fn choice_knob(
     chosen: usize,
     options: &[&str],
 ) -> Option<usize> {
+    let plain: Vec<_> = options.iter().map(|name| [*name, "", ""]).collect();
+    told_choice_knob(ui, salt, caption, chosen, &plain)
+}
+
+/// The same where each option is a name, its author and what it does; the latter two may be empty.
+pub fn told_choice_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    chosen: usize,
+    options: &[[&str; 3]],
+) -> Option<usize> {
+    let tip = |ui: &mut Ui, [name, author, summary]: [&str; 3]| {
+        ui.set_max_width(300.0 * theme::scale_here(ui));
+        ui.label(theme::strong(ui, name));
+        ui.label(summary);
+        if !author.is_empty() {
+            ui.label(theme::small(ui, author));
+        }
+    };
     let mut out = None;
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         let scale = theme::scale_here(ui);
         let id = ui.make_persistent_id(salt);
-        let (label, ()) = head(ui, caption, |ui| {
+        let (label, ()) = head(ui, caption, CHOICE, |ui| {
             ui.add_space(22.0 * scale);
             let width = (ui.available_width() - 4.0 * scale).clamp(80.0 * scale, 190.0 * scale);
-            let shown = options.get(chosen).copied().unwrap_or("–");
+            let now = options.get(chosen).copied();
+            let [shown, _, told] = now.unwrap_or(["–", "", ""]);
             let combo = egui::ComboBox::from_id_salt(id)
                 .width(width)
                 .truncate()
                 .selected_text(shown)
                 .show_ui(ui, |ui| {
                     for (i, option) in options.iter().enumerate() {
-                        if ui.selectable_label(i == chosen, *option).clicked() && i != chosen {
+                        let response = ui.selectable_label(i == chosen, option[0]);
+                        if response.clicked() && i != chosen {
                             out = Some(i);
+                        }
+                        if !option[2].is_empty() {
+                            response.on_hover_ui(|ui| tip(ui, *option));
                         }
                     }
                 });
             combo.response.widget_info(|| {
                 WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
             });
+            if !told.is_empty() {
+                combo.response.on_hover_ui(|ui| now.into_iter().for_each(|now| tip(ui, now)));
+            }
         });
         if label.hovered() && !caption.symbol.is_empty() {
             maths::highlight(ui.ctx(), caption.symbol);
@@ -832,10 +1092,10 @@ pub fn parameter_knob(
         (ParameterKind::Colour { default }, Value::Colour(rgb)) => {
             colour_knob(ui, salt, &caption, *rgb, Some(*default)).map(Value::Colour)
         }
-        (ParameterKind::Triple { min, max, .. }, Value::Triple(v)) => {
-            let limits = [0; 3].map(|_| Limits::between(f64::from(*min), f64::from(*max)));
-            named_vector_knob(ui, salt, &caption, Vec3::from_array(*v), &limits, ["R", "G", "B"])
-                .map(|v| Value::Triple(v.to_array()))
+        (ParameterKind::Triple { min, max, default }, Value::Triple(v)) => {
+            let limits = Limits::between(f64::from(*min), f64::from(*max));
+            triple_knob(ui, salt, &caption, *v, *default, &limits)
+                .map(Value::Triple)
                 .filter(|v| parameter.allows(v))
         }
         (ParameterKind::Choice { options, .. }, Value::Choice(id)) => {

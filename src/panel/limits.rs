@@ -3,8 +3,12 @@
 
 use crate::{
     light,
+    optics::{
+        radiometry::SPHERE,
+        temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
+    },
     reflection::parameter::ABOVE_ZERO,
-    scene::{MAX_DIMENSION, Scene, SceneSize},
+    scene::{MAX_DIMENSION, Scene, SceneSize, check},
     shape,
 };
 
@@ -55,7 +59,9 @@ impl Limits {
     /// Whether a value is legal.
     #[must_use]
     pub fn allows(&self, value: f64) -> bool {
-        value.is_finite() && value >= self.min && value <= self.max && (!self.whole || value.fract() == 0.0)
+        // In f32, which the scene holds: 0.1 is legal where the limit is the f32 next to it.
+        let within = value as f32 >= self.min as f32 && value as f32 <= self.max as f32;
+        value.is_finite() && within && (!self.whole || value.fract() == 0.0)
     }
 
     /// Whether zero is excluded though everything above it is legal.
@@ -147,16 +153,38 @@ pub fn intensity(light: &light::Declaration) -> Limits {
     Limits::between(0.0, f64::INFINITY).slider(0.0, f64::from(light.slider_max))
 }
 
+/// The luminous flux of a light, lumen. The slider reaches as far as that of the intensity does for a
+/// light that shines in every direction.
+#[must_use]
+pub fn luminous_flux(light: &light::Declaration) -> Limits {
+    let end = f64::from(light.slider_max) * SPHERE;
+    Limits::between(0.0, f64::INFINITY).slider(0.0, significant(end, 1))
+}
+
+/// A number rounded to so many significant digits.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> f64 {
+    // In decimal, so that the result is the number nearest to what people read.
+    format!("{value:.0$e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
+/// The colour temperature of a light, kelvin.
+#[must_use]
+pub fn colour_temperature() -> Limits {
+    Limits::between(f64::from(MIN_TEMPERATURE), f64::from(MAX_TEMPERATURE)).slider(1000.0, 12_000.0)
+}
+
 /// The vertical field of view, degrees.
 #[must_use]
 pub fn field_of_view() -> Limits {
-    Limits::between(1.0, 170.0)
+    Limits::between(f64::from(check::MIN_FIELD_OF_VIEW), f64::from(check::MAX_FIELD_OF_VIEW))
 }
 
 /// The exposure, EV.
 #[must_use]
 pub fn exposure() -> Limits {
-    Limits::between(-32.0, 32.0).slider(-8.0, 8.0)
+    let max = f64::from(check::MAX_EXPOSURE);
+    Limits::between(-max, max).slider(-8.0, 8.0)
 }
 
 /// An extent of the room, metres: what stands in the room must stay in it. `name` is what the user
@@ -200,6 +228,15 @@ mod tests {
         assert_eq!(number(-2.0), "−2");
         assert_eq!(number(-0.0), "0");
         assert_eq!(number(1e-7), "1.0e−7");
+    }
+
+    #[test]
+    fn numbers_are_rounded_to_significant_digits() {
+        assert_eq!(significant(251.327, 3), 251.0);
+        assert_eq!(significant(2513.27, 1), 3000.0);
+        assert_eq!(significant(0.076_349, 2), 0.076);
+        assert_eq!(significant(-1.6e-7, 1), -2e-7);
+        assert_eq!(significant(0.0, 3), 0.0);
     }
 
     #[test]

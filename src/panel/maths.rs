@@ -141,19 +141,63 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
         ("V", "the unit vector from the surface to the observer"),
         ("H", "the half vector: the unit vector halfway between L and V"),
         ("R", "the mirror direction of L: 2(N·L)N − L"),
-        ("D", "the distribution of the normals of the microfacets"),
-        ("G", "masking and shadowing of microfacets by each other"),
+        ("T", "the unit tangent: the direction along which the surface is brushed"),
+        ("B", "the unit bitangent: across the surface at right angles to the tangent"),
+        ("D", "the distribution of the normals of the microfacets: how many face along H"),
+        ("G", "masking and shadowing: the fraction of the microfacets that both light and observer see"),
+        ("G_1", "masking: the fraction of the microfacets that is seen from one direction"),
+        ("G_2", "masking and shadowing: the fraction of the microfacets that both light and observer see"),
+        ("Λ", "Smith's function: hidden area of microfacets per visible area"),
         ("F", "the Fresnel reflectance: how much a smooth surface mirrors at this angle"),
         ("F_0", "the Fresnel reflectance when looking straight at the surface"),
+        ("F_90", "the Fresnel reflectance at grazing incidence"),
+        ("f_r", "the BRDF: reflected light per incoming light, in 1/sr"),
+        ("E", "the directional albedo: how much of the light from one direction is reflected in all"),
+        ("E_L", "the directional albedo for the direction of the light"),
+        ("E_V", "the directional albedo for the direction of the observer"),
+        ("E_m", "the mean directional albedo over all directions"),
+        ("ρ", "the albedo: how much of the light is reflected, by colour"),
+        ("α", "the width of the distribution of the microfacets: small for a mirror, 1 for a matt surface"),
+        ("σ", "the spread of the slopes of the facets"),
+        ("γ", "the exponent of the tail of the distribution"),
+        ("μ", "the cosine of the angle between the normal and the direction"),
+        ("μ_i", "the cosine of the angle between the normal and the light, N·L"),
+        ("μ_0", "the cosine of the angle between the normal and the light, N·L"),
+        ("μ_o", "the cosine of the angle between the normal and the observer, N·V"),
+        ("n", "the refractive index"),
+        ("k", "the extinction coefficient: how fast light dies away inside"),
+        ("g", "the phase angle between light and observer"),
+        ("ω", "a direction"),
         ("d", "the distance from the light to the point"),
         ("p", "the point that is lit"),
+        ("e", "2.71828…, the base of natural logarithms"),
         ("π", "3.14159…"),
         ("θ", "the angle between the axis and the ray"),
         ("θ_i", "the angle between the normal and the light"),
         ("θ_r", "the angle between the normal and the observer"),
+        ("θ_o", "the angle between the normal and the observer"),
         ("θ_h", "the angle between the normal and the half vector"),
+        ("θ_d", "the angle between the half vector and the light"),
+        ("β", "the smaller of the angles of light and observer to the normal"),
+        ("φ", "the angle about the normal, between light and observer"),
+        ("φ_h", "the angle of the half vector about the normal, from the tangent"),
     ];
     MEANINGS.iter().find(|(s, _)| same_symbol(s, symbol)).map(|(_, m)| *m)
+}
+
+/// Where an equation says itself what a symbol is: the part that begins with it and an equals sign, or
+/// has it after a comma.
+#[must_use]
+pub fn definition(parts: &[EquationPart], symbol: &str) -> Option<&'static str> {
+    let defines = |part: &&EquationPart| {
+        let atoms: Vec<_> = parse(part.text).into_iter().filter(|a| *a != Atom::Space).collect();
+        let here = |i: usize| atoms[i].symbol().is_some_and(|s| same_symbol(&s, symbol));
+        let sign = |a: &Atom, text: &str| matches!(a, Atom::Upright { base, .. } if base == text);
+        (0..atoms.len()).any(|i| {
+            here(i) && atoms.get(i + 1).is_some_and(|a| sign(a, "=")) && (i == 0 || sign(&atoms[i - 1], ","))
+        })
+    };
+    parts.iter().find(defines).map(|p| p.text)
 }
 
 struct Piece {
@@ -169,10 +213,11 @@ struct Laid {
 /// Lays an atom out with its baseline at y = 0.
 fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
     let (base, sub, sup, family) = match atom {
-        Atom::Symbol { base, sub, sup } => {
-            // Capital Greek letters and ∇ are upright by custom; N·L and the like are slanted.
-            (base, sub, sup, theme::maths_italic())
+        // Capital Greek letters are upright by custom; N·L and the like are slanted.
+        Atom::Symbol { base, sub, sup } if base.starts_with(|c| ('Α'..='Ω').contains(&c)) => {
+            (base, sub, sup, theme::maths())
         }
+        Atom::Symbol { base, sub, sup } => (base, sub, sup, theme::maths_italic()),
         Atom::Upright { base, sub, sup } => (base, sub, sup, theme::maths()),
         Atom::Space => return Laid { pieces: Vec::new(), width: 0.28 * size },
     };
@@ -223,6 +268,15 @@ pub fn paint_symbol(ui: &Ui, left_baseline: Pos2, symbol: &str, size: f32, colou
     laid.width
 }
 
+/// One symbol among other widgets.
+pub fn symbol(ui: &mut Ui, symbol: &str, size: f32) -> Response {
+    let width = symbol_width(ui, symbol, size);
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 1.3 * size), Sense::hover());
+    let at = pos2(rect.left(), rect.top() + 0.95 * size);
+    paint_symbol(ui, at, symbol, size, Palette::here(ui).text);
+    response
+}
+
 /// The width of a symbol.
 #[must_use]
 pub fn symbol_width(ui: &Ui, symbol: &str, size: f32) -> f32 {
@@ -259,6 +313,12 @@ pub fn term_sample(painter: &egui::Painter, from: Pos2, to: Pos2, term: Term, pa
 /// An equation, a line for each part, coloured by term. `name` says what a symbol means; it is the
 /// tooltip. Hovering a symbol highlights it; so does [`highlight`].
 pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
+    let parts: Vec<_> = parts.iter().map(|p| (p.term, p.text)).collect();
+    equation_of(ui, &parts, name)
+}
+
+/// The same for text that is made while the program runs.
+pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> Option<String>) -> Response {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let size = 17.0 * scale;
@@ -278,53 +338,67 @@ pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Opti
     let mut placed: Vec<Placed> = Vec::new();
     let mut line = 0;
     let mut firsts = Vec::new();
-    for (part, p) in parts.iter().enumerate() {
+    for (part, (term, text)) in parts.iter().enumerate() {
         firsts.push(line);
-        let colour = palette.term_text(p.term);
-        let atoms = parse(p.text);
+        let colour = palette.term_text(*term);
+        let atoms = parse(text);
         // A continued line begins under what follows the equals sign.
         let mut x = sample;
         let mut hang = sample + 24.0 * scale;
         let mut word: Vec<Placed> = Vec::new();
         let mut word_width = 0.0;
         let mut depth = 0i32;
+        let mut indented = false;
         let mut flush =
             |word: &mut Vec<Placed>, word_width: &mut f32, x: &mut f32, line: &mut usize, hang: f32| {
                 if *x + *word_width > width && *x > hang {
                     *line += 1;
                     *x = hang;
                 }
-                for mut w in word.drain(..) {
-                    w.x += *x;
-                    w.line = *line;
-                    placed.push(w);
+                // What is longer than a line is broken at the spaces within brackets, else anywhere.
+                let long = *x + *word_width > width;
+                while !word.is_empty() {
+                    let space = |w: &Placed| w.laid.pieces.is_empty();
+                    let end = word.iter().skip(1).position(space).map_or(word.len(), |n| n + 1);
+                    let end = if long { end } else { word.len() };
+                    let run: f32 = word[..end].iter().map(|w| w.laid.width).sum();
+                    let mut fresh = *x + run > width && *x > hang;
+                    for mut w in word.drain(..end) {
+                        if fresh || *x + w.laid.width > width && *x > hang {
+                            *line += 1;
+                            *x = hang;
+                            // The space before what moved to a new line has done its work.
+                            if std::mem::take(&mut fresh) && space(&w) {
+                                continue;
+                            }
+                        }
+                        (w.x, w.line) = (*x, *line);
+                        *x += w.laid.width;
+                        placed.push(w);
+                    }
                 }
-                *x += *word_width;
                 *word_width = 0.0;
             };
-        for atom in &atoms {
+        for (i, atom) in atoms.iter().enumerate() {
             let laid = lay_out(ui, atom, size, colour);
-            let glue = matches!(atom, Atom::Space) && depth > 1;
+            // A line is broken before an operator rather than after it.
+            let operator = i > 0
+                && matches!(&atoms[i - 1], Atom::Upright { base, .. } if "=≈≤≥<>+−/×·".contains(base.as_str()));
+            let glue = matches!(atom, Atom::Space) && (depth > 0 || operator);
             if matches!(atom, Atom::Space) && !glue {
                 flush(&mut word, &mut word_width, &mut x, &mut line, hang);
                 x += laid.width;
                 continue;
             }
             if let Atom::Upright { base, .. } = atom {
-                depth += i32::from(base == "(") - i32::from(base == ")");
-                if base == "=" && line == firsts[part] {
+                let is = |any: &str| i32::from(any.contains(base.as_str()));
+                depth += is("([⟨") - is(")]⟩");
+                if base == "=" && !std::mem::replace(&mut indented, true) && line == firsts[part] {
                     hang = (x + word_width + laid.width + 0.28 * size).min(width * 0.4);
                 }
             }
             let advance = laid.width;
-            word.push(Placed {
-                laid,
-                symbol: atom.symbol(),
-                power: atom.power(),
-                x: word_width,
-                line: 0,
-                part,
-            });
+            word.push(Placed { laid, symbol: atom.symbol(), power: atom.power(), x: 0.0, line: 0, part });
             word_width += advance;
         }
         flush(&mut word, &mut word_width, &mut x, &mut line, hang);
@@ -332,22 +406,22 @@ pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Opti
     }
 
     let (rect, response) = ui.allocate_exact_size(vec2(width, line_height * line as f32), Sense::hover());
-    let spoken: Vec<_> = parts.iter().map(|p| p.text).collect();
+    let spoken: Vec<_> = parts.iter().map(|(_, text)| *text).collect();
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, spoken.join("; ")));
     if !ui.is_rect_visible(rect) {
         return response;
     }
     let painter = ui.painter_at(rect.expand(2.0));
-    for (part, first) in parts.iter().zip(&firsts) {
+    for ((term, _), first) in parts.iter().zip(&firsts) {
         if sample > 0.0 {
             let y = rect.top() + line_height * (*first as f32 + 0.52);
             let x = rect.left();
-            term_sample(&painter, pos2(x, y), pos2(x + sample - 6.0 * scale, y), part.term, &palette);
+            term_sample(&painter, pos2(x, y), pos2(x + sample - 6.0 * scale, y), *term, &palette);
         }
     }
     for (i, p) in placed.iter().enumerate() {
         let baseline = pos2(rect.left() + p.x, rect.top() + line_height * (p.line as f32 + 0.68));
-        let colour = palette.term_text(parts[p.part].term);
+        let colour = palette.term_text(parts[p.part].0);
         let line = rect.top() + line_height * p.line as f32;
         let raised = p.laid.pieces.last().filter(|_| p.power.is_some());
         let base_width = raised.map_or(p.laid.width, |piece| piece.offset.x);
@@ -413,6 +487,95 @@ mod tests {
     fn the_index_of_a_symbol_alone_may_be_long() {
         assert_eq!(parse_symbol("α_GGX"), symbol("α", "GGX", ""));
         assert!(same_symbol("F_{90}", "F_90"));
+    }
+
+    /// What the equations of physically based models need, and more.
+    const HARD: &[&str] = &[
+        "I_s = π D(H) G(L, V) F(V·H) / (4 (N·L)(N·V)) N·L",
+        "D = α^2 / (π ((N·H)^2 (α^2 − 1) + 1)^2)",
+        "f_r = ρ/π, E(μ_i) = ∫ f_r cos θ dω ≤ 1",
+        "Λ = (√(1 + α² tan² θ) − 1)/2, F_{90} = 1/2 + 2 r (H·L)^2",
+        "⟨N·H⟩ = max(0, N·H), α_{GGX} = √(2/(n + 2)), e^{−tan²θ/α²}, k_{spec}, φ_h ∈ [0, 2π), γ, Δ, ∞, ≈, ×, σ, μ, ω",
+    ];
+
+    #[test]
+    fn every_sign_of_every_equation_is_in_the_fonts() {
+        let ctx = egui::Context::default();
+        theme::install_fonts(&ctx);
+        let _ = ctx.run_ui(egui::RawInput::default(), |_| ());
+        let registry = crate::registry::Registry::builtin();
+        let mut texts: Vec<&str> = HARD.to_vec();
+        for model in registry.models() {
+            texts.extend(model.declaration.equation.iter().map(|p| p.text));
+            texts.extend(model.parameters.iter().flat_map(|p| [p.symbol, p.label, p.unit, p.help]));
+            texts.extend([model.declaration.name, model.declaration.author, model.declaration.source]);
+        }
+        for m in crate::reflection::preset::all() {
+            texts.extend([m.name, m.source]);
+        }
+        ctx.fonts_mut(|fonts| {
+            for family in [theme::maths(), theme::maths_italic(), egui::FontFamily::Proportional] {
+                let font = FontId::new(17.0, family);
+                // Where a character is drawn on the texture: the same place for all that are missing.
+                let mut place = |c: char| {
+                    let galley = fonts.layout_no_wrap(c.to_string(), font.clone(), Color32::WHITE);
+                    galley.rows[0].row.glyphs[0].uv_rect
+                };
+                let missing = place('\u{fffe}');
+                assert!(place('\u{e123}') == missing && missing.size[0] > 0.0);
+                for text in &texts {
+                    for c in text.chars().filter(|c| !c.is_whitespace()) {
+                        assert!(place(c) != missing, "{c} of “{text}” is missing in {font:?}");
+                    }
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn equations_stay_inside_the_panel() {
+        let ctx = egui::Context::default();
+        theme::install_fonts(&ctx);
+        for width in [120.0, 270.0] {
+            for text in HARD {
+                let parts = [EquationPart { term: Term::Total, text }];
+                let mut lines = 0.0;
+                let mut shapes = Vec::new();
+                for _ in 0..2 {
+                    let output = ctx.run_ui(egui::RawInput::default(), |ui| {
+                        ui.set_max_width(width);
+                        let rect = equation(ui, &parts, |_| None).rect;
+                        lines = rect.height();
+                        assert!(rect.width() <= width);
+                    });
+                    shapes = output.shapes;
+                }
+                for clipped in &shapes {
+                    if let Shape::Text(text) = &clipped.shape {
+                        let right = text.pos.x + text.galley.size().x;
+                        assert!(right < clipped.clip_rect.right() + 1.0, "{width}: {:?}", text.galley.text());
+                    }
+                }
+                assert!(lines >= 26.0 && shapes.len() > 5);
+            }
+        }
+    }
+
+    #[test]
+    fn every_symbol_of_every_equation_is_explained() {
+        let registry = crate::registry::Registry::builtin();
+        for model in registry.models() {
+            let d = model.declaration;
+            for symbol in d.equation.iter().flat_map(|p| parse(p.text)).filter_map(|a| a.symbol()) {
+                let known = model.parameters.iter().any(|p| same_symbol(p.symbol, &symbol))
+                    || meaning(&symbol).is_some()
+                    || definition(d.equation, &symbol).is_some();
+                assert!(known, "{}: {symbol} is neither a parameter nor explained in `meaning`", d.id);
+            }
+        }
+        let parts = [EquationPart { term: Term::Diffuse, text: "x = H·T / H·N , y_{ab} = x + z" }];
+        assert!(definition(&parts, "x").is_some() && definition(&parts, "y_ab").is_some());
+        assert!(definition(&parts, "z").is_none() && definition(&parts, "H").is_none());
     }
 
     #[test]

@@ -10,7 +10,11 @@ use super::{
     state::{Lab, Selection, Shaders},
     theme::{self, Palette},
 };
-use crate::{optics::TermSelection, reflection::Term, registry::Registry};
+use crate::{
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
+    reflection::Term,
+    registry::Registry,
+};
 
 /// Paints the overlays into the rectangle of the picture.
 pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) {
@@ -24,7 +28,8 @@ pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) {
     hint(ui, rect, lab);
 }
 
-/// Words on a ground that can be read over any picture. Returns the rectangle.
+/// Words on a ground that can be read over any picture, in lines that leave the axes free. Returns the
+/// rectangle.
 fn plate(
     painter: &Painter,
     palette: &Palette,
@@ -35,8 +40,9 @@ fn plate(
     colour: Color32,
     left: f32,
 ) -> Rect {
-    let galley = painter.layout_no_wrap(text, font, colour);
     let padding = vec2(8.0, 4.0);
+    let room = painter.clip_rect().width() - 116.0 - 2.0 * padding.x - left;
+    let galley = painter.layout(text, font, colour, room.max(64.0));
     let size = galley.size() + 2.0 * padding + vec2(left, 0.0);
     let rect = anchor.anchor_size(at, size);
     painter.rect_filled(rect, 4.0, palette.panel.gamma_multiply(0.88));
@@ -106,7 +112,15 @@ pub fn caption_text(lab: &Lab, registry: &Registry) -> String {
         0.0 => String::new(),
         ev => format!(" · {}{} EV", if ev > 0.0 { "+" } else { "" }, super::limits::number(f64::from(ev))),
     };
-    format!("{model} · {mode} shading{stage}{terms}{exposure}")
+    let tone = match lab.scene.display.tone_mapping {
+        ToneMapping::None => String::new(),
+        tone => format!(" · {}", tone.name()),
+    };
+    let encoding = match lab.scene.display.encoding {
+        Encoding::Srgb => "",
+        Encoding::Off => " · gamma-naive",
+    };
+    format!("{model} · {mode} shading{stage}{terms}{exposure}{tone}{encoding}")
 }
 
 fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) {

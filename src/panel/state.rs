@@ -433,10 +433,14 @@ pub enum LightField {
     Position(Vec3),
     /// Where it shines.
     Direction(Vec3),
-    /// Colour.
+    /// Colour, instead of a colour temperature.
     Colour([u8; 3]),
-    /// Intensity.
+    /// Colour temperature in kelvin, instead of a colour.
+    ColourTemperature(f32),
+    /// Intensity, instead of a luminous flux.
     Intensity(f32),
+    /// Luminous flux in lumen, instead of an intensity.
+    LuminousFlux(f32),
     /// A parameter of the type.
     Parameter(&'static str, Value),
 }
@@ -462,6 +466,8 @@ pub enum ObjectField {
     Mode(Option<String>),
     /// A parameter of the material.
     Material(&'static str, Value),
+    /// Several parameters of the material at once: a measured material.
+    Preset(Vec<(&'static str, Value)>),
 }
 
 /// What needs files, entities or the operating system; the app carries these out.
@@ -556,6 +562,51 @@ impl Lab {
     #[must_use]
     pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
         name_of(&self.scene, part, registry)
+    }
+
+    /// The selected object, if it has a reflection model of its own: the choice at the top is then about
+    /// that one, since a choice for the scene would not reach it.
+    #[must_use]
+    pub fn own_model(&self) -> Option<(usize, &str)> {
+        let Selection::Object(i) = self.selection else { return None };
+        Some((i, self.scene.objects.get(i)?.reflection_model.as_deref()?))
+    }
+
+    /// The same for its shading mode.
+    #[must_use]
+    pub fn own_mode(&self) -> Option<(usize, &str)> {
+        let Selection::Object(i) = self.selection else { return None };
+        Some((i, self.scene.objects.get(i)?.shading_model.as_deref()?))
+    }
+
+    /// Id of the reflection model that the top of the window shows and changes.
+    #[must_use]
+    pub fn model_shown(&self) -> &str {
+        self.own_model().map_or(&self.scene.reflection_model, |(_, id)| id)
+    }
+
+    /// Id of the shading mode that the top of the window shows and changes.
+    #[must_use]
+    pub fn mode_shown(&self) -> &str {
+        self.own_mode().map_or(&self.scene.shading_model, |(_, id)| id)
+    }
+
+    /// The edit that chooses another reflection model at the top of the window.
+    #[must_use]
+    pub fn edit_model(&self, id: &str) -> Edit {
+        match self.own_model() {
+            Some((i, _)) => Edit::Object(i, ObjectField::Model(Some(id.to_owned()))),
+            None => Edit::Model(id.to_owned()),
+        }
+    }
+
+    /// The edit that chooses another shading mode at the top of the window.
+    #[must_use]
+    pub fn edit_mode(&self, id: &str) -> Edit {
+        match self.own_mode() {
+            Some((i, _)) => Edit::Object(i, ObjectField::Mode(Some(id.to_owned()))),
+            None => Edit::Mode(id.to_owned()),
+        }
     }
 
     /// Adds a message; an error unfolds the strip that shows it.
@@ -653,8 +704,8 @@ impl Lab {
             Action::CancelRename => self.renaming = None,
             Action::Edit(edit) => self.edit(edit, registry),
             Action::RecentModel(slot) => {
-                if let Some(id) = self.model_slots.get(slot).cloned() {
-                    self.edit(Edit::Model(id), registry);
+                if let Some(edit) = self.model_slots.get(slot).map(|id| self.edit_model(id)) {
+                    self.edit(edit, registry);
                 }
             }
             Action::Expose(ev) => {
@@ -997,23 +1048,6 @@ impl Lab {
         f(&mut self.scene);
     }
 
-    /// A choice for the scene does not reach an object that has its own: where that one is selected, it
-    /// looks as if nothing happened.
-    fn say_if_own(&mut self, what: &str, registry: &Registry, own: impl Fn(&Object) -> bool) {
-        let Selection::Object(i) = self.selection else { return };
-        if self.scene.objects.get(i).is_some_and(own) {
-            let name = self.name_of(self.selection, registry);
-            let text = format!(
-                "{name} has its own {what}; the choice above is for objects without one. Its own is at the \
-                 end of the panel at the right."
-            );
-            if self.messages.iter().all(|m| m.text != text) {
-                self.say(Severity::Info, text);
-                self.view.bottom_open = true;
-            }
-        }
-    }
-
     fn edit(&mut self, edit: Edit, registry: &Registry) {
         if let Err(why) = self.check(&edit, registry) {
             self.say(Severity::Warning, why);
@@ -1031,28 +1065,36 @@ impl Lab {
             Edit::SceneDescription(text) => self.change(|s| s.description = named(text)),
             Edit::SceneSize(size) => self.change(|s| s.scene_size = size),
             Edit::Display(display) => self.change(|s| s.display = display),
-            Edit::Model(id) => {
-                self.say_if_own("reflection model", registry, |o| o.reflection_model.is_some());
-                self.change(|s| s.reflection_model = id);
-            }
-            Edit::Mode(id) => {
-                self.say_if_own("shading mode", registry, |o| o.shading_model.is_some());
-                self.change(|s| s.shading_model = id);
-            }
+            Edit::Model(id) => self.change(|s| s.reflection_model = id),
+            Edit::Mode(id) => self.change(|s| s.shading_model = id),
             Edit::Observer(observer) => self.change(|s| s.observer = observer),
             Edit::Light(i, LightField::Kind(kind)) => self.change_light_kind(i, &kind, registry),
             Edit::Light(i, field) => {
                 if let LightField::Name(_) = field {
                     self.renaming = None;
                 }
-                self.change(|s| match field {
-                    LightField::Name(name) => s.lights[i].name = named(name),
-                    LightField::Kind(kind) => s.lights[i].kind = kind,
-                    LightField::Position(p) => s.lights[i].position = Some(p),
-                    LightField::Direction(d) => s.lights[i].direction = Some(d),
-                    LightField::Colour(c) => s.lights[i].colour = c,
-                    LightField::Intensity(v) => s.lights[i].intensity = v,
-                    LightField::Parameter(name, value) => s.lights[i].parameters.set(name, value),
+                self.change(|s| {
+                    let light = &mut s.lights[i];
+                    // What is not given has the value that it has when the file is read again.
+                    match field {
+                        LightField::Name(name) => light.name = named(name),
+                        LightField::Kind(kind) => light.kind = kind,
+                        LightField::Position(p) => light.position = Some(p),
+                        LightField::Direction(d) => light.direction = Some(d),
+                        LightField::Colour(c) => (light.colour, light.colour_temperature) = (c, None),
+                        LightField::ColourTemperature(kelvin) => {
+                            (light.colour, light.colour_temperature) =
+                                (Light::default().colour, Some(kelvin));
+                        }
+                        LightField::Intensity(v) => (light.intensity, light.luminous_flux) = (v, None),
+                        LightField::LuminousFlux(v) => {
+                            let kind = registry.light(&light.kind);
+                            light.intensity =
+                                kind.map_or(light.intensity, |k| k.declaration.default_intensity);
+                            light.luminous_flux = Some(v);
+                        }
+                        LightField::Parameter(name, value) => light.parameters.set(name, value),
+                    }
                 });
             }
             Edit::Object(i, field) => {
@@ -1075,6 +1117,9 @@ impl Lab {
                         ObjectField::Model(id) => o.reflection_model = id,
                         ObjectField::Mode(id) => o.shading_model = id,
                         ObjectField::Material(name, value) => o.material.set(name, value),
+                        ObjectField::Preset(all) => {
+                            all.into_iter().for_each(|(name, value)| o.material.set(name, value));
+                        }
                     }
                 });
             }
@@ -1082,23 +1127,17 @@ impl Lab {
     }
 
     fn change_light_kind(&mut self, i: usize, kind: &str, registry: &Registry) {
-        let Some(new) = registry.light(kind).map(|e| e.declaration) else { return };
-        let old = registry.light(&self.scene.lights[i].kind).map(|e| e.declaration);
+        let Some(new) = registry.light(kind) else { return };
         let position = match self.scene.lights[i].position {
             Some(p) => p,
             None => self.free_place(self.scene.scene_size.corner() * Vec3::new(0.75, 0.8, 0.9)),
         };
         let direction = self.scene.lights[i].direction.unwrap_or_else(|| self.towards_centre(position));
         self.change(|s| {
+            let room = s.scene_size;
             let light = &mut s.lights[i];
-            kind.clone_into(&mut light.kind);
-            light.position = new.has_position.then_some(position);
-            light.direction = new.has_direction.then_some(direction);
-            // 20 cd and 20 lx are worlds apart: another unit starts from its own default.
-            if old.is_none_or(|o| o.unit != new.unit) {
-                light.intensity = new.default_intensity;
-            }
-            light.parameters.0.retain(|name, _| new.parameters.iter().any(|p| p.name == name));
+            (light.position, light.direction) = (Some(position), Some(direction));
+            light.set_type(new, registry, room);
         });
     }
 
@@ -1132,6 +1171,11 @@ impl Lab {
                 None => Ok(()),
             }
         };
+        let material = |id: &str, value: &Value| match registry.material_parameter(id) {
+            Some(p) if p.allows(value) => Ok(()),
+            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+            None => Err(format!("No model has a parameter “{id}”.")),
+        };
         let direction = |part: Selection, d: Vec3| {
             if d.is_finite() && d.length() > SAME_PLACE {
                 return Ok(());
@@ -1158,7 +1202,8 @@ impl Lab {
             Edit::Light(i, field) => {
                 let light = light(*i)?;
                 let part = Selection::Light(*i);
-                let declaration = registry.light(&light.kind).map(|e| e.declaration);
+                let entry = registry.light(&light.kind);
+                let declaration = entry.map(|e| e.declaration);
                 match field {
                     LightField::Name(_) | LightField::Colour(_) => Ok(()),
                     LightField::Kind(id) => known(registry.light(id).is_some(), "light type", id),
@@ -1168,6 +1213,20 @@ impl Lab {
                         Some(d) => legal(format!("{}: the intensity", name(part)), *v, limits::intensity(d)),
                         None => Ok(()),
                     },
+                    LightField::LuminousFlux(v) => match entry {
+                        Some(e) if !e.has_flux() => Err(format!("{} has no luminous flux.", name(part))),
+                        Some(e) => legal(
+                            format!("{}: the luminous flux", name(part)),
+                            *v,
+                            limits::luminous_flux(e.declaration),
+                        ),
+                        None => Ok(()),
+                    },
+                    LightField::ColourTemperature(v) => legal(
+                        format!("{}: the colour temperature", name(part)),
+                        *v,
+                        limits::colour_temperature(),
+                    ),
                     LightField::Parameter(id, value) => {
                         let parameter = declaration.and_then(|d| d.parameters.iter().find(|p| p.name == *id));
                         match parameter {
@@ -1203,11 +1262,8 @@ impl Lab {
                     },
                     ObjectField::Model(id) => id.as_deref().map_or(Ok(()), model),
                     ObjectField::Mode(id) => id.as_deref().map_or(Ok(()), mode),
-                    ObjectField::Material(id, value) => match registry.material_parameter(id) {
-                        Some(p) if p.allows(value) => Ok(()),
-                        Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
-                        None => Err(format!("No model has a parameter “{id}”.")),
-                    },
+                    ObjectField::Material(id, value) => material(id, value),
+                    ObjectField::Preset(all) => all.iter().try_for_each(|(id, value)| material(id, value)),
                 }
             }
         }

@@ -195,6 +195,22 @@ pub fn strong(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
     egui::RichText::new(text).family(semibold()).color(Palette::here(ui).text)
 }
 
+/// A line of text, cut off with … where it is wider than this.
+#[must_use]
+pub fn elided(ui: &egui::Ui, text: &str, style: TextStyle, colour: Color32, width: f32) -> Arc<egui::Galley> {
+    let mut job =
+        egui::text::LayoutJob::simple_singleline(text.to_owned(), style.resolve(ui.style()), colour);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(0.0));
+    ui.painter().layout_job(job)
+}
+
+/// The colour on screen of a linear reflectance.
+#[must_use]
+pub fn swatch(reflectance: glam::Vec3) -> Color32 {
+    let code = |v: f32| (255.0 * crate::optics::colour::srgb_encode(v.clamp(0.0, 1.0))).round() as u8;
+    Color32::from_rgb(code(reflectance.x), code(reflectance.y), code(reflectance.z))
+}
+
 /// Makes the fonts known to egui. Once per context.
 pub fn install_fonts(ctx: &Context) {
     let mut fonts = FontDefinitions::default();

@@ -5,7 +5,7 @@ use bevy_egui::egui::{self, Align, Button, Layout, RichText, Ui, WidgetInfo, Wid
 use super::{
     Panel, Place, chooser,
     keys::{self, Binding},
-    state::{Action, Edit, Lab, Selection, ThemeChoice, ViewChange},
+    state::{Action, Lab, Selection, ThemeChoice, ViewChange},
     theme::{self, Palette},
 };
 use crate::{optics::TermSelection, registry::Registry};
@@ -43,6 +43,7 @@ impl Panel for TopBar {
             ui.add_space(8.0 * scale);
             caption(ui, "Shading");
             shading(ui, lab, registry, &mut actions);
+            whose(ui, lab, registry);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, lab));
         });
         actions
@@ -241,7 +242,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
 /// One button for each shading mode, as one control.
 fn shading(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
     let names: Vec<_> = registry.modes().iter().map(|m| m.declaration.short_name).collect();
-    let chosen = registry.modes().iter().position(|m| m.declaration.id == lab.scene.shading_model);
+    let chosen = registry.modes().iter().position(|m| m.declaration.id == lab.mode_shown());
     let tip = |ui: &mut Ui, i: usize| {
         let d = registry.modes()[i].declaration;
         ui.set_max_width(300.0 * theme::scale_here(ui));
@@ -250,8 +251,39 @@ fn shading(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action
         ui.label(theme::small(ui, format!("{} · computed {} · key {}", d.author, d.stage.phrase(), d.key)));
     };
     if let Some(i) = segmented(ui, "Shading", &names, chosen, tip) {
-        actions.push(Action::Edit(Edit::Mode(registry.modes()[i].declaration.id.to_owned())));
+        actions.push(Action::Edit(lab.edit_mode(registry.modes()[i].declaration.id)));
     }
+}
+
+/// Says that the choices at the top are about the selected object alone, where it has its own.
+fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
+    let what = match (lab.own_model().is_some(), lab.own_mode().is_some()) {
+        (true, true) => "reflection and shading",
+        (true, false) => "reflection",
+        (false, true) => "shading",
+        (false, false) => return,
+    };
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    ui.add_space(6.0 * scale);
+    let name = lab.name_of(lab.selection, registry);
+    let text = format!("{name}’s own {what}");
+    // The frame rate keeps its place.
+    let room = (ui.available_width() - 96.0 * scale).max(40.0 * scale);
+    let galley = theme::elided(ui, &text, egui::TextStyle::Small, palette.accent, room);
+    let (rect, response) = ui.allocate_exact_size(galley.size(), egui::Sense::hover());
+    ui.painter().galley(rect.min, galley, palette.accent);
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
+    response.on_hover_ui(|ui| {
+        ui.set_max_width(320.0 * scale);
+        ui.label(format!(
+            "{name} has its own {what}, so the choice here changes that of {name} alone. At the end of the \
+             panel at the right it can be made to follow the scene again."
+        ));
+        let model = registry.model(&lab.scene.reflection_model).map_or("–", |m| m.declaration.name);
+        let mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
+        ui.label(theme::small(ui, format!("The scene: {model}, {mode} shading")));
+    });
 }
 
 /// Several choices side by side, one of them chosen. Returns the index of another one that was clicked.

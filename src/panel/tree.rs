@@ -199,7 +199,7 @@ fn part_row(
         Selection::Light(i) => {
             let light = &lab.scene.lights[i];
             glyph(registry.light(&light.kind).map_or("?", |e| e.declaration.glyph));
-            dot = Some(light.colour);
+            dot = Some(light.rgb8());
         }
         Selection::Object(i) => {
             let object = &lab.scene.objects[i];

@@ -48,9 +48,9 @@ pub(super) struct LightsOn<'a> {
 }
 
 impl Lighting for LightsOn<'_> {
-    fn colour(&self, position: Vec3, normal: Vec3) -> Vec3 {
+    fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3 {
         let v = (self.lights.observer - position).normalize_or_zero();
-        let frame = Frame::from_normal(normal);
+        let frame = Frame::new(normal, tangent);
         let terms = self.lights.terms;
         let mut sum = Vec3::ZERO;
         for (incident, light) in &self.lights.lights {

@@ -17,10 +17,13 @@
 //! names only known ones; an object or light of an unknown kind is left out.
 //!
 //! A mode of [`Stage::Vertex`] or [`Stage::Pixel`] is asked once per vertex, which polygons share: the
-//! face normal and centre of its [`Corner`] are then the vertex's own normal and position. A mode of
+//! face normal, tangent and centre of its [`Corner`] are then the vertex's own. A mode of
 //! [`Stage::Polygon`] is asked once per polygon, at its centre.
 
-use std::{collections::HashMap, sync::Arc};
+use std::{
+    collections::HashMap,
+    sync::{Arc, OnceLock},
+};
 
 use glam::{EulerRot, Mat3, Mat4, Vec3, Vec4};
 use rayon::prelude::*;
@@ -122,6 +125,8 @@ struct Prepared {
     polygon_normals: Vec<Vec3>,
     polygon_centres: Vec<Vec3>,
     vertex_normals: Vec<Vec3>,
+    /// Those of the polygons and those of the vertices; only anisotropic models need them.
+    tangents: OnceLock<[Vec<Vec3>; 2]>,
     /// Largest distance of a vertex from the origin.
     radius: f32,
 }
@@ -132,9 +137,14 @@ impl Prepared {
             polygon_normals: mesh.polygon_normals(),
             polygon_centres: mesh.polygon_centres(),
             vertex_normals: mesh.vertex_normals(),
+            tangents: OnceLock::new(),
             radius: mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max),
             mesh,
         }
+    }
+
+    fn tangents(&self) -> &[Vec<Vec3>; 2] {
+        self.tangents.get_or_init(|| [self.mesh.polygon_tangents(), self.mesh.vertex_tangents()])
     }
 }
 
@@ -144,6 +154,8 @@ struct Draw<'a> {
     shape: &'a Prepared,
     mode: &'a ModeEntry,
     surface: Arc<dyn Surface>,
+    /// Whether the model needs tangents.
+    anisotropic: bool,
 }
 
 /// Polygons that are held at a time: bounds the memory of scenes of any size.
@@ -212,13 +224,13 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
         let draws: Vec<Draw> = batch
             .par_iter()
             .filter_map(|&(object, shape)| {
+                let model = registry.model(scene.model_of(object))?;
                 Some(Draw {
                     object,
                     shape,
                     mode: registry.mode(scene.mode_of(object))?,
-                    surface: registry
-                        .model(scene.model_of(object))?
-                        .instantiate(&object.material, scene.display.encoding),
+                    surface: model.instantiate(&object.material, scene.display.encoding),
+                    anisotropic: model.declaration.anisotropic,
                 })
             })
             .collect();
@@ -288,7 +300,7 @@ fn rotation(degrees: Vec3) -> Mat3 {
 
 /// The triangles of an object that may be seen, shaded as far as its mode does at corners.
 fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Screen) -> Vec<Triangle> {
-    let Draw { object, shape, mode, surface } = draw;
+    let Draw { object, shape, mode, surface, anisotropic } = draw;
     let mesh = &shape.mesh;
     let rotation = rotation(object.rotation);
     let room = |p: Vec3| rotation * (p * object.size) + object.position;
@@ -318,17 +330,28 @@ fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Scree
     };
     needed.sort_unstable();
     needed.dedup();
+    let tangents = anisotropic.then(|| shape.tangents());
     let shaded: Vec<Varying> = needed
         .par_iter()
         .with_min_len(SHADED_PER_TASK)
         .map(|&i| {
             let i = i as usize;
-            let corner = if per_polygon {
-                let (normal, centre) = (rotation * shape.polygon_normals[i], room(shape.polygon_centres[i]));
-                Corner { position: centre, normal, face_normal: normal, face_centre: centre }
+            let (position, normals) = if per_polygon {
+                (room(shape.polygon_centres[i]), &shape.polygon_normals)
             } else {
-                let (normal, position) = (rotation * shape.vertex_normals[i], positions[i]);
-                Corner { position, normal, face_normal: normal, face_centre: position }
+                (positions[i], &shape.vertex_normals)
+            };
+            let normal = rotation * normals[i];
+            let tangent = tangents.map_or(Vec3::ZERO, |[polygon, vertex]| {
+                rotation * if per_polygon { polygon } else { vertex }[i]
+            });
+            let corner = Corner {
+                position,
+                normal,
+                tangent,
+                face_normal: normal,
+                face_tangent: tangent,
+                face_centre: position,
             };
             (mode.vertex)(&lighting as &dyn Lighting, &corner)
         })
@@ -345,7 +368,7 @@ fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Scree
             Varying { position: positions[c as usize], ..shaded }
         });
         let placed = corners.map(|c| &placed[c as usize]);
-        set_up(placed, varyings, screen, &mut |triangle| out.push(triangle));
+        set_up(placed, varyings, *anisotropic, screen, &mut |triangle| out.push(triangle));
     }
     out
 }

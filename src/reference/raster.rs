@@ -139,6 +139,8 @@ pub(super) struct Triangle {
     inverse_w: [f32; 3],
     varyings: [Varying; 3],
     face_normal: Vec3,
+    /// Whether anything asks for tangents: they cost time.
+    tangents: bool,
 }
 
 /// Calls `emit` for the visible triangles that a triangle becomes: itself, what clipping leaves of it,
@@ -146,6 +148,7 @@ pub(super) struct Triangle {
 pub(super) fn set_up(
     placed: [&Placed; 3],
     varyings: [Varying; 3],
+    tangents: bool,
     screen: &Screen,
     emit: &mut impl FnMut(Triangle),
 ) {
@@ -160,6 +163,7 @@ pub(super) fn set_up(
                 inverse_w: [1.0 / w[0], 1.0 / w[2], 1.0 / w[1]],
                 varyings: [varyings[0], varyings[2], varyings[1]],
                 face_normal,
+                tangents,
             });
         }
     };
@@ -205,6 +209,7 @@ fn mix(a: &Varying, b: &Varying, t: f32) -> Varying {
     Varying {
         position: a.position.lerp(b.position, t),
         normal: a.normal.lerp(b.normal, t),
+        tangent: a.tangent.lerp(b.tangent, t),
         colour: a.colour.lerp(b.colour, t),
     }
 }
@@ -242,6 +247,7 @@ impl Triangle {
         Varying {
             position: between(p.position, q.position, r.position),
             normal: between(p.normal, q.normal, r.normal),
+            tangent: if self.tangents { between(p.tangent, q.tangent, r.tangent) } else { Vec3::ZERO },
             colour: between(p.colour, q.colour, r.colour),
         }
     }
@@ -387,12 +393,13 @@ mod tests {
             inverse_w: [1.0; 3],
             varyings: [Varying::default(); 3],
             face_normal: Vec3::Z,
+            tangents: false,
         }
     }
 
     struct NoLight;
     impl Lighting for NoLight {
-        fn colour(&self, _position: Vec3, _normal: Vec3) -> Vec3 {
+        fn colour(&self, _position: Vec3, _normal: Vec3, _tangent: Vec3) -> Vec3 {
             Vec3::ONE
         }
     }
@@ -469,7 +476,10 @@ mod tests {
     #[test]
     fn clipping_keeps_what_is_in_front_and_interpolates_what_it_cuts() {
         let behind = Vec4::new(0.0, 0.0, 0.01, -1.0);
-        let corner = |clip: Vec4, red: f32| (clip, Varying { colour: Vec3::X * red, ..Varying::default() });
+        let corner = |clip: Vec4, red: f32| {
+            let colour = Vec3::X * red;
+            (clip, Varying { colour, tangent: colour, ..Varying::default() })
+        };
         let front = [Vec4::new(-1.0, 0.0, 0.01, 1.0), Vec4::new(1.0, 0.0, 0.01, 1.0)];
         let polygon = [corner(front[0], 0.0), corner(front[1], 0.0), corner(behind, 1.0)];
         let near = Vec4::new(0.0, 0.0, -1.0, 1.0);
@@ -479,6 +489,7 @@ mod tests {
             assert!(near.dot(*clip) >= -1e-6);
             // Red grows with the way towards the corner behind, and so with 1 − w.
             assert!((varying.colour.x - 0.5 * (1.0 - clip.w)).abs() < 1e-6);
+            assert_eq!(varying.tangent, varying.colour);
         }
         assert!(clip(&[corner(behind, 0.0); 3], near).is_empty());
     }

@@ -34,10 +34,10 @@ parameters! {
     /// **Ashikhmin–Shirley** — an anisotropic Phong highlight over a base that gives way to it.
     ///
     /// ```text
-    /// f_d = 28 R_d/(23π) (1 − R_s) (1 − (1 − N·L/2)⁵) (1 − (1 − N·V/2)⁵)
+    /// f_d = 28 R_d/(23π) (1 − F_0) (1 − (1 − N·L/2)⁵) (1 − (1 − N·V/2)⁵)
     /// f_s = √((n_u + 1)(n_v + 1))/(8π) (N·H)^n F / (H·L max(N·L, N·V))
-    /// n = (n_u (H·T)² + n_v (H·B)²) / (1 − (N·H)²),  F = R_s + (1 − R_s)(1 − H·L)⁵
-    /// R_d = C_b,  R_s = k_s C_s
+    /// n = (n_u (H·T)² + n_v (H·B)²) / (1 − (N·H)²),  F = F_0 + (1 − F_0)(1 − H·L)⁵
+    /// R_d = C_b,  F_0 = R_s = k_s C_s
     /// ```
     ///
     /// | parameter | symbol | unit | range | default |
@@ -81,7 +81,7 @@ impl ReflectionModel for AshikhminShirley {
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart {
                 term: Term::Diffuse,
-                text: "I_d = 28/23 C_b (1 − k_s C_s) (1 − (1 − N·L/2)^5) (1 − (1 − N·V/2)^5) N·L",
+                text: "I_d = 28/23 C_b (1 − F_0) (1 − (1 − N·L/2)^5) (1 − (1 − N·V/2)^5) N·L",
             },
             EquationPart {
                 term: Term::Specular,
@@ -90,7 +90,9 @@ impl ReflectionModel for AshikhminShirley {
             EquationPart {
                 term: Term::Specular, text: "n = (n_u (H·T)^2 + n_v (H·B)^2) / (1 − (N·H)^2)"
             },
-            EquationPart { term: Term::Specular, text: "F = k_s C_s + (1 − k_s C_s) (1 − H·L)^5" },
+            EquationPart {
+                term: Term::Specular, text: "F = F_0 + (1 − F_0) (1 − H·L)^5 ,  F_0 = k_s C_s"
+            },
         ],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,

@@ -29,9 +29,15 @@ use bevy::{
 
 use super::ReflectionModel;
 
+/// The tangent of the vertex. Three numbers, not Bevy's four: the bitangent is always `n × t`.
+pub const TANGENT: MeshVertexAttribute =
+    MeshVertexAttribute::new("BrushTangent", 0x4c43_4d03, VertexFormat::Float32x3);
 /// The normal of the polygon (DD8), on meshes for modes that calculate per polygon.
 pub const FACE_NORMAL: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceNormal", 0x4c43_4d01, VertexFormat::Float32x3);
+/// The tangent of the polygon, on meshes for modes that calculate per polygon.
+pub const FACE_TANGENT: MeshVertexAttribute =
+    MeshVertexAttribute::new("FaceTangent", 0x4c43_4d04, VertexFormat::Float32x3);
 /// The centre of the polygon, on meshes for modes that calculate per polygon.
 pub const FACE_CENTRE: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceCentre", 0x4c43_4d02, VertexFormat::Float32x3);
@@ -45,7 +51,7 @@ pub struct Ingredients {
     pub illumination: Handle<ShaderBuffer>,
     /// The composed shader of model and mode.
     pub shader: Handle<Shader>,
-    /// Whether the mesh carries [`FACE_NORMAL`] and [`FACE_CENTRE`].
+    /// Whether the mesh carries [`FACE_NORMAL`], [`FACE_TANGENT`] and [`FACE_CENTRE`].
     pub faces: bool,
 }
 
@@ -117,10 +123,12 @@ impl<M: ReflectionModel> Material for ModelMaterial<M> {
         let mut attributes = vec![
             Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
             Mesh::ATTRIBUTE_NORMAL.at_shader_location(1),
+            TANGENT.at_shader_location(2),
         ];
         if key.bind_group_data.faces {
-            attributes.push(FACE_NORMAL.at_shader_location(2));
-            attributes.push(FACE_CENTRE.at_shader_location(3));
+            attributes.push(FACE_NORMAL.at_shader_location(3));
+            attributes.push(FACE_TANGENT.at_shader_location(4));
+            attributes.push(FACE_CENTRE.at_shader_location(5));
             descriptor.vertex.shader_defs.push("FACES".into());
         }
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
@@ -178,14 +186,19 @@ fn attach<M: ReflectionModel>(entity: &mut EntityWorldMut, ingredients: Ingredie
         let key = ingredients.shader.id();
         world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
         world.resource_scope(|world, mut shared: Mut<SharedMaterials<M>>| {
-            shared
-                .0
-                .entry(key)
-                .or_insert_with(|| {
-                    let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
-                    materials.add(ModelMaterial::<M>::from(ingredients))
-                })
-                .clone()
+            let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
+            let Some(handle) = shared.0.get(&key) else {
+                let handle = materials.add(ModelMaterial::<M>::from(ingredients));
+                shared.0.insert(key, handle.clone());
+                return handle;
+            };
+            // A table that was made anew, for more objects.
+            if let Some(material) = materials.get(handle)
+                && material.parameters != ingredients.parameters
+            {
+                let _ = materials.insert(handle.id(), ModelMaterial::<M>::from(ingredients));
+            }
+            handle.clone()
         })
     });
     if entity.get::<MeshMaterial3d<ModelMaterial<M>>>().map(|m| &m.0) != Some(&handle) {

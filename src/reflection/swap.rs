@@ -12,7 +12,7 @@ use bevy::{
 };
 use rayon::prelude::*;
 
-use super::material::{Attachments, FACE_CENTRE, FACE_NORMAL, Ingredients};
+use super::material::{Attachments, FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, Ingredients, TANGENT};
 use crate::{
     light::{Incident, buffer::IlluminationBuffer, buffer::record},
     optics::colour::Encoding,
@@ -27,10 +27,15 @@ use crate::{
 };
 
 /// The parameters of all objects, one table for each model in use. The row of an object is its place in
-/// the scene, the same in every table. A table has room for the most objects that a scene may have: a
-/// buffer that never grows is replaced without touching any material.
+/// the scene, the same in every table. A table that changed is uploaded whole: a buffer that never grows
+/// is replaced without touching any material. So that a slider moves no megabytes in a room of few
+/// objects, there is room for the next power of two above their number; when a scene outgrows that, all
+/// tables are made anew, and every object takes its material again.
 #[derive(Default, Resource)]
-pub struct ParameterTables(HashMap<&'static str, Table>);
+pub struct ParameterTables {
+    tables: HashMap<&'static str, Table>,
+    rows: usize,
+}
 
 struct Table {
     bytes: Vec<u8>,
@@ -39,6 +44,18 @@ struct Table {
 }
 
 impl ParameterTables {
+    /// Makes room for so many objects; whether all rows have to be written anew.
+    fn hold(&mut self, objects: usize) -> bool {
+        /// Of the smallest table.
+        const ROWS: usize = 64;
+        if objects <= self.rows {
+            return false;
+        }
+        self.rows = objects.next_power_of_two().clamp(ROWS, MAX_OBJECTS);
+        self.tables.clear();
+        true
+    }
+
     /// Writes the parameters of an object; the buffer of the table.
     fn set(
         &mut self,
@@ -47,8 +64,8 @@ impl ParameterTables {
         parameters: &[u8],
         buffers: &mut Assets<ShaderBuffer>,
     ) -> Handle<ShaderBuffer> {
-        let table = self.0.entry(model.declaration.id).or_insert_with(|| {
-            let bytes = vec![0; parameters.len() * MAX_OBJECTS];
+        let table = self.tables.entry(model.declaration.id).or_insert_with(|| {
+            let bytes = vec![0; parameters.len() * self.rows];
             let buffer = buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()));
             Table { bytes, buffer, changed: true }
         });
@@ -63,7 +80,7 @@ impl ParameterTables {
 
     /// Hands what changed to the renderer.
     fn upload(&mut self, buffers: &mut Assets<ShaderBuffer>) {
-        for table in self.0.values_mut().filter(|t| t.changed) {
+        for table in self.tables.values_mut().filter(|t| t.changed) {
             table.changed = false;
             if let Some(mut buffer) = buffers.get_mut(&table.buffer) {
                 buffer.data = Some(table.bytes.clone());
@@ -123,26 +140,30 @@ pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&mesh.positions))
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&mesh.vertex_normals()))
+        .with_inserted_attribute(TANGENT, arrays(&mesh.vertex_tangents()))
         .with_inserted_indices(Indices::U32(indices))
 }
 
 /// The mesh for modes that calculate per polygon: no vertex is shared, and each knows its polygon.
 #[must_use]
 pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
-    let vertex_normals = mesh.vertex_normals();
+    let (vertex_normals, vertex_tangents) = (mesh.vertex_normals(), mesh.vertex_tangents());
+    let (polygon_normals, polygon_tangents) = (mesh.polygon_normals(), mesh.polygon_tangents());
     let mut positions = Vec::new();
     let mut normals = Vec::new();
+    let mut tangents = Vec::new();
     let mut face_normals = Vec::new();
+    let mut face_tangents = Vec::new();
     let mut face_centres = Vec::new();
     let mut indices = Vec::new();
-    for ((polygon, normal), centre) in
-        mesh.polygons.iter().zip(mesh.polygon_normals()).zip(mesh.polygon_centres())
-    {
+    for (i, (polygon, centre)) in mesh.polygons.iter().zip(mesh.polygon_centres()).enumerate() {
         let first = positions.len() as u32;
         for &corner in polygon.corners() {
             positions.push(mesh.positions[corner as usize]);
             normals.push(vertex_normals[corner as usize]);
-            face_normals.push(normal);
+            tangents.push(vertex_tangents[corner as usize]);
+            face_normals.push(polygon_normals[i]);
+            face_tangents.push(polygon_tangents[i]);
             face_centres.push(centre);
         }
         indices.extend(polygon.triangles().iter().flatten().map(|&i| first + i as u32));
@@ -150,7 +171,9 @@ pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&positions))
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&normals))
+        .with_inserted_attribute(TANGENT, arrays(&tangents))
         .with_inserted_attribute(FACE_NORMAL, arrays(&face_normals))
+        .with_inserted_attribute(FACE_TANGENT, arrays(&face_tangents))
         .with_inserted_attribute(FACE_CENTRE, arrays(&face_centres))
         .with_inserted_indices(Indices::U32(indices))
 }
@@ -181,6 +204,8 @@ fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
 /// Gives every object whose shape, model, mode or parameters changed its mesh and its material. Exclusive, so that
 /// mesh and material change in one step.
 pub fn swap(world: &mut World) {
+    let objects = world.resource::<SceneEntities>().objects.len().min(MAX_OBJECTS);
+    let all = world.resource_mut::<ParameterTables>().bypass_change_detection().hold(objects);
     let pending = {
         let scene = world.resource_ref::<CurrentScene>();
         let scene_changed = scene.is_changed();
@@ -197,7 +222,7 @@ pub fn swap(world: &mut World) {
                 encoding: scene.display.encoding,
                 everywhere,
             };
-            if object.is_changed() || drawn.is_none() || (scene_changed && drawn != Some(&now())) {
+            if all || object.is_changed() || drawn.is_none() || (scene_changed && drawn != Some(&now())) {
                 pending.push((row, entity, object.0.clone(), now()));
             }
         }

@@ -14,7 +14,11 @@ use super::{
 };
 use crate::{
     light::{LightEntry, MAX_LIGHTS},
-    optics::{colour::Encoding, tone::ToneMapping},
+    optics::{
+        colour::Encoding,
+        temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
+        tone::ToneMapping,
+    },
     reflection::parameter::{Parameter, ParameterKind, Value, Values},
     registry::Registry,
     shape::ShapeEntry,
@@ -63,12 +67,28 @@ pub fn direction(direction: Vec3) -> Rule {
 
 /// The intensity of a light.
 pub fn intensity(value: f32) -> Rule {
+    brightness("an intensity", value)
+}
+
+/// The luminous flux of a light, in lumen.
+pub fn luminous_flux(value: f32) -> Rule {
+    brightness("a luminous flux", value)
+}
+
+fn brightness(what: &str, value: f32) -> Rule {
     must(value >= 0.0 && value.is_finite(), || {
         if value == f32::INFINITY {
-            "an intensity must be at most 3.4e38".to_owned()
+            format!("{what} must be at most 3.4e38")
         } else {
-            "an intensity must be at least 0".to_owned()
+            format!("{what} must be at least 0")
         }
+    })
+}
+
+/// The colour temperature of a light, in kelvin.
+pub fn colour_temperature(kelvin: f32) -> Rule {
+    must((MIN_TEMPERATURE..=MAX_TEMPERATURE).contains(&kelvin), || {
+        format!("a colour temperature must be between {MIN_TEMPERATURE} and {MAX_TEMPERATURE} K")
     })
 }
 
@@ -386,6 +406,17 @@ fn light_at(light: &Light, room: SceneSize, registry: &Registry, path: impl Fn()
         problems.add(direction(d), || (path().key("direction"), Written(d)));
     }
     problems.add(intensity(light.intensity), || (path().key("intensity"), light.intensity));
+    if let Some(flux) = light.luminous_flux {
+        if entry.is_none_or(LightEntry::has_flux) {
+            problems.add(luminous_flux(flux), || (path().key("luminous_flux"), flux));
+        } else {
+            let rule = presence(&light.kind, "luminous_flux", false);
+            problems.0.push(Problem::about(path().key("luminous_flux"), rule));
+        }
+    }
+    if let Some(kelvin) = light.colour_temperature {
+        problems.add(colour_temperature(kelvin), || (path().key("colour_temperature"), kelvin));
+    }
     for (name, value) in &light.parameters.0 {
         let key = || path().key(name.clone());
         match entry.map(|e| e.declaration.parameters.iter().find(|p| p.name == name.as_ref())) {
@@ -482,10 +513,16 @@ fn coincidences(scene: &Scene) -> Vec<Problem> {
 
 impl Light {
     /// Makes it a light of another type: gains and loses position, direction and parameters as that
-    /// type has them. Intensity is kept, unless its unit changes.
+    /// type has them. Intensity or luminous flux is kept, unless the new type measures in another unit.
     pub fn set_type(&mut self, to: &LightEntry, registry: &Registry, room: SceneSize) {
-        let old = registry.light(&self.kind).map(|l| l.declaration);
         let new = to.declaration;
+        let flux = self.luminous_flux.filter(|_| to.has_flux());
+        self.intensity = match registry.light(&self.kind) {
+            Some(old) if flux.is_none() && old.declaration.unit == new.unit => self.intensity_as(old),
+            // 20 cd and 20 lx are worlds apart: another unit starts from its own default.
+            _ => new.default_intensity,
+        };
+        self.luminous_flux = flux;
         let centre = Vec3::new(room.width / 2.0, room.height * 0.8, room.depth / 2.0);
         self.position = new.has_position.then(|| self.position.unwrap_or(centre));
         self.direction = new.has_direction.then(|| self.direction.unwrap_or(Vec3::NEG_Y));
@@ -496,9 +533,6 @@ impl Light {
             }
         }
         self.parameters = parameters;
-        if old.is_none_or(|o| o.unit != new.unit) {
-            self.intensity = new.default_intensity;
-        }
         new.id.clone_into(&mut self.kind);
     }
 }

@@ -74,14 +74,25 @@ struct LightFile<'a> {
     /// Where it shines: [x, y, z], of any length.
     #[serde(skip_serializing_if = "Option::is_none")]
     direction: Option<[f32; 3]>,
-    /// Its colour: [red, green, blue], whole numbers from 0 to 255, sRGB.
+    /// Its colour: [red, green, blue], whole numbers from 0 to 255, sRGB. Not beside `colour_temperature`.
     #[schemars(extend("default" = [255, 255, 255]))]
     #[serde(skip_serializing_if = "Option::is_none")]
     colour: Option<[u8; 3]>,
-    /// How bright it is: candela for lights with a position, lux for the others.
+    /// Its colour as that of a black body of this temperature, kelvin: a candle has 1900, a light bulb
+    /// 2700, white is 6500. Not beside `colour`. How bright the light is does not change.
+    #[schemars(range(min = 1000, max = 40000))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    colour_temperature: Option<f32>,
+    /// How bright it is: candela for lights with a position, lux for the others. Not beside
+    /// `luminous_flux`.
     #[schemars(range(min = 0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     intensity: Option<f32>,
+    /// How much light it sends out in all directions together, lumen, as printed on light bulbs. Not
+    /// beside `intensity`.
+    #[schemars(range(min = 0))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    luminous_flux: Option<f32>,
     #[serde(flatten)]
     #[schemars(skip)]
     parameters: Ordered<'a>,
@@ -218,8 +229,10 @@ impl<'a> LightFile<'a> {
             name: light.name.as_deref(),
             position: light.position.map(Into::into),
             direction: light.direction.map(Into::into),
-            colour: Some(light.colour),
-            intensity: Some(light.intensity),
+            colour: light.colour_temperature.is_none().then_some(light.colour),
+            colour_temperature: light.colour_temperature,
+            intensity: light.luminous_flux.is_none().then_some(light.intensity),
+            luminous_flux: light.luminous_flux,
             parameters: Ordered::new(&light.parameters, declared.iter()),
         }
     }

@@ -7,7 +7,12 @@
 use glam::Vec3;
 
 use crate::{
-    optics::{colour::Encoding, tone::ToneMapping},
+    light::LightEntry,
+    optics::{
+        colour::{Encoding, srgb_encode},
+        temperature,
+        tone::ToneMapping,
+    },
     reflection::parameter::Values,
 };
 
@@ -101,10 +106,14 @@ pub struct Light {
     pub position: Option<Vec3>,
     /// Where it shines, not normalised; `None` for types without a direction.
     pub direction: Option<Vec3>,
-    /// Colour.
+    /// Colour, where there is no [`colour_temperature`](Self::colour_temperature).
     pub colour: [u8; 3],
-    /// Intensity in the unit of the type.
+    /// Colour temperature in kelvin, instead of the colour.
+    pub colour_temperature: Option<f32>,
+    /// Intensity in the unit of the type, where there is no [`luminous_flux`](Self::luminous_flux).
     pub intensity: f32,
+    /// Luminous flux in lumen, instead of the intensity; `None` for types without a flux.
+    pub luminous_flux: Option<f32>,
     /// Further parameters that the type declares; absent ones have their defaults.
     pub parameters: Values,
 }
@@ -163,9 +172,40 @@ impl Default for Light {
             position: Some(Vec3::new(7.5, 8.0, 9.0)),
             direction: None,
             colour: [255; 3],
+            colour_temperature: None,
             intensity: 20.0,
+            luminous_flux: None,
             parameters: Values::default(),
         }
+    }
+}
+
+impl Light {
+    /// The intensity in the unit of its type, whichever way it is given.
+    #[must_use]
+    pub fn intensity_as(&self, kind: &LightEntry) -> f32 {
+        match self.luminous_flux.zip(kind.solid_angle(&self.parameters)) {
+            // A cone may be so narrow that the quotient is not finite in 32 bits.
+            Some((flux, solid_angle)) => ((f64::from(flux) / solid_angle) as f32).min(f32::MAX),
+            None => self.intensity,
+        }
+    }
+
+    /// The colour for calculation, whichever way it is given.
+    #[must_use]
+    pub fn colour_under(&self, encoding: Encoding) -> Vec3 {
+        match (self.colour_temperature, encoding) {
+            (None, _) => encoding.decode(self.colour),
+            (Some(kelvin), Encoding::Srgb) => temperature::black_body(kelvin),
+            // Gamma-naive: the numbers that a picker of colours would show are taken as they are.
+            (Some(kelvin), Encoding::Off) => temperature::black_body(kelvin).map(srgb_encode),
+        }
+    }
+
+    /// The colour in sRGB, whichever way it is given.
+    #[must_use]
+    pub fn rgb8(&self) -> [u8; 3] {
+        self.colour_temperature.map_or(self.colour, temperature::black_body_rgb8)
     }
 }
 

@@ -18,6 +18,7 @@ use super::{
     load::{Defaults, Lines, Missing},
 };
 use crate::{
+    light::LightEntry,
     optics::{colour::Encoding, tone::ToneMapping},
     reflection::parameter::{Parameter, ParameterKind, Value, Values},
     registry::Registry,
@@ -39,7 +40,11 @@ pub(super) const SCENE_KEYS: &[&str] = &[
 /// The keys of `scene_size`.
 pub(super) const SIZE_KEYS: &[&str] = &["height", "width", "depth"];
 /// The keys that lights of every type may have.
-pub(super) const LIGHT_KEYS: &[&str] = &["type", "name", "position", "direction", "colour", "intensity"];
+pub(super) const LIGHT_KEYS: &[&str] =
+    &["type", "name", "position", "direction", "colour", "colour_temperature", "intensity", "luminous_flux"];
+/// Keys of a light of which it has one or the other; the first counts where neither is given.
+pub(super) const LIGHT_ALTERNATIVES: [[&str; 2]; 2] =
+    [["intensity", "luminous_flux"], ["colour", "colour_temperature"]];
 /// The keys of `observer`.
 pub(super) const OBSERVER_KEYS: &[&str] = &["position", "direction", "field_of_view"];
 /// The keys of an object.
@@ -76,6 +81,11 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("look_at", "direction"),
     ("brightness", "intensity"),
     ("power", "intensity"),
+    ("lumen", "luminous_flux"),
+    ("lumens", "luminous_flux"),
+    ("flux", "luminous_flux"),
+    ("kelvin", "colour_temperature"),
+    ("temperature", "colour_temperature"),
     ("segments", "tessellation"),
     ("subdivisions", "tessellation"),
     ("title", "name"),
@@ -299,6 +309,22 @@ impl Reader<'_> {
         if let Some(value) = fields.get("intensity") {
             let rule = rule_of(check::intensity(f32::NAN));
             light.intensity = self.number(value, &path, "intensity", &rule).unwrap_or(light.intensity);
+        }
+        if let Some(value) = fields.get("luminous_flux") {
+            let rule = rule_of(check::luminous_flux(f32::NAN));
+            light.luminous_flux = self.number(value, &path, "luminous_flux", &rule);
+        }
+        if let Some(value) = fields.get("colour_temperature") {
+            let rule = rule_of(check::colour_temperature(f32::NAN));
+            light.colour_temperature = self.number(value, &path, "colour_temperature", &rule);
+        }
+        for [one, other] in LIGHT_ALTERNATIVES {
+            // That the type has no flux is said by the check, and says enough.
+            let possible = other != "luminous_flux" || entry.is_none_or(LightEntry::has_flux);
+            if let (Some(_), Some(value), true) = (fields.get(one), fields.get(other), possible) {
+                let predicate = format!("is given, but so is {one}; a light has one of the two");
+                self.report(value.start(), Problem::about(path.key(other), predicate));
+            }
         }
         for (key, property) in &fields.fields {
             let own = entry.and_then(|e| e.declaration.parameters.iter().find(|p| p.name == *key));

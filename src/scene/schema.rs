@@ -4,7 +4,7 @@
 use schemars::{SchemaGenerator, generate::SchemaSettings};
 use serde_json::{Map, Value as Json, json};
 
-use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile};
+use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile, read};
 use crate::{
     light::MAX_LIGHTS,
     optics::{colour::Encoding, tone::ToneMapping},
@@ -33,7 +33,7 @@ pub fn schema(registry: &Registry) -> Json {
     choose(&mut scene["shading_model"], modes());
     scene["reflection_model"]["default"] = super::DEFAULT_REFLECTION_MODEL.into();
     scene["shading_model"]["default"] = super::DEFAULT_SHADING_MODEL.into();
-    let tones = ToneMapping::ALL.map(|t| (t.id(), t.name(), ""));
+    let tones = ToneMapping::ALL.map(|t| (t.id(), t.name(), t.summary()));
     choose(&mut scene["display"]["properties"]["tone_mapping"], tones.into_iter());
     let encodings = Encoding::ALL.map(|e| (e.id(), e.id(), ""));
     choose(&mut scene["display"]["properties"]["encoding"], encodings.into_iter());
@@ -120,7 +120,8 @@ fn lights(list: &mut Json, registry: &Registry) {
     for p in declarations().flat_map(|d| d.parameters) {
         fields[p.name] = parameter(p);
     }
-    let kinds = declarations().map(|d| {
+    let kinds = registry.lights().iter().map(|l| {
+        let (d, has_flux) = (l.declaration, l.has_flux());
         let mut required = Vec::new();
         let mut properties = Map::new();
         for (field, has) in [("position", d.has_position), ("direction", d.has_direction)] {
@@ -135,6 +136,9 @@ fn lights(list: &mut Json, registry: &Registry) {
                 properties.insert(other.name.to_owned(), false.into());
             }
         }
+        if !has_flux {
+            properties.insert("luminous_flux".to_owned(), false.into());
+        }
         let intensity = json!({
             "description": format!("How bright it is, {}.", if d.unit == "cd" { "candela (cd)" } else { "lux (lx)" }),
             "default": number(d.default_intensity),
@@ -145,7 +149,8 @@ fn lights(list: &mut Json, registry: &Registry) {
             "then": { "required": required, "properties": properties },
         })
     });
-    light["allOf"] = kinds.collect::<Vec<_>>().into();
+    let alternatives = read::LIGHT_ALTERNATIVES.map(|both| json!({ "not": { "required": both } }));
+    light["allOf"] = kinds.chain(alternatives).collect::<Vec<_>>().into();
     list["items"]["defaultSnippets"] = json!([{
         "label": "point light",
         "body": { "type": "point", "position": [5, 9, 5], "colour": [255, 255, 255], "intensity": 20 },

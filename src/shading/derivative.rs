@@ -7,7 +7,7 @@ use crate::shader::wgsl;
 /// colour calculated per pixel (LC3).
 ///
 /// On the GPU the normal is `normalize(dpdy(P) × dpdx(P))`; within a plane triangle that is the exact
-/// triangle normal, which the CPU renderer uses. Needs no normals in the mesh. Looks faceted like
+/// triangle normal, which the CPU renderer uses. Needs no normals in the mesh; tangents are interpolated. Looks faceted like
 /// flat shading, but the light varies within each facet.
 #[derive(Clone, Copy, Debug)]
 pub struct Derivative;
@@ -26,10 +26,15 @@ impl ShadingMode for Derivative {
     };
 
     fn vertex(_lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        Varying { position: corner.position, normal: corner.normal, colour: Vec3::ZERO }
+        Varying {
+            position: corner.position,
+            normal: corner.normal,
+            tangent: corner.tangent,
+            colour: Vec3::ZERO,
+        }
     }
 
     fn pixel(lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
-        lighting.colour(varying.position, face_normal)
+        lighting.colour(varying.position, face_normal, varying.tangent)
     }
 }

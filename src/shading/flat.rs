@@ -27,7 +27,8 @@ impl ShadingMode for Flat {
         Varying {
             position: corner.position,
             normal: corner.face_normal,
-            colour: lighting.colour(corner.face_centre, corner.face_normal),
+            tangent: corner.face_tangent,
+            colour: lighting.colour(corner.face_centre, corner.face_normal, corner.face_tangent),
         }
     }
 

@@ -27,7 +27,8 @@ impl ShadingMode for Gouraud {
         Varying {
             position: corner.position,
             normal: corner.normal,
-            colour: lighting.colour(corner.position, corner.normal),
+            tangent: corner.tangent,
+            colour: lighting.colour(corner.position, corner.normal, corner.tangent),
         }
     }
 

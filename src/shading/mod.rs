@@ -75,11 +75,12 @@ pub struct Declaration {
     pub wgsl: Source,
 }
 
-/// Evaluates the light loop: the colour of a point with a normal, seen from the observer, under the
+/// Evaluates the light loop: the colour of a point with a normal and a tangent, seen from the observer, under the
 /// object's reflection model and all lights of the scene. Linear RGB before exposure.
 pub trait Lighting {
-    /// The colour at `position` (room coordinates, metres) with unit normal `normal`.
-    fn colour(&self, position: Vec3, normal: Vec3) -> Vec3;
+    /// The colour at `position` (room coordinates, metres) with unit normal `normal` and a `tangent` of
+    /// any length and angle to it, or zero; see [`Frame::new`](crate::optics::Frame::new).
+    fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3;
 }
 
 /// One corner of a polygon, in room coordinates.
@@ -89,8 +90,13 @@ pub struct Corner {
     pub position: Vec3,
     /// The vertex normal, DD9.
     pub normal: Vec3,
+    /// The tangent of the vertex: the direction in which the surface is brushed. Zero where it has none,
+    /// and in the CPU renderer under models that are not anisotropic.
+    pub tangent: Vec3,
     /// The normal of the polygon, DD8.
     pub face_normal: Vec3,
+    /// The tangent of the polygon.
+    pub face_tangent: Vec3,
     /// The mean of the polygon's corners.
     pub face_centre: Vec3,
 }
@@ -102,11 +108,13 @@ pub struct Varying {
     pub position: Vec3,
     /// Normal, not renormalised.
     pub normal: Vec3,
+    /// Tangent, neither renormalised nor perpendicular to the normal.
+    pub tangent: Vec3,
     /// Colour calculated at the corner, if the mode does so.
     pub colour: Vec3,
 }
 
-/// A shading mode: where the light loop is asked, and with which normal.
+/// A shading mode: where the light loop is asked, with which normal and tangent.
 pub trait ShadingMode: Send + Sync + 'static {
     /// Name, source, stage, shader.
     const DECLARATION: Declaration;

@@ -1,4 +1,4 @@
-//! Surface normals from polygons (R7): DD8 for polygons, DD9 for vertices.
+//! Surface normals from polygons (R7): DD8 for polygons, DD9 for vertices; and tangents likewise.
 
 use glam::Vec3;
 
@@ -44,6 +44,54 @@ pub fn vertex_normals<'a>(
     sums.into_iter().map(Vec3::normalize_or_zero).collect()
 }
 
+/// The unit tangent of a polygon with a unit normal that is brushed along a direction, which need not
+/// lie in its plane. Where that direction is zero or along the normal, the polygon is brushed
+/// horizontally, `y × n`; where it lies level itself, along x.
+#[must_use]
+pub fn polygon_tangent(brushed: Vec3, normal: Vec3) -> Vec3 {
+    [brushed, Vec3::Y.cross(normal), Vec3::X]
+        .into_iter()
+        .map(Vec3::normalize_or_zero)
+        .map(|d| d - normal.dot(d) * normal)
+        .find(|d| d.length_squared() > 1e-6)
+        .map_or(Vec3::ZERO, Vec3::normalize_or_zero)
+}
+
+/// How short the tangent of a vertex is whose polygons are brushed in different directions.
+const DISPUTED: f32 = 1e-3;
+
+/// Vertex tangents: the normalised unweighted mean of the tangents of all polygons that share the
+/// vertex, as [`vertex_normals`] does for normals. Zero where they cancel: at a pole, around which they
+/// run. Short where they are at right angles or worse, as at an edge between two faces that are brushed
+/// differently: interpolated, such a tangent leaves the direction to the other corners, so that each
+/// face is brushed alike up to the edge.
+#[must_use]
+pub fn vertex_tangents<'a>(
+    vertex_count: usize,
+    polygons: impl IntoIterator<Item = (&'a [u32], Vec3)>,
+) -> Vec<Vec3> {
+    let mut sums = vec![(Vec3::ZERO, 0.0f32); vertex_count];
+    for (corners, tangent) in polygons {
+        for &corner in corners {
+            if let Some((sum, count)) = sums.get_mut(corner as usize) {
+                *sum += tangent;
+                *count += 1.0;
+            }
+        }
+    }
+    sums.into_iter()
+        .map(|(sum, count)| {
+            // The length of the mean of two directions at right angles is 0.71.
+            let agreement = sum.length() / count.max(1.0);
+            match agreement {
+                0.75.. => sum.normalize_or_zero(),
+                1e-3.. => DISPUTED * sum.normalize_or_zero(),
+                _ => Vec3::ZERO,
+            }
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,5 +124,25 @@ mod tests {
         // The wrong twin, a mean weighted 1:9 by area, must be told apart.
         assert!((normals[0] - (Vec3::X + 9.0 * Vec3::Y).normalize()).length() > 0.1);
         assert_eq!(normals[1], Vec3::X);
+    }
+
+    #[test]
+    fn polygons_are_brushed_as_said_or_horizontally() {
+        let leaning = Vec3::new(0.0, 0.6, 0.8);
+        assert!((polygon_tangent(Vec3::Y * 5.0, leaning) - Vec3::new(0.0, 0.8, -0.6)).length() < 1e-6);
+        assert!((polygon_tangent(Vec3::ZERO, leaning) - Vec3::X).length() < 1e-6);
+        assert_eq!(polygon_tangent(leaning * 2.0, leaning), polygon_tangent(Vec3::ZERO, leaning));
+        assert_eq!(polygon_tangent(Vec3::ZERO, Vec3::Y), Vec3::X);
+        assert!(polygon_tangent(Vec3::ZERO, Vec3::ZERO).is_finite());
+    }
+
+    #[test]
+    fn vertex_tangents_are_means_zero_at_poles_and_short_where_disputed() {
+        let at = |tangents: &[Vec3]| vertex_tangents(1, tangents.iter().map(|&t| (&[0u32][..], t)))[0];
+        let slanted = Vec3::new(0.8, 0.6, 0.0);
+        assert!((at(&[Vec3::X, slanted]) - (Vec3::X + slanted).normalize()).length() < 1e-6);
+        assert!((at(&[Vec3::X, Vec3::Z]) - DISPUTED * (Vec3::X + Vec3::Z).normalize()).length() < 1e-9);
+        assert_eq!(at(&[Vec3::X, Vec3::Z, -Vec3::X, -Vec3::Z]), Vec3::ZERO);
+        assert_eq!(at(&[]), Vec3::ZERO);
     }
 }

@@ -24,10 +24,15 @@ impl ShadingMode for PhongShading {
     };
 
     fn vertex(_lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        Varying { position: corner.position, normal: corner.normal, colour: Vec3::ZERO }
+        Varying {
+            position: corner.position,
+            normal: corner.normal,
+            tangent: corner.tangent,
+            colour: Vec3::ZERO,
+        }
     }
 
     fn pixel(lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
-        lighting.colour(varying.position, varying.normal.normalize_or_zero())
+        lighting.colour(varying.position, varying.normal.normalize_or_zero(), varying.tangent)
     }
 }

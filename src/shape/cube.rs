@@ -8,6 +8,7 @@ use super::{Declaration, ObjectType, PolygonMesh, mesh::Polygon};
 ///
 /// Vertices on edges and corners belong to two and three faces at once, so their normals (DD9) point
 /// between the faces: Gouraud and Phong shading round the outermost row of squares off.
+/// The faces are brushed horizontally, top and bottom along x.
 #[derive(Clone, Copy, Debug)]
 pub struct Cube;
 
@@ -39,17 +40,16 @@ impl ObjectType for Cube {
                         (mesh.positions.len() - 1) as u32
                     })
                 };
+                // Along x where that lies in the face, so that most neighbours agree; else horizontally.
+                let along = if axis == 0 { Vec3::ZERO } else { Vec3::X };
                 let mut squares = Vec::with_capacity((n * n) as usize);
                 for u in 0..n {
                     for v in 0..n {
                         let [a, b, c, d] =
                             [vertex(u, v), vertex(u + 1, v), vertex(u + 1, v + 1), vertex(u, v + 1)];
                         // Axes in cyclic order turn anticlockwise seen from the axis' positive end.
-                        squares.push(if high {
-                            Polygon::quad(a, b, c, d)
-                        } else {
-                            Polygon::quad(a, d, c, b)
-                        });
+                        let square = if high { Polygon::quad(a, b, c, d) } else { Polygon::quad(a, d, c, b) };
+                        squares.push(square.brushed(along));
                     }
                 }
                 mesh.polygons.append(&mut squares);
@@ -62,6 +62,7 @@ impl ObjectType for Cube {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shading::normals::polygon_tangent;
 
     #[test]
     fn faces_share_the_vertices_of_their_edges() {
@@ -82,5 +83,21 @@ mod tests {
         assert!((at(Vec3::splat(0.5)) - Vec3::splat(1.0).normalize()).length() < 1e-6);
         assert!((at(Vec3::new(0.0, 0.5, 0.0)) - Vec3::Y).length() < 1e-6);
         assert!((at(Vec3::new(0.0, 0.5, 0.5)) - Vec3::new(0.0, 1.0, 1.0).normalize()).length() < 1e-6);
+    }
+
+    #[test]
+    fn each_face_is_brushed_in_one_direction_up_to_its_edges() {
+        let mesh = Cube::mesh(4);
+        let vertices = mesh.vertex_tangents();
+        for (i, n) in mesh.polygon_normals().into_iter().enumerate() {
+            let expected = if n.x.abs() > 0.5 { Vec3::Y.cross(n) } else { Vec3::X };
+            assert!((mesh.polygon_tangents()[i] - expected).length() < 1e-5);
+            let corners = mesh.polygons[i].corners();
+            // In the middle of both triangles, also of those that have no vertex within the face.
+            for triangle in mesh.polygons[i].triangles() {
+                let mean: Vec3 = triangle.iter().map(|&c| vertices[corners[c] as usize]).sum();
+                assert!((polygon_tangent(mean, n) - expected).length() < 0.01, "{mean} {n}");
+            }
+        }
     }
 }

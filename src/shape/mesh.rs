@@ -2,10 +2,12 @@
 
 use glam::Vec3;
 
-use crate::shading::normals::{polygon_centre, polygon_normal, vertex_normals};
+use crate::shading::normals::{
+    polygon_centre, polygon_normal, polygon_tangent, vertex_normals, vertex_tangents,
+};
 
-/// Vertices and convex polygons of three or four corners, with the normals that the shading modes
-/// need.
+/// Vertices and convex polygons of three or four corners, with the normals and tangents that the shading
+/// modes need.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PolygonMesh {
     /// The vertices; each place of a surface occurs once.
@@ -14,18 +16,19 @@ pub struct PolygonMesh {
     pub polygons: Vec<Polygon>,
 }
 
-/// A polygon of three or four corners.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A polygon of three or four corners, and the direction in which it is brushed.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polygon {
     corners: [u32; 4],
     count: u8,
+    brushed: Vec3,
 }
 
 impl Polygon {
     /// A triangle.
     #[must_use]
     pub const fn triangle(a: u32, b: u32, c: u32) -> Self {
-        Self { corners: [a, b, c, c], count: 3 }
+        Self { corners: [a, b, c, c], count: 3, brushed: Vec3::ZERO }
     }
 
     /// A quadrilateral; where neighbouring corners are the same vertex (at a pole) a triangle.
@@ -42,7 +45,14 @@ impl Polygon {
         if count == 3 {
             corners[3] = corners[2];
         }
-        Self { corners, count: count as u8 }
+        Self { corners, count: count as u8, brushed: Vec3::ZERO }
+    }
+
+    /// The polygon, brushed along a direction, which matters to anisotropic models. One that is given
+    /// none is brushed horizontally.
+    #[must_use]
+    pub const fn brushed(self, direction: Vec3) -> Self {
+        Self { brushed: direction, ..self }
     }
 
     /// The indices of the corners.
@@ -104,10 +114,35 @@ impl PolygonMesh {
         vertex_normals(self.positions.len(), self.polygons.iter().zip(normals).map(|(p, n)| (p.corners(), n)))
     }
 
+    /// The tangent of every polygon: the direction in which it is brushed, in its plane.
+    #[must_use]
+    pub fn polygon_tangents(&self) -> Vec<Vec3> {
+        let normals = self.polygon_normals();
+        self.polygons.iter().zip(normals).map(|(p, n)| polygon_tangent(p.brushed, n)).collect()
+    }
+
+    /// The tangent of every vertex: the mean of those of its polygons, zero at a pole.
+    #[must_use]
+    pub fn vertex_tangents(&self) -> Vec<Vec3> {
+        let tangents = self.polygon_tangents();
+        vertex_tangents(
+            self.positions.len(),
+            self.polygons.iter().zip(tangents).map(|(p, t)| (p.corners(), t)),
+        )
+    }
+
+    /// Brushes every polygon as a lathe would that turns the shape about an axis through the origin.
+    pub fn turn_on_lathe(&mut self, axis: Vec3) {
+        let centres = self.polygon_centres();
+        for (polygon, centre) in self.polygons.iter_mut().zip(centres) {
+            polygon.brushed = axis.cross(centre);
+        }
+    }
+
     /// Appends a surface made of loops of vertices, one row after the other, with a quadrilateral
     /// between each four neighbours. Seen from outside, rows follow each other downward and each goes
     /// from left to right. A row of one point is a pole, where triangles meet. With `ring` the last row
-    /// is joined to the first.
+    /// is joined to the first. The polygons are brushed along the rows.
     ///
     /// # Panics
     /// If rows that are not poles differ in length, or a row is empty: a mistake of the shape's author.
@@ -124,12 +159,15 @@ impl PolygonMesh {
         for row in 0..pairs {
             let below = (row + 1) % rows.len();
             for column in 0..columns {
-                self.polygons.push(Polygon::quad(
+                let corners = [
                     index(row, column),
                     index(below, column),
                     index(below, column + 1),
                     index(row, column + 1),
-                ));
+                ];
+                let [a, b, c, d] = corners.map(|i| self.positions[i as usize]);
+                let [i, j, k, l] = corners;
+                self.polygons.push(Polygon::quad(i, j, k, l).brushed(d - a + c - b));
             }
         }
     }

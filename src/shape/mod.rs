@@ -52,7 +52,8 @@ pub trait ObjectType: Send + Sync + 'static {
     const DECLARATION: Declaration;
 
     /// The mesh for a legal tessellation. Vertices that coincide are shared, since vertex normals are
-    /// means over shared vertices (DD9); corners run counter-clockwise seen from outside.
+    /// means over shared vertices (DD9); corners run counter-clockwise seen from outside. Polygons are brushed horizontally unless
+    /// the shape says otherwise; see [`Polygon::brushed`](mesh::Polygon::brushed).
     fn mesh(tessellation: u32) -> PolygonMesh;
 }
 
@@ -190,6 +191,48 @@ mod tests {
             // The teapot's handle touches the body in one vertex; they are different surfaces.
             let expected = usize::from(d.id == "teapot");
             assert!(doubled <= expected, "{} {tessellation}: {doubled}", d.id);
+        }
+    }
+
+    #[test]
+    fn tangents_lie_in_the_surface_and_turn_smoothly() {
+        for (d, tessellation, mesh) in meshes() {
+            let case = format!("{} {tessellation}", d.id);
+            for (t, n) in mesh.polygon_tangents().into_iter().zip(mesh.polygon_normals()) {
+                assert!((t.length() - 1.0).abs() < 1e-4 && t.dot(n).abs() < 1e-4, "{case}: {t} {n}");
+            }
+            // The lip of a teapot cut very coarsely folds over, and its vertices with it.
+            if d.id == "teapot" && tessellation == 2 {
+                continue;
+            }
+            let (mut poles, mut disputed) = (0, 0);
+            let tangents = mesh.vertex_tangents();
+            for (t, n) in tangents.iter().zip(mesh.vertex_normals()) {
+                let length = t.length();
+                poles += u32::from(length == 0.0);
+                disputed += u32::from(length > 0.0 && length < 0.5);
+                // At edges of the cube they lean out of the vertex' own plane, or stand on it; nowhere else.
+                let lean = if d.id == "cube" { 1.001 } else { 0.15 };
+                assert!(t.dot(n).abs() <= lean * length, "{case}: {t} {n}");
+                assert!([0.0, 1e-3, 1.0].iter().any(|l| (length - l).abs() <= 1e-4 * l), "{case}: {t}");
+            }
+            let n = tessellation;
+            let expected = match d.id {
+                // All edges but the four along x.
+                "cube" => (0, 8 * n),
+                // Four vertices around: their polygons look to four sides.
+                "sphere" => (2, if n == 2 { 4 } else { 0 }),
+                "teapot" => (2, 0),
+                _ => (0, 0),
+            };
+            assert_eq!((poles, disputed), expected, "{case}");
+            for polygon in &mesh.polygons {
+                let c = polygon.corners();
+                for (i, &a) in c.iter().enumerate() {
+                    let (t, next) = (tangents[a as usize], tangents[c[(i + 1) % c.len()] as usize]);
+                    assert!(t.dot(next) >= -1e-6, "{case}: {t} beside {next}");
+                }
+            }
         }
     }
 }

@@ -7,7 +7,8 @@ use super::{Declaration, ObjectType, PolygonMesh};
 /// **Sphere**, cut along parallels and meridians; its poles lie on the y axis.
 ///
 /// All vertices lie on the sphere of diameter 1, so the polygons cut the corners: the finer the
-/// tessellation, the closer the vertex normals (DD9) come to the position divided by the radius.
+/// tessellation, the closer the vertex normals (DD9) come to the position divided by the radius. It is
+/// brushed along the parallels.
 #[derive(Clone, Copy, Debug)]
 pub struct Sphere;
 
@@ -69,5 +70,16 @@ mod tests {
         let (coarse, fine) = (worst(8), worst(64));
         assert!(fine < 0.01, "{fine}");
         assert!(coarse > 4.0 * fine, "{coarse} {fine}");
+    }
+
+    #[test]
+    fn it_is_brushed_along_the_parallels() {
+        let mesh = Sphere::mesh(16);
+        let mut seen = 0;
+        for (p, t) in mesh.positions.iter().zip(mesh.vertex_tangents()).filter(|(_, t)| *t != Vec3::ZERO) {
+            assert!((t - Vec3::Y.cross(*p).normalize()).length() < 1e-4, "{p} {t}");
+            seen += 1;
+        }
+        assert_eq!(seen, 15 * 32);
     }
 }

@@ -10,7 +10,8 @@ use super::{Declaration, ObjectType, PolygonMesh};
 /// spout 4. y is up and the spout points along +x. It is tessellated from the patches; within each
 /// part (body with rim and bottom, lid, handle, spout) neighbouring patches share their vertices. The
 /// parts interpenetrate as Newell made them, so the mesh has six open edges: the lid's, the rim's, and
-/// both ends of handle and spout.
+/// both ends of handle and spout. Each part is brushed around itself: body and lid around their axis,
+/// handle and spout around the tube.
 #[derive(Clone, Copy, Debug)]
 pub struct Teapot;
 
@@ -233,5 +234,27 @@ mod tests {
         assert!((mouth[4] - Vec3::new(3.2, 2.4, 0.0)).length() < 1e-6);
         // The middle of a half circle of control width w is 3/4 w wide.
         assert!((mouth[2].z + 0.75 * 0.15).abs() < 1e-6);
+    }
+
+    #[test]
+    fn body_handle_and_spout_are_brushed_around_themselves() {
+        let n = 8;
+        let mesh = Teapot::mesh(n);
+        let n = n as usize;
+        let (tangents, centres) = (mesh.polygon_tangents(), mesh.polygon_centres());
+        // The pole of the bottom, the last vertex of the body: the axis goes through it.
+        let axis = mesh.positions[4 * n * 4 * n];
+        for (tangent, centre) in tangents.iter().zip(&centres).take(16 * n * n) {
+            let around = Vec3::Y.cross(*centre - axis).normalize();
+            assert!(tangent.dot(around) > 0.98, "{tangent} {around}");
+        }
+        // Around a tube the tangents come back: they add up to little.
+        for start in [24 * n * n, 28 * n * n] {
+            for row in 0..2 * n {
+                let from = start + row * 2 * n;
+                let sum: Vec3 = tangents[from..from + 2 * n].iter().sum();
+                assert!(sum.length() < 0.5 * 2.0 * n as f32, "{row}: {sum}");
+            }
+        }
     }
 }

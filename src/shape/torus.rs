@@ -10,7 +10,7 @@ const RING_RADIUS: f32 = 0.35;
 const TUBE_RADIUS: f32 = 0.15;
 
 /// **Torus** that stands upright: the ring lies in the xy plane, its axis is z, so that the default
-/// observer looks through the hole.
+/// observer looks through the hole. It is brushed around the ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Torus;
 
@@ -42,6 +42,7 @@ impl ObjectType for Torus {
             .collect();
         let mut mesh = PolygonMesh::default();
         mesh.append_loops(&rows, true);
+        mesh.turn_on_lathe(Vec3::Z);
         mesh
     }
 }
@@ -76,5 +77,13 @@ mod tests {
         let (coarse, fine) = (worst(8), worst(64));
         assert!(fine < 0.01, "{fine}");
         assert!(coarse > 4.0 * fine, "{coarse} {fine}");
+    }
+
+    #[test]
+    fn it_is_brushed_around_the_ring() {
+        let mesh = Torus::mesh(16);
+        for (p, t) in mesh.positions.iter().zip(mesh.vertex_tangents()) {
+            assert!((t - Vec3::Z.cross(*p).normalize()).length() < 1e-4, "{p} {t}");
+        }
     }
 }

@@ -4,9 +4,9 @@ use glam::Vec3;
 use maud::html;
 
 use super::{
-    Chapter, Lab, StudyError, Table, albedo_at, alpha, choice, fixed, image, pictures,
+    Chapter, Lab, StudyError, Table, albedo_at, alpha, choice, fixed, image, number, pictures,
     plot::{Axis, Line, Mark, Plot, Series},
-    svg,
+    svg, words,
 };
 use crate::{
     optics::{
@@ -30,10 +30,11 @@ const MATERIALS: [(&str, &str); 6] = [
     ("gold", "Gold"),
     ("aluminium", "Aluminium"),
 ];
-/// Blinn–Phong as wide and, seen straight on, as bright as glass of α = 0.1: n = 2/α² − 2 and
-/// k_s = F₀/(4 α²).
-const ALPHA: f64 = 0.1;
-const EXPONENT: i64 = 198;
+/// Blinn–Phong as wide and, seen straight on, as bright as glass of this α: n = 2/α² − 2 and
+/// k_s = F₀/(4 α²). The shipped scene has the same.
+const ALPHA: f64 = 0.15;
+const EXPONENT: i64 = 87;
+const K_S: f64 = 0.444;
 
 fn cosine(degrees: f64) -> f32 {
     // The cosine of 90° is zero, not a little less.
@@ -117,7 +118,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         });
     }
     series.push(Series {
-        name: "Blinn–Phong, k_s = 0.04".to_owned(),
+        name: "Blinn–Phong, kₛ = 0.04".to_owned(),
         points: vec![(0.0, 0.04), (90.0, 0.04)],
         colour: 6,
         line: Line::Dotted,
@@ -128,7 +129,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         x: Axis::new("angle of incidence (°)", 0.0, 90.0, 10),
         y: Axis::new("reflectance at 532 nm", 0.0, 1.0, 6),
         series,
-        size: (760, 380),
+        size: (720, 380),
         legend: true,
     };
     let reflectance = lab.figure(
@@ -154,11 +155,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let glass = lab.surface("microfacet", &settings)?;
     let plastic = lab.surface(
         "blinn_phong",
-        &[
-            ("alpha", Value::Integer(EXPONENT)),
-            ("k_s", Value::Number(1.0)),
-            ("base_colour", Value::Colour([0; 3])),
-        ],
+        &[("alpha", Value::Integer(EXPONENT)), number("k_s", K_S), ("base_colour", Value::Colour([0; 3]))],
     )?;
     let step = if lab.settings.quick { 15.0 } else { 5.0 };
     let mut angles: Vec<f64> = (0..=(85.0 / step) as u32).map(|i| f64::from(i) * step).collect();
@@ -193,42 +190,44 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 mark: Mark::None,
             },
             Series {
-                name: "microfacet, α = 0.1".to_owned(),
+                name: format!("microfacet, α = {ALPHA}"),
                 points: glass_lobe,
                 colour: 0,
                 line: Line::Solid,
                 mark: Mark::Disc,
             },
             Series {
-                name: "Blinn–Phong, n = 198".to_owned(),
+                name: format!("Blinn–Phong, n = {EXPONENT}"),
                 points: plastic_lobe,
                 colour: 1,
                 line: Line::Dashed,
                 mark: Mark::Triangle,
             },
         ],
-        size: (760, 360),
+        size: (720, 360),
         legend: true,
     };
     let relative = lab.figure(
         &svg(&relative)?,
         &html! {
             "How much of uniform light the whole specular lobe reflects (its directional albedo, without the diffuse part), relative to the view "
-            "along the normal. Glass, n = 1.5. The two models agree at 0° by choice of k_s. Logarithmic axis."
+            "along the normal. Glass, n = 1.5. The two models agree at 0° by choice of " (words("k_s")) ". Logarithmic axis."
         },
     );
 
     // Pictures.
-    let scene = lab.scene(SCENE)?;
-    let size = lab.size(960, 480);
+    let mut scene = lab.scene(SCENE)?;
+    // A row of objects, without the room above and below it.
+    scene.observer.field_of_view = 18.0;
+    let size = lab.size(960, 366);
     let both = [("blinn_phong", "Blinn–Phong"), ("microfacet", "Microfacet (GGX, exact Fresnel equations)")];
     let mut shown = Vec::new();
     let mut peaks = Vec::new();
-    for (id, words) in both {
+    for (id, name) in both {
         let picture = lab.render(&scene, id, TermSelection::All, size);
         shown.push((
-            image(&picture.to_rgb8(&scene.display), size, &format!("Black glass under {words}"))?,
-            words,
+            image(&picture.to_rgb8(&scene.display), size, &format!("Black glass under {name}"))?,
+            name,
         ));
         let alone = |keep: &dyn Fn(usize) -> bool| {
             let mut scene = scene.clone();
@@ -248,7 +247,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let shown = lab.figure(
         &html! { div .stack { (pictures(&shown[..1])) (pictures(&shown[1..])) } },
         &html! {
-            "Objects of black glass (n = 1.5, α = 0.1) with one lamp in front and three of the same intensity behind them. Blinn–Phong’s height and width are set so that "
+            "Objects of black glass (n = 1.5, α = " (ALPHA) ") with one lamp in front and three of the same intensity behind them. Blinn–Phong’s height and width are set so that "
             "the highlight of the front lamp is the same. Scene " code { "fresnel_effect.json" } "."
         },
     );
@@ -259,9 +258,9 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         &both
             .iter()
             .zip(&peaks)
-            .map(|((_, words), p)| {
+            .map(|((_, name), p)| {
                 vec![
-                    words.split(" (").next().unwrap_or(words).to_owned(),
+                    name.split(" (").next().unwrap_or(name).to_owned(),
                     fixed(p[0], 3),
                     fixed(p[1], 3),
                     fixed(ratio(*p), 1),
@@ -274,7 +273,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let classical = growth[2] > 2.0;
     let confirmed = physical && !classical;
     let finding = format!(
-        "From the normal to 75° the reflection of glass grows by a factor of {:.1}; that of the microfacet lobe by {:.1}, that of Blinn–Phong’s by {:.2}.",
+        "From the normal to 75° the reflection of smooth glass changes by a factor of {:.1}, that of the microfacet lobe by {:.1}, and that of Blinn–Phong’s lobe by {:.2}.",
         growth[0], growth[1], growth[2]
     );
     let body = html! {
@@ -287,10 +286,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         }
         p .equation { span { "F(θ) ≈ F₀ + (1 − F₀)(1 − cos θ)⁵,  F₀ = ((n − 1)² + k²) / ((n + 1)² + k²)." } }
         p {
-            "Blinn–Phong has a specular coefficient k_s in the place of F, which is the same at all angles. The optical constants are measurements "
+            "Blinn–Phong has a specular coefficient " (words("k_s")) " in the place of F, which is the same at all angles. The optical constants are measurements "
             "collected by refractiveindex.info. To compare whole models and not only this factor, the directional albedo of the specular lobe is integrated "
             "numerically for glass: a GGX microfacet lobe of α = " (ALPHA) " with the exact equations, against a Blinn–Phong lobe of the same width and height at "
-            "normal incidence (n = " (EXPONENT) ", k_s = 1)."
+            "normal incidence (n = " (EXPONENT) ", " (words("k_s")) " = F₀/(4α²) = " (K_S) ")."
         }
         h3 { "Results" }
         (reflectance)
@@ -303,7 +302,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             p {
                 @if physical {
                     "The microfacet model follows the Fresnel equations: at 75° its lobe reflects " (fixed(growth[1], 1)) " times as much as at normal incidence, smooth glass "
-                    (fixed(growth[0], 1)) " times; at 85° " (fixed(grazing[1], 1)) " and " (fixed(grazing[0], 1)) " times. It stays below at the very edge because a rough surface shows the viewer facets that are tilted towards him."
+                    (fixed(growth[0], 1)) " times; at 85° " (fixed(grazing[1], 1)) " and " (fixed(grazing[0], 1)) " times. It stays below at the very edge because at a grazing view a rough surface shows mostly facets that are tilted towards the viewer."
                 } @else {
                     "The microfacet model does not follow the Fresnel equations here: its lobe grows by " (fixed(growth[1], 1)) ", smooth glass by " (fixed(growth[0], 1)) "."
                 }
@@ -314,7 +313,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 } @else {
                     "Blinn–Phong shows the opposite of the Fresnel effect. Its lobe reflects " (fixed(growth[2], 2)) " times as much at 75°, since its height is fixed while the solid angle of light that it gathers shrinks with the cosine of the view. "
                     "In the pictures the lamps behind the objects are " (fixed(ratio(peaks[1]), 0)) " times as bright as the lamp in front under the microfacet model and "
-                    (fixed(ratio(peaks[0]), 1)) " times under Blinn–Phong. No single k_s serves both."
+                    (fixed(ratio(peaks[0]), 1)) " times under Blinn–Phong. No single " (words("k_s")) " serves both."
                 }
             }
             p {

@@ -6,7 +6,7 @@ use maud::html;
 use super::{
     Chapter, Lab, StudyError, Table, fixed, image,
     lobe::{Contestant, PAINTS, paint_samples},
-    percent, pictures,
+    percent, pictures, words,
 };
 use crate::{
     optics::{TermSelection, colour::luminance},
@@ -118,7 +118,7 @@ fn case(scene: &Scene, i: usize) -> Scene {
     scene.lights = vec![scene.lights.swap_remove(i)];
     scene.observer.position = scene.objects[0].position + Vec3::new(0.0, 1.5, 5.6);
     scene.observer.direction = Vec3::new(0.0, -1.5, -5.6);
-    scene.observer.field_of_view = 25.0;
+    scene.observer.field_of_view = 19.5;
     scene
 }
 
@@ -128,7 +128,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let mut cases: Vec<(&str, &str, Scene)> = vec![
         ("A", "white lamp in front", case(&shipped, 0)),
         ("B", "bulb of 2700 K in front, half as strong", case(&shipped, 1)),
-        ("C", "cool light, grazing from behind", case(&shipped, 2)),
+        ("C", "cool light from behind", case(&shipped, 2)),
     ];
     let mut sky = case(&shipped, 0);
     sky.lights =
@@ -294,13 +294,13 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 }
                 @if rises > 1.5 {
                     "The direction is. Under C the difference is " (fixed(100.0 * distances[2].0, 0)) " %, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) " % of the brightness. "
-                    "Tuning anew under C leaves " (fixed(100.0 * again[2], 0)) " %, at the price of other parameters for the same gold (exponent " (tuned[0].exponent) " becomes " (tuned[2].exponent) ")."
+                    "Tuning anew under C leaves " (fixed(100.0 * again[2], 0)) " %, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
                 } @else {
                     "Under C the difference is " (fixed(100.0 * distances[2].0, 0)) " %, only " (fixed(rises, 1)) " times as large."
                 }
             }
             p {
-                "Under D Blinn–Phong gives " (fixed(100.0 * distances[3].1, 0)) " % of the brightness. Light from everywhere reaches it through the coefficient k_a alone, about which a picture under a lamp says nothing; gold answers by its albedo."
+                "Under D Blinn–Phong gives " (fixed(100.0 * distances[3].1, 0)) " % of the brightness. Light from everywhere reaches it through the coefficient " (words("k_a")) " alone, about which a picture under a lamp says nothing; gold answers by its albedo."
             }
             p {
                 "On measured paints, GGX predicts the light from the side better than Blinn–Phong for " (wins) " of " (blinn.len()) " paints "

@@ -269,9 +269,6 @@ fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, S
         mark: Mark::Ring,
     }];
     for c in Contestant::all() {
-        if lab.registry.model(c.id).is_none() || c.name == "Ward" {
-            continue;
-        }
         let found = c.fit(lab.registry, &samples);
         let predicted = c.predict(lab.registry, &c.settings, &found, &dense);
         let points = (-71..=71).map(f64::from).zip(predicted).collect();
@@ -289,7 +286,7 @@ fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, S
         x: Axis::new("angle of the viewer (°), mirror side positive", -75.0, 75.0, 7),
         y: Axis::log("f (sr⁻¹)", 0.01, 10f64.powf((top * 1.5).log10().ceil())),
         series,
-        size: (760, 360),
+        size: (720, 360),
         legend: true,
     };
     svg(&plot)
@@ -342,7 +339,7 @@ fn merl_plot(
             10f64.powf((1.2 * high).log10().ceil()),
         ),
         series,
-        size: (420, 320),
+        size: (430, 350),
         legend: false,
     };
     svg(&plot)
@@ -350,6 +347,26 @@ fn merl_plot(
 
 pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let registry = lab.registry;
+    // Pictures.
+    let mut scene = lab.scene(SCENE)?;
+    // A row of objects, without the room above and below it.
+    scene.observer.field_of_view = 4.936;
+    let size = lab.size(1200, 240);
+    let picture = lab.render(&scene, "", TermSelection::All, size);
+    let names: Vec<&str> = scene.objects.iter().map(|o| o.name.as_deref().unwrap_or_default()).collect();
+    let shown = lab.figure(
+        &html! {
+            div .wide {
+                (pictures(&[(image(&picture.to_rgb8(&scene.display), size, "Five highlights of the same width")?, "")]))
+                div .labels style=(format!("--columns:{}", names.len())) { @for name in &names { span { (name) } } }
+            }
+        },
+        &html! {
+            "Black plastic under one lamp: five lobes of the same height and, about their middle, the same width (α = 0.15, n = 87). They differ in their tails: GGX and GTR glow on where Blinn–Phong and Beckmann are dark. Scene "
+            code { "lobe_shape.json" } "."
+        },
+    );
+
     // Measured paints.
     let mut raw_paints = Table::new("lobe_paints", "paint,model,diffuse,specular,width,log_error");
     let mut paints = Vec::new();
@@ -388,8 +405,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     // Fits of MERL materials.
     let materials = Sgd::all();
     let chosen: Vec<&Sgd> = materials.iter().step_by(if lab.settings.quick { 10 } else { 1 }).collect();
-    let contestants: Vec<Contestant> =
-        Contestant::all().into_iter().filter(|c| registry.model(c.id).is_some()).collect();
+    let contestants = Contestant::all();
     let directions = merl_directions();
     let mut fits: Vec<MerlFit> =
         chosen.par_iter().map(|m| merl_fit(m, &directions, &contestants, registry)).collect();
@@ -418,7 +434,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         let better = fits.iter().filter(|f| f.fits[i].0.error < f.fits[0].0.error).count();
         merl_rows.push(vec![
             c.name.to_owned(),
-            if c.instead.is_some() { "3 + choice of F" } else { "3" }.to_owned(),
+            if c.instead.is_some() { "3 and choice of F" } else { "3" }.to_owned(),
             fixed(medians[i], 3),
             format!("{}", best(i)),
             if i == 0 { "–".to_owned() } else { format!("{better}") },
@@ -447,7 +463,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 mark: c.style.2,
             })
             .collect(),
-        size: (760, 400),
+        size: (720, 400),
         legend: true,
     };
     let chart = lab.figure(
@@ -483,24 +499,6 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         .collect();
     let mut head = vec!["Material"];
     head.extend(contestants.iter().map(|c| c.name));
-
-    // Pictures.
-    let scene = lab.scene(SCENE)?;
-    let size = lab.size(1200, 300);
-    let picture = lab.render(&scene, "", TermSelection::All, size);
-    let names: Vec<&str> = scene.objects.iter().map(|o| o.name.as_deref().unwrap_or_default()).collect();
-    let shown = lab.figure(
-        &html! {
-            div .wide {
-                (pictures(&[(image(&picture.to_rgb8(&scene.display), size, "Five highlights of the same width")?, "")]))
-                div .labels style=(format!("--columns:{}", names.len())) { @for name in &names { span { (name) } } }
-            }
-        },
-        &html! {
-            "Black plastic under one lamp: five lobes of the same height and, about their middle, the same width (α = 0.15, n = 87). They differ in their tails: GGX and GTR glow on where Blinn–Phong and Beckmann are dark. Scene "
-            code { "lobe_shape.json" } "."
-        },
-    );
 
     let of = |paint: usize, model: &str| {
         paints[paint].iter().find(|f| f.0 == model).map_or(f64::NAN, |f| f.1.error)

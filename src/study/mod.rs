@@ -86,7 +86,8 @@ impl Table {
     /// Adds a row of words and numbers.
     fn row(&mut self, words: &[&str], numbers: &[f64]) {
         let mut cells: Vec<String> = words.iter().map(|w| w.replace(',', ";")).collect();
-        cells.extend(numbers.iter().map(|n| format!("{n:.6}")));
+        // What is not a number stays empty.
+        cells.extend(numbers.iter().map(|n| if n.is_finite() { format!("{n:.6}") } else { String::new() }));
         // Writing to a string cannot fail.
         let _ = writeln!(self.csv, "{}", cells.join(","));
     }
@@ -242,17 +243,29 @@ impl Lab<'_> {
     }
 }
 
+/// Text with subscripts: `k_d` has one letter below the line.
+fn words(text: &str) -> Markup {
+    let mut parts = text.split('_');
+    html! {
+        (parts.next().unwrap_or_default())
+        @for part in parts {
+            @let (below, rest) = part.split_at(part.chars().next().map_or(0, char::len_utf8));
+            sub { (below) } (rest)
+        }
+    }
+}
+
 /// A table without a number.
 fn grid(head: &[&str], rows: &[Vec<String>]) -> Markup {
     html! {
         div .scroll {
             table {
-                thead { tr { @for cell in head { th scope="col" { (cell) } } } }
+                thead { tr { @for cell in head { th scope="col" { (words(cell)) } } } }
                 tbody {
                     @for row in rows {
                         tr {
                             @for (i, cell) in row.iter().enumerate() {
-                                @if i == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                                @if i == 0 { th scope="row" { (words(cell)) } } @else { td { (cell) } }
                             }
                         }
                     }

@@ -101,8 +101,8 @@ pub struct Plot {
     pub legend: bool,
 }
 
-const LEGEND: i32 = 205;
-const FONT: i32 = 15;
+const LEGEND: i32 = 232;
+const FONT: i32 = 19;
 
 impl Axis {
     /// An axis with equal steps.
@@ -175,8 +175,8 @@ impl Plot {
         let mut chart = ChartBuilder::on(&area)
             .margin_top(10)
             .margin_right(14)
-            .x_label_area_size(46)
-            .y_label_area_size(62)
+            .x_label_area_size(56)
+            .y_label_area_size(74)
             .build_cartesian_2d(self.x.range(), self.y.range())
             .map_err(said)?;
         let font = |size: i32| ("sans-serif", size).into_font().color(&INK);
@@ -235,7 +235,7 @@ impl Plot {
 
     /// The legend.
     fn key(&self, root: &Canvas, left: i32, height: i32) -> Result<(), String> {
-        let row = 24;
+        let row = 27;
         let top = ((height - 46 - row * self.series.len() as i32) / 2).max(12);
         for (i, series) in self.series.iter().enumerate() {
             let y = top + row * i as i32;
@@ -255,7 +255,7 @@ impl Plot {
             }
             mark(root, (left + 17, y), series.mark, colour)?;
             let style =
-                ("sans-serif", FONT - 1).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+                ("sans-serif", FONT - 2).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
             root.draw(&Text::new(series.name.clone(), (left + 40, y), style)).map_err(said)?;
         }
         Ok(())

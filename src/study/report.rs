@@ -151,7 +151,7 @@ fn summary(chapters: &[Chapter], shown: usize) -> Markup {
                 "kinds of model, measurements, and a conclusion."
             }
             p {
-                (count(shown)) " of the four phenomena are shown by the numbers below:"
+                @if shown == chapters.len() { "All four phenomena are" } @else { (count(shown)) " of the four phenomena is or are" } " shown by the numbers below:"
             }
             ol {
                 @for (i, chapter) in chapters.iter().enumerate() {
@@ -214,9 +214,8 @@ fn discussion(chapters: &[Chapter], shown: usize) -> Markup {
                 "The answer to the question of the thesis is therefore: physically based shading is more photorealistic "
                 "in the sense that a surface keeps behaving like one surface when the viewer or the light moves. A single "
                 "frame from a single direction can often be matched by Blinn–Phong, as phenomenon 3 does on purpose; the "
-                "match does not survive the change. What physically based models still get wrong is visible as well: "
-                "the plain microfacet model loses light when it is rough, Ward’s gains some, and none of the "
-                "models fits every material."
+                "match need not survive the change. Physically based is no seal of quality either: phenomenon 2 lists which of these models "
+                "lose or gain light, and phenomenon 4 the errors that remain after the best fit."
             }
             h3 { "Limits" }
             ul {

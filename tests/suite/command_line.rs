@@ -58,6 +58,9 @@ fn wrong_usage_has_status_2() {
         ),
         (&["evaluate", "phong", "--set", "kd=0.7"], "phong has no parameter kd; did you mean k_d?"),
         (&["evaluate", "phong", "--set", "k_d"], "it must be NAME=VALUE"),
+        (&["albedo", "fong"], "did you mean \"phong\"?"),
+        (&["albedo", "phong", "--set", "k_d=0.2"], "but the diffuse coefficient must be between 0.5 and 1"),
+        (&["albedo", "phong", "--on", "paper"], "invalid value 'paper'"),
     ] {
         refused(&lcm(arguments, ""), 2, expected);
     }
@@ -210,6 +213,49 @@ fn evaluate_reports_every_bad_line() {
     );
     refused(&lcm(&["evaluate", "phong"], ""), 1, "standard input is empty");
     refused(&lcm_in(root(), &["evaluate", "phong"], b"theta\xFF"), 1, "not UTF-8");
+}
+
+#[test]
+fn albedo_integrates_on_both_machines() {
+    for machine in ["cpu", "gpu"] {
+        let run = lcm(
+            &["albedo", "lambert", "--set", "base_colour=255,188,0", "--on", machine],
+            "mu\n1.0\n 0.25\n1e-6\n",
+        );
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+        let lines: Vec<_> = run.out.lines().collect();
+        assert_eq!((lines.len(), lines[0]), (4, "mu,e_r,e_g,e_b"));
+        for (line, mu) in lines[1..].iter().zip(["1.0", "0.25", "1e-6"]) {
+            let cells: Vec<_> = line.split(',').collect();
+            let e: Vec<f32> = cells[1..].iter().map(|v| v.parse().expect("a number")).collect();
+            assert_eq!((cells[0], e[2]), (mu, 0.0));
+            assert!((e[0] - 1.0).abs() < 1e-4 && (e[1] - 0.502_886).abs() < 1e-4, "{line}");
+        }
+        // A narrow lobe at normal incidence. The response of this family has no cosine of its own.
+        let set = ["k_d=0.5", "k_s=1", "alpha=998", "base_colour=0,0,0"];
+        let mut arguments = vec!["albedo", "phong", "--on", machine];
+        arguments.extend(set.iter().flat_map(|s| ["--set", *s]));
+        let run = lcm(&arguments, "mu\n1\n");
+        let e: f32 = run.out.lines().nth(1).and_then(|l| l.split(',').nth(1)).unwrap().parse().unwrap();
+        // ∫ cos^998 over the hemisphere, over π. An exponent of 999 is told apart.
+        assert!((e - 2.0 / 999.0).abs() < 5e-7, "{e}");
+    }
+}
+
+#[test]
+fn albedo_reports_every_bad_line() {
+    let run = lcm(&["albedo", "phong"], "mu\n0\n1.5\nx\n1,2\n0.5\n");
+    refused(&run, 1, "standard input:2: mu is \"0\", but it must be greater than 0 and at most 1");
+    for expected in [
+        "standard input:3: mu is \"1.5\", but it must be greater than 0 and at most 1",
+        "standard input:4: mu is \"x\", but it must be a finite number",
+        "standard input:5: there are 2 columns, but there must be 1: mu",
+    ] {
+        assert!(run.err.contains(expected), "{}\nnot: {expected}", run.err);
+    }
+    refused(&lcm(&["albedo", "phong"], "0.5\n"), 1, "the header is \"0.5\", but it must be mu");
+    refused(&lcm(&["albedo", "phong"], ""), 1, "standard input is empty");
+    assert_eq!(lcm(&["albedo", "phong", "--on", "gpu"], "mu\n").out, "mu,e_r,e_g,e_b\n");
 }
 
 #[test]

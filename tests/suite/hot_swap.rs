@@ -43,6 +43,41 @@ fn choose(scene: &Scene, (model, mode): (&str, &str), on_object: bool) -> Scene 
 }
 
 #[test]
+fn a_scene_that_outgrows_its_tables_is_right_in_the_next_frame() {
+    let few = close_up("sphere", "point");
+    let mut many = few.clone();
+    many.objects[0].size = 0.5;
+    for i in 0..150 {
+        let mut object = many.objects[0].clone();
+        object.position.x += 0.2 * (i % 15) as f32 - 1.5;
+        object.position.y += 0.2 * (i / 15) as f32 - 1.0;
+        object.material.set("base_colour", Value::Colour([(i * 3) as u8, 40, 200]));
+        object.shading_model = Some(if i % 2 == 0 { "phong" } else { "flat" }.to_owned());
+        many.objects.push(object);
+    }
+    let settled = |scene: &Scene| {
+        let mut renderer = renderer();
+        renderer.set_scene(scene.clone());
+        renderer.settle().expect("the GPU draws");
+        renderer.read_rgb8().expect("the picture can be read")
+    };
+    let (expected_few, expected_many) = (settled(&few), settled(&many));
+    assert_ne!(expected_few, expected_many);
+    let mut renderer = renderer();
+    // Every shader is compiled before the frame that counts.
+    for mode in ["flat", "phong"] {
+        renderer.set_scene(choose(&few, ("lambert", mode), true));
+        renderer.settle().expect("the GPU draws");
+    }
+    renderer.set_scene(few.clone());
+    renderer.settle().expect("the GPU draws");
+    renderer.set_scene(many);
+    assert!(frame(&mut renderer) == expected_many, "the frame after the growth is another");
+    renderer.set_scene(few);
+    assert!(frame(&mut renderer) == expected_few, "the frame after the return is another");
+}
+
+#[test]
 fn every_model_and_mode_follows_every_other_model_and_mode_in_one_frame() {
     let registry = Registry::builtin();
     let states: Vec<_> = registry

@@ -1,6 +1,7 @@
 //! The integration tests, in one binary: linking Bevy once is enough.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+mod albedo;
 mod command_line;
 mod extension;
 mod golden;
@@ -15,6 +16,8 @@ mod saving;
 mod scene_errors;
 mod scene_roundtrip;
 mod schema;
+mod study;
 mod support;
+mod tangents;
 mod window;
 mod witness;

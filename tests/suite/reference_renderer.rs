@@ -286,6 +286,74 @@ fn ambient_light_is_the_same_everywhere() {
     }
 }
 
+/// The bytes of the first pixel that is covered whole.
+fn shown(scene: &Scene) -> [u8; 3] {
+    let picture = render(scene, &SMALL);
+    let i = picture.pixels.iter().position(|p| p.w == 1.0).expect("something is there");
+    picture.to_rgb8(&scene.display)[3 * i..][..3].try_into().expect("three bytes")
+}
+
+#[test]
+fn gamma_naive_display_neither_encodes_the_picture_nor_decodes_colours() {
+    let mut scene = scene("lambert", "flat");
+    scene.objects[0].material.set("base_colour", Value::Colour([128, 64, 200]));
+    scene.lights[0] =
+        Light { kind: "ambient".to_owned(), position: None, colour: [128; 3], ..Light::default() };
+    scene.lights[0].intensity = 1.0;
+    // By hand: 255 (128 / 255) (c / 255).
+    scene.display.encoding = Encoding::Off;
+    assert_eq!(shown(&scene), [64, 32, 100]);
+    // By hand with IEC 61966-2-1: encoded(decoded(128) decoded(c)).
+    scene.display.encoding = Encoding::Srgb;
+    assert_eq!(shown(&scene), [61, 27, 99]);
+}
+
+#[test]
+fn lumen_and_candela_are_the_same_light() {
+    for (kind, solid_angle) in [("point", 12.566_371), ("spot", 0.763_307)] {
+        let mut candela = wall("lambert", "phong", 5.0);
+        candela.lights[0] = Light {
+            kind: kind.to_owned(),
+            position: Some(Vec3::new(5.0, 5.0, 8.0)),
+            direction: (kind == "spot").then_some(Vec3::NEG_Z),
+            ..Light::default()
+        };
+        let mut lumen = candela.clone();
+        lumen.lights[0].luminous_flux = Some(20.0 * solid_angle);
+        // What is not given counts for nothing.
+        lumen.lights[0].intensity = 7.0;
+        let differs = |a: &Picture, b: &Picture| {
+            let pairs = a.pixels.iter().zip(&b.pixels).filter(|(a, _)| a.x > 0.0);
+            pairs.map(|(a, b)| (a.x / b.x - 1.0).abs()).fold(0.0, f32::max)
+        };
+        let (candela, same) = (render(&candela, &SMALL), render(&lumen, &SMALL));
+        assert!(differs(&candela, &same) < 1e-5, "{kind}: {}", differs(&candela, &same));
+        // A wrong twin: 4π for every light, or none.
+        lumen.lights[0].luminous_flux = Some(20.0 * if kind == "spot" { 12.566_371 } else { 1.0 });
+        assert!(differs(&candela, &render(&lumen, &SMALL)) > 0.5, "{kind}");
+    }
+}
+
+#[test]
+fn lights_have_the_colour_of_their_temperature() {
+    let mut scene = scene("lambert", "flat");
+    scene.lights[0] =
+        Light { kind: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() };
+    for encoding in Encoding::ALL {
+        scene.display.encoding = encoding;
+        for kelvin in [1900.0, 2700.0, 6500.0, 12_000.0] {
+            scene.lights[0].colour_temperature = Some(kelvin);
+            // What counts as the colour in sRGB is what a white object shows, decoded or not.
+            assert_eq!(shown(&scene), scene.lights[0].rgb8(), "{kelvin} K {encoding:?}");
+        }
+    }
+    let [r, g, b] = shown(&Scene {
+        lights: vec![Light { colour_temperature: Some(1900.0), ..scene.lights[0].clone() }],
+        ..scene.clone()
+    });
+    assert!(r == 255 && g < 160 && b < 60, "a candle is orange: {r} {g} {b}");
+}
+
 #[test]
 fn the_terms_add_up_to_the_whole() {
     let registry = Registry::builtin();

@@ -164,6 +164,51 @@ fn every_constraint_has_its_message() {
             "lights[0].intensity is \"20\", but it must be a number, without quotes",
         ),
         ("/lights/0/intensity", json!(true), number),
+        (
+            "/lights/0/luminous_flux",
+            json!(800),
+            "lights[0].luminous_flux is given, but so is intensity; a light has one of the two",
+        ),
+        (
+            "/lights/1/luminous_flux",
+            json!(-1),
+            "lights[1].luminous_flux is -1, but a luminous flux must be at least 0",
+        ),
+        (
+            "/lights/1/luminous_flux",
+            json!(1e39),
+            "lights[1].luminous_flux is 1e+39, but a luminous flux must be at most 3.4e38",
+        ),
+        (
+            "/lights/1/luminous_flux",
+            json!("800 lm"),
+            "lights[1].luminous_flux is \"800 lm\", but it must be a number: a luminous flux must be at least 0",
+        ),
+        (
+            "/lights/2/luminous_flux",
+            json!(800),
+            "lights[2].luminous_flux is given, but a directional light has no luminous_flux",
+        ),
+        (
+            "/lights/0/colour_temperature",
+            json!(2700),
+            "lights[0].colour_temperature is given, but so is colour; a light has one of the two",
+        ),
+        (
+            "/lights/1/colour_temperature",
+            json!(999),
+            "lights[1].colour_temperature is 999, but a colour temperature must be between 1000 and 40000 K",
+        ),
+        (
+            "/lights/1/colour_temperature",
+            json!([2700]),
+            "lights[1].colour_temperature is [2700], but it must be a number: a colour temperature must be between",
+        ),
+        (
+            "/lights/1/lumens",
+            json!(800),
+            "lights[1].lumens is not a key of a light; did you mean \"luminous_flux\"?",
+        ),
         ("/lights/0/name", json!(7), "lights[0].name is 7, but the name must be text"),
         // Observer.
         ("/observer", json!([]), "observer is a list of 0, but a scene has exactly one observer"),
@@ -269,7 +314,7 @@ fn every_constraint_has_its_message() {
         (
             "/display/tone_mapping",
             json!("ACES"),
-            "display.tone_mapping is \"ACES\", but the tone mapping must be \"none\", \"reinhard\", \"reinhard_luminance\" or \"aces\"; did you mean \"aces\"?",
+            "display.tone_mapping is \"ACES\", but the tone mapping must be \"none\", \"reinhard\", \"reinhard_luminance\", \"aces\", \"agx\", \"tony_mc_mapface\", \"blender_filmic\" or \"khronos_pbr_neutral\"; did you mean \"aces\"?",
         ),
         (
             "/display/encoding",

@@ -25,6 +25,19 @@ fn writing_again_changes_nothing() {
 }
 
 #[test]
+fn lights_are_written_in_the_units_in_which_they_were_given() {
+    let text = written(&read(&full_scene().to_string()));
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let (lamp, bulb) = (&json["lights"][0], &json["lights"][1]);
+    assert_eq!((&bulb["luminous_flux"], &bulb["colour_temperature"]), (&400.into(), &2700.into()));
+    assert!(bulb.get("colour").or(bulb.get("intensity")).is_none(), "{text}");
+    assert!(lamp.get("colour_temperature").or(lamp.get("luminous_flux")).is_none(), "{text}");
+    // American spelling is understood.
+    let text = full_scene().to_string().replace("colour_temperature", "color_temperature");
+    assert_eq!(read(&text).lights[1].colour_temperature, Some(2700.0));
+}
+
+#[test]
 fn parameters_of_other_models_are_kept() {
     let mut scene = Scene::default();
     scene.objects[0].material.set("alpha", Value::Integer(7));
@@ -116,18 +129,25 @@ fn light() -> impl Strategy<Value = Light> {
     prop::sample::select(kinds).prop_flat_map(|entry| {
         let d = entry.declaration;
         let name = prop::option::of("\\PC{0,20}");
-        let intensity = prop_oneof![number(0.0, 1e3), Just(f32::MAX), Just(f32::MIN_POSITIVE)];
-        (name, position(), direction(), any::<[u8; 3]>(), intensity, values(d.parameters.iter().collect()))
-            .prop_map(move |(name, p, direction, colour, intensity, parameters)| Light {
+        let brightness = || prop_oneof![number(0.0, 1e3), Just(f32::MAX), Just(f32::MIN_POSITIVE)];
+        let flux = prop::option::of(brightness()).prop_map(move |flux| flux.filter(|_| entry.has_flux()));
+        let colour = (any::<[u8; 3]>(), prop::option::of(number(1000.0, 40_000.0)));
+        let parameters = values(d.parameters.iter().collect());
+        (name, position(), direction(), colour, (brightness(), flux), parameters).prop_map(
+            move |(name, p, direction, (colour, kelvin), (intensity, flux), parameters)| Light {
                 kind: d.id.to_owned(),
                 name,
                 // Apart from where objects and the observer are.
                 position: d.has_position.then_some(p + Vec3::X * 4.0),
                 direction: d.has_direction.then_some(direction),
-                colour,
-                intensity,
+                // What is not written has its default when it is read.
+                colour: if kelvin.is_some() { [255; 3] } else { colour },
+                colour_temperature: kelvin,
+                intensity: if flux.is_some() { d.default_intensity } else { intensity },
+                luminous_flux: flux,
                 parameters,
-            })
+            },
+        )
     })
 }
 

@@ -45,7 +45,8 @@ pub fn full_scene() -> Value {
         "shading_model": "phong",
         "lights": [
             { "type": "point", "name": "lamp", "position": [1, 2, 3], "colour": [255, 250, 240], "intensity": 20 },
-            { "type": "spot", "position": [2, 2, 3], "direction": [0, -1, 0], "cone_angle": 20, "penumbra": 0.5 },
+            { "type": "spot", "position": [2, 2, 3], "direction": [0, -1, 0], "cone_angle": 20, "penumbra": 0.5,
+              "luminous_flux": 400, "colour_temperature": 2700 },
             { "type": "directional", "direction": [0, -1, -1], "intensity": 2.5 },
             { "type": "ambient", "intensity": 0.1 }
         ],

@@ -2,15 +2,27 @@
 // src/optics/albedo.rs; where they come from is calculated there alone. `curve_node(i)`, `lobe_mean()`
 // and HARMONICS are generated for the layout of the row.
 
-// Nodes at μ = (i/15)², values linear in √μ between them.
+// Nodes at μ = (i/15)³.
 const NODES: u32 = 16u;
 
-// The values at μ = cos θ of the harmonic of that index: red, green, blue, and the lobe's.
+// The values at μ = cos θ of the harmonic of that index: red, green, blue, and the lobe's. The cubic of
+// E. Catmull and R. Rom (1974) over the cube root of μ, continued in a straight line at both ends.
 fn curve_at(mu: f32, harmonic: u32) -> vec4<f32> {
-    let x = sqrt(clamp(mu, 0.0, 1.0)) * f32(NODES - 1u);
+    let x = power(clamp(mu, 0.0, 1.0), 1.0 / 3.0) * f32(NODES - 1u);
     let i = min(u32(x), NODES - 2u);
-    let first = harmonic * NODES + i;
-    return mix(curve_node(first), curve_node(first + 1u), x - f32(i));
+    let f = x - f32(i);
+    let at = harmonic * NODES + i;
+    let b = curve_node(at);
+    let c = curve_node(at + 1u);
+    var a = 2.0 * b - c;
+    if i > 0u {
+        a = curve_node(at - 1u);
+    }
+    var d = 2.0 * c - b;
+    if i < NODES - 2u {
+        d = curve_node(at + 2u);
+    }
+    return b + 0.5 * f * (c - a + f * (2.0 * a - 5.0 * b + 4.0 * c - d + f * (3.0 * (b - c) + d - a)));
 }
 
 // The directional albedo: a0(μ) + a2(μ) cos 2φ + a4(μ) cos 4φ, φ from the tangent.
@@ -23,9 +35,8 @@ fn directional_albedo(v: vec3<f32>, frame: Frame) -> vec3<f32> {
     if HARMONICS > 1u {
         let x = dot(frame.t, v);
         let y = dot(frame.b, v);
-        let squared = x * x + y * y;
         // Along the normal there is no azimuth, and nothing depends on it.
-        let cos_2 = select(0.0, (x * x - y * y) / max(squared, 1e-37), squared > 0.0);
+        let cos_2 = (x * x - y * y) / max(x * x + y * y, 1e-37);
         let cos_4 = 2.0 * cos_2 * cos_2 - 1.0;
         e += curve_at(mu, 1u).rgb * cos_2 + curve_at(mu, 2u).rgb * cos_4;
     }
@@ -34,7 +45,7 @@ fn directional_albedo(v: vec3<f32>, frame: Frame) -> vec3<f32> {
 
 // The directional albedo of the specular lobe alone with F = 1.
 fn lobe_albedo(mu: f32) -> f32 {
-    return curve_at(mu, 0u).w;
+    return clamp(curve_at(mu, 0u).w, 0.0, 1.0);
 }
 
 // Its mean over the hemisphere, 2 ∫ E μ dμ.

@@ -1,7 +1,8 @@
 // Gouraud shading (H. Gouraud 1971, DD9): colour calculated at the vertices, interpolated.
 
 fn shade_vertex(corner: Corner) -> Varying {
-    return Varying(corner.position, corner.normal, illuminate(corner.position, corner.normal), vec3(0.0));
+    let colour = illuminate(corner.position, corner.normal, corner.tangent);
+    return Varying(corner.position, corner.normal, corner.tangent, colour, vec3(0.0));
 }
 
 fn shade_pixel(passed: Varying) -> vec3<f32> {

@@ -3,6 +3,7 @@
 
 mod classical;
 mod microfacet;
+mod practical;
 mod rough;
 
 use glam::{DVec3, Vec3};

@@ -1,6 +1,6 @@
 //! Ward and its successors, Ashikhmin–Shirley, and diffuse reflection of rough surfaces.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI, TAU};
 
 use glam::{DVec3, Vec3};
 use lights_camera_models::{
@@ -99,8 +99,7 @@ fn ashikhmin_shirley_has_the_values_of_another_program() {
 
 #[test]
 fn qualitative_oren_nayar_has_the_values_of_another_program() {
-    let (right, wrong) =
-        (oren_nayar(QUALITATIVE, 0.523_598_775_6, 0.9), oren_nayar(FULL, 0.523_598_775_6, 0.9));
+    let (right, wrong) = (oren_nayar(QUALITATIVE, FRAC_PI_6, 0.9), oren_nayar(FULL, FRAC_PI_6, 0.9));
     assert_rows(&rows(BBM, "OrenNayar", ""), &right, &wrong, 1e-5);
 }
 

@@ -1,0 +1,64 @@
+//! `lcm albedo`: the directional albedo of a model at given cosines, for plots and comparisons.
+
+use std::io::{self, BufWriter, Write as _};
+
+use clap::Args;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::{
+    Failure, Outcome,
+    angles::{self, Column},
+    evaluate::{Machine, Settings, find},
+};
+use crate::{
+    capture::evaluate::albedos,
+    optics::{Frame, albedo::directional, colour::Encoding},
+    reflection::parameter::ABOVE_ZERO,
+    registry::Registry,
+};
+
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// The id of the model, as `lcm models` lists it
+    model: String,
+    #[command(flatten)]
+    set: Settings,
+    /// What evaluates the model; the integration is the same
+    #[arg(long, value_enum, default_value_t = Machine::Cpu)]
+    on: Machine,
+}
+
+/// The column that is read. At μ = 0 the viewer is in the surface, where a response is 0 by definition and
+/// no limit of the albedo.
+const COLUMNS: [Column; 1] = [Column { name: "mu", range: Some((ABOVE_ZERO as f64, 1.0)) }];
+
+pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
+    let model = find(registry, &arguments.model)?;
+    let values = arguments.set.values(model)?;
+    let rows = angles::from_stdin(&COLUMNS)?;
+    let views: Vec<Vec3> = rows
+        .iter()
+        .map(|row| {
+            let [mu] = row.numbers;
+            DVec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu).as_vec3()
+        })
+        .collect();
+    let albedos: Vec<DVec3> = match arguments.on {
+        Machine::Cpu => {
+            let surface = model.instantiate(&values, Encoding::Srgb);
+            let of = |v: &Vec3| directional(|l| surface.response(l, *v, &Frame::LOCAL), *v, &Frame::LOCAL);
+            views.par_iter().map(of).collect()
+        }
+        Machine::Gpu => {
+            albedos(model, &values, Encoding::Srgb, &views).map_err(|e| Failure::NoRenderer(e.to_string()))?
+        }
+    };
+    let mut out = BufWriter::new(io::stdout().lock());
+    writeln!(out, "mu,e_r,e_g,e_b")?;
+    for (row, e) in rows.iter().zip(albedos) {
+        let e = e.as_vec3();
+        writeln!(out, "{},{},{},{}", row.text[0], e.x, e.y, e.z)?;
+    }
+    Ok(out.flush()?)
+}

@@ -1,0 +1,157 @@
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
+    preset,
+};
+use crate::{
+    optics::{
+        Frame, Terms,
+        distribution::beckmann,
+        fresnel::{conductor_rgb, normal_reflectance},
+        geometry::half_vector,
+        masking::v_cavity,
+    },
+    parameters,
+    shader::wgsl,
+};
+
+/// The share of the specular part; the diffuse part has the rest.
+pub(super) const SPECULAR_WEIGHT: Parameter = Parameter {
+    name: "specular_weight",
+    symbol: "s",
+    label: "specular share",
+    unit: "",
+    help: "How much of the surface mirrors; the rest scatters. 1 for metals, about 0.1 to 0.5 for plastics and paints.",
+    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
+};
+
+const SLOPE: Parameter = Parameter {
+    name: "slope",
+    symbol: "m",
+    label: "slope of the facets",
+    unit: "",
+    help: "Root mean square slope of the microfacets: the smaller, the sharper the highlight. 0.2 is shiny, 0.6 nearly matt.",
+    kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.2 },
+};
+
+parameters! {
+    /// **Cook–Torrance** — microfacets with Beckmann's distribution, and the exact Fresnel equations, which
+    /// give metals their colour.
+    ///
+    /// ```text
+    /// f_r = (1 − s) C_b/π + s D F G / (4 (N·L)(N·V))
+    /// D = exp(−tan² θ_h / m²) / (π m² cos⁴ θ_h)
+    /// G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))
+    /// F = the Fresnel equations for unpolarised light, of n + ik, at the angle between L and H
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `ior` | n | – | 0.01–6, for red, green, blue | 1.5 |
+    /// | `extinction` | k | – | 0–12, for red, green, blue | 0 |
+    /// | `slope` | m | – | 0.001–1 | 0.2 |
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `specular_weight` | s | – | 0–1 | 0.5 |
+    ///
+    /// Source: R. L. Cook, K. E. Torrance (1982), *A Reflectance Model for Computer Graphics*, ACM
+    /// Transactions on Graphics 1(1), 7–24. The paper's R_d is C_b, its d is 1 − s.
+    ///
+    /// **The factor 4.** The paper prints `R_s = F D G / (π (N·L)(N·V))` and a D without 1/π. With D
+    /// normalised, `∫ D cos θ_h dω = 1`, that is four times the form above. The Jacobian of the half vector,
+    /// `dω_h = dω_l / (4 L·H)`, demands the 4; with the π a perfect mirror would give back four times the
+    /// light. Here the form that belongs to a normalised D is calculated, so values of programs that follow
+    /// the print must be divided by 4.
+    ///
+    /// **When to use it**: metals from their measured n and k, plastics with a coloured body and a white
+    /// highlight; to see a highlight shift its colour towards white at grazing angles. Against
+    /// `torrance_sparrow` the distribution is one of slopes; against GGX it has short tails, so highlights
+    /// end more sharply than on most real surfaces.
+    ///
+    /// **Laws**: all three hold. The V-shaped cavities mask no more and no less than a surface with these
+    /// normals can, and s shares the light between the two parts. Light that strikes several facets is lost,
+    /// so rough metals are too dark.
+    pub struct CookTorrance {
+        /// `n`.
+        ior: triple = IOR,
+        /// `k`.
+        extinction: triple = EXTINCTION,
+        /// `m`.
+        slope: number = SLOPE,
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `s`.
+        specular_weight: number = SPECULAR_WEIGHT,
+    }
+}
+
+impl ReflectionModel for CookTorrance {
+    const DECLARATION: Declaration = Declaration {
+        id: "cook_torrance",
+        name: "Cook–Torrance",
+        family: Family::Microfacet,
+        author: "R. L. Cook, K. E. Torrance 1982",
+        source: "R. L. Cook, K. E. Torrance (1982), A Reflectance Model for Computer Graphics, ACM Transactions on Graphics 1(1), 7–24",
+        summary: "Microfacets with exact Fresnel equations: metals get the colour that their measured n and k give, and highlights whiten at grazing angles.",
+        equation: &[
+            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart { term: Term::Diffuse, text: "I_d = (1 − s) C_b (N·L)" },
+            EquationPart { term: Term::Specular, text: "I_s = s π D F G / (4 (N·V))" },
+            EquationPart { term: Term::Specular, text: "D = exp(−tan^2 θ_h / m^2) / (π m^2 cos^4 θ_h)" },
+            EquationPart {
+                term: Term::Specular, text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))"
+            },
+            EquationPart { term: Term::Specular, text: "F = Fresnel(n + ik, V·H)" },
+        ],
+        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: false,
+        wgsl: wgsl!("reflection/cook_torrance.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
+        // Below the surface, or so grazing that the quotients would leave the range of f32.
+        if cos_l.min(cos_v) < 1e-9 {
+            return Terms::default();
+        }
+        let h = half_vector(l, v);
+        // L·H, and H in a frame whose x axis it leans to: both without cancellation.
+        let cos_d = 0.5 * (l + v).length();
+        let local = Vec3::new(frame.n.cross(h).length(), 0.0, frame.n.dot(h));
+        let d = beckmann(local, Vec2::splat(self.slope));
+        let visibility = v_cavity(cos_l, cos_v, local.z, cos_d);
+        let f = conductor_rgb(self.ior, self.extinction, cos_d);
+        Terms {
+            ambient: Vec3::ZERO,
+            diffuse: (1.0 - self.specular_weight) * cos_l * self.base_colour,
+            specular: self.specular_weight * PI * d * (visibility * cos_l) * f,
+        }
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        vec![Readout::of_f0(f0(self.ior, self.extinction)), Readout::of_alpha(self.slope)]
+    }
+
+    fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
+        conductor_preset(material)
+    }
+}
+
+/// The reflectance at normal incidence.
+pub(super) fn f0(n: Vec3, k: Vec3) -> Vec3 {
+    Vec3::new(normal_reflectance(n.x, k.x), normal_reflectance(n.y, k.y), normal_reflectance(n.z, k.z))
+}
+
+/// n and k; a metal scatters nothing from inside. How much a dielectric scatters is a matter of its
+/// pigments, so that stays.
+pub(super) fn conductor_preset(material: &Measured) -> Vec<(&'static str, Value)> {
+    let mut values = preset::conductor(material);
+    if material.metal {
+        values.push((SPECULAR_WEIGHT.name, Value::Number(1.0)));
+    }
+    values
+}

@@ -1,0 +1,274 @@
+use std::f32::consts::{FRAC_1_PI, PI};
+
+use glam::{Vec2, Vec3};
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, ROUGHNESS, Value},
+    preset,
+};
+use crate::{
+    optics::{
+        Frame, Terms,
+        colour::luminance,
+        diffuse::burley,
+        distribution::{MINIMUM_ALPHA, ggx, gtr},
+        fresnel::schlick_weight,
+        geometry::half_vector,
+        masking::{separable, smith_ggx},
+    },
+    parameters,
+    shader::wgsl,
+};
+
+/// A parameter from 0 to 1.
+const fn fraction(
+    name: &'static str,
+    symbol: &'static str,
+    label: &'static str,
+    default: f32,
+    help: &'static str,
+) -> Parameter {
+    let kind = ParameterKind::Number { min: 0.0, max: 1.0, default };
+    Parameter { name, symbol, label, unit: "", help, kind }
+}
+
+const SUBSURFACE: Parameter = fraction(
+    "subsurface",
+    "s_s",
+    "subsurface",
+    0.0,
+    "From 0, light scattered at the surface, to 1, an impression of light that has travelled below it: flatter, as skin, wax or marble look from afar.",
+);
+const SPECULAR: Parameter = fraction(
+    "specular",
+    "s",
+    "specular",
+    0.5,
+    "How strongly the surface mirrors when seen straight on, where it is not metal: F_0 = 0.08 s. 0.5 gives 4 %, as of plastic and glass.",
+);
+const SPECULAR_TINT: Parameter = fraction(
+    "specular_tint",
+    "s_t",
+    "specular tint",
+    0.0,
+    "How much the reflection takes the hue of the base colour where the surface is not metal. Not physical; for effect.",
+);
+const ANISOTROPIC: Parameter = fraction(
+    "anisotropic",
+    "a",
+    "anisotropic",
+    0.0,
+    "From 0, the same all around, to 1, highlights drawn out along the tangent, as on brushed metal: α_x ten times α_y.",
+);
+const SHEEN: Parameter = fraction(
+    "sheen",
+    "h",
+    "sheen",
+    0.0,
+    "A bright rim at grazing angles, as fibres of cloth scatter it. Adds light.",
+);
+const SHEEN_TINT: Parameter = fraction(
+    "sheen_tint",
+    "h_t",
+    "sheen tint",
+    0.5,
+    "How much the sheen takes the hue of the base colour: 0 is white.",
+);
+const CLEARCOAT: Parameter = fraction(
+    "clearcoat",
+    "c",
+    "clear coat",
+    0.0,
+    "How strong a second, colourless layer of lacquer reflects (refractive index 1.5, a quarter of its strength at most). Adds light.",
+);
+const CLEARCOAT_GLOSS: Parameter = fraction(
+    "clearcoat_gloss",
+    "c_g",
+    "gloss of the coat",
+    1.0,
+    "From 0, a satin coat, to 1, a glossy one: its width is 0.1 to 0.001.",
+);
+
+parameters! {
+    /// **Disney** — B. Burley's "principled" model: few parameters, all from 0 to 1, that artists understand,
+    /// every combination plausible.
+    ///
+    /// ```text
+    /// f_r = (1 − m) (((1 − s_s) f_d + s_s f_s) C_b/π + h F_H C_h) + D_s F_s G_s + c/4 D_r F_r G_r
+    /// F_H = (1 − L·H)⁵, F_L and F_V alike of N·L and N·V
+    /// f_d = (1 + (F_90 − 1) F_L)(1 + (F_90 − 1) F_V),   F_90 = 1/2 + 2 r (L·H)²
+    /// f_s = 1.25 (f (1/(N·L + N·V) − 1/2) + 1/2),   f as f_d with F_90 = r (L·H)²
+    /// D_s = 1 / (π α_x α_y ((H·T/α_x)² + (H·B/α_y)² + (N·H)²)²)
+    /// α_x = max(0.001, r²/q), α_y = max(0.001, r² q), q = √(1 − 0.9 a)
+    /// F_s = C_0 + (1 − C_0) F_H,   C_0 = (1 − m) 0.08 s ((1 − s_t) + s_t C_t) + m C_b
+    /// D_r = (w² − 1) / (π ln w² (1 + (w² − 1)(N·H)²)),   w = 0.1 (1 − c_g) + 0.001 c_g
+    /// F_r = 0.04 + 0.96 F_H,   G_r with α = 0.25
+    /// G = g(L) g(V),   g(X) = 1/(N·X + √((α_x X·T)² + (α_y X·B)² + (N·X)²))
+    /// C_t = C_b / luminance,   C_h = (1 − h_t) + h_t C_t
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `metallic` | m | – | 0–1 | 0 |
+    /// | `subsurface` | s_s | – | 0–1 | 0 |
+    /// | `specular` | s | – | 0–1 | 0.5 |
+    /// | `roughness` | r | – | 0–1 | 0.5 |
+    /// | `specular_tint` | s_t | – | 0–1 | 0 |
+    /// | `anisotropic` | a | – | 0–1 | 0 |
+    /// | `sheen` | h | – | 0–1 | 0 |
+    /// | `sheen_tint` | h_t | – | 0–1 | 0.5 |
+    /// | `clearcoat` | c | – | 0–1 | 0 |
+    /// | `clearcoat_gloss` | c_g | – | 0–1 | 1 |
+    ///
+    /// Source: B. Burley (2012), *Physically-Based Shading at Disney*, SIGGRAPH course; details that the notes
+    /// leave open as in Disney's BRDF Explorer: the luminance 0.3 R + 0.6 G + 0.1 B, the factor 1.25 that keeps
+    /// the albedo of the subsurface term, which flattens after P. Hanrahan and W. Krueger (1993). The notes let
+    /// G see (1/2 + r/2)² in place of r; the Explorer's program uses r², as does this model (B. Burley 2015,
+    /// *Extending the Disney BRDF to a BSDF*, dropped the change too). The quotient
+    /// `G/(4 (N·L)(N·V))` of other models is what is called G here.
+    ///
+    /// **When to use it**: for cloth (sheen), car paint (clear coat), brushed metal (anisotropic), skin from
+    /// afar (subsurface). With these at 0 it is close to `metallic_roughness` but for the diffuse part, which
+    /// brightens towards the rim of rough objects and darkens on smooth ones, as measured materials do.
+    ///
+    /// **Laws**: reciprocal and not negative. Energy is not conserved: the diffuse part of a rough surface
+    /// alone gives back up to 1.4 times the light at grazing angles, and highlight, sheen and coat are added
+    /// without taking from what lies below. Plausible pictures were the aim.
+    pub struct Disney {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `m`.
+        metallic: number = METALLIC,
+        /// `s_s`.
+        subsurface: number = SUBSURFACE,
+        /// `s`.
+        specular: number = SPECULAR,
+        /// `r`.
+        roughness: number = ROUGHNESS,
+        /// `s_t`.
+        specular_tint: number = SPECULAR_TINT,
+        /// `a`.
+        anisotropic: number = ANISOTROPIC,
+        /// `h`.
+        sheen: number = SHEEN,
+        /// `h_t`.
+        sheen_tint: number = SHEEN_TINT,
+        /// `c`.
+        clearcoat: number = CLEARCOAT,
+        /// `c_g`.
+        clearcoat_gloss: number = CLEARCOAT_GLOSS,
+    }
+}
+
+impl Disney {
+    /// The base colour at luminance 1: its hue; white for black.
+    fn tint(&self) -> Vec3 {
+        let luminance = self.base_colour.dot(Vec3::new(0.3, 0.6, 0.1));
+        if luminance > 0.0 { self.base_colour / luminance } else { Vec3::ONE }
+    }
+
+    fn f0(&self) -> Vec3 {
+        let dielectric = 0.08 * self.specular * Vec3::ONE.lerp(self.tint(), self.specular_tint);
+        dielectric.lerp(self.base_colour, self.metallic)
+    }
+
+    /// The roughness along and across the tangent; the first may exceed 1.
+    fn alpha(&self) -> Vec2 {
+        let alpha = self.roughness * self.roughness;
+        let aspect = (1.0 - 0.9 * self.anisotropic).sqrt();
+        Vec2::new(alpha / aspect, alpha * aspect).max(Vec2::splat(MINIMUM_ALPHA))
+    }
+}
+
+/// The factor of the subsurface term on `C_b/π`.
+fn flattened(cos_l: f32, cos_v: f32, cos_d: f32, roughness: f32) -> f32 {
+    let f90 = cos_d * cos_d * roughness;
+    let rim = |cosine: f32| 1.0 + (f90 - 1.0) * schlick_weight(cosine);
+    1.25 * (rim(cos_l) * rim(cos_v) * (1.0 / (cos_l + cos_v) - 0.5) + 0.5)
+}
+
+impl ReflectionModel for Disney {
+    const DECLARATION: Declaration = Declaration {
+        id: "disney",
+        name: "Disney",
+        family: Family::Standard,
+        author: "B. Burley 2012",
+        source: "B. Burley (2012), Physically-Based Shading at Disney, SIGGRAPH course Practical Physically Based Shading in Film and Game Production",
+        summary: "Everything an artist may want from 0 to 1: cloth by sheen, car paint by a clear coat, brushed metal by anisotropy, skin by a touch of subsurface.",
+        equation: &[
+            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart {
+                term: Term::Diffuse,
+                text: "I_d = (1 − m)(((1 − s_s) f_d + s_s f_s) C_b + π h F_H C_h)(N·L)",
+            },
+            EquationPart {
+                term: Term::Diffuse, text: "f_d = (1 + (F_{90} − 1) F_L)(1 + (F_{90} − 1) F_V)"
+            },
+            EquationPart {
+                term: Term::Diffuse, text: "F_{90} = 1/2 + 2 r (L·H)^2, F_X = (1 − cos θ_X)^5"
+            },
+            EquationPart { term: Term::Specular, text: "I_s = π (D_s F_s G_s + c D_r F_r G_r / 4) (N·L)" },
+            EquationPart {
+                term: Term::Specular,
+                text: "D_s = 1 / (π α_x α_y ((H·T)^2/α_x^2 + (H·B)^2/α_y^2 + (N·H)^2)^2)",
+            },
+            EquationPart {
+                term: Term::Specular,
+                text: "F_s = C_0 + (1 − C_0) F_H, C_0 = 0.08 (1 − m) s + m C_b",
+            },
+        ],
+        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: true,
+        wgsl: wgsl!("reflection/disney.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (l, v) = (frame.to_local(l), frame.to_local(v));
+        let (cos_l, cos_v) = (l.z, v.z);
+        // Below the surface, or so grazing that the quotients would leave the range of f32.
+        if cos_l.min(cos_v) < 1e-9 {
+            return Terms::default();
+        }
+        let h = half_vector(l, v);
+        // L·H without cancellation.
+        let cos_d = 0.5 * (l + v).length();
+        let fresnel = schlick_weight(cos_d);
+
+        let scattered = burley(cos_l, cos_v, cos_d, self.roughness);
+        let below = flattened(cos_l, cos_v, cos_d, self.roughness);
+        let diffuse = scattered + self.subsurface * (below - scattered);
+        let sheen = self.sheen * fresnel * Vec3::ONE.lerp(self.tint(), self.sheen_tint);
+        let body = FRAC_1_PI * diffuse * self.base_colour + sheen;
+
+        // Disney's G is the visibility: it holds the quotient of Smith's term and the cosines.
+        let lobe =
+            |d: f32, alpha: Vec2| d * separable(cos_l, cos_v, smith_ggx(l, alpha), smith_ggx(v, alpha));
+        let alpha = self.alpha();
+        let f0 = self.f0();
+        let main = lobe(ggx(h, alpha), alpha) * (f0 + (Vec3::ONE - f0) * fresnel);
+        let width = 0.1 + (0.001 - 0.1) * self.clearcoat_gloss;
+        let coat = lobe(gtr(h, Vec2::splat(width), 1.0), Vec2::splat(0.25)) * (0.04 + 0.96 * fresnel);
+        Terms {
+            ambient: Vec3::ZERO,
+            diffuse: PI * cos_l * (1.0 - self.metallic) * body,
+            specular: PI * cos_l * (main + 0.25 * self.clearcoat * coat),
+        }
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        vec![Readout::of_f0(self.f0()), Readout::of_alpha(self.roughness * self.roughness)]
+    }
+
+    fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
+        if material.metal {
+            return preset::base_colour_metallic(material);
+        }
+        // At most 1, F_0 = 8 %: diamond's 17 % are out of reach. As many digits as a knob shows.
+        let specular = (luminance(material.f0) / 0.08).min(1.0);
+        let specular = (specular * 1e4).round() / 1e4;
+        vec![(METALLIC.name, Value::Number(0.0)), (SPECULAR.name, Value::Number(specular))]
+    }
+}

@@ -1,0 +1,135 @@
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+
+use super::{
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, METALLIC, REFLECTANCE, ROUGHNESS, Value},
+    preset,
+};
+use crate::{
+    optics::{
+        Frame, Terms,
+        distribution::{MINIMUM_ALPHA, ggx},
+        fresnel::schlick,
+        geometry::half_vector,
+        masking::{height_correlated, smith_ggx},
+    },
+    parameters,
+    shader::wgsl,
+};
+
+parameters! {
+    /// **Metallic–roughness** — the material of today's engines and of glTF 2.0: GGX, height-correlated Smith
+    /// masking, Schlick's Fresnel term, and four parameters that an artist can guess.
+    ///
+    /// ```text
+    /// f_r = (1 − F)(1 − m) C_b/π + D F G / (4 (N·L)(N·V))
+    /// D = α² / (π ((N·H)²(α² − 1) + 1)²),   α = r²
+    /// G = 1 / (1 + Λ(L) + Λ(V)),   Λ(X) = (√(1 + α² tan² θ_X) − 1)/2
+    /// F = F_0 + (1 − F_0)(1 − V·H)⁵,   F_0 = (1 − m) 0.16 s² + m C_b
+    /// ```
+    ///
+    /// | parameter | symbol | unit | range | default |
+    /// |---|---|---|---|---|
+    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `metallic` | m | – | 0–1 | 0 |
+    /// | `roughness` | r | – | 0–1 | 0.5 |
+    /// | `reflectance` | s | – | 0–1 | 0.5 |
+    ///
+    /// Sources: B. Karis (2013), *Real Shading in Unreal Engine 4*, SIGGRAPH course; S. Lagarde, C. de
+    /// Rousiers (2014), *Moving Frostbite to Physically Based Rendering*, SIGGRAPH course (0.16 s²); Khronos
+    /// Group (2021), *glTF 2.0 Specification*, appendix B; R. Guy, M. Agopian (2018), *Physically Based
+    /// Rendering in Filament*. α is at least 0.001, below which a lobe is narrower than the rounding of H.
+    ///
+    /// **The diffuse part** is glTF's: Lambert's, times 1 − F at the facet that mirrors L to V. Filament and
+    /// Unreal leave that factor out, which costs less and makes still more light; it is kept here because
+    /// glTF is the published standard and because a body under a mirror must darken. F is taken for each
+    /// channel; the specification's is white for what is not metal, so there the two are the same.
+    ///
+    /// **When to use it**: for anything, first: it is what most programs exchange, and measured metals need
+    /// only their colour at normal incidence. Where that colour does not tell the whole story (the dip of
+    /// gold before grazing, n and k) `cook_torrance` or `microfacet` tell more.
+    ///
+    /// **Laws**: reciprocal and not negative. Energy is not conserved: F of one facet stands in for all that
+    /// the rough surface reflects, so a smooth white dielectric seen at a grazing angle gives back up to
+    /// twice the light. Metals do conserve it, and lose what several facets would reflect in turn.
+    pub struct MetallicRoughness {
+        /// `C_b`, linear.
+        base_colour: colour = BASE_COLOUR,
+        /// `m`.
+        metallic: number = METALLIC,
+        /// `r`.
+        roughness: number = ROUGHNESS,
+        /// `s`.
+        reflectance: number = REFLECTANCE,
+    }
+}
+
+impl MetallicRoughness {
+    fn alpha(&self) -> f32 {
+        (self.roughness * self.roughness).max(MINIMUM_ALPHA)
+    }
+
+    fn f0(&self) -> Vec3 {
+        let dielectric = 0.16 * self.reflectance * self.reflectance;
+        Vec3::splat(dielectric).lerp(self.base_colour, self.metallic)
+    }
+}
+
+impl ReflectionModel for MetallicRoughness {
+    const DECLARATION: Declaration = Declaration {
+        id: "metallic_roughness",
+        name: "Metallic–roughness",
+        family: Family::Standard,
+        author: "B. Karis 2013; glTF 2.0",
+        source: "B. Karis (2013), Real Shading in Unreal Engine 4, SIGGRAPH course; Khronos Group (2021), glTF 2.0 Specification, appendix B",
+        summary: "The material of today's engines and of glTF: base colour, metallic, roughness, reflectance. Start here for anything real.",
+        equation: &[
+            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart { term: Term::Diffuse, text: "I_d = (1 − F)(1 − m) C_b (N·L)" },
+            EquationPart { term: Term::Specular, text: "I_s = π D F G / (4 (N·V))" },
+            EquationPart {
+                term: Term::Specular, text: "D = α^2 / (π ((N·H)^2 (α^2 − 1) + 1)^2), α = r^2"
+            },
+            EquationPart { term: Term::Specular, text: "G = 1 / (1 + Λ(L) + Λ(V))" },
+            EquationPart { term: Term::Specular, text: "F = F_0 + (1 − F_0) (1 − V·H)^5" },
+            EquationPart { term: Term::Specular, text: "F_0 = 0.16 (1 − m) s^2 + m C_b" },
+        ],
+        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
+        ambient: Ambient::Albedo,
+        anisotropic: false,
+        wgsl: wgsl!("reflection/metallic_roughness.wgsl"),
+    };
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
+        // Below the surface, or so grazing that the quotients would leave the range of f32.
+        if cos_l.min(cos_v) < 1e-9 {
+            return Terms::default();
+        }
+        // Only angles to the normal matter, so each vector stands in a frame whose x axis it leans to. Half
+        // vector: by the cross product, since 1 − (N·H)² would cancel where the lobe is narrow.
+        let leaning = |cosine: f32| Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+        let h = half_vector(l, v);
+        let cos_d = 0.5 * (l + v).length();
+        let alpha = Vec2::splat(self.alpha());
+        let d = ggx(Vec3::new(frame.n.cross(h).length(), 0.0, frame.n.dot(h)), alpha);
+        let (lambda_l, lambda_v) = (smith_ggx(leaning(cos_l), alpha), smith_ggx(leaning(cos_v), alpha));
+        let visibility = height_correlated(cos_l, cos_v, lambda_l, lambda_v);
+        let f = schlick(self.f0(), cos_d);
+        Terms {
+            ambient: Vec3::ZERO,
+            diffuse: (Vec3::ONE - f) * ((1.0 - self.metallic) * cos_l) * self.base_colour,
+            specular: PI * d * (visibility * cos_l) * f,
+        }
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        vec![Readout::of_f0(self.f0()), Readout::of_alpha(self.alpha())]
+    }
+
+    fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
+        preset::base_colour_metallic(material)
+    }
+}
