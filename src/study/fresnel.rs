@@ -65,6 +65,14 @@ fn worst(material: &Measured) -> (f64, f64) {
         .unwrap_or_default()
 }
 
+/// Where the reflectance is least and how much it is there, if that is not at normal incidence.
+fn dip(material: &Measured) -> Option<(f64, f64)> {
+    (0..=90)
+        .map(|a| (f64::from(a), exact(material, f64::from(a))))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|least| least.0 > 0.0)
+}
+
 fn brightest(picture: &Picture) -> f64 {
     picture.pixels.iter().map(|p| f64::from(luminance(p.truncate()))).fold(0.0, f64::max)
 }
@@ -218,7 +226,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     // Pictures.
     let mut scene = lab.scene(SCENE)?;
     // A row of objects, without the room above and below it.
-    scene.observer.field_of_view = 18.0;
+    scene.observer.field_of_view = 19.6;
     let size = lab.size(960, 366);
     let both = [("blinn_phong", "Blinn–Phong"), ("microfacet", "Microfacet (GGX, exact Fresnel equations)")];
     let mut shown = Vec::new();
@@ -269,6 +277,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             .collect::<Vec<_>>(),
     );
 
+    let dip = preset::by_id("aluminium").and_then(dip);
     let physical = growth[1] > 2.0 && (growth[1] / growth[0]).ln().abs() < 0.5;
     let classical = growth[2] > 2.0;
     let confirmed = physical && !classical;
@@ -284,7 +293,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             "The reflectance of a smooth boundary to a medium of index n + ik follows from the Fresnel equations. The program has them exactly ("
             code { "optics::fresnel::dielectric" } ", " code { "conductor" } ") and in Schlick’s approximation,"
         }
-        p .equation { span { "F(θ) ≈ F₀ + (1 − F₀)(1 − cos θ)⁵,  F₀ = ((n − 1)² + k²) / ((n + 1)² + k²)." } }
+        p .equation {
+            span { "F(θ) ≈ F₀ + (1 − F₀)(1 − cos θ)⁵," }
+            span { "F₀ = ((n − 1)² + k²) / ((n + 1)² + k²)." }
+        }
         p {
             "Blinn–Phong has a specular coefficient " (words("k_s")) " in the place of F, which is the same at all angles. The optical constants are measurements "
             "collected by refractiveindex.info. To compare whole models and not only this factor, the directional albedo of the specular lobe is integrated "
@@ -302,7 +314,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             p {
                 @if physical {
                     "The microfacet model follows the Fresnel equations: at 75° its lobe reflects " (fixed(growth[1], 1)) " times as much as at normal incidence, smooth glass "
-                    (fixed(growth[0], 1)) " times; at 85° " (fixed(grazing[1], 1)) " and " (fixed(grazing[0], 1)) " times. It stays below at the very edge because at a grazing view a rough surface shows mostly facets that are tilted towards the viewer."
+                    (fixed(growth[0], 1)) " times; at 85° " (fixed(grazing[1], 1)) " and " (fixed(grazing[0], 1)) " times."
+                    @if grazing[1] < grazing[0] { " It stays below at the very edge because at a grazing view a rough surface shows mostly facets that are tilted towards the viewer." }
                 } @else {
                     "The microfacet model does not follow the Fresnel equations here: its lobe grows by " (fixed(growth[1], 1)) ", smooth glass by " (fixed(growth[0], 1)) "."
                 }
@@ -318,7 +331,9 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             }
             p {
                 "Schlick’s approximation is off by at most " (fixed(schlick_worst, 3)) " for these materials. "
-                "It cannot follow metals whose reflectance dips before it rises: gold at 532 nm changes by less than " (fixed(gold_change(), 2)) " up to 60°."
+                @if let Some((angle, least)) = dip {
+                    "It cannot follow a reflectance that falls before it rises, as that of aluminium does, which is least at " (fixed(angle, 0)) "° (" (fixed(least, 3)) ")."
+                }
             }
         }
     };
@@ -329,12 +344,4 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         shown: confirmed,
         tables: vec![raw, lobes, from_pictures],
     })
-}
-
-/// By how much the reflectance of gold changes up to 60°, rounded up to a hundredth.
-fn gold_change() -> f64 {
-    let Some(gold) = preset::by_id("gold") else { return f64::NAN };
-    let start = exact(gold, 0.0);
-    let most = (0..=60).map(|a| (exact(gold, f64::from(a)) - start).abs()).fold(0.0, f64::max);
-    (most * 100.0).ceil() / 100.0
 }

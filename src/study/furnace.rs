@@ -4,8 +4,7 @@ use glam::Vec3;
 use maud::html;
 
 use super::{
-    Chapter, Lab, Setting, StudyError, Table, albedo_at, alpha, choice, fixed, image, number, percent,
-    pictures,
+    Chapter, Lab, Setting, StudyError, Table, albedo_at, alpha, choice, fixed, image, percent, pictures,
     plot::{Axis, Line, Mark, Plot, Series},
     svg, words,
 };
@@ -68,7 +67,7 @@ fn whites() -> Vec<White> {
         white("… with Turquin", "microfacet", ggx("turquin"), true),
         white("GGX α = 0.3, n = 1.5, on white", "microfacet", plastic, false),
         white("Burley diffuse, roughness 1", "burley_diffuse", rough(), false),
-        white("Metallic–roughness, metal, roughness 0.9", "metallic_roughness", metal, false),
+        white("Metallic–roughness, metal, roughness 0.9", "metallic_roughness", metal, true),
         white("Disney, roughness 1", "disney", rough(), false),
     ]
 }
@@ -226,7 +225,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         &html! {
             "White spheres before a white wall in uniform light. Above: one ambient light of 1 lx, as in scene " code { "white_furnace.json" } ". Below: the same light from "
             (LAMPS) " lamps in even directions, so that each model answers by its equation for directed light. The display shows the wall at half its range, so that spheres "
-            "can be seen to be brighter. A sphere that conserves energy vanishes."
+            "can be seen to be brighter. A sphere that conserves energy vanishes; faint specks on its outline are points where the normal, interpolated across a facet of the mesh, turns away from the viewer."
         },
     );
     let mut from_pictures = Table::new("furnace_pictures", "object,ambient_mean,lamps_mean,lamps_max");
@@ -273,7 +272,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let incomplete: Vec<&str> =
         curves.iter().filter(|c| c.0.whole && !kept((c.3, c.4.1))).map(|c| c.0.name).collect();
     let finding = format!(
-        "White Blinn–Phong reflects up to {:.2} times the light that it receives; rough GGX loses up to {:.0} % and, compensated for multiple scattering, stays within {:.1} %.",
+        "White Blinn–Phong reflects up to {:.2} times the light that it receives; rough GGX loses up to {:.0}\u{a0}% and, compensated for multiple scattering, stays within {:.1}\u{a0}%.",
         blinn.1,
         100.0 * (1.0 - single.0),
         100.0 * off.max(0.001)
@@ -311,8 +310,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             }
             p {
                 @if kept(compensated) {
-                    "A microfacet mirror of α = 0.8 never gains, but its single-scattering form loses up to " (fixed(100.0 * (1.0 - single.0), 0)) " %. With Kulla and Conty’s term it stays within "
-                    (fixed(100.0 * off.max(0.001), 1)) " % of 1 and vanishes in the furnace."
+                    "A microfacet mirror of α = 0.8 "
+                    @if single.1 <= 1.0 + TOLERANCE { "never gains" } @else { "gains" }
+                    ", but its single-scattering form loses up to " (fixed(100.0 * (1.0 - single.0), 0)) "\u{a0}%. With Kulla and Conty’s term it stays within "
+                    (fixed(100.0 * off.max(0.001), 1)) "\u{a0}% of 1 and vanishes in the furnace."
                 } @else {
                     "Even with Kulla and Conty’s term the microfacet mirror is not conserving here: E lies between " (fixed(compensated.0, 3)) " and " (fixed(compensated.1, 3)) "."
                 }

@@ -194,9 +194,9 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             .map(|(i, (id, name, _))| {
                 vec![
                     format!("{id}, {name}"),
-                    format!("{} %", fixed(100.0 * distances[i].0, 1)),
+                    format!("{}\u{a0}%", fixed(100.0 * distances[i].0, 1)),
                     percent(distances[i].1 - 1.0),
-                    again.get(i).map_or_else(|| "–".to_owned(), |x| format!("{} %", fixed(100.0 * x, 1))),
+                    again.get(i).map_or_else(|| "–".to_owned(), |x| format!("{}\u{a0}%", fixed(100.0 * x, 1))),
                 ]
             })
             .collect::<Vec<_>>(),
@@ -246,7 +246,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     }
     let transfer_table = lab.table(
         &html! {
-            "Three measured paints: each model is fitted to light from within 30° of the normal and then, unchanged, compared with the measurement for light from 60° and 70°. Log error (0.1 is about 10 %)."
+            "Three measured paints: each model is fitted to light from within 30° of the normal and then, unchanged, compared with the measurement for light from 60° and 70°. Log error (0.1 is about 10\u{a0}%)."
         },
         &["Paint, model", "fitted, θ ≤ 30°", "predicted, θ = 60°, 70°"],
         &rows,
@@ -259,7 +259,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let rises = distances[2].0 / distances[0].0;
     let confirmed = control && rises > 1.5 && wins * 2 > blinn.len();
     let finding = format!(
-        "Blinn–Phong tuned to gold under one lamp is {:.0} % off there and {:.0} % under a light from behind; light from 60° and more on measured paints is predicted better by GGX for {wins} of {}.",
+        "Blinn–Phong tuned to gold under one lamp is {:.0}\u{a0}% off there and {:.0}\u{a0}% under a light from behind; light from 60° and more on measured paints is predicted better by GGX for {wins} of {}.",
         100.0 * distances[0].0,
         100.0 * distances[2].0,
         blinn.len()
@@ -288,19 +288,19 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         div .conclusion {
             p {
                 @if control {
-                    "The control holds: under B the difference is " (fixed(100.0 * distances[1].0, 1)) " %, as under A (" (fixed(100.0 * distances[0].0, 1)) " %). Intensity and colour of the light are not what Blinn–Phong’s parameters depend on. "
+                    "The control holds: under B the difference is " (fixed(100.0 * distances[1].0, 1)) "\u{a0}%, as under A (" (fixed(100.0 * distances[0].0, 1)) "\u{a0}%). Intensity and colour of the light are not what Blinn–Phong’s parameters depend on. "
                 } @else {
-                    "The control fails: under B the difference is " (fixed(100.0 * distances[1].0, 1)) " % instead of " (fixed(100.0 * distances[0].0, 1)) " %, which is not expected of linear models. "
+                    "The control fails: under B the difference is " (fixed(100.0 * distances[1].0, 1)) "\u{a0}% instead of " (fixed(100.0 * distances[0].0, 1)) "\u{a0}%, which is not expected of linear models. "
                 }
                 @if rises > 1.5 {
-                    "The direction is. Under C the difference is " (fixed(100.0 * distances[2].0, 0)) " %, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) " % of the brightness. "
-                    "Tuning anew under C leaves " (fixed(100.0 * again[2], 0)) " %, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
+                    "The direction is. Under C the difference is " (fixed(100.0 * distances[2].0, 0)) "\u{a0}%, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) "\u{a0}% of the brightness. "
+                    "Tuning anew under C leaves " (fixed(100.0 * again[2], 0)) "\u{a0}%, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
                 } @else {
-                    "Under C the difference is " (fixed(100.0 * distances[2].0, 0)) " %, only " (fixed(rises, 1)) " times as large."
+                    "Under C the difference is " (fixed(100.0 * distances[2].0, 0)) "\u{a0}%, only " (fixed(rises, 1)) " times as large."
                 }
             }
             p {
-                "Under D Blinn–Phong gives " (fixed(100.0 * distances[3].1, 0)) " % of the brightness. Light from everywhere reaches it through the coefficient " (words("k_a")) " alone, about which a picture under a lamp says nothing; gold answers by its albedo."
+                "Under D Blinn–Phong gives " (fixed(100.0 * distances[3].1, 0)) "\u{a0}% of the brightness. Light from everywhere reaches it through the coefficient " (words("k_a")) " alone, about which a picture under a lamp says nothing; gold answers by its albedo."
             }
             p {
                 "On measured paints, GGX predicts the light from the side better than Blinn–Phong for " (wins) " of " (blinn.len()) " paints "

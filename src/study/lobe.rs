@@ -9,7 +9,7 @@ use super::{
     fit::{self, Fit, Sample},
     fixed, grid, image, number, pictures,
     plot::{Axis, Line, Mark, Plot, Series},
-    svg,
+    svg, words,
 };
 use crate::{
     optics::{Frame, TermSelection, colour::Encoding, equivalence},
@@ -332,7 +332,7 @@ fn merl_plot(
     }
     let plot = Plot {
         title: format!("Lobe of {}", material.name),
-        x: Axis::new("θ_h (°)", 0.0, 50.0, 6),
+        x: Axis::new("θₕ (°)", 0.0, 50.0, 6),
         y: Axis::log(
             "f (sr⁻¹)",
             10f64.powf((0.5 * low).log10().floor()),
@@ -451,7 +451,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let chart = Plot {
         title: "Log error by material, sorted by the error of GGX".to_owned(),
         x: Axis::new("materials, sorted by the error of GGX", 0.0, fits.len() as f64 + 1.0, 6),
-        y: Axis::log("log error", 0.01, 10.0),
+        y: Axis::log("log error", 0.001, 10.0),
         series: contestants
             .iter()
             .enumerate()
@@ -468,7 +468,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     };
     let chart = lab.figure(
         &svg(&chart)?,
-        &html! { "Error of the four models for each material, sorted. Logarithmic axis; a step of 0.7 is a factor of two in the typical deviation’s logarithm." },
+        &html! { "Error of the four models for each material, sorted. Logarithmic axis." },
     );
     let wanted = ["gold-metallic-paint", "alum-bronze", "red-plastic", "blue-acrylic"];
     let mut panels = Vec::new();
@@ -486,7 +486,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 div .panels { @for (name, plot) in &panels { div { p { (name) } (plot) } } }
                 (key(&contestants))
             },
-            &html! { "Lobes of four materials: BRDF by the angle θ_h between normal and half vector, with 60° between light and viewer. Rings: the SGD fit that stands for the material." },
+            &html! { "Lobes of four materials: BRDF by the angle " (words("θ_h")) " between normal and half vector, with 60° between light and viewer. Rings: the SGD fit that stands for the material." },
         )
     });
     let details: Vec<Vec<String>> = fits
@@ -508,7 +508,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let confirmed = wins == 2 && ggx_first;
     let ratio = medians[0] / medians[last];
     let finding = format!(
-        "Fitted to measured paint with the same freedom, Blinn–Phong is off by {:.0} % and {:.0} %, GGX by {:.0} % and {:.0} %; over {} MERL fits the median errors are {:.2} and {:.2}.",
+        "Fitted to measured paint with the same freedom, Blinn–Phong is off by {:.0}\u{a0}% and {:.0}\u{a0}%, GGX by {:.0}\u{a0}% and {:.0}\u{a0}%; over {} MERL fits the median errors are {:.2} and {:.2}.",
         100.0 * (of(0, "Blinn–Phong").exp() - 1.0),
         100.0 * (of(1, "Blinn–Phong").exp() - 1.0),
         100.0 * (of(0, "GGX").exp() - 1.0),
@@ -517,6 +517,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         medians[0],
         medians[last]
     );
+    let tails = (0..2).all(|p| of(p, "GGX distribution") < of(p, "Blinn’s distribution"));
     let acryl = [of(2, "Blinn–Phong"), of(2, "GGX")];
     let body = html! {
         h3 { "Question" }
@@ -553,13 +554,15 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                     "For both glossy paints GGX comes closest to the measurement: its log error is " (fixed(of(0, "GGX"), 3)) " and " (fixed(of(1, "GGX"), 3)) ", Blinn–Phong’s "
                     (fixed(of(0, "Blinn–Phong"), 3)) " and " (fixed(of(1, "Blinn–Phong"), 3)) ". Exchanging the distribution alone shows why: with Blinn’s distribution inside the same microfacet model the errors are "
                     (fixed(of(0, "Blinn’s distribution"), 3)) " and " (fixed(of(1, "Blinn’s distribution"), 3)) ", with Beckmann’s " (fixed(of(0, "Beckmann’s distribution"), 3)) " and " (fixed(of(1, "Beckmann’s distribution"), 3))
-                    ". The longer tail of GGX is what the paints have; the cosine in Blinn–Phong’s denominator and the missing Fresnel term cost the rest."
+                    ". "
+                    @if tails { "The longer tail of GGX is what the paints have; the cosine in Blinn–Phong’s denominator and the missing Fresnel term cost the rest." }
                 } @else {
                     "For the glossy paints GGX is better than Blinn–Phong in " (wins) " of two cases."
                 }
             }
             p {
-                "Acryl blue is nearly matte in this data; there the models hardly differ (" (fixed(acryl[0], 3)) " and " (fixed(acryl[1], 3)) "), and none is good."
+                "Acryl blue is nearly matte in this data: the errors of Blinn–Phong and GGX are " (fixed(acryl[0], 3)) " and " (fixed(acryl[1], 3)) ". "
+                @if (acryl[0] - acryl[1]).abs() < 0.02 { "The shape of a highlight that is hardly there decides nothing." }
             }
             p {
                 @if ggx_first {

@@ -325,7 +325,7 @@ fn fixed(x: f64, digits: usize) -> String {
 /// A difference in per cent with its sign.
 fn percent(x: f64) -> String {
     let p = 100.0 * x;
-    if p.abs() < 0.05 { "±0.0 %".to_owned() } else { format!("{p:+.1} %").replace('-', "−") }
+    if p.abs() < 0.05 { "±0.0\u{a0}%".to_owned() } else { format!("{p:+.1}\u{a0}%").replace('-', "−") }
 }
 
 /// Runs the study. `tell` is called [`STEPS`] times with what is done next.

@@ -75,7 +75,7 @@ const GLOSSARY: &[(&str, &str)] = &[
     ),
     (
         "Log error",
-        "root mean square of the difference of natural logarithms between model and data. 0.10 means that the model is typically 10 % off, 0.7 a factor of two.",
+        "root mean square of the difference of natural logarithms between model and data. 0.10 means that the model is typically 10\u{a0}% off, 0.7 a factor of two.",
     ),
 ];
 
