@@ -38,6 +38,7 @@ pub mod shader;
 pub mod capture;
 pub mod panel;
 pub mod reference;
+pub mod study;
 
 pub mod app;
 pub mod cli;

@@ -23,6 +23,7 @@ mod models;
 mod new;
 mod render;
 mod scenes;
+mod study;
 mod view;
 
 pub use view::ViewOptions;
@@ -110,6 +111,8 @@ enum Command {
     },
     /// Evaluate the BRDF of a model: angles from standard input, values to standard output, as CSV
     Evaluate(evaluate::Arguments),
+    /// Compare Blinn–Phong with physically based models: four phenomena as a report with numbers
+    Study(study::Arguments),
     /// Integrate a model: cosines of the view, `mu`, above 0 up to 1, from standard input, its directional
     /// albedos to standard output, as CSV; of an anisotropic model as seen along the tangent
     Albedo(albedo::Arguments),
@@ -204,6 +207,7 @@ fn run(cli: Cli) -> Outcome {
         Some(Command::New { file }) => new::run(&file, options, &registry),
         Some(Command::Models { json }) => models::run(json, &registry),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &registry),
+        Some(Command::Study(arguments)) => study::run(&arguments, options, &registry),
         Some(Command::Albedo(arguments)) => albedo::run(&arguments, &registry),
         Some(Command::Schema) => print(&crate::scene::schema::text(&registry)),
     }

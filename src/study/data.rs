@@ -1,0 +1,199 @@
+//! The data of the study: measured paints, and fits of measured materials.
+
+use std::f64::consts::PI;
+
+use glam::Vec3;
+
+use super::fit::Sample;
+
+const PAINTS: &str = include_str!("../../assets/data/cornell_paints.csv");
+const SGD: &str = include_str!("../../assets/data/sgd_merl100.csv");
+
+/// A direction from its angles to the normal (+z) and to the tangent (+x), degrees.
+#[must_use]
+pub fn direction(theta: f32, phi: f32) -> Vec3 {
+    let ((sin, cos), (s, c)) = (theta.to_radians().sin_cos(), phi.to_radians().sin_cos());
+    Vec3::new(sin * c, sin * s, cos)
+}
+
+/// A measured value: angles in degrees and the BRDF in sr⁻¹ at 630, 550 and 465 nm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    /// Between light and normal.
+    pub theta_i: f32,
+    /// Between viewer and normal.
+    pub theta_o: f32,
+    /// Between the azimuths of light and viewer; 180 is the side of the mirror direction.
+    pub delta_phi: f32,
+    /// The azimuth of the light.
+    pub phi_i: f32,
+    /// `f_r`.
+    pub f: [f64; 3],
+}
+
+/// The measured values of a paint, none if there is no such paint.
+#[must_use]
+pub fn paint(id: &str) -> Vec<Measurement> {
+    let row = |line: &str| {
+        let mut cells = line.split(',');
+        if cells.next() != Some(id) {
+            return None;
+        }
+        let mut number = || cells.next()?.parse::<f64>().ok();
+        let [theta_i, phi_i, theta_o, phi_o, r, g, b] =
+            [number()?, number()?, number()?, number()?, number()?, number()?, number()?];
+        Some(Measurement {
+            theta_i: theta_i as f32,
+            theta_o: theta_o as f32,
+            delta_phi: (phi_o - phi_i) as f32,
+            phi_i: phi_i as f32,
+            f: [r, g, b],
+        })
+    };
+    PAINTS.lines().filter_map(row).collect()
+}
+
+/// The band in which a paint is brightest.
+#[must_use]
+pub fn brightest(paint: &[Measurement]) -> usize {
+    let sum = |band: usize| paint.iter().map(|m| m.f[band]).sum::<f64>();
+    (0..3).max_by(|a, b| sum(*a).total_cmp(&sum(*b))).unwrap_or(0)
+}
+
+/// Measured values in one band as samples for fitting; values that are not positive are left out.
+#[must_use]
+pub fn samples(paint: &[Measurement], band: usize, keep: impl Fn(&Measurement) -> bool) -> Vec<Sample> {
+    paint
+        .iter()
+        .filter(|m| keep(m) && m.f[band] > 0.0)
+        .map(|m| Sample {
+            l: direction(m.theta_i, m.phi_i),
+            v: direction(m.theta_o, m.phi_i + m.delta_phi),
+            value: m.f[band],
+        })
+        .collect()
+}
+
+/// **The model of the shifted gamma distribution**, with the parameters that its authors fitted to a
+/// material of the MERL database. A fit, not a measurement.
+///
+/// ```text
+/// f = (ρ_d + ρ_s F(v·h) G(l) G(v) D(h) / ((n·l) (n·v))) / π
+/// D = κ e^(−x) / (π cos⁴ θ_h x^p),  x = α + tan² θ_h / α
+/// G(k) = clamp(1 + λ (1 − exp(c max(θ_k − θ₀, 0)^k)), 0, 1)
+/// F = F₀ − F₁ cos θ_d + (1 − F₀)(1 − cos θ_d)⁵
+/// ```
+///
+/// M. Bagher, C. Soler, N. Holzschuch (2012), *Accurate Fitting of Measured Reflectances Using a Shifted
+/// Gamma Micro-Facet Distribution*, Computer Graphics Forum 31(4), 1509–1518.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sgd {
+    /// The name of the material in the MERL database.
+    pub name: &'static str,
+    /// ρ_d, ρ_s, α, p, F₀, F₁, κ, λ, c, k, θ₀, each in red, green and blue.
+    parameters: [[f64; 3]; 11],
+}
+
+impl Sgd {
+    /// Every material, in the order of the table.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        SGD.lines().skip(1).filter_map(Self::read).collect()
+    }
+
+    fn read(line: &'static str) -> Option<Self> {
+        let mut cells = line.split(',');
+        let name = cells.next()?;
+        // Another name of the same material.
+        cells.next()?;
+        let mut parameters = [[0.0; 3]; 11];
+        for number in parameters.as_flattened_mut() {
+            *number = cells.next()?.parse().ok()?;
+        }
+        Some(Self { name, parameters })
+    }
+
+    /// `f_r` in sr⁻¹ in the three channels; l and v in the local frame. Zero below the surface.
+    #[must_use]
+    pub fn brdf(&self, l: Vec3, v: Vec3) -> [f64; 3] {
+        if l.z <= 0.0 || v.z <= 0.0 {
+            return [0.0; 3];
+        }
+        let (l, v) = (l.as_dvec3().normalize(), v.as_dvec3().normalize());
+        let h = (l + v).normalize();
+        let cos_d = h.dot(l).clamp(0.0, 1.0);
+        let cos2 = h.z * h.z;
+        std::array::from_fn(|c| {
+            let [rho_d, rho_s, alpha, p, f_0, f_1, kappa, lambda, drop, power, theta_0] =
+                self.parameters.map(|channels| channels[c]);
+            let x = alpha + (1.0 - cos2) / cos2 / alpha;
+            let d = kappa * (-x).exp() / (PI * cos2 * cos2 * x.powf(p));
+            let g = |cos: f64| {
+                let beyond = (cos.min(1.0).acos() - theta_0).max(0.0);
+                (1.0 + lambda * (1.0 - (drop * beyond.powf(power)).exp())).clamp(0.0, 1.0)
+            };
+            let f = (f_0 - f_1 * cos_d + (1.0 - f_0) * (1.0 - cos_d).powi(5)).max(0.0);
+            (rho_d + rho_s * f * g(l.z) * g(v.z) * d / (l.z * v.z)) / PI
+        })
+    }
+
+    /// The luminance of [`Self::brdf`] (ITU-R BT.709).
+    #[must_use]
+    pub fn luminance(&self, l: Vec3, v: Vec3) -> f64 {
+        let [r, g, b] = self.brdf(l, v);
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_is_read() {
+        for id in ["krylon_blue", "garnet_red", "acryl_blue"] {
+            assert_eq!(paint(id).len(), 1439, "{id}");
+        }
+        assert!(paint("cayman").is_empty() && paint("material").is_empty());
+        assert_eq!(brightest(&paint("krylon_blue")), 2);
+        assert_eq!(brightest(&paint("garnet_red")), 0);
+        assert_eq!(Sgd::all().len(), 100);
+        // What is not positive has no logarithm.
+        let all = paint("krylon_blue");
+        assert!(samples(&all, 0, |_| true).iter().all(|s| s.value > 0.0));
+    }
+
+    #[test]
+    fn fits_are_positive_and_reciprocal() {
+        for material in Sgd::all() {
+            for i in 0..8u8 {
+                for j in 0..40u8 {
+                    let l = direction(f32::from(i) * 11.0, 0.0);
+                    let v = direction(f32::from(j % 8) * 11.0, f32::from(j / 8) * 45.0);
+                    let (there, back) = (material.brdf(l, v), material.brdf(v, l));
+                    for c in 0..3 {
+                        assert!(there[c].is_finite() && there[c] >= 0.0, "{} {there:?}", material.name);
+                        assert!((there[c] - back[c]).abs() <= 1e-6 * there[c].max(1e-9), "{}", material.name);
+                    }
+                }
+            }
+            assert_eq!(material.brdf(Vec3::NEG_Z, Vec3::Z), [0.0; 3]);
+        }
+    }
+
+    #[test]
+    fn a_value_that_was_calculated_elsewhere() {
+        let teflon = Sgd::all().into_iter().find(|m| m.name == "teflon").expect("is in the table");
+        let f = teflon.brdf(direction(30.0, 0.0), direction(50.0, 120.0));
+        let expected = TEFLON;
+        for c in 0..3 {
+            assert!((f[c] / expected[c] - 1.0).abs() < 1e-5, "{f:?}");
+        }
+        // A wrong twin: the light from the other side.
+        let wrong = teflon.brdf(direction(30.0, 180.0), direction(50.0, 120.0));
+        assert!((wrong[0] / expected[0] - 1.0).abs() > 1e-3);
+    }
+
+    /// From a script of its own with the equations above.
+    const TEFLON: [f64; 3] = [0.113510815, 0.113223260, 0.110613911];
+}

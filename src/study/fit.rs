@@ -1,0 +1,215 @@
+//! Fitting a reflection model to reflectance data.
+//!
+//! Every model is fitted with the same three numbers: `f = d/π + s · lobe(l, v; w)`, a diffuse
+//! reflectance d, a scale s of the model's own specular lobe, and the width w of that lobe. What is
+//! made small is the root mean square of `ln f − ln f_data`, which counts a factor alike whether the
+//! value is large or small; the same measure as J. Löw, J. Kronander, A. Ynnerman, J. Unger (2012), *BRDF
+//! Models for Accurate and Efficient Rendering of Glossy Surfaces*, without their weights.
+//!
+//! For each width the two scales are found by the method of K. Levenberg (1944), *A Method for the Solution
+//! of Certain Non-Linear Problems in Least Squares*, in their logarithms, so that they stay positive. The
+//! width is found by trying a row of widths and narrowing the best interval by the golden section (J. Kiefer
+//! 1953, *Sequential Minimax Search for a Maximum*).
+
+use std::f64::consts::FRAC_1_PI;
+
+use glam::Vec3;
+
+/// One value of a BRDF.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// To the light.
+    pub l: Vec3,
+    /// To the viewer.
+    pub v: Vec3,
+    /// `f_r` in sr⁻¹, greater than 0.
+    pub value: f64,
+}
+
+/// What a fit found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// Diffuse reflectance d.
+    pub diffuse: f64,
+    /// Scale s of the specular lobe.
+    pub specular: f64,
+    /// Width w of the specular lobe.
+    pub width: f64,
+    /// Root mean square of `ln f − ln f_data`.
+    pub error: f64,
+}
+
+/// The model `d/π + s · lobe`.
+fn model(diffuse: f64, specular: f64, lobe: f64) -> f64 {
+    diffuse * FRAC_1_PI + specular * lobe
+}
+
+/// The smallest value whose logarithm is taken.
+const FLOOR: f64 = 1e-12;
+
+/// Root mean square of `ln f − ln f_data`.
+#[must_use]
+pub fn error(fit: &Fit, values: &[f64], lobe: &[f64]) -> f64 {
+    let sum: f64 = values
+        .iter()
+        .zip(lobe)
+        .map(|(y, q)| (model(fit.diffuse, fit.specular, *q).max(FLOOR) / y).ln().powi(2))
+        .sum();
+    (sum / values.len().max(1) as f64).sqrt()
+}
+
+/// The best constant `d/π`: the error of a purely diffuse surface.
+#[must_use]
+pub fn diffuse_only(values: &[f64]) -> Fit {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().map(|y| y.ln()).sum::<f64>() / n;
+    let fit = Fit { diffuse: mean.exp() / FRAC_1_PI, specular: 0.0, width: 0.0, error: 0.0 };
+    Fit { error: error(&fit, values, &vec![0.0; values.len()]), ..fit }
+}
+
+/// The best scales for a lobe whose values are given for every sample.
+#[must_use]
+pub fn scales(values: &[f64], lobe: &[f64], width: f64) -> Fit {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let (peak, at_peak) =
+        values.iter().zip(lobe).fold((0.0, 0.0), |best, (y, q)| if *q > best.1 { (*y, *q) } else { best });
+    let mut best = Fit {
+        diffuse: low / FRAC_1_PI,
+        specular: if at_peak > 0.0 { peak / at_peak } else { 0.0 },
+        width,
+        error: 0.0,
+    };
+    if best.specular <= 0.0 {
+        return Fit { width, ..diffuse_only(values) };
+    }
+    best.error = error(&best, values, lobe);
+    let mut damping = 1e-2;
+    for _ in 0..60 {
+        // Normal equations of the residuals ln f − ln f_data by ln d and ln s.
+        let (mut a, mut b, mut c, mut g, mut h) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for (y, q) in values.iter().zip(lobe) {
+            let f = model(best.diffuse, best.specular, *q).max(FLOOR);
+            let residual = (f / y).ln();
+            let (by_d, by_s) = (best.diffuse * FRAC_1_PI / f, best.specular * q / f);
+            a += by_d * by_d;
+            b += by_d * by_s;
+            c += by_s * by_s;
+            g += by_d * residual;
+            h += by_s * residual;
+        }
+        let mut improved = false;
+        while damping < 1e9 {
+            let (a, c) = (a * (1.0 + damping) + 1e-12, c * (1.0 + damping) + 1e-12);
+            let determinant = a * c - b * b;
+            let step = [(b * h - c * g) / determinant, (b * g - a * h) / determinant];
+            let [step_d, step_s] = step.map(|s| s.clamp(-3.0, 3.0));
+            let next = Fit {
+                diffuse: (best.diffuse * step_d.exp()).max(1e-9),
+                specular: (best.specular * step_s.exp()).max(1e-12),
+                ..best
+            };
+            let next = Fit { error: error(&next, values, lobe), ..next };
+            if next.error < best.error {
+                improved = best.error - next.error > 1e-7 * best.error;
+                best = next;
+                damping *= 0.2;
+                break;
+            }
+            damping *= 5.0;
+        }
+        if !improved {
+            break;
+        }
+    }
+    best
+}
+
+/// The best width and scales. `lobe` gives the specular lobe of a width at every sample.
+#[must_use]
+pub fn fit(samples: &[Sample], widths: (f64, f64), lobe: impl Fn(f64, &[Sample]) -> Vec<f64>) -> Fit {
+    let values: Vec<f64> = samples.iter().map(|s| s.value).collect();
+    let at = |x: f64| scales(&values, &lobe(x.exp(), samples), x.exp());
+    let (from, to) = (widths.0.ln(), widths.1.ln());
+    let count = 25;
+    let x = |i: usize| from + (to - from) * i as f64 / (count - 1) as f64;
+    let row: Vec<Fit> = (0..count).map(|i| at(x(i))).collect();
+    let best = (0..count).min_by(|i, j| row[*i].error.total_cmp(&row[*j].error)).unwrap_or(0);
+    let (mut low, mut high) = (x(best.saturating_sub(1)), x((best + 1).min(count - 1)));
+    let golden = 0.5 * (5f64.sqrt() - 1.0);
+    let inner = |low: f64, high: f64| (high - golden * (high - low), low + golden * (high - low));
+    let (a, b) = inner(low, high);
+    let (mut left, mut right) = (at(a), at(b));
+    for _ in 0..12 {
+        if left.error < right.error {
+            high = right.width.ln();
+            right = left;
+            left = at(inner(low, high).0);
+        } else {
+            low = left.width.ln();
+            left = right;
+            right = at(inner(low, high).1);
+        }
+    }
+    [row[best], left, right].into_iter().min_by(|a, b| a.error.total_cmp(&b.error)).unwrap_or(left)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::{distribution, geometry::half_vector};
+    use glam::Vec2;
+
+    fn lobe(width: f64, samples: &[Sample]) -> Vec<f64> {
+        let d = |s: &Sample| distribution::ggx(half_vector(s.l, s.v), Vec2::splat(width as f32));
+        samples.iter().map(|s| f64::from(d(s)) / f64::from(4.0 * s.l.z * s.v.z)).collect()
+    }
+
+    fn directions() -> Vec<Sample> {
+        let mut samples = Vec::new();
+        for i in 0..6u8 {
+            for j in 0..10u8 {
+                for k in 0..6u8 {
+                    let (ti, to, phi) =
+                        (f32::from(i) * 0.2, f32::from(j) * 0.12, f32::from(k) * std::f32::consts::PI / 5.0);
+                    let l = Vec3::new(ti.sin(), 0.0, ti.cos());
+                    let v = Vec3::new(to.sin() * phi.cos(), to.sin() * phi.sin(), to.cos());
+                    samples.push(Sample { l, v, value: 1.0 });
+                }
+            }
+        }
+        samples
+    }
+
+    #[test]
+    fn a_fit_finds_the_parameters_that_made_the_data() {
+        for (d, s, w) in [(0.3, 0.04, 0.16), (0.02, 0.9, 0.45), (0.5, 0.002, 0.05)] {
+            let mut samples = directions();
+            let q = lobe(w, &samples);
+            samples.iter_mut().zip(&q).for_each(|(sample, q)| sample.value = model(d, s, *q));
+            let found = fit(&samples, (0.01, 1.0), lobe);
+            assert!(found.error < 2e-3, "{found:?}");
+            for (name, a, b) in [("d", found.diffuse, d), ("s", found.specular, s), ("w", found.width, w)] {
+                assert!((a / b - 1.0).abs() < 0.02, "{name}: {a} is not {b}");
+            }
+            // The lobe of another distribution does not fit as well: the error notices.
+            let beckmann = |width: f64, samples: &[Sample]| {
+                let d = |s: &Sample| distribution::beckmann(half_vector(s.l, s.v), Vec2::splat(width as f32));
+                samples.iter().map(|s| f64::from(d(s)) / f64::from(4.0 * s.l.z * s.v.z)).collect()
+            };
+            let wrong = fit(&samples, (0.01, 1.0), beckmann);
+            assert!(wrong.error > 10.0 * found.error.max(1e-3), "{wrong:?}");
+        }
+    }
+
+    #[test]
+    fn a_diffuse_surface_is_found_to_be_one() {
+        let values = vec![0.1; 50];
+        let found = diffuse_only(&values);
+        assert!((found.diffuse - 0.1 * std::f64::consts::PI).abs() < 1e-9 && found.error < 1e-9);
+        // A factor e up and down is an error of 1.
+        let values = [1f64.exp(), (-1f64).exp()];
+        assert!((diffuse_only(&values).error - 1.0).abs() < 1e-12);
+        // A lobe that is zero everywhere changes nothing.
+        assert_eq!(scales(&values, &[0.0, 0.0], 0.1).specular, 0.0);
+    }
+}

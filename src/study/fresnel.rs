@@ -1,0 +1,347 @@
+//! Phenomenon 1: every surface becomes a mirror at grazing angles.
+
+use glam::Vec3;
+use maud::html;
+
+use super::{
+    Chapter, Lab, StudyError, Table, albedo_at, alpha, choice, fixed, image, number, pictures,
+    plot::{Axis, Line, Mark, Plot, Series},
+    svg, words,
+};
+use crate::{
+    optics::{
+        TermSelection,
+        colour::luminance,
+        fresnel::{conductor, normal_reflectance, schlick},
+    },
+    reference::Picture,
+    reflection::{Measured, parameter::Value, preset},
+};
+
+const SCENE: &str = include_str!("../../scenes/fresnel_effect.json");
+/// Angles of the table, degrees.
+const ANGLES: [f64; 5] = [0.0, 45.0, 60.0, 75.0, 85.0];
+/// Measured materials: id, what to call it.
+const MATERIALS: [(&str, &str); 6] = [
+    ("water", "Water"),
+    ("n_bk7", "Glass (N-BK7)"),
+    ("diamond", "Diamond"),
+    ("copper", "Copper"),
+    ("gold", "Gold"),
+    ("aluminium", "Aluminium"),
+];
+/// Blinn–Phong as wide and, seen straight on, as bright as glass of this α: n = 2/α² − 2 and
+/// k_s = F₀/(4 α²). The shipped scene has the same.
+const ALPHA: f64 = 0.15;
+const EXPONENT: i64 = 87;
+const K_S: f64 = 0.444;
+
+fn cosine(degrees: f64) -> f32 {
+    // The cosine of 90° is zero, not a little less.
+    degrees.to_radians().cos().max(0.0) as f32
+}
+
+/// Refractive index and extinction at 532 nm; dielectrics do not absorb at the surface.
+fn constants(material: &Measured) -> (f32, f32) {
+    (material.n[1], if material.metal { material.k[1] } else { 0.0 })
+}
+
+fn exact(material: &Measured, degrees: f64) -> f64 {
+    let (n, k) = constants(material);
+    f64::from(conductor(n, k, cosine(degrees)))
+}
+
+fn approximate(material: &Measured, degrees: f64) -> f64 {
+    let (n, k) = constants(material);
+    f64::from(schlick(Vec3::splat(normal_reflectance(n, k)), cosine(degrees)).x)
+}
+
+/// Where Schlick's approximation is furthest off, and by how much.
+fn worst(material: &Measured) -> (f64, f64) {
+    (0..=180)
+        .map(|i| f64::from(i) * 0.5)
+        .map(|a| (a, approximate(material, a) - exact(material, a)))
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+        .unwrap_or_default()
+}
+
+/// Where the reflectance is least and how much it is there, if that is not at normal incidence.
+fn dip(material: &Measured) -> Option<(f64, f64)> {
+    (0..=90)
+        .map(|a| (f64::from(a), exact(material, f64::from(a))))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|least| least.0 > 0.0)
+}
+
+fn brightest(picture: &Picture) -> f64 {
+    picture.pixels.iter().map(|p| f64::from(luminance(p.truncate()))).fold(0.0, f64::max)
+}
+
+pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
+    let materials: Vec<(&Measured, &str)> =
+        MATERIALS.iter().filter_map(|(id, name)| Some((preset::by_id(id)?, *name))).collect();
+
+    // Reflectance by angle.
+    let mut raw = Table::new("fresnel_reflectance", "material,angle_deg,exact,schlick");
+    for (m, name) in &materials {
+        for i in 0..=180 {
+            let a = f64::from(i) * 0.5;
+            raw.row(&[name], &[a, exact(m, a), approximate(m, a)]);
+        }
+    }
+    let rows: Vec<Vec<String>> = materials
+        .iter()
+        .map(|(m, name)| {
+            let (n, k) = constants(m);
+            let (angle, error) = worst(m);
+            let mut row = vec![
+                (*name).to_owned(),
+                fixed(f64::from(n), 3),
+                if m.metal { fixed(f64::from(k), 3) } else { "–".to_owned() },
+            ];
+            row.extend(ANGLES.iter().map(|a| fixed(exact(m, *a), 3)));
+            row.push(format!("{} at {angle:.0}°", fixed(error, 3)));
+            row
+        })
+        .collect();
+    let schlick_worst = materials.iter().map(|(m, _)| worst(m).1.abs()).fold(0.0, f64::max);
+    let mut series = Vec::new();
+    for (colour, id) in [(0, "n_bk7"), (2, "diamond"), (4, "gold"), (3, "aluminium")] {
+        let Some((m, name)) = materials.iter().find(|(m, _)| m.id == id) else { continue };
+        let curve = |f: &dyn Fn(f64) -> f64| (0..=90).map(|a| (f64::from(a), f(f64::from(a)))).collect();
+        let mark = [Mark::None, Mark::None, Mark::None][0];
+        series.push(Series {
+            name: (*name).to_owned(),
+            points: curve(&|a| exact(m, a)),
+            colour,
+            line: Line::Solid,
+            mark,
+        });
+        series.push(Series {
+            name: "… after Schlick".to_owned(),
+            points: curve(&|a| approximate(m, a)),
+            colour,
+            line: Line::Dashed,
+            mark,
+        });
+    }
+    series.push(Series {
+        name: "Blinn–Phong, kₛ = 0.04".to_owned(),
+        points: vec![(0.0, 0.04), (90.0, 0.04)],
+        colour: 6,
+        line: Line::Dotted,
+        mark: Mark::None,
+    });
+    let reflectance = Plot {
+        title: "Fresnel reflectance against the angle of incidence".to_owned(),
+        x: Axis::new("angle of incidence (°)", 0.0, 90.0, 10),
+        y: Axis::new("reflectance at 532 nm", 0.0, 1.0, 6),
+        series,
+        size: (720, 380),
+        legend: true,
+    };
+    let reflectance = lab.figure(
+        &svg(&reflectance)?,
+        &html! {
+            "Reflectance of smooth boundaries for unpolarised light at 532 nm, from measured optical constants. Solid: the exact "
+            "equations. Dashed: Schlick’s approximation from the same F₀. Dotted: what a constant specular coefficient says of glass."
+        },
+    );
+    let table = lab.table(
+        &html! {
+            "Exact Fresnel reflectance at 532 nm by angle of incidence, and where Schlick’s approximation is furthest from it "
+            "(approximation minus exact value). Refractive index n, extinction coefficient k."
+        },
+        &["Material", "n", "k", "0°", "45°", "60°", "75°", "85°", "Schlick’s largest error"],
+        &rows,
+    );
+
+    // The same of the lobes that the models make.
+    let mut settings =
+        vec![choice("fresnel", "dielectric"), choice("diffuse", "none"), ("ior", Value::Triple([1.5; 3]))];
+    settings.extend(alpha(ALPHA));
+    let glass = lab.surface("microfacet", &settings)?;
+    let plastic = lab.surface(
+        "blinn_phong",
+        &[("alpha", Value::Integer(EXPONENT)), number("k_s", K_S), ("base_colour", Value::Colour([0; 3]))],
+    )?;
+    let step = if lab.settings.quick { 15.0 } else { 5.0 };
+    let mut angles: Vec<f64> = (0..=(85.0 / step) as u32).map(|i| f64::from(i) * step).collect();
+    angles.extend((!lab.settings.quick).then_some(88.0));
+    angles.extend(lab.settings.quick.then_some(85.0));
+    let lobe = |surface: &dyn crate::reflection::Surface| -> Vec<(f64, f64)> {
+        let start = albedo_at(surface, 0.0).1;
+        angles.iter().map(|a| (*a, albedo_at(surface, *a).1 / start)).collect()
+    };
+    let (glass_lobe, plastic_lobe) = (lobe(&*glass), lobe(&*plastic));
+    let ideal: Vec<(f64, f64)> =
+        angles.iter().map(|a| (*a, f64::from(conductor(1.5, 0.0, cosine(*a))) / 0.04)).collect();
+    let mut lobes = Table::new("fresnel_lobes", "angle_deg,smooth_glass,microfacet,blinn_phong");
+    for i in 0..angles.len() {
+        lobes.row(&[], &[angles[i], ideal[i].1, glass_lobe[i].1, plastic_lobe[i].1]);
+    }
+    let at = |curve: &[(f64, f64)], angle: f64| {
+        curve.iter().find(|p| (p.0 - angle).abs() < 0.1).map_or(f64::NAN, |p| p.1)
+    };
+    let growth = [&ideal, &glass_lobe, &plastic_lobe].map(|c| at(c, 75.0));
+    let grazing = [&ideal, &glass_lobe, &plastic_lobe].map(|c| at(c, 85.0));
+    let relative = Plot {
+        title: "Reflection of the specular lobe relative to normal incidence".to_owned(),
+        x: Axis::new("angle of view (°)", 0.0, 90.0, 10),
+        y: Axis::log("reflection relative to 0°", 0.01, 30.0),
+        series: vec![
+            Series {
+                name: "smooth glass, exact".to_owned(),
+                points: ideal,
+                colour: 6,
+                line: Line::Dotted,
+                mark: Mark::None,
+            },
+            Series {
+                name: format!("microfacet, α = {ALPHA}"),
+                points: glass_lobe,
+                colour: 0,
+                line: Line::Solid,
+                mark: Mark::Disc,
+            },
+            Series {
+                name: format!("Blinn–Phong, n = {EXPONENT}"),
+                points: plastic_lobe,
+                colour: 1,
+                line: Line::Dashed,
+                mark: Mark::Triangle,
+            },
+        ],
+        size: (720, 360),
+        legend: true,
+    };
+    let relative = lab.figure(
+        &svg(&relative)?,
+        &html! {
+            "How much of uniform light the whole specular lobe reflects (its directional albedo, without the diffuse part), relative to the view "
+            "along the normal. Glass, n = 1.5. The two models agree at 0° by choice of " (words("k_s")) ". Logarithmic axis."
+        },
+    );
+
+    // Pictures.
+    let mut scene = lab.scene(SCENE)?;
+    // A row of objects, without the room above and below it.
+    scene.observer.field_of_view = 19.6;
+    let size = lab.size(960, 366);
+    let both = [("blinn_phong", "Blinn–Phong"), ("microfacet", "Microfacet (GGX, exact Fresnel equations)")];
+    let mut shown = Vec::new();
+    let mut peaks = Vec::new();
+    for (id, name) in both {
+        let picture = lab.render(&scene, id, TermSelection::All, size);
+        shown.push((
+            image(&picture.to_rgb8(&scene.display), size, &format!("Black glass under {name}"))?,
+            name,
+        ));
+        let alone = |keep: &dyn Fn(usize) -> bool| {
+            let mut scene = scene.clone();
+            let mut i = 0;
+            scene.lights.retain(|_| {
+                i += 1;
+                keep(i - 1)
+            });
+            brightest(&lab.render(&scene, id, TermSelection::All, size))
+        };
+        peaks.push([alone(&|i| i == 0), alone(&|i| i > 0)]);
+    }
+    let mut from_pictures = Table::new("fresnel_pictures", "model,front_peak,behind_peak");
+    for ((id, _), [front, behind]) in both.iter().zip(&peaks) {
+        from_pictures.row(&[id], &[*front, *behind]);
+    }
+    let shown = lab.figure(
+        &html! { div .stack { (pictures(&shown[..1])) (pictures(&shown[1..])) } },
+        &html! {
+            "Objects of black glass (n = 1.5, α = " (ALPHA) ") with one lamp in front and three of the same intensity behind them. Blinn–Phong’s height and width are set so that "
+            "the highlight of the front lamp is the same. Scene " code { "fresnel_effect.json" } "."
+        },
+    );
+    let ratio = |p: [f64; 2]| p[1] / p[0];
+    let picture_table = lab.table(
+        &html! { "Brightest pixel of the pictures above (luminance, linear, 1 is display white), with the lamp in front alone and the lamps behind alone." },
+        &["Model", "lamp in front", "lamps behind", "behind / front"],
+        &both
+            .iter()
+            .zip(&peaks)
+            .map(|((_, name), p)| {
+                vec![
+                    name.split(" (").next().unwrap_or(name).to_owned(),
+                    fixed(p[0], 3),
+                    fixed(p[1], 3),
+                    fixed(ratio(*p), 1),
+                ]
+            })
+            .collect::<Vec<_>>(),
+    );
+
+    let dip = preset::by_id("aluminium").and_then(dip);
+    let physical = growth[1] > 2.0 && (growth[1] / growth[0]).ln().abs() < 0.5;
+    let classical = growth[2] > 2.0;
+    let confirmed = physical && !classical;
+    let finding = format!(
+        "From the normal to 75° the reflection of smooth glass changes by a factor of {:.1}, that of the microfacet lobe by {:.1}, and that of Blinn–Phong’s lobe by {:.2}.",
+        growth[0], growth[1], growth[2]
+    );
+    let body = html! {
+        h3 { "Question" }
+        p { "A surface reflects more light the more obliquely it is seen, and almost everything at a grazing view. Which models show this?" }
+        h3 { "Method" }
+        p {
+            "The reflectance of a smooth boundary to a medium of index n + ik follows from the Fresnel equations. The program has them exactly ("
+            code { "optics::fresnel::dielectric" } ", " code { "conductor" } ") and in Schlick’s approximation,"
+        }
+        p .equation {
+            span { "F(θ) ≈ F₀ + (1 − F₀)(1 − cos θ)⁵," }
+            span { "F₀ = ((n − 1)² + k²) / ((n + 1)² + k²)." }
+        }
+        p {
+            "Blinn–Phong has a specular coefficient " (words("k_s")) " in the place of F, which is the same at all angles. The optical constants are measurements "
+            "collected by refractiveindex.info. To compare whole models and not only this factor, the directional albedo of the specular lobe is integrated "
+            "numerically for glass: a GGX microfacet lobe of α = " (ALPHA) " with the exact equations, against a Blinn–Phong lobe of the same width and height at "
+            "normal incidence (n = " (EXPONENT) ", " (words("k_s")) " = F₀/(4α²) = " (K_S) ")."
+        }
+        h3 { "Results" }
+        (reflectance)
+        (table)
+        (relative)
+        (shown)
+        (picture_table)
+        h3 { "Conclusion" }
+        div .conclusion {
+            p {
+                @if physical {
+                    "The microfacet model follows the Fresnel equations: at 75° its lobe reflects " (fixed(growth[1], 1)) " times as much as at normal incidence, smooth glass "
+                    (fixed(growth[0], 1)) " times; at 85° " (fixed(grazing[1], 1)) " and " (fixed(grazing[0], 1)) " times."
+                    @if grazing[1] < grazing[0] { " It stays below at the very edge because at a grazing view a rough surface shows mostly facets that are tilted towards the viewer." }
+                } @else {
+                    "The microfacet model does not follow the Fresnel equations here: its lobe grows by " (fixed(growth[1], 1)) ", smooth glass by " (fixed(growth[0], 1)) "."
+                }
+            }
+            p {
+                @if classical {
+                    "Blinn–Phong’s lobe grows as well, by " (fixed(growth[2], 2)) "."
+                } @else {
+                    "Blinn–Phong shows the opposite of the Fresnel effect. Its lobe reflects " (fixed(growth[2], 2)) " times as much at 75°, since its height is fixed while the solid angle of light that it gathers shrinks with the cosine of the view. "
+                    "In the pictures the lamps behind the objects are " (fixed(ratio(peaks[1]), 0)) " times as bright as the lamp in front under the microfacet model and "
+                    (fixed(ratio(peaks[0]), 1)) " times under Blinn–Phong. No single " (words("k_s")) " serves both."
+                }
+            }
+            p {
+                "Schlick’s approximation is off by at most " (fixed(schlick_worst, 3)) " for these materials. "
+                @if let Some((angle, least)) = dip {
+                    "It cannot follow a reflectance that falls before it rises, as that of aluminium does, which is least at " (fixed(angle, 0)) "° (" (fixed(least, 3)) ")."
+                }
+            }
+        }
+    };
+    Ok(Chapter {
+        title: "Fresnel effect",
+        body,
+        finding,
+        shown: confirmed,
+        tables: vec![raw, lobes, from_pictures],
+    })
+}

@@ -1,0 +1,349 @@
+//! The study: four phenomena that physically based models reproduce and Blinn–Phong does not, as numbers,
+//! plots and pictures, in a report.
+//!
+//! It is the chapter of results that E. James (2022), *Physically Based Shading Models in Real-time
+//! Rendering*, asks for. Every sentence of a conclusion that depends on a number is chosen by that number.
+
+use std::{fmt::Write as _, fs, io, path::Path, sync::Arc};
+
+use glam::Vec3;
+use maud::{Markup, PreEscaped, html};
+use thiserror::Error;
+
+use crate::{
+    capture::png,
+    optics::{Frame, TermSelection, albedo, colour::Encoding},
+    reference,
+    reference::Picture,
+    reflection::{
+        Surface,
+        parameter::{Value, Values},
+    },
+    registry::Registry,
+    scene::{
+        Scene,
+        load::{self, Defaults},
+    },
+};
+
+pub mod data;
+pub mod fit;
+mod fresnel;
+mod furnace;
+mod gold;
+mod lobe;
+pub mod plot;
+mod report;
+
+/// How many times [`run`] says what it does next.
+pub const STEPS: u64 = 5;
+
+/// What a study needs and cannot do without.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// A model that is not registered.
+    #[error("there is no reflection model {0}")]
+    NoModel(String),
+    /// A setting that a model does not have or does not allow.
+    #[error("{model} does not take {name} = {value}")]
+    NoSetting {
+        /// The model.
+        model: String,
+        /// The parameter.
+        name: String,
+        /// The value.
+        value: String,
+    },
+    /// Data that the program ships and cannot read.
+    #[error("{0}")]
+    Data(String),
+    /// A plot or picture that could not be drawn.
+    #[error("a figure could not be drawn: {0}")]
+    Figure(String),
+}
+
+/// What to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Settings {
+    /// Small pictures and a tenth of the materials: to try that everything works.
+    pub quick: bool,
+}
+
+/// A table of raw numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// The name of its file, without ending.
+    pub name: &'static str,
+    /// As CSV.
+    pub csv: String,
+}
+
+impl Table {
+    fn new(name: &'static str, header: &str) -> Self {
+        Self { name, csv: format!("{header}\n") }
+    }
+
+    /// Adds a row of words and numbers.
+    fn row(&mut self, words: &[&str], numbers: &[f64]) {
+        let mut cells: Vec<String> = words.iter().map(|w| w.replace(',', ";")).collect();
+        // What is not a number stays empty.
+        cells.extend(numbers.iter().map(|n| if n.is_finite() { format!("{n:.6}") } else { String::new() }));
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.csv, "{}", cells.join(","));
+    }
+}
+
+/// A phenomenon: its section of the report, what was found, and the numbers.
+struct Chapter {
+    title: &'static str,
+    body: Markup,
+    /// One sentence for the summary.
+    finding: String,
+    /// Whether the numbers show the phenomenon.
+    shown: bool,
+    tables: Vec<Table>,
+}
+
+/// The report and its numbers.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// The report: one HTML page that needs nothing else.
+    pub html: String,
+    /// The numbers that it rests on.
+    pub tables: Vec<Table>,
+}
+
+impl Study {
+    /// Writes `index.html` and the tables into a folder, which is made if need be. Each file appears
+    /// complete or not at all.
+    ///
+    /// # Errors
+    /// If the folder cannot be made or a file not be written.
+    pub fn write(&self, folder: &Path) -> io::Result<()> {
+        fs::create_dir_all(folder)?;
+        let put = |name: &str, text: &str| {
+            let mut file = tempfile::NamedTempFile::new_in(folder)?;
+            io::Write::write_all(&mut file, text.as_bytes())?;
+            #[cfg(unix)]
+            {
+                use std::os::unix::fs::PermissionsExt as _;
+                file.as_file().set_permissions(fs::Permissions::from_mode(0o644))?;
+            }
+            file.persist(folder.join(name)).map_err(|e| e.error)?;
+            io::Result::Ok(())
+        };
+        for table in &self.tables {
+            put(&format!("{}.csv", table.name), &table.csv)?;
+        }
+        put("index.html", &self.html)
+    }
+}
+
+/// What the chapters work with.
+struct Lab<'a> {
+    registry: &'a Registry,
+    settings: Settings,
+    /// Figures so far.
+    figures: u32,
+    /// Tables so far.
+    tables: u32,
+}
+
+/// A setting of a model.
+type Setting = (&'static str, Value);
+
+/// A setting that is one of several choices.
+fn choice(name: &'static str, value: &'static str) -> Setting {
+    (name, Value::Choice(value.into()))
+}
+
+/// A setting that is a number.
+fn number(name: &'static str, value: f64) -> Setting {
+    (name, Value::Number(value as f32))
+}
+
+/// The settings of both roughnesses of the microfacet models.
+fn alpha(value: f64) -> [Setting; 2] {
+    [number("alpha_x", value), number("alpha_y", value)]
+}
+
+/// The view at an angle from the normal, degrees, in the local frame.
+fn view(degrees: f64) -> Vec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    Vec3::new(sin as f32, 0.0, cos as f32)
+}
+
+impl Lab<'_> {
+    /// A model with settings, each of which it must have and allow.
+    fn surface(&self, id: &str, settings: &[Setting]) -> Result<Arc<dyn Surface>, StudyError> {
+        let model = self.registry.model(id).ok_or_else(|| StudyError::NoModel(id.to_owned()))?;
+        let mut values = Values::default();
+        for (name, value) in settings {
+            if !model.parameter(name).is_some_and(|p| p.allows(value)) {
+                return Err(StudyError::NoSetting {
+                    model: id.to_owned(),
+                    name: (*name).to_owned(),
+                    value: value.to_string(),
+                });
+            }
+            values.set(*name, value.clone());
+        }
+        Ok(model.instantiate(&values, Encoding::Srgb))
+    }
+
+    /// A scene that the program ships.
+    fn scene(&self, text: &str) -> Result<Scene, StudyError> {
+        load::from_text(text, "a shipped scene", self.registry, Defaults::Refuse)
+            .map(|loaded| loaded.scene)
+            .map_err(|e| StudyError::Data(e.to_string()))
+    }
+
+    /// The size of pictures in pixels.
+    fn size(&self, width: u32, height: u32) -> (u32, u32) {
+        if self.settings.quick { (width / 4, height / 4) } else { (width, height) }
+    }
+
+    /// The light of a scene with one model for every object.
+    fn render(
+        &self,
+        scene: &Scene,
+        model: &str,
+        terms: TermSelection,
+        (width, height): (u32, u32),
+    ) -> Picture {
+        let mut scene = scene.clone();
+        if !model.is_empty() {
+            model.clone_into(&mut scene.reflection_model);
+            scene.objects.iter_mut().for_each(|o| o.reflection_model = None);
+        }
+        let settings = reference::Settings { width, height, samples: 4, terms };
+        reference::render(&scene, self.registry, &settings)
+    }
+
+    /// A numbered figure.
+    fn figure(&mut self, content: &Markup, caption: &Markup) -> Markup {
+        self.figures += 1;
+        html! {
+            figure {
+                (content)
+                figcaption { b { "Figure " (self.figures) ". " } (caption) }
+            }
+        }
+    }
+
+    /// A numbered table: the first column is words, the rest numbers.
+    fn table(&mut self, caption: &Markup, head: &[&str], rows: &[Vec<String>]) -> Markup {
+        self.tables += 1;
+        html! {
+            figure .table {
+                figcaption { b { "Table " (self.tables) ". " } (caption) }
+                (grid(head, rows))
+            }
+        }
+    }
+}
+
+/// Text with subscripts: `k_d` has one letter below the line.
+fn words(text: &str) -> Markup {
+    let mut parts = text.split('_');
+    html! {
+        (parts.next().unwrap_or_default())
+        @for part in parts {
+            @let (below, rest) = part.split_at(part.chars().next().map_or(0, char::len_utf8));
+            sub { (below) } (rest)
+        }
+    }
+}
+
+/// A table without a number.
+fn grid(head: &[&str], rows: &[Vec<String>]) -> Markup {
+    html! {
+        div .scroll {
+            table {
+                thead { tr { @for cell in head { th scope="col" { (words(cell)) } } } }
+                tbody {
+                    @for row in rows {
+                        tr {
+                            @for (i, cell) in row.iter().enumerate() {
+                                @if i == 0 { th scope="row" { (words(cell)) } } @else { td { (cell) } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A picture for the page: eight bits per channel, embedded.
+fn image(rgb8: &[u8], (width, height): (u32, u32), alt: &str) -> Result<Markup, StudyError> {
+    use base64::Engine as _;
+    let mut bytes = Vec::new();
+    png::encode(&mut bytes, width, height, rgb8, &[]).map_err(|e| StudyError::Figure(e.to_string()))?;
+    let data = base64::engine::general_purpose::STANDARD.encode(bytes);
+    Ok(html! {
+        img src=(format!("data:image/png;base64,{data}")) width=(width) height=(height) alt=(alt);
+    })
+}
+
+/// Pictures side by side, each with a few words below.
+fn pictures(all: &[(Markup, &str)]) -> Markup {
+    html! {
+        div .pictures style=(format!("--columns:{}", all.len().min(3))) {
+            @for (picture, words) in all { div { (picture) p { (words) } } }
+        }
+    }
+}
+
+/// A plot for the page.
+fn svg(plot: &plot::Plot) -> Result<Markup, StudyError> {
+    plot.svg().map(PreEscaped).map_err(StudyError::Figure)
+}
+
+/// The directional albedo of a surface by term, for a viewer at an angle from the normal: diffuse and
+/// specular together, and the specular one alone, green channel.
+fn albedo_at(surface: &dyn Surface, degrees: f64) -> (f64, f64) {
+    let v = view(degrees);
+    let frame = &Frame::LOCAL;
+    let all = albedo::directional(|l| surface.response(l, v, frame), v, frame);
+    let specular = albedo::directional(
+        |l| {
+            let terms = surface.response(l, v, frame);
+            crate::optics::Terms { specular: terms.specular, ..Default::default() }
+        },
+        v,
+        frame,
+    );
+    (all.y, specular.y)
+}
+
+/// A number with so many digits behind the point, with a true minus sign.
+fn fixed(x: f64, digits: usize) -> String {
+    format!("{x:.digits$}").replace('-', "−")
+}
+
+/// A difference in per cent with its sign.
+fn percent(x: f64) -> String {
+    let p = 100.0 * x;
+    if p.abs() < 0.05 { "±0.0\u{a0}%".to_owned() } else { format!("{p:+.1}\u{a0}%").replace('-', "−") }
+}
+
+/// Runs the study. `tell` is called [`STEPS`] times with what is done next.
+///
+/// # Errors
+/// If a model, a scene or data of the program is not what the study expects.
+pub fn run(registry: &Registry, settings: Settings, tell: &dyn Fn(&str)) -> Result<Study, StudyError> {
+    let mut lab = Lab { registry, settings, figures: 0, tables: 0 };
+    tell("Fresnel effect");
+    let fresnel = fresnel::chapter(&mut lab)?;
+    tell("conservation of energy");
+    let furnace = furnace::chapter(&mut lab)?;
+    tell("gold under other lights");
+    let gold = gold::chapter(&mut lab)?;
+    tell("shape of the specular lobe");
+    let lobe = lobe::chapter(&mut lab)?;
+    tell("writing the report");
+    let chapters = [fresnel, furnace, gold, lobe];
+    let html = report::page(&chapters, settings);
+    Ok(Study { html, tables: chapters.into_iter().flat_map(|c| c.tables).collect() })
+}
