@@ -149,8 +149,10 @@ parameters! {
     /// Use it to take a model apart: exchange one factor and see what changes. Smith's masking for the
     /// Blinn–Phong distribution is that of Beckmann with the same α (B. Walter et al. 2007), for GTR that
     /// of GGX (B. Burley 2012). Not declared reciprocal, since Turquin's factor depends on the viewer
-    /// only; not energy conserving, since Kelemen's and Neumann's masking and Burley's base are not for all
-    /// settings. With Smith's masking and without Turquin's factor it is both.
+    /// only; not energy conserving, since some settings are not: Kelemen's and Neumann's masking, Burley's base,
+    /// and the masking of one distribution with another (Blinn–Phong at α = 1 makes a quarter more light at grazing
+    /// angles). GGX and Beckmann with Smith's masking, without Turquin's factor and Burley's base, keep both
+    /// laws.
     pub struct Microfacet {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
@@ -184,10 +186,10 @@ parameters! {
 /// Nodes and weights of Gauss and Legendre's rule on [0, 1] with eight points, the upper half: it is
 /// symmetric about ½.
 const GAUSS: [(f32, f32); 4] = [
-    (0.591_717_32, 0.181_341_89),
+    (0.591_717_3, 0.181_341_89),
     (0.762_766_2, 0.156_853_32),
     (0.898_333_24, 0.111_190_52),
-    (0.980_144_93, 0.050_614_268),
+    (0.980_144_9, 0.050_614_268),
 ];
 
 impl Microfacet {

@@ -337,7 +337,6 @@ pub trait Surface: Send + Sync {
 }
 
 /// A model alone: it calculates its albedo anew whenever it is asked, to [`albedo::ACCURACY`].
-
 impl<M: ReflectionModel> Surface for M {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         ReflectionModel::response(self, l, v, frame)

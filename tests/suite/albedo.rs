@@ -96,7 +96,7 @@ fn ggx(l: Vec3, v: Vec3, frame: &Frame, alpha_x: f32, alpha_y: f32) -> f32 {
 macro_rules! ggx {
     () => {
         "
-fn ggx(l: vec3<f32>, v: vec3<f32>, frame: Frame, alpha_x: f32, alpha_y: f32) -> f32 {
+fn lobe_of_test(l: vec3<f32>, v: vec3<f32>, frame: Frame, alpha_x: f32, alpha_y: f32) -> f32 {
     let cos_l = dot(l, frame.n);
     let cos_v = dot(v, frame.n);
     if cos_l <= 0.0 || cos_v <= 0.0 { return 0.0; }
@@ -129,7 +129,7 @@ const PATCHWORK: reflection::Declaration = reflection::Declaration {
             ggx!(),
             "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let lit = select(0.0, max(dot(frame.n, l), 0.0), dot(frame.n, v) > 0.0);
-    let specular = m.share * ggx(l, v, frame, m.alpha_x, m.alpha_x);
+    let specular = m.share * lobe_of_test(l, v, frame, m.alpha_x, m.alpha_x);
     return Terms(vec3(0.0), (1.0 - m.share) * lit * m.base_colour, vec3(specular));
 }
 "
@@ -165,7 +165,7 @@ impl ReflectionModel for Brushed {
     if cos_l <= 0.0 || cos_v <= 0.0 { return Terms(vec3(0.0), vec3(0.0), vec3(0.0)); }
     let lost = (1.0 - lobe_albedo(cos_l)) * (1.0 - lobe_albedo(cos_v));
     let back = cos_l * lost / max(1.0 - average_lobe_albedo(), 1e-6);
-    return Terms(vec3(0.0), vec3(0.0), vec3(ggx(l, v, frame, m.alpha_x, m.alpha_y) + back));
+    return Terms(vec3(0.0), vec3(0.0), vec3(lobe_of_test(l, v, frame, m.alpha_x, m.alpha_y) + back));
 }
 "
             ),

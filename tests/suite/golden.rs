@@ -27,7 +27,7 @@ const HEIGHT: u32 = 108;
 
 /// What may differ between two pictures.
 #[derive(Clone, Copy, Debug)]
-struct Bound {
+pub struct Bound {
     /// Values that differ by no more levels than this agree.
     levels: u8,
     /// The fraction of values that may disagree.
@@ -36,7 +36,7 @@ struct Bound {
 
 /// Between CPUs: compilers and libraries round sines and powers differently in the last bits, which
 /// can move a value by a level and, seldom, a silhouette by a sample: room for ten such pixels.
-const SAME_RENDERER: Bound = Bound { levels: 2, fraction: 0.0005 };
+pub const SAME_RENDERER: Bound = Bound { levels: 2, fraction: 0.0005 };
 
 /// Between the renderers: they round independently, and snapping corners to a grid moves a sample of a
 /// silhouette here and there, which at this size, with much silhouette per picture, touches up to
@@ -45,7 +45,7 @@ const OTHER_RENDERER: Bound = Bound { levels: 2, fraction: 0.03 };
 
 impl Bound {
     /// The fraction of values that disagree, if it is too large.
-    fn broken(self, a: &[u8], b: &[u8]) -> Option<f64> {
+    pub fn broken(self, a: &[u8], b: &[u8]) -> Option<f64> {
         if a.len() != b.len() {
             return Some(1.0);
         }
@@ -72,12 +72,12 @@ fn on_cpu(scene: &Scene) -> Vec<u8> {
     reference::render_rgb8(scene, &Registry::builtin(), &settings)
 }
 
-fn updating() -> bool {
+pub fn updating() -> bool {
     std::env::var_os("LCM_UPDATE").is_some()
 }
 
 /// Reads an 8-bit RGB picture: width, height, values.
-fn read_png(path: &Path) -> Result<(u32, u32, Vec<u8>), Box<dyn Error>> {
+pub fn read_png(path: &Path) -> Result<(u32, u32, Vec<u8>), Box<dyn Error>> {
     let mut reader = ::png::Decoder::new(BufReader::new(fs::File::open(path)?)).read_info()?;
     let mut rgb8 = vec![0; reader.output_buffer_size().ok_or("too large")?];
     let info = reader.next_frame(&mut rgb8)?;

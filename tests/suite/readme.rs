@@ -4,17 +4,25 @@ use std::fs;
 
 use glam::Vec3;
 use lights_camera_models::{
-    capture::evaluate::evaluate,
+    capture::{evaluate::evaluate, png},
     optics::{Frame, colour::Encoding},
+    reference,
     reflection::{ModelEntry, parameter::Values},
     registry::Registry,
+    scene::load::{self, Defaults},
 };
 
-use crate::support::root;
+use crate::{
+    golden::{SAME_RENDERER, read_png, updating},
+    support::root,
+};
 
 #[path = "../../examples/toon.rs"]
 #[allow(dead_code)]
 mod example;
+
+/// Portraits side by side in the gallery.
+const GALLERY_COLUMNS: usize = 4;
 
 /// Rows of a table, with a heading.
 fn table(heading: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
@@ -62,12 +70,29 @@ fn sections() -> Vec<(&'static str, String)> {
         let tessellation = format!("{from}–{to}, default {}", d.default_tessellation);
         vec![code(d.id), d.summary.into(), tessellation, d.tessellation_help.into()]
     });
+    let portraits: Vec<_> = registry
+        .models()
+        .chunks(GALLERY_COLUMNS)
+        .flat_map(|models| {
+            let pictures = models
+                .iter()
+                .map(|m| format!("![{0}](docs/images/models/{1}.png)", m.declaration.name, m.declaration.id));
+            let names = models.iter().map(|m| code(m.declaration.id));
+            [pictures.collect::<Vec<_>>(), names.collect()]
+        })
+        .map(|mut row| {
+            row.resize(GALLERY_COLUMNS, String::new());
+            row
+        })
+        .collect();
+    let gallery = table(&[""; GALLERY_COLUMNS], portraits.into_iter());
     let example = |file: &str, language: &str| {
         let text = fs::read_to_string(root().join("examples").join(file)).expect("the example is there");
         format!("```{language}\n{text}```\n")
     };
     vec![
         ("models", table(&["id", "name", "author", "what it shows", "parameters", "laws kept"], models)),
+        ("gallery", gallery),
         ("modes", table(&["id", "name", "author", "calculates", "what to look for"], modes)),
         ("lights", table(&["id", "what it does", "light at a point", "unit", "fields"], lights)),
         ("shapes", table(&["id", "what it shows", "tessellation", "meaning"], shapes)),
@@ -91,6 +116,38 @@ fn the_tables_and_the_example_of_the_readme_are_up_to_date() {
         fs::write(&path, &text).expect("README.md can be written");
     } else {
         assert!(text == old, "README.md is not up to date; run the tests once with LCM_UPDATE=1");
+    }
+}
+
+#[test]
+fn the_gallery_shows_every_model_as_it_is() {
+    let registry = Registry::builtin();
+    let path = root().join("scenes/portrait.json");
+    let mut scene = load::file(&path, &registry, Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene;
+    let settings = reference::Settings { width: 240, height: 180, ..reference::Settings::default() };
+    let mut portraits = Vec::new();
+    for model in registry.models() {
+        scene.reflection_model = model.declaration.id.to_owned();
+        let picture = reference::render_rgb8(&scene, &registry, &settings);
+        let path = root().join(format!("docs/images/models/{}.png", model.declaration.id));
+        let agrees = || {
+            read_png(&path).is_ok_and(|(width, height, old)| {
+                (width, height) == (settings.width, settings.height)
+                    && SAME_RENDERER.broken(&picture, &old).is_none()
+            })
+        };
+        if updating() && !agrees() {
+            fs::create_dir_all(root().join("docs/images/models")).expect("the folder can be made");
+            png::write(&path, settings.width, settings.height, &picture, &[])
+                .expect("the picture can be written");
+        }
+        assert!(agrees(), "{} is not what the model looks like; accept with LCM_UPDATE=1", path.display());
+        portraits.push((model.declaration.id, picture));
+    }
+    for (i, (a, one)) in portraits.iter().enumerate() {
+        for (b, other) in &portraits[i + 1..] {
+            assert!(SAME_RENDERER.broken(one, other).is_some(), "{a} and {b} look the same");
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec2Swizzles as _, Vec3};
 use lights_camera_models::{
     optics::{
-        albedo::LobeAlbedo,
+        albedo::{LobeAlbedo, directional},
         colour::Encoding,
         distribution,
         fresnel::{conductor, dielectric, schlick},
@@ -11,8 +11,8 @@ use lights_camera_models::{
         masking,
     },
     reflection::{
-        Microfacet, brdf,
-        parameter::{ParameterSet, Values},
+        Microfacet, ReflectionModel as _, brdf,
+        parameter::{ParameterKind, ParameterSet, Value, Values},
     },
 };
 
@@ -40,8 +40,8 @@ fn distributions_are_those_of_brdf_explorer() {
     let d = |f: fn(Vec3, Vec2) -> f32, alpha: f32| move |l, v| f(half_vector(l, v), Vec2::splat(alpha));
     let explorer = |model| rows("disney_brdf_explorer", model, "");
     let (ggx, beckmann) = (d(distribution::ggx, 0.3), d(distribution::beckmann, 0.3));
-    assert_factor(&explorer("d_ggx"), &ggx, &beckmann);
-    assert_factor(&explorer("d_beckmann"), &beckmann, &ggx);
+    assert_factor(&explorer("d_ggx"), ggx, beckmann);
+    assert_factor(&explorer("d_beckmann"), beckmann, ggx);
     assert_factor(
         &explorer("d_trowbridge_reitz"),
         d(|h, a| distribution::gtr(h, a, 2.0), 0.3),
@@ -116,6 +116,7 @@ const GGX: u32 = 2;
 const SEPARABLE: u32 = 5;
 const CORRELATED: u32 = 6;
 const NONE: u32 = 0;
+const SCHLICK: u32 = 1;
 const DIELECTRIC: u32 = 2;
 
 #[test]
@@ -265,4 +266,82 @@ fn the_roughest_surface_is_that_of_lommel_and_seeliger() {
 #[test]
 fn the_lobe_of_a_setting_is_used_only_where_it_is_needed() {
     assert_eq!(Microfacet::from_values(&Values::default(), Encoding::Srgb).lobe, LobeAlbedo::default());
+}
+
+/// The table of directional albedos: distribution, masking, α, μ, E with F = 1, and the scale A and bias B
+/// of Schlick's F: E = A F_0 + B.
+fn table() -> Vec<(u32, u32, f32, f64, [f64; 3])> {
+    let text = include_str!("../../data/golden/directional_albedo.csv");
+    text.lines()
+        .skip(1)
+        .map(|line| {
+            let cells: Vec<_> = line.split(',').collect();
+            let number = |i: usize| cells[i].parse::<f64>().unwrap();
+            let d = if cells[0] == "ggx" { GGX } else { BECKMANN };
+            let g = if cells[1] == "hc" { CORRELATED } else { SEPARABLE };
+            (d, g, number(2) as f32, number(4), [number(5), number(6), number(7)])
+        })
+        .collect()
+}
+
+/// E(μ) of a surface, by the quadrature behind `lcm albedo`.
+fn albedo(surface: &Microfacet, mu: f64) -> f64 {
+    let v = super::direction(mu.acos().to_degrees(), 0.0);
+    directional(|l| surface.response(l, v, &LOCAL), v, &LOCAL).x
+}
+
+#[test]
+fn directional_albedos_are_those_of_the_table() {
+    let rows = table();
+    assert!(rows.len() > 200);
+    let mut told = false;
+    for (d, g, alpha, mu, [with_all, scale, bias]) in rows {
+        let lobe = |d, g, f| microfacet(d, g, f, [alpha; 2], 1.5);
+        let e = albedo(&lobe(d, g, NONE), mu);
+        assert!((e - with_all).abs() < 1e-3, "D {d} G {g} α {alpha} μ {mu}: {e} is not {with_all}");
+        let e = albedo(&lobe(d, g, SCHLICK), mu);
+        let expected = 0.04 * scale + bias;
+        assert!((e - expected).abs() < 1e-3, "D {d} G {g} α {alpha} μ {mu}, Schlick: {e} is not {expected}");
+        let wrong = albedo(&lobe(d, CORRELATED + SEPARABLE - g, NONE), mu);
+        told |= (wrong - with_all).abs() > 1e-2;
+    }
+    assert!(told, "the wrong twin passes");
+}
+
+#[test]
+fn with_compensation_a_white_metal_vanishes_in_a_white_furnace() {
+    for (name, d, g) in [("GGX", GGX, CORRELATED), ("Beckmann", BECKMANN, SEPARABLE)] {
+        for alpha in [0.05, 0.3, 1.0] {
+            let with = |choice: u32| {
+                let mut values = Values::default();
+                let id = |p: &str, i: u32| {
+                    let found = Microfacet::PARAMETERS.iter().find(|q| q.name == p).unwrap();
+                    match &found.kind {
+                        ParameterKind::Choice { options, .. } => Value::Choice(options[i as usize].0.into()),
+                        _ => panic!("{p} is a choice"),
+                    }
+                };
+                for (p, i) in [
+                    ("distribution", d),
+                    ("masking", g),
+                    ("fresnel", NONE),
+                    ("diffuse", 0),
+                    ("multiple_scattering", choice),
+                ] {
+                    values.set(p, id(p, i));
+                }
+                values.set("alpha_x", Value::Number(alpha));
+                values.set("alpha_y", Value::Number(alpha));
+                Microfacet::from_values(&values, Encoding::Srgb)
+            };
+            for mu in [0.05, 0.2, 0.6, 1.0] {
+                for choice in [1, 2] {
+                    let e = albedo(&with(choice), mu);
+                    assert!((e - 1.0).abs() < 4e-3, "{name} α {alpha} μ {mu}, compensation {choice}: {e}");
+                }
+            }
+            let lost = albedo(&with(0), 0.6);
+            assert!(alpha < 0.9 || lost < 0.9, "{name}: without compensation {lost}");
+        }
+    }
 }
