@@ -229,7 +229,6 @@ fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
     };
     let padding = match base.as_str() {
         "·" | "/" => 0.08 * size,
-        "," => 0.0,
         _ => 0.0,
     };
     let galley = text(base, family, size);
@@ -349,6 +348,7 @@ pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> O
         let mut word_width = 0.0;
         let mut depth = 0i32;
         let mut indented = false;
+        let mut listed = false;
         let mut flush =
             |word: &mut Vec<Placed>, word_width: &mut f32, x: &mut f32, line: &mut usize, hang: f32| {
                 if *x + *word_width > width && *x > hang {
@@ -384,7 +384,10 @@ pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> O
             // A line is broken before an operator rather than after it.
             let operator = i > 0
                 && matches!(&atoms[i - 1], Atom::Upright { base, .. } if "=≈≤≥<>+−/×·".contains(base.as_str()));
-            let glue = matches!(atom, Atom::Space) && (depth > 0 || operator);
+            // What is defined after a comma stays with its equals sign.
+            let sign = |i: usize, text: &str| matches!(atoms.get(i), Some(Atom::Upright { base, .. }) if base == text);
+            listed |= depth == 0 && sign(i, ",");
+            let glue = matches!(atom, Atom::Space) && (depth > 0 || operator || listed && sign(i + 1, "="));
             if matches!(atom, Atom::Space) && !glue {
                 flush(&mut word, &mut word_width, &mut x, &mut line, hang);
                 x += laid.width;
