@@ -17,6 +17,7 @@
 //! - [`shader`]: WGSL text in, WGSL text out.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
 //! - [`capture`]: rendering without a window, PNG files.
+//! - [`study`]: what tells the models apart, as numbers and a report.
 //! - [`panel`]: what the window shows, as functions of a state that return actions.
 //! - [`app`]: the scene plugin and the order of the systems.
 //! - [`window`]: panels, camera and entities in one window.

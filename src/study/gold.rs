@@ -118,7 +118,7 @@ fn case(scene: &Scene, i: usize) -> Scene {
     scene.lights = vec![scene.lights.swap_remove(i)];
     scene.observer.position = scene.objects[0].position + Vec3::new(0.0, 1.5, 5.6);
     scene.observer.direction = Vec3::new(0.0, -1.5, -5.6);
-    scene.observer.field_of_view = 19.5;
+    scene.observer.field_of_view = 21.0;
     scene
 }
 

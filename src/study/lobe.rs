@@ -26,6 +26,9 @@ pub(super) const PAINTS: [(&str, &str); 3] =
 /// Widths that are tried.
 const WIDTHS: (f64, f64) = (0.002, 1.0);
 
+/// A material of which a constant is nearer than this has no lobe.
+const MATTE: f64 = 0.01;
+
 /// A model that takes part: its specular lobe with a free width.
 pub(super) struct Contestant {
     pub(super) name: &'static str,
@@ -410,6 +413,9 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let mut fits: Vec<MerlFit> =
         chosen.par_iter().map(|m| merl_fit(m, &directions, &contestants, registry)).collect();
     let last = contestants.len() - 1;
+    // A material whose fit has no specular part has no lobe to compare.
+    let flat = fits.iter().filter(|f| f.matte < MATTE).count();
+    fits.retain(|f| f.matte >= MATTE);
     fits.sort_by(|a, b| a.fits[last].0.error.total_cmp(&b.fits[last].0.error));
     let mut header = "material,lambert".to_owned();
     for c in &contestants {
@@ -451,7 +457,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let chart = Plot {
         title: "Log error by material, sorted by the error of GGX".to_owned(),
         x: Axis::new("materials, sorted by the error of GGX", 0.0, fits.len() as f64 + 1.0, 6),
-        y: Axis::log("log error", 0.001, 10.0),
+        y: Axis::log("log error", 0.005, 2.0),
         series: contestants
             .iter()
             .enumerate()
@@ -533,7 +539,9 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         p {
             "Data are, first, three paints that were measured at Cornell University, in the band in which each is brightest. Directions beyond " (LARGEST_ANGLE) "° are left out, since the measurement is unreliable there. "
             "Second, the materials of the MERL database, not as measured but as represented by published fits of the SGD model, evaluated at " (directions.len())
-            " pairs of directions that crowd about the mirror direction as the database does (luminance). The microfacet models may choose here between the Fresnel term for n = 1.5 and none, because metals need the latter."
+            " pairs of directions that crowd about the mirror direction as the database does (luminance). "
+            @if flat > 0 { "Of the " (flat + fits.len()) " materials " (flat) " are left out, because their SGD fit has no specular part. " }
+            "The microfacet models may choose here between the Fresnel term for n = 1.5 and none, because metals need the latter."
         }
         h3 { "Results" }
         (shown)
