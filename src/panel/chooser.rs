@@ -330,7 +330,8 @@ mod tests {
         let registry = Registry::builtin();
         assert_eq!(find(&registry, "").len(), registry.models().len());
         let ids = |s: &str| find(&registry, s).iter().map(|m| m.declaration.id).collect::<Vec<_>>();
-        assert_eq!(ids("1977 blinn phong"), ["blinn_phong"]);
+        assert_eq!(ids("1977 blinn phong"), ["blinn_phong", "blinn_phong_normalised"]);
+        assert_eq!(ids("hill eon"), ["eon"]);
         assert!(ids("no such model").is_empty());
     }
 }

@@ -151,6 +151,17 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
         ("F", "the Fresnel reflectance: how much a smooth surface mirrors at this angle"),
         ("F_0", "the Fresnel reflectance when looking straight at the surface"),
         ("F_90", "the Fresnel reflectance at grazing incidence"),
+        ("F_L", "Schlick's weight for the light: (1 − N·L)⁵, 0 straight on and 1 at grazing incidence"),
+        ("F_V", "Schlick's weight for the observer: (1 − N·V)⁵"),
+        ("F_H", "Schlick's weight at the half vector: (1 − L·H)⁵"),
+        ("C_0", "the colour of the reflection when looking straight at the surface"),
+        ("C_h", "the colour of the sheen: white, or the hue of the base colour"),
+        ("D_r", "the distribution of the clear coat"),
+        ("F_r", "the Fresnel reflectance of the clear coat"),
+        ("G_r", "masking of the clear coat"),
+        ("G_s", "masking of the base"),
+        ("S", "shadowing of steep slopes by others"),
+        ("f_s", "a flat diffuse term that stands for light that travels below the surface"),
         ("f_r", "the BRDF: reflected light per incoming light, in 1/sr"),
         ("E", "the directional albedo: how much of the light from one direction is reflected in all"),
         ("E_L", "the directional albedo for the direction of the light"),
@@ -161,6 +172,8 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
         ("σ", "the spread of the slopes of the facets"),
         ("γ", "the exponent of the tail of the distribution"),
         ("μ", "the cosine of the angle between the normal and the direction"),
+        ("μ_l", "the cosine of the angle between the normal and the light, N·L"),
+        ("μ_v", "the cosine of the angle between the normal and the observer, N·V"),
         ("μ_i", "the cosine of the angle between the normal and the light, N·L"),
         ("μ_0", "the cosine of the angle between the normal and the light, N·L"),
         ("μ_o", "the cosine of the angle between the normal and the observer, N·V"),
@@ -178,6 +191,9 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
         ("θ_o", "the angle between the normal and the observer"),
         ("θ_h", "the angle between the normal and the half vector"),
         ("θ_d", "the angle between the half vector and the light"),
+        ("α_x", "the width of the distribution along the tangent"),
+        ("α_y", "the width of the distribution across the tangent"),
+        ("θ_X", "the angle to the normal of L or V, or between L and H"),
         ("β", "the smaller of the angles of light and observer to the normal"),
         ("φ", "the angle about the normal, between light and observer"),
         ("φ_h", "the angle of the half vector about the normal, from the tangent"),
@@ -567,15 +583,19 @@ mod tests {
     #[test]
     fn every_symbol_of_every_equation_is_explained() {
         let registry = crate::registry::Registry::builtin();
+        let mut unexplained = Vec::new();
         for model in registry.models() {
             let d = model.declaration;
             for symbol in d.equation.iter().flat_map(|p| parse(p.text)).filter_map(|a| a.symbol()) {
                 let known = model.parameters.iter().any(|p| same_symbol(p.symbol, &symbol))
                     || meaning(&symbol).is_some()
                     || definition(d.equation, &symbol).is_some();
-                assert!(known, "{}: {symbol} is neither a parameter nor explained in `meaning`", d.id);
+                if !known {
+                    unexplained.push(format!("{}: {symbol}", d.id));
+                }
             }
         }
+        assert_eq!(unexplained, [""; 0], "neither a parameter nor explained in `meaning`");
         let parts = [EquationPart { term: Term::Diffuse, text: "x = H·T / H·N , y_{ab} = x + z" }];
         assert!(definition(&parts, "x").is_some() && definition(&parts, "y_ab").is_some());
         assert!(definition(&parts, "z").is_none() && definition(&parts, "H").is_none());

@@ -293,11 +293,9 @@ impl ReflectionModel for Microfacet {
         source: "K. E. Torrance, E. M. Sparrow (1967), Theory for Off-Specular Reflection from Roughened Surfaces, Journal of the Optical Society of America 57(9), 1105–1114; factors by several authors",
         summary: "Distribution, masking, Fresnel term, diffuse base and multiple scattering as choices: every published combination is a setting.",
         equation: &[
-            EquationPart { term: Term::Total, text: "f_r = f_d + f_s + f_{ms}" },
-            EquationPart {
-                term: Term::Diffuse, text: "f_d = C_b/π d(l, v) (1 − F(n·l)) (1 − F(n·v))"
-            },
-            EquationPart { term: Term::Specular, text: "f_s = D(h) G(l, v) F(v·h) / (4 (n·l) (n·v))" },
+            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart { term: Term::Diffuse, text: "I_d = f_d C_b (1 − F(N·L)) (1 − F(N·V)) N·L" },
+            EquationPart { term: Term::Specular, text: "I_s = π D F G / (4 (N·V)) + f_{ms}" },
         ],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,
