@@ -47,18 +47,26 @@ pub fn oren_nayar_full(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32, rho: Vec
     let s2 = sigma * sigma;
     let near = cos_l.max(cos_v).clamp(GRAZING, 1.0);
     let far = cos_l.min(cos_v).clamp(0.0, 1.0);
-    let (alpha, beta) = (far.acos(), near.acos());
+    let alpha = far.acos();
     let sine = |cosine: f32| ((1.0 - cosine) * (1.0 + cosine)).sqrt();
     let (sin_alpha, sin_beta) = (sine(far), sine(near));
 
     let across = cos_lv - cos_l * cos_v;
     let both = sin_alpha * sin_beta;
     let cos_phi = if both > 0.0 { (across / both).clamp(-1.0, 1.0) } else { 0.0 };
-    let turned = beta * FRAC_2_PI;
-    // C₂ / sin α: the sine is in `across` already. β ≤ α, so the quotient vanishes where both do.
-    let forward = if across < 0.0 { turned.powi(3) / sin_alpha.max(GRAZING) } else { 0.0 };
+    // 2β/π by its distance from 1, which keeps its digits where both graze.
+    let rise = near.asin() * FRAC_2_PI;
+    let turned = 1.0 - rise;
+    // C₂ / sin α: the sine is in `across` already. sin α − (2β/π)³ is the difference of what each lacks
+    // of 1, which `across / near` makes finite at the horizon; at the normal `across` vanishes.
+    let forward = if across < 0.0 {
+        let lacking = rise * (1.0 + turned + turned * turned) - far * far / (1.0 + sin_alpha);
+        lacking / sin_alpha.max(1e-4)
+    } else {
+        1.0
+    };
     let c1 = 1.0 - 0.5 * s2 / (s2 + 0.33);
-    let c2 = 0.45 * s2 / (s2 + 0.09) * (1.0 - forward);
+    let c2 = 0.45 * s2 / (s2 + 0.09) * forward;
     let c3 = 0.125 * s2 / (s2 + 0.09) * (turned * alpha / FRAC_PI_2).powi(2);
     // tan((α + β)/2)
     let tan_mean = (sin_alpha + sin_beta) / (far + near);
@@ -135,6 +143,30 @@ mod tests {
         assert!(full(back) > full(forward) + 0.1);
         let eon = |(l, v, lv)| eon(l, v, lv, 0.4, Vec3::ONE).x;
         assert!(eon(back) > eon(forward) + 0.1);
+    }
+
+    #[test]
+    fn oren_nayar_in_full_is_itself_down_to_the_horizon() {
+        // Light and view at this height, on opposite sides: cos φ = −1.
+        let published = |height: f64, sigma: f64| {
+            let (s2, cosine, sine) = (sigma * sigma, height.sin(), height.cos());
+            // 1 − (2β/π)³ from the height, since β itself has no digits left for it.
+            let e = 2.0 * height / std::f64::consts::PI;
+            let bracket = e * (3.0 - e * (3.0 - e)) - (1.0 - sine);
+            1.0 - 0.5 * s2 / (s2 + 0.33) - 0.45 * s2 / (s2 + 0.09) * bracket * sine / cosine
+                + 0.17 * s2 / (s2 + 0.13) * (1.0 + (1.0 - e).powi(2))
+        };
+        for sigma in [0.2, 0.6] {
+            for height in [1e-9f64, 1e-7, 1e-5, 1e-3, 0.1, 0.7] {
+                let (c, lv) = (height.sin() as f32, -(2.0 * height).cos() as f32);
+                let got = f64::from(oren_nayar_full(c, c, lv, sigma as f32, Vec3::ONE).x);
+                let expected = published(height, sigma);
+                assert!((got - expected).abs() < 1e-4, "{height} {sigma}: {got} is not {expected}");
+            }
+        }
+        // Without what the bracket holds at the horizon.
+        assert!((published(1e-9, 0.6) - published(1e-9, 0.4)).abs() > 0.05);
+        assert!(published(1e-9, 0.6) > 0.0);
     }
 
     #[test]

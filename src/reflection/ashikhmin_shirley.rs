@@ -1,8 +1,9 @@
 use glam::Vec3;
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
-    parameter::{BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR},
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR, Value},
+    preset,
 };
 use crate::{
     optics::{Frame, Terms, fresnel::schlick, geometry::half_slope},
@@ -128,5 +129,19 @@ impl ReflectionModel for AshikhminShirley {
             diffuse: 28.0 / 23.0 * cos_l * left(cos_l) * left(cos_v) * self.base_colour * (1.0 - r_s),
             specular: lobe * (cos_l / cos_l.max(cos_v)) / cos_d * schlick(r_s, cos_d),
         }
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        vec![Readout::of_f0(self.k_s * self.specular_colour)]
+    }
+
+    /// F_0 as the colour of the highlight. A metal scatters nothing from inside.
+    fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
+        let mut values =
+            vec![(K_S.name, Value::Number(1.0)), (SPECULAR_COLOUR.name, preset::colour(material.f0))];
+        if material.metal {
+            values.push((BASE_COLOUR.name, Value::Colour([0; 3])));
+        }
+        values
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A model that can be a measured material returns from
 //! [`ReflectionModel::preset`](super::ReflectionModel::preset) what one of the functions here gives,
-//! perhaps with more: [`conductor`], [`dielectric`], [`base_colour_metallic`].
+//! perhaps with more: [`conductor`], [`base_colour_metallic`], [`colour`].
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
@@ -94,12 +94,6 @@ pub fn conductor(material: &Measured) -> Vec<(&'static str, Value)> {
     vec![(IOR.name, Value::Triple(material.n)), (EXTINCTION.name, Value::Triple(k))]
 }
 
-/// For models that have the Fresnel equations of dielectrics only: [`IOR`]; metals are out of reach.
-#[must_use]
-pub fn dielectric(material: &Measured) -> Vec<(&'static str, Value)> {
-    if material.metal { Vec::new() } else { vec![(IOR.name, Value::Triple(material.n))] }
-}
-
 /// For models with base colour and metalness. A metal gets its reflectance at normal incidence as
 /// [`BASE_COLOUR`] and [`METALLIC`] 1. Anything else gets [`METALLIC`] 0 and the [`REFLECTANCE`] s of
 /// `F_0 = 0.16 s²`, by luminance, at most 1 (diamond's 17 % become 16 %); its base colour stays, since
@@ -174,8 +168,7 @@ mod tests {
     fn presets_are_legal_values_of_the_shared_parameters() {
         let declared: [Parameter; 5] = [IOR, EXTINCTION, BASE_COLOUR, METALLIC, REFLECTANCE];
         for m in all() {
-            for (name, value) in [conductor(m), dielectric(m), base_colour_metallic(m)].into_iter().flatten()
-            {
+            for (name, value) in [conductor(m), base_colour_metallic(m)].into_iter().flatten() {
                 let Some(p) = declared.iter().find(|p| p.name == name) else { panic!("{name}") };
                 assert!(p.allows(&value), "{}: {name} {value}", m.name);
             }
@@ -188,8 +181,7 @@ mod tests {
         assert_eq!(gold[0], ("ior", Value::Triple([0.18836, 0.54386, 1.33185])));
         assert_eq!(gold[1], ("extinction", Value::Triple([3.4034, 2.2309, 1.8693])));
         assert_eq!(conductor(material("water"))[1], ("extinction", Value::Triple([0.0; 3])));
-        assert!(dielectric(material("gold")).is_empty());
-        assert_eq!(dielectric(material("diamond")), [("ior", Value::Triple([2.4125, 2.42602, 2.44098]))]);
+        assert_eq!(conductor(material("diamond"))[0], ("ior", Value::Triple([2.4125, 2.42602, 2.44098])));
     }
 
     #[test]

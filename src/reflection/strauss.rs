@@ -3,8 +3,9 @@ use std::f32::consts::FRAC_2_PI;
 use glam::Vec3;
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
-    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind},
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, ReflectionModel, Term,
+    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, Value},
+    preset,
 };
 use crate::{
     optics::{
@@ -158,5 +159,10 @@ impl ReflectionModel for Strauss {
             diffuse: self.base_colour * (diffuse * (1.0 - m * s) * cos_i),
             specular: tint * (mirrored * lobe),
         }
+    }
+
+    /// Metals only: how much the surface mirrors follows from its smoothness, not from the material.
+    fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
+        if material.metal { preset::base_colour_metallic(material) } else { Vec::new() }
     }
 }

@@ -454,6 +454,46 @@ fn light_from_everywhere_gives_the_same_picture_on_both_machines() {
 }
 
 #[test]
+fn every_shape_vanishes_in_a_white_furnace_to_its_silhouette() {
+    let registry = Registry::builtin();
+    let settings = reference::Settings { width: 64, height: 64, samples: 1, terms: TermSelection::All };
+    let furthest = |scene: &Scene| {
+        let picture = reference::render(scene, &registry, &settings);
+        let covered = picture.pixels.iter().filter(|p| p.w == 1.0);
+        covered.map(|p| (p.truncate() - Vec3::ONE).abs().max_element()).fold(0.0, f32::max)
+    };
+    let choice = |name: &'static str, id: &'static str| (name, Value::Choice(id.into()));
+    let compensated = [
+        choice("fresnel", "none"),
+        choice("diffuse", "none"),
+        choice("multiple_scattering", "kulla_conty"),
+        ("alpha_x", Value::Number(0.8)),
+        ("alpha_y", Value::Number(0.8)),
+    ];
+    for (model, settings, tolerance) in
+        [("eon", &[("roughness", Value::Number(1.0))][..], 1e-4), ("microfacet", &compensated[..], 4e-3)]
+    {
+        for shape in registry.shapes() {
+            for mode in registry.modes() {
+                let mut scene = ambient_only(model, mode.declaration.id);
+                scene.objects[0].kind = shape.declaration.id.to_owned();
+                scene.objects[0].material.set("base_colour", Value::Colour([255; 3]));
+                for (name, value) in settings {
+                    scene.objects[0].material.set(*name, value.clone());
+                }
+                // Interpolated normals turn away from the viewer there, most of all on the cube.
+                let off = furthest(&scene);
+                let case = format!("{model} × {} × {}", shape.declaration.id, mode.declaration.id);
+                assert!(off < tolerance, "{case}: {off}");
+                scene.objects[0].material.set("multiple_scattering", Value::Choice("none".into()));
+                scene.objects[0].material.set("base_colour", Value::Colour([254; 3]));
+                assert!(furthest(&scene) > tolerance, "{case}: the wrong twin vanishes too");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_white_object_vanishes_in_a_white_furnace() {
     let registry = registry();
     let settings = reference::Settings { width: 64, height: 64, samples: 1, terms: TermSelection::All };

@@ -288,3 +288,62 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
         assert!(wrong_twin_noticed, "{}: 0.05 % more goes unnoticed", model.declaration.id);
     }
 }
+
+#[test]
+fn at_the_ends_of_all_ranges_both_languages_are_finite_and_agree() {
+    let registry = Registry::builtin();
+    let mut seed = 11;
+    // Straight on, at the horizon and within it, below; opposite each other, and on one line.
+    let mut ends = vec![Vec3::Z, Vec3::NEG_Z, Vec3::X, Vec3::ZERO];
+    for lift in [1e-20, 1e-9, 1e-6, 1e-3, -1e-6] {
+        ends.extend([Vec3::new(1.0, 0.0, lift), Vec3::new(-1.0, 0.0, lift), Vec3::new(0.0, 1.0, lift)]);
+    }
+    ends.extend((0..6).map(|_| direction(&mut seed)));
+    let pairs: Vec<_> = ends.iter().flat_map(|l| ends.iter().map(|v| (*l, *v))).collect();
+    for model in registry.models() {
+        let mut wrong_twin_noticed = false;
+        // All at the smallest, all at the largest, then each at either.
+        for set in 0..10 {
+            let mut values = Values::default();
+            for p in model.parameters {
+                let high = if set < 2 { set == 1 } else { random(&mut seed) < 0.5 };
+                let value = match p.kind {
+                    ParameterKind::Number { min, max, .. } => Value::Number(if high { max } else { min }),
+                    ParameterKind::Integer { min, max, slider_max, .. } => {
+                        Value::Integer(if high { max.unwrap_or(slider_max) } else { min })
+                    }
+                    ParameterKind::Colour { .. } => Value::Colour([if high { 255 } else { 0 }; 3]),
+                    ParameterKind::Triple { min, max, .. } => {
+                        Value::Triple([if high { max } else { min }; 3])
+                    }
+                    ParameterKind::Choice { options, .. } => {
+                        let i = (random(&mut seed) * options.len() as f32) as usize;
+                        Value::Choice(options[i].0.into())
+                    }
+                };
+                values.set(p.name, value);
+            }
+            let answers = evaluate(model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
+            let surface = model.instantiate(&values, Encoding::Srgb);
+            for ((l, v), gpu) in pairs.iter().zip(answers) {
+                let cpu = surface.response(*l, *v, &Frame::LOCAL);
+                let case =
+                    || format!("{} {values:?} l {l} v {v}: GPU {gpu:?}, CPU {cpu:?}", model.declaration.id);
+                for (g, c) in
+                    [(gpu.ambient, cpu.ambient), (gpu.diffuse, cpu.diffuse), (gpu.specular, cpu.specular)]
+                {
+                    assert!(g.is_finite() && c.is_finite(), "{}", case());
+                    assert!(!model.declaration.laws.non_negative || g.min_element() >= -1e-6, "{}", case());
+                    // Of a sum as short as this the languages need not find the same direction.
+                    if (*l + *v).length() < 1e-12 {
+                        continue;
+                    }
+                    let error = |c: Vec3| ((g - c).abs() / c.abs().max(Vec3::splat(1e-2))).max_element();
+                    assert!(error(c) <= 1e-3, "{}", case());
+                    wrong_twin_noticed |= error(c * 1.002) > 1e-3;
+                }
+            }
+        }
+        assert!(wrong_twin_noticed, "{}: 0.2 % more goes unnoticed", model.declaration.id);
+    }
+}

@@ -16,6 +16,15 @@ fn arc_cosine(x: f32) -> f32 {
     return sqrt(1.0 - c) * (low + c2 * c2 * high);
 }
 
+// The angle of a sine in [0, 1]; by its series where the difference from a right angle would lose digits.
+fn arc_sine(x: f32) -> f32 {
+    if x > 0.3 {
+        return 0.5 * PI - arc_cosine(x);
+    }
+    let x2 = x * x;
+    return x * (1.0 + x2 * (1.0 / 6.0 + x2 * (3.0 / 40.0 + x2 * (5.0 / 112.0 + x2 * 35.0 / 1152.0))));
+}
+
 fn sine_of(cosine: f32) -> f32 {
     let c = clamp(cosine, 0.0, 1.0);
     return sqrt((1.0 - c) * (1.0 + c));
@@ -43,12 +52,15 @@ fn oren_nayar_full(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32, rho: vec3<f3
     if sin_alpha * sin_beta > 0.0 {
         cos_phi = clamp(s / (sin_alpha * sin_beta), -1.0, 1.0);
     }
-    let b = 2.0 * beta / PI;
+    // b = 2β/π is 1 − e.
+    let e = 2.0 / PI * arc_sine(cos_beta);
+    let b = 1.0 - e;
     let slope = s2 / (s2 + 0.09);
     // C₂ cos φ tan β, where cos φ sin α tan β is s / cos β.
     var middle = 0.45 * slope * s / cos_beta;
     if s < 0.0 {
-        middle *= 1.0 - b * b * b / max(sin_alpha, 1e-12);
+        // (sin α − b³)/sin α: 1 − b³ less 1 − sin α.
+        middle *= (e * (3.0 - e * (3.0 - e)) - cos_alpha * cos_alpha / (1.0 + sin_alpha)) / max(sin_alpha, 1e-4);
     }
     let c3 = 4.0 * alpha * beta / (PI * PI);
     let half_sum = (sin_alpha + sin_beta) / (max(cos_alpha, 0.0) + cos_beta);
