@@ -1,7 +1,10 @@
 // The light loop: the colour of a point with a unit normal and a tangent under all lights, linear,
 // before exposure. `illumination`, `parameters` and `observer_position` come from the wrapper.
 fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {
-    let v = unit_or_zero(observer_position() - position);
+    // An interpolated normal may turn away from a viewer who sees the surface all the same: the viewer then
+    // counts as mirrored in it, or rims would be black.
+    let eye = unit_or_zero(observer_position() - position);
+    let v = eye - 2.0 * min(dot(normal, eye), 0.0) * normal;
     let frame = frame_new(normal, tangent);
     var colour = vec3(0.0);
     for (var i = 0u; i < min(illumination.count, MAX_LIGHTS); i++) {

@@ -49,7 +49,10 @@ pub(super) struct LightsOn<'a> {
 
 impl Lighting for LightsOn<'_> {
     fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3 {
-        let v = (self.lights.observer - position).normalize_or_zero();
+        // An interpolated normal may turn away from a viewer who sees the surface all the same: the viewer
+        // then counts as mirrored in it, or rims would be black.
+        let eye = (self.lights.observer - position).normalize_or_zero();
+        let v = eye - 2.0 * normal.dot(eye).min(0.0) * normal;
         let frame = Frame::new(normal, tangent);
         let terms = self.lights.terms;
         let mut sum = Vec3::ZERO;

@@ -64,7 +64,7 @@ const MASKING: Parameter = Parameter {
 const FRESNEL: Parameter = Parameter {
     name: "fresnel",
     symbol: "F",
-    label: "Fresnel",
+    label: "Fresnel term",
     unit: "",
     help: "How much a microfacet reflects by angle: everything, Schlick's approximation from n and k, or the exact equations of dielectrics (n) or conductors (n and k).",
     kind: ParameterKind::Choice {

@@ -141,7 +141,16 @@ pub fn exposure(ev: f32) -> Rule {
 
 /// The value of a declared parameter of a model or a light.
 pub fn parameter(parameter: &Parameter, value: &Value) -> Rule {
-    must(parameter.allows(value), || parameter_rule(parameter))
+    must(parameter.allows(value), || {
+        let hint = match (&parameter.kind, value) {
+            (ParameterKind::Choice { options, .. }, Value::Choice(id)) => did_you_mean(
+                id,
+                options.iter().map(|(id, name)| (*name, *id)).chain(options.iter().map(|(id, _)| (*id, *id))),
+            ),
+            _ => String::new(),
+        };
+        parameter_rule(parameter) + &hint
+    })
 }
 
 /// The rule of [`parameter`].

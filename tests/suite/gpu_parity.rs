@@ -273,6 +273,11 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
                 for (g, c) in
                     [(gpu.ambient, cpu.ambient), (gpu.diffuse, cpu.diffuse), (gpu.specular, cpu.specular)]
                 {
+                    assert!(
+                        g.is_finite() && c.is_finite(),
+                        "{} {values:?} l {l} v {v}",
+                        model.declaration.id
+                    );
                     // A response below 1e-5 is darker than any display shows.
                     let error = ((g - c).abs() / c.abs().max(Vec3::splat(1e-2))).max_element();
                     assert!(

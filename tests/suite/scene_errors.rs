@@ -74,6 +74,7 @@ fn every_constraint_has_its_message() {
         ("/reflection_model", json!("fong"), "did you mean \"phong\"?"),
         ("/reflection_model", json!("Blinn-Phong"), "did you mean \"blinn_phong\"?"),
         ("/reflection_model", json!(null), "reflection_model is null, but the reflection model must be"),
+        ("/objects/0/material/fresnel", json!("conducter"), "did you mean \"conductor\"?"),
         ("/shading_model", json!("gourad"), "did you mean \"gouraud\"?"),
         (
             "/shading_model",
