@@ -110,6 +110,10 @@ enum Command {
         json: bool,
     },
     /// Evaluate the BRDF of a model: angles from standard input, values to standard output, as CSV
+    ///
+    /// Reads the columns theta_i, phi_i, theta_o, phi_o: degrees from the normal and around it from the tangent, to
+    /// the light (i) and to the observer (o). Writes them with f_r, f_g, f_b: the BRDF in 1/sr without the cosine,
+    /// diffuse and specular; 0 beyond 90°.
     Evaluate(evaluate::Arguments),
     /// Compare Blinn–Phong with physically based models: four phenomena as a report with numbers
     Study(study::Arguments),

@@ -14,14 +14,14 @@ use crate::{reflection::ModelEntry, registry::Registry};
 /// Whether every word of a search occurs in a text, in any order.
 #[must_use]
 pub fn matches(text: &str, search: &str) -> bool {
-    let plain = |s: &str| s.to_lowercase().replace(['–', '-', '_'], " ");
+    let plain = |s: &str| s.to_lowercase().replace(['–', '-', '_', ',', '&', '(', ')'], " ");
     let text = plain(text);
-    plain(search).split_whitespace().all(|word| text.contains(word))
+    plain(search).split_whitespace().all(|word| text.split_whitespace().any(|found| found.starts_with(word)))
 }
 
-/// The models that a search finds, in the order in which the chooser lists them: by family, then in
-/// the order of registration. Every word of the search must occur in name, id, author, family or
-/// summary.
+/// The models that a search finds, in the order in which the chooser lists them: those whose name it is
+/// first, then by family, then in the order of registration. Every word of the search must begin a word of
+/// name, id, author, family or summary.
 #[must_use]
 pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
     let mut families = Vec::new();
@@ -34,11 +34,13 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
         let d = m.declaration;
         matches(&[d.name, d.id, d.author, d.family.name(), d.summary].join(" "), search)
     };
-    families
+    let mut found: Vec<_> = families
         .iter()
         .flat_map(|f| registry.models().iter().filter(move |m| m.declaration.family == *f))
         .filter(hit)
-        .collect()
+        .collect();
+    found.sort_by_key(|m| !matches(&[m.declaration.name, m.declaration.id].join(" "), search));
+    found
 }
 
 /// One line of a [`list`].
@@ -332,6 +334,9 @@ mod tests {
         let ids = |s: &str| find(&registry, s).iter().map(|m| m.declaration.id).collect::<Vec<_>>();
         assert_eq!(ids("1977 blinn phong"), ["blinn_phong", "blinn_phong_normalised"]);
         assert_eq!(ids("hill eon"), ["eon"]);
+        for (search, first) in [("ward", "ward"), ("torrance", "torrance_sparrow"), ("disney", "disney")] {
+            assert_eq!(ids(search).first(), Some(&first), "{search}");
+        }
         assert!(ids("no such model").is_empty());
     }
 }

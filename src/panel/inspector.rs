@@ -223,7 +223,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             ui.label("The reflection model of this object is not known here; choose another one.");
             return;
         };
-        if let Some(values) = measured(ui, model, object) {
+        if let Some(values) = measured(ui, registry, model, object) {
             actions.push(set(ObjectField::Preset(values)));
         }
         for p in model.parameters {
@@ -332,7 +332,12 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
 }
 
 /// The chooser of measured materials, for models that can be one. Returns the parameters of the chosen.
-fn measured(ui: &mut Ui, model: &ModelEntry, object: &Object) -> Option<Vec<(&'static str, Value)>> {
+fn measured(
+    ui: &mut Ui,
+    registry: &Registry,
+    model: &ModelEntry,
+    object: &Object,
+) -> Option<Vec<(&'static str, Value)>> {
     let offered: Vec<_> = preset::all().iter().filter(|m| !(model.preset)(m).is_empty()).collect();
     if offered.is_empty() {
         return None;
@@ -345,14 +350,14 @@ fn measured(ui: &mut Ui, model: &ModelEntry, object: &Object) -> Option<Vec<(&'s
     let present = offered.iter().find(|m| is(m)).copied();
     let caption = Caption {
         label: "measured material",
-        help: "Sets the knobs below to what was measured on a real material. It shows “none” as soon as one of them is turned away.",
+        help: "Sets the knobs below to what was measured on a real material, and those of the other physically based models too. It shows “none” as soon as one of them is turned away.",
         ..Caption::default()
     };
     let words = chooser::Words {
         label: "Search measured materials",
         hint: "Search: name, author, year",
         none: "No material has that in its name or source.",
-        foot: "The numbers are F₀ in red, green and blue: what the surface reflects when seen straight on.",
+        foot: "The numbers are F₀ over the whole spectrum, as red, green and blue; models that calculate with n and k at three wavelengths differ a little.",
     };
     let chosen =
         knob::list_knob(ui, "measured material", &caption, present.map_or("none", |m| m.name), |ui, id| {
@@ -372,7 +377,7 @@ fn measured(ui: &mut Ui, model: &ModelEntry, object: &Object) -> Option<Vec<(&'s
             };
             chooser::list(ui, id, words, height, find, entry, |ui, m| measurement(ui, m))
         });
-    chosen.map(model.preset)
+    chosen.map(|material| preset::along(model, material, registry))
 }
 
 /// What was measured on a material, and by whom.

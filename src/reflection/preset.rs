@@ -9,8 +9,14 @@ use std::{collections::BTreeMap, sync::LazyLock};
 use glam::Vec3;
 use serde::Deserialize;
 
-use super::parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, REFLECTANCE, Value};
-use crate::optics::colour::{luminance, srgb_encode};
+use super::{
+    Family, ModelEntry,
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, REFLECTANCE, Value},
+};
+use crate::{
+    optics::colour::{luminance, srgb_encode},
+    registry::Registry,
+};
 
 /// A material whose refractive index was measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,6 +116,27 @@ pub fn base_colour_metallic(material: &Measured) -> Vec<(&'static str, Value)> {
     }
 }
 
+/// What choosing a measured material for one model sets: the parameters of that model, and those of the
+/// microfacet and standard models that do not contradict them, so that gold stays gold when the model is
+/// exchanged.
+#[must_use]
+pub fn along(model: &ModelEntry, material: &Measured, registry: &Registry) -> Vec<(&'static str, Value)> {
+    let mut values = (model.preset)(material);
+    let takes_along = |m: &&ModelEntry| matches!(m.declaration.family, Family::Microfacet | Family::Standard);
+    for other in registry.models().iter().filter(takes_along) {
+        let theirs = (other.preset)(material);
+        let clashes = |(name, value): &(&str, Value)| values.iter().any(|(n, v)| n == name && v != value);
+        if !theirs.iter().any(clashes) {
+            for (name, value) in theirs {
+                if !values.iter().any(|(n, _)| *n == name) {
+                    values.push((name, value));
+                }
+            }
+        }
+    }
+    values
+}
+
 /// A linear reflectance as the value of a parameter that is a colour: sRGB-encoded, 8 bits.
 #[must_use]
 pub fn colour(reflectance: Vec3) -> Value {
@@ -200,5 +227,22 @@ mod tests {
                 other => panic!("{}: {other:?}", m.name),
             }
         }
+    }
+
+    #[test]
+    fn gold_stays_gold_when_the_model_is_exchanged() {
+        let registry = Registry::builtin();
+        let gold = by_id("gold").expect("measured");
+        for from in ["metallic_roughness", "microfacet", "cook_torrance", "disney"] {
+            let values = along(registry.model(from).expect("built in"), gold, &registry);
+            for to in ["metallic_roughness", "microfacet", "torrance_sparrow", "cook_torrance", "disney"] {
+                for wanted in (registry.model(to).expect("built in").preset)(gold) {
+                    assert!(values.contains(&wanted), "{from} → {to}: {wanted:?} is not among {values:?}");
+                }
+            }
+        }
+        // A base that is black on purpose makes no black metal of others.
+        let lacquer = along(registry.model("ashikhmin_shirley").expect("built in"), gold, &registry);
+        assert!(!lacquer.iter().any(|(name, _)| *name == METALLIC.name), "{lacquer:?}");
     }
 }
