@@ -25,7 +25,7 @@ const DISTRIBUTION: Parameter = Parameter {
     symbol: "D",
     label: "distribution",
     unit: "",
-    help: "How many microfacets face each direction: the shape of the highlight. GGX has longer tails than Beckmann, GTR chooses its tails by γ.",
+    help: "How many microfacets face each direction: the shape of the highlight. With t = tan θ_h / α and c = cos θ_h: Blinn–Phong D = (n + 2)/(2π) cⁿ, n = 2/α² − 2; Beckmann D = exp(−t²)/(π α² c⁴); GGX D = 1/(π α² c⁴ (1 + t²)²), with longer tails; GTR has γ in place of the 2 and chooses its tails.",
     kind: ParameterKind::Choice {
         options: &[("blinn_phong", "Blinn–Phong"), ("beckmann", "Beckmann"), ("ggx", "GGX"), ("gtr", "GTR")],
         default: 2,
@@ -46,7 +46,7 @@ const MASKING: Parameter = Parameter {
     symbol: "G",
     label: "masking",
     unit: "",
-    help: "How microfacets hide each other from light and viewer. Smith's terms follow from the distribution; the others are simpler and older.",
+    help: "How microfacets hide each other from light and viewer. Implicit: G = (N·L)(N·V); V-cavities: min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H)); Neumann: (N·L)(N·V)/max(N·L, N·V); Kelemen: (N·L)(N·V)/(V·H)²; Smith's terms follow from the distribution: separable 1/((1 + Λ(L))(1 + Λ(V))), height-correlated 1/(1 + Λ(L) + Λ(V)), and Schlick's approximation to them.",
     kind: ParameterKind::Choice {
         options: &[
             ("implicit", "Implicit"),
@@ -66,7 +66,7 @@ const FRESNEL: Parameter = Parameter {
     symbol: "F",
     label: "Fresnel term",
     unit: "",
-    help: "How much a microfacet reflects by angle: everything, Schlick's approximation from n and k, or the exact equations of dielectrics (n) or conductors (n and k).",
+    help: "How much a microfacet reflects by angle: everything; Schlick's F = F₀ + (1 − F₀)(1 − V·H)⁵ with F₀ from n and k; or the exact equations of dielectrics (n) or conductors (n and k).",
     kind: ParameterKind::Choice {
         options: &[
             ("none", "None (F = 1)"),
