@@ -366,10 +366,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 @if incomplete.is_empty() {
                     "Of the rows whose settings leave nothing that could absorb, none loses. "
                 } @else {
-                    "These should return all light, since nothing in their settings absorbs: " (words(&incomplete.join("; "))) ". What they lack is an error of the model. "
+                    "These should return all light, since nothing in their settings absorbs: " (words(&incomplete.join("; "))) ". What is missing is a fault of the model. "
                 }
                 @if !others.is_empty() {
-                    "The others divide the light between parts by coefficients or by a Fresnel term and make no promise to return the rest: " (words(&others.join("; "))) "."
+                    "The others make no such promise: their settings divide the light between coefficients or by a Fresnel term, or their equations leave out light that bounces between facets. They are " (words(&others.join("; "))) "."
                 }
             }
         }

@@ -323,8 +323,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                     "The control fails: under B the difference is " (fixed(100.0 * distances[1].0, 1)) "\u{a0}% instead of " (fixed(100.0 * distances[0].0, 1)) "\u{a0}%, which is not expected of linear models. "
                 }
                 @if rises > 1.5 {
-                    "The direction is. Under C the difference is " (fixed(100.0 * distances[2].0, 0)) "\u{a0}%, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) "\u{a0}% of the brightness. "
-                    "Tuning anew under C leaves " (fixed(100.0 * again[2], 0)) "\u{a0}%, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
+                    "The direction is. Under C the difference is " (fixed(100.0 * distances[2].0, 1)) "\u{a0}%, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) "\u{a0}% of the brightness. "
+                    "Tuning anew under C leaves " (fixed(100.0 * again[2], 1)) "\u{a0}%, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
                     @if !bounds.is_empty() { " The fit under C is held by its bounds: " (bounds.join(", ")) " would be above 1." }
                 } @else {
                     "Under C the difference is " (fixed(100.0 * distances[2].0, 0)) "\u{a0}%, only " (fixed(rises, 1)) " times as large."

@@ -456,7 +456,10 @@ fn rims_are_as_little_black_as_lambert_leaves_them() {
                 let id = model.declaration.id;
                 let count = black(id);
                 // The few where the halves of a lobe end differently; without the mirroring there are hundreds.
-            assert!(count <= lambert + lambert / 20, "{shape} × {mode} × {id}: {count} black pixels, Lambert {lambert}");
+                assert!(
+                    count <= lambert + lambert / 20,
+                    "{shape} × {mode} × {id}: {count} black pixels, Lambert {lambert}"
+                );
             }
         }
     }
