@@ -366,7 +366,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let size = lab.size(1200, 240);
     let picture = lab.render(&scene, "", TermSelection::All, size);
     let names: Vec<&str> = scene.objects.iter().map(|o| o.name.as_deref().unwrap_or_default()).collect();
-    // The height of each lobe, seen along the normal, relative to the first.
+    // The height of each lobe, with light and viewer along the normal.
     let heights: Vec<f64> = scene
         .objects
         .iter()
@@ -380,7 +380,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         .iter()
         .zip(&heights)
         .filter(|(_, h)| **h < 0.95 * heights[0])
-        .map(|(name, h)| format!("{name}, reaches {:.0}\u{a0}% of it", 100.0 * h / heights[0]))
+        .map(|(name, h)| format!("{name} ({:.0}\u{a0}%)", 100.0 * h / heights[0]))
         .collect();
     let shown = lab.figure(
         &html! {
@@ -391,7 +391,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         },
         &html! {
             "Black plastic under one lamp: five lobes of the same roughness (α = 0.15, n = 87). "
-            @if lower.is_empty() { "All have the same height. " } @else { "They have the same height but for one or more: " (lower.join("; ")) ". " }
+            @if lower.is_empty() { "All have the same height. " } @else { "All have the same height but those that reach less of it: " (lower.join("; ")) ". " }
             "They differ in their tails: GGX and GTR glow on where Blinn–Phong and Beckmann are dark. Scene "
             code { "lobe_shape.json" } "."
         },
@@ -646,7 +646,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             p {
                 @if wins == 2 {
                     "For both glossy paints GGX comes closest to the measurement: its log error is " (fixed(of(0, "GGX"), 3)) " and " (fixed(of(1, "GGX"), 3)) ", Blinn–Phong’s "
-                    (fixed(of(0, "Blinn–Phong"), 3)) " and " (fixed(of(1, "Blinn–Phong"), 3)) ". Exchanging the distribution alone shows why: with Blinn’s distribution inside the same microfacet model the errors are "
+                    (fixed(of(0, "Blinn–Phong"), 3)) " and " (fixed(of(1, "Blinn–Phong"), 3)) ". Exchanging the distribution alone shows its part: with Blinn’s distribution inside the same microfacet model the errors are "
                     (fixed(of(0, "Blinn’s distribution"), 3)) " and " (fixed(of(1, "Blinn’s distribution"), 3)) ", with Beckmann’s " (fixed(of(0, "Beckmann’s distribution"), 3)) " and " (fixed(of(1, "Beckmann’s distribution"), 3))
                     ". "
                     @if tails {
