@@ -28,7 +28,7 @@ struct Blinn {
 }
 
 impl Blinn {
-    /// Channels that the fit would set higher if it could.
+    /// Channels that stand at the upper bound of the fit.
     fn bounds(&self) -> Vec<String> {
         let mut all = Vec::new();
         for (part, colour) in [("diffuse", self.diffuse), ("specular", self.specular)] {
@@ -325,7 +325,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 @if rises > 1.5 {
                     "The direction is. Under C the difference is " (fixed(100.0 * distances[2].0, 1)) "\u{a0}%, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) "\u{a0}% of the brightness. "
                     "Tuning anew under C leaves " (fixed(100.0 * again[2], 1)) "\u{a0}%, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
-                    @if !bounds.is_empty() { " The fit under C is held by its bounds: " (bounds.join(", ")) " would be above 1." }
+                    @if !bounds.is_empty() { " Some of these stand at the bound of the fit, 1: " (bounds.join(", ")) "." }
                 } @else {
                     "Under C the difference is " (fixed(100.0 * distances[2].0, 0)) "\u{a0}%, only " (fixed(rises, 1)) " times as large."
                 }
