@@ -73,8 +73,14 @@ fn dip(material: &Measured) -> Option<(f64, f64)> {
         .filter(|least| least.0 > 0.0)
 }
 
+/// Mean luminance of the brightest hundredth of the pixels that objects cover fully. One pixel alone would
+/// depend on where the samples lie.
 fn brightest(picture: &Picture) -> f64 {
-    picture.pixels.iter().map(|p| f64::from(luminance(p.truncate()))).fold(0.0, f64::max)
+    let mut all: Vec<f64> =
+        picture.pixels.iter().filter(|p| p.w > 0.999).map(|p| f64::from(luminance(p.truncate()))).collect();
+    all.sort_by(|a, b| b.total_cmp(a));
+    all.truncate((all.len() / 100).max(1));
+    all.iter().sum::<f64>() / all.len().max(1) as f64
 }
 
 pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
@@ -219,7 +225,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         &svg(&relative)?,
         &html! {
             "How much of uniform light the whole specular lobe reflects (its directional albedo, without the diffuse part), relative to the view "
-            "along the normal. Glass, n = 1.5. The two models agree at 0° by choice of " (words("k_s")) ". Logarithmic axis."
+            "along the normal. Glass, n = 1.5. Each curve is relative to its own value at 0° and therefore starts at 1, whatever " (words("k_s")) " is. Logarithmic axis."
         },
     );
 
@@ -261,7 +267,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     );
     let ratio = |p: [f64; 2]| p[1] / p[0];
     let picture_table = lab.table(
-        &html! { "Brightest pixel of the pictures above (luminance, linear, 1 is display white), with the lamp in front alone and the lamps behind alone." },
+        &html! { "Mean of the brightest 1\u{a0}% of the pixels that objects cover in the pictures above (luminance, linear, 1 is display white), with the lamp in front alone and the lamps behind alone." },
         &["Model", "lamp in front", "lamps behind", "behind / front"],
         &both
             .iter()
@@ -325,7 +331,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                     "Blinn–Phong’s lobe grows as well, by " (fixed(growth[2], 2)) "."
                 } @else {
                     "Blinn–Phong shows the opposite of the Fresnel effect. Its lobe reflects " (fixed(growth[2], 2)) " times as much at 75°, since its height is fixed while the solid angle of light that it gathers shrinks with the cosine of the view. "
-                    "In the pictures the lamps behind the objects are " (fixed(ratio(peaks[1]), 0)) " times as bright as the lamp in front under the microfacet model and "
+                    "In the brightest 1\u{a0}% of the pictures the lamps behind the objects are " (fixed(ratio(peaks[1]), 1)) " times as bright as the lamp in front under the microfacet model and "
                     (fixed(ratio(peaks[0]), 1)) " times under Blinn–Phong. No single " (words("k_s")) " serves both."
                 }
             }

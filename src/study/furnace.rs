@@ -18,6 +18,9 @@ use crate::{
 const SCENE: &str = include_str!("../../scenes/white_furnace.json");
 /// Directions from which light comes in the furnace of lamps: as many as a scene can have.
 const LAMPS: u16 = 256;
+/// Exponents that are tried for the largest albedo. It falls as the highlight becomes narrower, so that it is
+/// enough to start at the smallest legal one.
+const EXPONENTS: [i64; 6] = [0, 1, 2, 4, 8, 16];
 /// A model that is further from 1 than this loses or gains.
 const TOLERANCE: f64 = 0.01;
 
@@ -30,9 +33,17 @@ struct White {
     whole: bool,
 }
 
+/// A number from 0 to 1, or an angle.
+fn coefficient(name: &'static str, value: f32) -> Setting {
+    (name, Value::Number(value))
+}
+
+/// Phong and Blinn–Phong with both coefficients at their largest.
+fn gloss(n: i64) -> Vec<Setting> {
+    vec![coefficient("k_d", 1.0), coefficient("k_s", 1.0), ("alpha", Value::Integer(n))]
+}
+
 fn whites() -> Vec<White> {
-    let coefficient = |name, value: f32| (name, Value::Number(value));
-    let gloss = |n: i64| vec![coefficient("k_d", 1.0), coefficient("k_s", 1.0), ("alpha", Value::Integer(n))];
     let ggx = |multiple: &'static str| {
         let mut s = vec![
             choice("fresnel", "none"),
@@ -74,6 +85,19 @@ fn whites() -> Vec<White> {
 
 fn gloss_of_normalised() -> Vec<Setting> {
     vec![("k_s", Value::Number(0.5)), ("alpha", Value::Integer(8))]
+}
+
+/// The largest albedo of a model of the Phong family over exponents and angles, and the exponent.
+fn largest(lab: &Lab, id: &str, angles: &[f64]) -> Result<(f64, i64), StudyError> {
+    let mut best = (0.0, 0);
+    for n in EXPONENTS {
+        let surface = lab.surface(id, &gloss(n))?;
+        let most = angles.iter().map(|a| albedo_at(&*surface, *a).0).fold(0.0, f64::max);
+        if most > best.0 {
+            best = (most, n);
+        }
+    }
+    Ok(best)
 }
 
 /// What a curve of albedos says.
@@ -253,6 +277,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let range = |name: &str| find(name).map_or((f64::NAN, f64::NAN), |c| (c.3, c.4.1));
     let blinn = range("Blinn–Phong, k_d = k_s = 1, n = 8");
     let phong = range("Phong, k_d = k_s = 1, n = 8");
+    let (blinn_most, phong_most) =
+        (largest(lab, "blinn_phong", &[0.0, 60.0])?, largest(lab, "phong", &[0.0, 60.0])?);
     let single = range("GGX α = 0.8, F = 1");
     let compensated = range("… with Kulla–Conty");
     let k_a = find("Blinn–Phong, defaults").map_or(f64::NAN, |c| c.2);
@@ -269,11 +295,19 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     };
     let phong_family = |name: &&str| name.starts_with("Phong") || name.starts_with("Blinn–Phong");
     let gaining: Vec<&str> = by("gains").into_iter().filter(|name| !phong_family(name)).collect();
-    let incomplete: Vec<&str> =
-        curves.iter().filter(|c| c.0.whole && !kept((c.3, c.4.1))).map(|c| c.0.name).collect();
+    let losing = |whole: bool| -> Vec<&str> {
+        curves
+            .iter()
+            .filter(|c| c.0.whole == whole && verdict(c.3, c.4.1).contains("loses"))
+            .map(|c| c.0.name.trim_start_matches("… "))
+            .collect()
+    };
+    let (incomplete, others) = (losing(true), losing(false));
     let finding = format!(
-        "White Blinn–Phong reflects up to {:.2} times the light that it receives; rough GGX loses up to {:.0}\u{a0}% and, compensated for multiple scattering, stays within {:.1}\u{a0}%.",
+        "White Blinn–Phong reflects up to {:.2} times the light that it receives at n = 8, and up to {:.2} times with a legal exponent (n = {}); rough GGX loses up to {:.0}\u{a0}% and, compensated for multiple scattering, stays within {:.1}\u{a0}%.",
         blinn.1,
+        blinn_most.0,
+        blinn_most.1,
         100.0 * (1.0 - single.0),
         100.0 * off.max(0.001)
     );
@@ -285,6 +319,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         p .equation { span { "E(v) = ∫ f(l, v) (n · l) dl," } }
         p {
             "integrated adaptively to 10⁻⁴ by " code { "optics::albedo::directional" } " (which " code { "lcm albedo" } " prints). Every surface is white: base and specular colours are 1. "
+            "The Phong family stands in the table with n = 8; it gains most with a wide highlight, so the largest albedo that legal exponents give is searched from n = 0 to 16, at 0° and 60°. "
             "Models that share energy between a diffuse and a specular part are set to an even share. GGX is tested with F = 1, a mirror that absorbs nothing, and α = 0.8, where light bounces several times between "
             "facets; the compensations of Kulla and Conty (2017) and of Turquin (2019) return what the plain model leaves out."
         }
@@ -302,7 +337,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         div .conclusion {
             p {
                 @if blinn.1 > 1.0 + TOLERANCE || phong.1 > 1.0 + TOLERANCE {
-                    "With legal parameters, Blinn–Phong reflects up to " (fixed(blinn.1, 2)) " and Phong up to " (fixed(phong.1, 2)) " times the light that arrives. Nothing in their equations ties the highlight to the diffuse part. "
+                    "With " (words("k_d")) " = " (words("k_s")) " = 1 and n = 8, Blinn–Phong reflects up to " (fixed(blinn.1, 2)) " and Phong up to " (fixed(phong.1, 2)) " times the light that arrives. "
+                    "The most that legal parameters give is " (fixed(blinn_most.0, 2)) " (n = " (blinn_most.1) ") and " (fixed(phong_most.0, 2)) " (n = " (phong_most.1) "). Nothing in their equations ties the highlight to the diffuse part. "
                     "With its defaults Blinn–Phong stays below 1, but answers to uniform light with " (fixed(k_a, 2)) ", which has no relation to its albedo: in the furnace it is dark."
                 } @else {
                     "In these settings neither Phong nor Blinn–Phong exceeds 1."
@@ -324,7 +360,17 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 } @else {
                     "Being physically motivated is no guarantee. More than arrives is also sent out by: " (words(&gaining.join("; "))) ". "
                 }
-                @if !incomplete.is_empty() { "Not complete, although they should absorb nothing: " (words(&incomplete.join("; "))) "." }
+            }
+            p {
+                "The table says “loses” of two kinds. "
+                @if incomplete.is_empty() {
+                    "Of the rows whose settings leave nothing that could absorb, none loses. "
+                } @else {
+                    "These should return all light, since nothing in their settings absorbs: " (words(&incomplete.join("; "))) ". What is missing is a fault of the model. "
+                }
+                @if !others.is_empty() {
+                    "The others make no such promise: their settings divide the light between coefficients or by a Fresnel term, or their equations leave out light that bounces between facets. They are " (words(&others.join("; "))) "."
+                }
             }
         }
     };

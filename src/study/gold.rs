@@ -28,6 +28,19 @@ struct Blinn {
 }
 
 impl Blinn {
+    /// Channels that stand at the upper bound of the fit.
+    fn bounds(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        for (part, colour) in [("diffuse", self.diffuse), ("specular", self.specular)] {
+            for (name, x) in ["red", "green", "blue"].into_iter().zip(colour.to_array()) {
+                if x >= 1.0 {
+                    all.push(format!("{part} {name}"));
+                }
+            }
+        }
+        all
+    }
+
     fn put(&self, object: &mut Object) {
         let settings = [
             ("base_colour", preset::colour(self.diffuse)),
@@ -149,6 +162,15 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         lab.render(&scene, "blinn_phong", TermSelection::All, size)
     };
     let kept: Vec<Picture> = cases.iter().map(|(_, _, scene)| with(lab, scene, &tuned[0])).collect();
+    // What a picture under a lamp leaves open: the answer to light from everywhere.
+    let open = {
+        let mut scene = cases[3].2.clone();
+        scene.objects.iter_mut().for_each(|o| {
+            tuned[0].put(o);
+            o.material.set("k_a", Value::Number(1.0));
+        });
+        distance(&lab.render(&scene, "blinn_phong", TermSelection::All, size), &wanted[3])
+    };
     let distances: Vec<(f64, f64)> = kept.iter().zip(&wanted).map(|(a, b)| distance(a, b)).collect();
     let again: Vec<f64> = cases
         .iter()
@@ -158,10 +180,12 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         .collect();
     let mut raw = Table::new("gold_lights", "light,rms_with_A,brightness_with_A,rms_retuned");
     for (i, (id, name, _)) in cases.iter().enumerate() {
-        raw.row(
-            &[&format!("{id} {name}")],
-            &[distances[i].0, distances[i].1, again.get(i).copied().unwrap_or(f64::INFINITY)],
-        );
+        if i == 3 {
+            raw.row(&[&format!("{id} {name}, k_a = 0")], &[distances[i].0, distances[i].1, f64::NAN]);
+            raw.row(&[&format!("{id} {name}, k_a = 1")], &[open.0, open.1, f64::NAN]);
+        } else {
+            raw.row(&[&format!("{id} {name}")], &[distances[i].0, distances[i].1, again[i]]);
+        }
     }
     let mut figure = Vec::new();
     for (i, (id, name, scene)) in cases.iter().enumerate() {
@@ -179,19 +203,24 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         &html! { div .pairs { @for pair in figure.chunks(2) { (pictures(pair)) } } },
         &html! {
             "Gold under four lights. Left: GGX microfacets (α = 0.5) with the measured n and k of gold, the same parameters everywhere. Right: Blinn–Phong with the parameters that come closest under light A. Scene "
-            code { "gold_three_lights.json" } " has A, B and C."
+            code { "gold_three_lights.json" } " has A, B and C. Under D, " (words("k_a")) " is undetermined; 0 is shown."
         },
     );
     let table = lab.table(
         &html! {
             "Difference of the Blinn–Phong picture from the physically based one: root mean square difference in linear light as a share of the picture’s own root mean square (mean of three channels), and mean brightness. "
-            "“Tuned anew” is the same after fitting Blinn–Phong under that very light."
+            "“Tuned anew” is the same after fitting Blinn–Phong under that very light. Light D reaches Blinn–Phong through " (words("k_a")) " alone, which a fit under a lamp leaves undetermined: "
+            "the brightness is given for " (words("k_a")) " = 0 and 1. Nothing is tuned under D (–): only the product of " (words("k_a")) " and the diffuse colour answers there, and it can be given any colour."
         },
         &["Light", "RMS, tuned under A", "brightness", "RMS, tuned anew"],
         &cases
             .iter()
             .enumerate()
             .map(|(i, (id, name, _))| {
+                if i == 3 {
+                    let range = format!("{} to {}", percent(distances[i].1 - 1.0), percent(open.1 - 1.0));
+                    return vec![format!("{id}, {name}"), "undetermined".to_owned(), range, "–".to_owned()];
+                }
                 vec![
                     format!("{id}, {name}"),
                     format!("{}\u{a0}%", fixed(100.0 * distances[i].0, 1)),
@@ -255,11 +284,12 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let (blinn, ggx) = (of("Blinn–Phong"), of("GGX"));
     let wins = blinn.iter().zip(&ggx).filter(|(b, g)| g < b).count();
 
+    let bounds = tuned[2].bounds();
     let control = (distances[1].0 - distances[0].0).abs() < 0.01;
     let rises = distances[2].0 / distances[0].0;
     let confirmed = control && rises > 1.5 && wins * 2 > blinn.len();
     let finding = format!(
-        "Blinn–Phong tuned to gold under one lamp is {:.0}\u{a0}% off there and {:.0}\u{a0}% under a light from behind; light from 60° and more on measured paints is predicted better by GGX for {wins} of {}.",
+        "Blinn–Phong tuned to gold under one lamp is {:.1}\u{a0}% off there and {:.1}\u{a0}% under a light from behind; light from 60° and more on measured paints is predicted better by GGX for {wins} of {}.",
         100.0 * distances[0].0,
         100.0 * distances[2].0,
         blinn.len()
@@ -271,7 +301,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         p {
             "A teapot of gold is rendered with GGX microfacets, α = 0.5, and the exact Fresnel equations for the optical constants that Johnson and Christy (1972) measured at 630, 532 and 465 nm. "
             "Nothing in it is set by eye but the roughness. Blinn–Phong is then tuned to that picture under light A, as an artist would do, but by least squares: the diffuse and the "
-            "specular colour, each from 0 to 1 per channel, and the exponent that make the mean square difference in linear light smallest. With these parameters it is rendered under three other lights and compared again."
+            "specular colour, each from 0 to 1 per channel, and the exponent that make the mean square difference in linear light smallest. The ambient coefficient " (words("k_a")) " has no part in this picture and stays 0. With these parameters it is rendered under three other lights and compared again."
         }
         p {
             "Both models are linear in the light. A change of intensity or colour alone must therefore leave the relative difference as it is; light B is this control. Light C changes the direction, light D the extent of the light."
@@ -293,14 +323,17 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                     "The control fails: under B the difference is " (fixed(100.0 * distances[1].0, 1)) "\u{a0}% instead of " (fixed(100.0 * distances[0].0, 1)) "\u{a0}%, which is not expected of linear models. "
                 }
                 @if rises > 1.5 {
-                    "The direction is. Under C the difference is " (fixed(100.0 * distances[2].0, 0)) "\u{a0}%, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) "\u{a0}% of the brightness. "
-                    "Tuning anew under C leaves " (fixed(100.0 * again[2], 0)) "\u{a0}%, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
+                    "The direction is. Under C the difference is " (fixed(100.0 * distances[2].0, 1)) "\u{a0}%, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) "\u{a0}% of the brightness. "
+                    "Tuning anew under C leaves " (fixed(100.0 * again[2], 1)) "\u{a0}%, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
+                    @if !bounds.is_empty() { " Some of these stand at the bound of the fit, 1: " (bounds.join(", ")) "." }
                 } @else {
                     "Under C the difference is " (fixed(100.0 * distances[2].0, 0)) "\u{a0}%, only " (fixed(rises, 1)) " times as large."
                 }
             }
             p {
-                "Under D Blinn–Phong gives " (fixed(100.0 * distances[3].1, 0)) "\u{a0}% of the brightness. Light from everywhere reaches it through the coefficient " (words("k_a")) " alone, about which a picture under a lamp says nothing; gold answers by its albedo."
+                "Light from everywhere (D) reaches Blinn–Phong through the coefficient " (words("k_a")) " alone, about which a picture under a lamp says nothing. Its answer is undetermined: with the diffuse colour found under A, "
+                (words("k_a")) " from 0 to 1 gives " (fixed(100.0 * distances[3].1, 0)) "\u{a0}% to " (fixed(100.0 * open.1, 0)) "\u{a0}% of the brightness of gold, which answers by its albedo. "
+                @if open.1 < 1.0 - 0.01 { "No legal " (words("k_a")) " reaches it." } @else { "The right " (words("k_a")) " has to be known from elsewhere." }
             }
             p {
                 "On measured paints, GGX predicts the light from the side better than Blinn–Phong for " (wins) " of " (blinn.len()) " paints "

@@ -23,11 +23,15 @@ const LARGEST_ANGLE: f32 = 71.0;
 /// The paints: id, name.
 pub(super) const PAINTS: [(&str, &str); 3] =
     [("krylon_blue", "Krylon blue"), ("garnet_red", "Garnet red"), ("acryl_blue", "Acryl blue")];
+/// Angles of the light in the plots of paints, degrees.
+const INCIDENCES: [f32; 2] = [40.0, 60.0];
 /// Widths that are tried.
 const WIDTHS: (f64, f64) = (0.002, 1.0);
 
 /// A material of which a constant is nearer than this has no lobe.
 const MATTE: f64 = 0.01;
+/// A lobe narrower than this is very shiny: the highlight of a lamp is about a degree wide.
+const SHINY: f64 = 0.02;
 
 /// A model that takes part: its specular lobe with a free width.
 pub(super) struct Contestant {
@@ -129,11 +133,13 @@ impl Contestant {
     }
 
     /// The best fit and its settings; for models that have one, with the Fresnel term that fits better.
-    fn fit_freely(&self, registry: &Registry, samples: &[Sample]) -> (Fit, &[Setting]) {
-        let first = (self.fit(registry, samples), &self.settings[..]);
-        let Some(instead) = &self.instead else { return first };
+    fn fit_freely(&self, registry: &Registry, samples: &[Sample]) -> Found {
+        let first = self.fit(registry, samples);
+        let bound = first.error;
+        let found = |fit, settings: &[Setting]| Found { fit, settings: settings.to_vec(), bound };
+        let Some(instead) = &self.instead else { return found(first, &self.settings) };
         let second = fit::fit(samples, WIDTHS, |width, samples| self.lobe(registry, instead, width, samples));
-        if second.error < first.0.error { (second, instead) } else { first }
+        if second.error < bound { found(second, instead) } else { found(first, &self.settings) }
     }
 
     /// What a fit says at other samples.
@@ -198,10 +204,19 @@ fn merl_directions() -> Vec<Sample> {
     samples
 }
 
+/// What a contestant found for a material.
+struct Found {
+    fit: Fit,
+    /// The settings that it took.
+    settings: Vec<Setting>,
+    /// The error without a choice of the Fresnel term.
+    bound: f64,
+}
+
 struct MerlFit {
     name: &'static str,
-    /// Of each contestant, with the settings that it took.
-    fits: Vec<(Fit, Vec<Setting>)>,
+    /// Of each contestant.
+    fits: Vec<Found>,
     matte: f64,
 }
 
@@ -217,13 +232,7 @@ fn merl_fit(
         .filter(|s| s.value > 0.0 && s.value.is_finite())
         .collect();
     let values: Vec<f64> = samples.iter().map(|s| s.value).collect();
-    let fits = contestants
-        .iter()
-        .map(|c| {
-            let (fit, settings) = c.fit_freely(registry, &samples);
-            (fit, settings.to_vec())
-        })
-        .collect();
+    let fits = contestants.iter().map(|c| c.fit_freely(registry, &samples)).collect();
     MerlFit { name: material.name, fits, matte: fit::diffuse_only(&values).error }
 }
 
@@ -323,7 +332,7 @@ fn merl_plot(
         line: Line::None,
         mark: Mark::Ring,
     }];
-    for (c, (fit, settings)) in contestants.iter().zip(&found.fits) {
+    for (c, Found { fit, settings, .. }) in contestants.iter().zip(&found.fits) {
         let values = c.predict(lab.registry, settings, fit, &samples);
         series.push(Series {
             name: c.name.to_owned(),
@@ -357,15 +366,33 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let size = lab.size(1200, 240);
     let picture = lab.render(&scene, "", TermSelection::All, size);
     let names: Vec<&str> = scene.objects.iter().map(|o| o.name.as_deref().unwrap_or_default()).collect();
+    // The height of each lobe, with light and viewer along the normal.
+    let heights: Vec<f64> = scene
+        .objects
+        .iter()
+        .filter_map(|o| {
+            let model = registry.model(o.reflection_model.as_deref()?)?;
+            let surface = model.instantiate(&o.material, Encoding::Srgb);
+            Some(f64::from(surface.response(glam::Vec3::Z, glam::Vec3::Z, &Frame::LOCAL).specular.y))
+        })
+        .collect();
+    let lower: Vec<String> = names
+        .iter()
+        .zip(&heights)
+        .filter(|(_, h)| **h < 0.95 * heights[0])
+        .map(|(name, h)| format!("{name} ({:.0}\u{a0}%)", 100.0 * h / heights[0]))
+        .collect();
     let shown = lab.figure(
         &html! {
             div .wide {
-                (pictures(&[(image(&picture.to_rgb8(&scene.display), size, "Five highlights of the same width")?, "")]))
+                (pictures(&[(image(&picture.to_rgb8(&scene.display), size, "Five highlights of the same roughness")?, "")]))
                 div .labels style=(format!("--columns:{}", names.len())) { @for name in &names { span { (name) } } }
             }
         },
         &html! {
-            "Black plastic under one lamp: five lobes of the same height and, about their middle, the same width (α = 0.15, n = 87). They differ in their tails: GGX and GTR glow on where Blinn–Phong and Beckmann are dark. Scene "
+            "Black plastic under one lamp: five lobes of the same roughness (α = 0.15, n = 87). "
+            @if lower.is_empty() { "All have the same height. " } @else { "All have the same height but those that reach less of it: " (lower.join("; ")) ". " }
+            "They differ in their tails: GGX and GTR glow on where Blinn–Phong and Beckmann are dark. Scene "
             code { "lobe_shape.json" } "."
         },
     );
@@ -396,13 +423,45 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         &["Model", "free numbers", "Krylon blue", "Garnet red", "Acryl blue", "α Krylon", "α Garnet", "α Acryl"],
         &paint_rows,
     );
+    // What the errors of the table are when the light stands at one angle.
+    let at_incidence = |paint: usize, model: &str, theta: f32| -> Result<f64, StudyError> {
+        let samples = paint_samples(PAINTS[paint].0, |t| (t - theta).abs() < 0.5)?;
+        let fit = paints[paint].iter().find(|f| f.0 == model);
+        let contestant = Contestant::all().into_iter().find(|c| c.name == model);
+        Ok(contestant.zip(fit).map_or(f64::NAN, |(c, fit)| c.error(registry, &fit.1, &samples)))
+    };
+    let two_angles = |paint: usize| -> Result<Markup, StudyError> {
+        let (id, name) = PAINTS[paint];
+        Ok(html! { div .stack { @for theta in INCIDENCES {
+            div { p .over { "light at " (theta) "°" } (paint_plot(lab, id, name, theta)?) }
+        } } })
+    };
+    let errors = |paint: usize| -> Result<String, StudyError> {
+        let mut parts = Vec::new();
+        for theta in INCIDENCES {
+            let [b, c, g] =
+                ["Blinn–Phong", "Cook–Torrance", "GGX"].map(|model| at_incidence(paint, model, theta));
+            parts.push(format!(
+                "{} for Blinn–Phong, {} for Cook–Torrance and {} for GGX with light at {theta}°",
+                fixed(b?, 3),
+                fixed(c?, 3),
+                fixed(g?, 3)
+            ));
+        }
+        Ok(parts.join("; "))
+    };
+    let [krylon_plots, garnet_plots] = [two_angles(0)?, two_angles(1)?];
+    let [krylon_errors, garnet_errors] = [errors(0)?, errors(1)?];
     let paint_figure = lab.figure(
-        &html! { (paint_plot(lab, "krylon_blue", "Krylon blue", 40.0)?) },
-        &html! { "Krylon blue paint in the plane of incidence, light at 40°: measured values and the fits of the table (made to all directions, not to these alone). Logarithmic axis." },
+        &krylon_plots,
+        &html! {
+            "Krylon blue paint in the plane of incidence: measured values and the fits of the table, which are made to all directions of light and viewer and not to these alone. "
+            "A model may be far off in one plane and near elsewhere. The log error over all viewers is " (krylon_errors) ". Logarithmic axis."
+        },
     );
     let garnet_figure = lab.figure(
-        &html! { (paint_plot(lab, "garnet_red", "Garnet red", 40.0)?) },
-        &html! { "The same for garnet red paint." },
+        &garnet_plots,
+        &html! { "The same for garnet red paint. The log error over all viewers is " (garnet_errors) "." },
     );
 
     // Fits of MERL materials.
@@ -416,7 +475,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     // A material whose fit has no specular part has no lobe to compare.
     let flat = fits.iter().filter(|f| f.matte < MATTE).count();
     fits.retain(|f| f.matte >= MATTE);
-    fits.sort_by(|a, b| a.fits[last].0.error.total_cmp(&b.fits[last].0.error));
+    let error = |f: &MerlFit, i: usize| f.fits[i].fit.error;
+    fits.sort_by(|a, b| error(a, last).total_cmp(&error(b, last)));
     let mut header = "material,lambert".to_owned();
     for c in &contestants {
         let n = c.name.to_lowercase().replace('–', "_");
@@ -425,19 +485,22 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let mut raw_merl = Table::new("lobe_merl", &header);
     for f in &fits {
         let mut numbers = vec![f.matte];
-        numbers.extend(f.fits.iter().flat_map(|(f, _)| [f.error, f.diffuse, f.specular, f.width]));
+        numbers
+            .extend(f.fits.iter().flat_map(|Found { fit: f, .. }| [f.error, f.diffuse, f.specular, f.width]));
         raw_merl.row(&[f.name], &numbers);
     }
+    // A tie is no win.
     let best = |i: usize| {
-        fits.iter().filter(|f| f.fits.iter().all(|other| f.fits[i].0.error <= other.0.error)).count()
+        let wins = |f: &&MerlFit| (0..contestants.len()).all(|j| j == i || error(f, i) < error(f, j));
+        fits.iter().filter(wins).count()
     };
     let medians: Vec<f64> =
-        (0..contestants.len()).map(|i| median(fits.iter().map(|f| f.fits[i].0.error).collect())).collect();
+        (0..contestants.len()).map(|i| median(fits.iter().map(|f| error(f, i)).collect())).collect();
     let matte = median(fits.iter().map(|f| f.matte).collect());
     let mut merl_rows =
         vec![vec!["Lambert".to_owned(), "1".to_owned(), fixed(matte, 3), "–".to_owned(), "–".to_owned()]];
     for (i, c) in contestants.iter().enumerate() {
-        let better = fits.iter().filter(|f| f.fits[i].0.error < f.fits[0].0.error).count();
+        let better = fits.iter().filter(|f| error(f, i) < error(f, 0)).count();
         merl_rows.push(vec![
             c.name.to_owned(),
             if c.instead.is_some() { "3 and choice of F" } else { "3" }.to_owned(),
@@ -449,21 +512,24 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let merl_table = lab.table(
         &html! {
             "Fits to " (fits.len()) " materials of the MERL database, as represented by the SGD fits of Bagher et al. (2012): median of the log error, the number of materials for which the model is the best of the four, "
-            "and for which it is better than Blinn–Phong."
+            "and for which it is better than Blinn–Phong; a tie is no win. "
+            @if flat > 0 { (flat) " more materials without a specular part, which every model fits exactly, are not counted." }
         },
         &["Model", "free numbers", "median error", "best for", "better than Blinn–Phong"],
         &merl_rows,
     );
+    let errors = fits.iter().flat_map(|f| (0..contestants.len()).map(|i| error(f, i)));
+    let (lowest, highest) = errors.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), e| (l.min(e), h.max(e)));
     let chart = Plot {
         title: "Log error by material, sorted by the error of GGX".to_owned(),
         x: Axis::new("materials, sorted by the error of GGX", 0.0, fits.len() as f64 + 1.0, 6),
-        y: Axis::log("log error", 0.005, 2.0),
+        y: Axis::log("log error", lowest.min(0.006) / 1.2, 1.2 * highest.max(1.6)),
         series: contestants
             .iter()
             .enumerate()
             .map(|(i, c)| Series {
                 name: c.name.to_owned(),
-                points: fits.iter().enumerate().map(|(x, f)| (x as f64 + 1.0, f.fits[i].0.error)).collect(),
+                points: fits.iter().enumerate().map(|(x, f)| (x as f64 + 1.0, error(f, i))).collect(),
                 colour: c.style.0,
                 line: Line::None,
                 mark: c.style.2,
@@ -474,7 +540,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     };
     let chart = lab.figure(
         &svg(&chart)?,
-        &html! { "Error of the four models for each material, sorted. Logarithmic axis." },
+        &html! { "Error of the four models for each material, sorted. Logarithmic axis; it holds every point." @if flat > 0 { " The " (flat) " materials without a specular part have error 0 and no place on it." } },
     );
     let wanted = ["gold-metallic-paint", "alum-bronze", "red-plastic", "blue-acrylic"];
     let mut panels = Vec::new();
@@ -499,7 +565,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         .iter()
         .map(|f| {
             let mut row = vec![f.name.to_owned()];
-            row.extend(f.fits.iter().map(|(f, _)| fixed(f.error, 3)));
+            row.extend(f.fits.iter().map(|f| fixed(f.fit.error, 3)));
             row
         })
         .collect();
@@ -513,16 +579,36 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let ggx_first = medians[last] < medians[0];
     let confirmed = wins == 2 && ggx_first;
     let ratio = medians[0] / medians[last];
+    // A log error as per cent.
+    let off = |error: f64| 100.0 * (error.exp() - 1.0);
     let finding = format!(
-        "Fitted to measured paint with the same freedom, Blinn–Phong is off by {:.0}\u{a0}% and {:.0}\u{a0}%, GGX by {:.0}\u{a0}% and {:.0}\u{a0}%; over {} MERL fits the median errors are {:.2} and {:.2}.",
-        100.0 * (of(0, "Blinn–Phong").exp() - 1.0),
-        100.0 * (of(1, "Blinn–Phong").exp() - 1.0),
-        100.0 * (of(0, "GGX").exp() - 1.0),
-        100.0 * (of(1, "GGX").exp() - 1.0),
+        "Fitted to measured paint with the same freedom, Blinn–Phong is off by {:.1}\u{a0}% and {:.1}\u{a0}%, GGX by {:.1}\u{a0}% and {:.1}\u{a0}%; over {} MERL fits, where GGX may also choose its Fresnel term, the medians are {:.1}\u{a0}% and {:.1}\u{a0}%.",
+        off(of(0, "Blinn–Phong")),
+        off(of(1, "Blinn–Phong")),
+        off(of(0, "GGX")),
+        off(of(1, "GGX")),
         fits.len(),
-        medians[0],
-        medians[last]
+        off(medians[0]),
+        off(medians[last])
     );
+    // From Blinn–Phong to the microfacet model with the same distribution, and from there to GGX.
+    let frame = [0, 1].map(|p| of(p, "Blinn–Phong") - of(p, "Blinn’s distribution"));
+    let tail = [0, 1].map(|p| of(p, "Blinn’s distribution") - of(p, "GGX distribution"));
+    let share = [0, 1].map(|p| format!("{:.0}\u{a0}%", 100.0 * frame[p] / (frame[p] + tail[p])));
+    // Where GGX is worse than Blinn–Phong, by the width of the latter.
+    let mut worse: Vec<&MerlFit> = fits.iter().filter(|f| error(f, last) > error(f, 0)).collect();
+    worse.sort_by(|a, b| a.fits[0].fit.width.total_cmp(&b.fits[0].fit.width));
+    let shiny = |f: &MerlFit| f.fits[0].fit.width < SHINY;
+    let (shiny_worse, all_shiny) =
+        (worse.iter().filter(|f| shiny(f)).count(), fits.iter().filter(|f| shiny(f)).count());
+    let short = contestants.iter().position(|c| c.name == "Cook–Torrance").unwrap_or(last);
+    let short_better = worse.iter().filter(|f| error(f, short) < error(f, last)).count();
+    let worse_names: Vec<String> = worse
+        .iter()
+        .map(|f| format!("{} ({})", f.name.replace('-', " "), fixed(f.fits[0].fit.width, 3)))
+        .collect();
+    let bound_median = median(fits.iter().map(|f| f.fits[last].bound).collect());
+    let bound_better = fits.iter().filter(|f| f.fits[last].bound < error(f, 0)).count();
     let tails = (0..2).all(|p| of(p, "GGX distribution") < of(p, "Blinn’s distribution"));
     let acryl = [of(2, "Blinn–Phong"), of(2, "GGX")];
     let body = html! {
@@ -560,10 +646,15 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             p {
                 @if wins == 2 {
                     "For both glossy paints GGX comes closest to the measurement: its log error is " (fixed(of(0, "GGX"), 3)) " and " (fixed(of(1, "GGX"), 3)) ", Blinn–Phong’s "
-                    (fixed(of(0, "Blinn–Phong"), 3)) " and " (fixed(of(1, "Blinn–Phong"), 3)) ". Exchanging the distribution alone shows why: with Blinn’s distribution inside the same microfacet model the errors are "
+                    (fixed(of(0, "Blinn–Phong"), 3)) " and " (fixed(of(1, "Blinn–Phong"), 3)) ". Exchanging the distribution alone shows its part: with Blinn’s distribution inside the same microfacet model the errors are "
                     (fixed(of(0, "Blinn’s distribution"), 3)) " and " (fixed(of(1, "Blinn’s distribution"), 3)) ", with Beckmann’s " (fixed(of(0, "Beckmann’s distribution"), 3)) " and " (fixed(of(1, "Beckmann’s distribution"), 3))
                     ". "
-                    @if tails { "The longer tail of GGX is what the paints have; the cosine in Blinn–Phong’s denominator and the missing Fresnel term cost the rest." }
+                    @if tails {
+                        "Of the way from Blinn–Phong to GGX, " (share[0]) " and " (share[1]) " are due to the frame of the microfacet model (its denominator, masking and Fresnel term), and the rest to the longer tail of GGX. "
+                        @if frame[0] > tail[0] && frame[1] > tail[1] { "The frame is the larger part for both paints." }
+                        @else if frame[0] < tail[0] && frame[1] < tail[1] { "The tail is the larger part for both paints." }
+                        @else { "Which part is larger depends on the paint." }
+                    }
                 } @else {
                     "For the glossy paints GGX is better than Blinn–Phong in " (wins) " of two cases."
                 }
@@ -583,6 +674,22 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                     (c.name) " for " (best(i)) @if i > 1 { ", " } @else if i == 1 { " and " }
                 }
                 ". No model is best for every material: these are fits of one more model, and the tails of real materials differ."
+            }
+            p {
+                @if worse.is_empty() {
+                    "GGX is worse than Blinn–Phong for none of them. "
+                } @else {
+                    "GGX is worse than Blinn–Phong for " (worse.len()) " of them (in brackets the width α of Blinn–Phong’s lobe): " (worse_names.join(", ")) ". "
+                    @if 2 * shiny_worse > worse.len() {
+                        "Most of these, " (shiny_worse) ", are very shiny (α < " (SHINY) "); a narrow lobe alone does not decide, as GGX is better for " (all_shiny - shiny_worse) " of the " (all_shiny) " that are. "
+                    } @else {
+                        "Of these " (shiny_worse) " are very shiny (α < " (SHINY) "). "
+                    }
+                    @if 2 * short_better > worse.len() {
+                        "For " (short_better) " of the " (worse.len()) " Cook–Torrance is better than GGX, too: their lobes fall off faster than GGX’s, which a short tail fits. "
+                    }
+                }
+                "The microfacet models had one choice more, that of F. With F for n = 1.5 throughout, the median error of GGX is " (fixed(bound_median, 2)) ", and it is better than Blinn–Phong for " (bound_better) " of " (fits.len()) "."
             }
         }
     };

@@ -74,8 +74,20 @@ const GLOSSARY: &[(&str, &str)] = &[
         "a test: in uniform light from everywhere, a surface that absorbs nothing cannot be told from its surroundings.",
     ),
     (
+        "MERL",
+        "a database of 100 isotropic materials that were measured at Mitsubishi Electric Research Laboratories (Matusik et al. 2003).",
+    ),
+    (
+        "SGD",
+        "shifted gamma distribution: a microfacet model with eleven parameters per colour channel, which its authors fitted to every MERL material (Bagher et al. 2012).",
+    ),
+    (
+        "Levenberg’s method",
+        "a way to find the parameters that make a sum of squares smallest (K. Levenberg 1944): steps of the Gauss–Newton method, shortened until the sum falls.",
+    ),
+    (
         "Log error",
-        "root mean square of the difference of natural logarithms between model and data. 0.10 means that the model is typically 10\u{a0}% off, 0.7 a factor of two.",
+        "root mean square of the difference of natural logarithms between model and data. 0.10 means that the model is typically 10\u{a0}% off, 0.7 a factor of two. Where the text gives it in per cent, that is 100 (exp(error) − 1).",
     ),
 ];
 
@@ -88,6 +100,7 @@ const SOURCES: &[&str] = &[
     "E. Heitz (2014). Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs. Journal of Computer Graphics Techniques 3(2), 48–107.",
     "E. James (2022). Physically Based Shading Models in Real-time Rendering. Final report, University of Leeds.",
     "C. Kulla, A. Conty (2017). Revisiting Physically Based Shading at Imageworks. SIGGRAPH course.",
+    "K. Levenberg (1944). A Method for the Solution of Certain Non-Linear Problems in Least Squares. Quarterly of Applied Mathematics 2(2), 164–168.",
     "J. Löw, J. Kronander, A. Ynnerman, J. Unger (2012). BRDF Models for Accurate and Efficient Rendering of Glossy Surfaces. ACM Transactions on Graphics 31(1), 9.",
     "W. Matusik, H. Pfister, M. Brand, L. McMillan (2003). A Data-Driven Reflectance Model. ACM Transactions on Graphics 22(3), 759–769 (the MERL database).",
     "A. Ngan, F. Durand, W. Matusik (2005). Experimental Analysis of BRDF Models. Eurographics Symposium on Rendering, 117–126.",
