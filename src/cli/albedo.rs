@@ -2,14 +2,13 @@
 
 use std::io::{self, BufWriter, Write as _};
 
-use clap::Args;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::{
     Failure, Outcome,
     angles::{self, Column},
-    evaluate::{Machine, Settings, find},
+    evaluate::{Arguments, Machine, find},
 };
 use crate::{
     capture::evaluate::albedos,
@@ -17,17 +16,6 @@ use crate::{
     reflection::parameter::ABOVE_ZERO,
     registry::Registry,
 };
-
-#[derive(Args, Debug)]
-pub(super) struct Arguments {
-    /// The id of the model, as `lcm models` lists it
-    model: String,
-    #[command(flatten)]
-    set: Settings,
-    /// What evaluates the model; the integration is the same
-    #[arg(long, value_enum, default_value_t = Machine::Cpu)]
-    on: Machine,
-}
 
 /// The column that is read. At μ = 0 the viewer is in the surface, where a response is 0 by definition and
 /// no limit of the albedo.

@@ -6,7 +6,7 @@ use std::{
 };
 
 use clap::{Args, ValueEnum};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use super::{
     Failure, Outcome,
@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     capture::evaluate::evaluate,
-    optics::{Frame, colour::Encoding},
+    optics::{Frame, colour::Encoding, geometry::direction},
     reflection::{
         ModelEntry, brdf, brdf_of,
         parameter::{Parameter, ParameterKind, Value, Values},
@@ -26,15 +26,16 @@ use crate::{
     },
 };
 
+/// A model with its parameters, and who is asked about it.
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// The id of the model, as `lcm models` lists it
-    model: String,
+    pub model: String,
     #[command(flatten)]
-    set: Settings,
-    /// What evaluates
+    pub set: Settings,
+    /// What evaluates the model
     #[arg(long, value_enum, default_value_t = Machine::Cpu)]
-    on: Machine,
+    pub on: Machine,
 }
 
 /// Parameters of a model on the command line.
@@ -110,16 +111,6 @@ pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
     Ok(out.flush()?)
 }
 
-/// The unit vector of spherical angles in degrees, in the local frame: the normal is +z, the tangent
-/// +x. Calculated in 64 bits, so that 90° is not a hair above the surface.
-fn direction(theta: f64, phi: f64) -> Vec3 {
-    let (sin_theta, cos_theta) = theta.to_radians().sin_cos();
-    let (sin_phi, cos_phi) = phi.rem_euclid(360.0).to_radians().sin_cos();
-    // cos 90° is not exactly zero in binary.
-    let z = if theta == 90.0 { 0.0 } else { cos_theta };
-    DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, z).as_vec3()
-}
-
 /// The model of that id.
 pub(super) fn find<'a>(registry: &'a Registry, id: &str) -> Result<&'a ModelEntry, Failure> {
     check::reflection_model(registry, id)
@@ -187,20 +178,6 @@ fn parse(parameter: &Parameter, written: &str) -> Option<Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn angles_become_unit_vectors_around_the_normal() {
-        for (theta, phi, expected) in [
-            (0.0, 77.0, Vec3::Z),
-            (90.0, 0.0, Vec3::X),
-            (90.0, 90.0, Vec3::Y),
-            (90.0, -270.0, Vec3::Y),
-            (180.0, 0.0, Vec3::NEG_Z),
-        ] {
-            assert!((direction(theta, phi) - expected).length() < 1e-6, "{theta} {phi}");
-        }
-        assert_eq!(direction(90.0, 33.0).z, 0.0);
-    }
 
     #[test]
     fn settings_are_checked_like_scene_files() {

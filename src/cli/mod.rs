@@ -12,6 +12,7 @@ use std::{
 };
 
 use clap::{Args, Parser, Subcommand, error::ErrorKind};
+use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{registry::Registry, scene::load::Defaults};
 
@@ -119,7 +120,7 @@ enum Command {
     Study(study::Arguments),
     /// Integrate a model: cosines of the view, `mu`, above 0 up to 1, from standard input, its directional
     /// albedos to standard output, as CSV; of an anisotropic model as seen along the tangent
-    Albedo(albedo::Arguments),
+    Albedo(evaluate::Arguments),
     /// Print the JSON Schema of scene files
     Schema,
 }
@@ -227,6 +228,18 @@ fn print(text: &str) -> Outcome {
 /// Writes a line to standard error. That nobody reads it is no reason to panic.
 fn complain(what: impl fmt::Display) {
     let _ = writeln!(io::stderr().lock(), "{what}");
+}
+
+/// A bar of so many steps where it helps: several of them, a terminal, and nobody who wants quiet.
+fn progress(steps: u64, options: Options) -> ProgressBar {
+    if steps < 2 || options.quiet || !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(steps);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    bar
 }
 
 /// Asks a yes-or-no question on the terminal; no terminal, no yes. Anything but y or yes is a no.

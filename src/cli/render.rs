@@ -3,15 +3,13 @@
 use std::{
     collections::HashMap,
     fs,
-    io::IsTerminal as _,
     path::{Path, PathBuf},
     str::FromStr,
 };
 
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{Failure, Options, Outcome, scenes::Source};
+use super::{Failure, Options, Outcome, progress, scenes::Source};
 use crate::{
     capture::{
         gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
@@ -148,7 +146,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         return Err(Failure::Invalid(problems.join("\n")));
     }
 
-    let bar = progress(scenes.len(), options);
+    let bar = progress(scenes.len() as u64, options);
     let mut painter = Painter::new(arguments.renderer)?;
     for ((scene, source), file) in scenes.iter().zip(&sources).zip(&files) {
         bar.set_message(source.name());
@@ -235,18 +233,6 @@ fn on_cpu(job: &Job, registry: &Registry) -> Vec<u8> {
     let settings =
         reference::Settings { width: job.width, height: job.height, samples: job.samples, terms: job.terms };
     reference::render_rgb8(job.scene, registry, &settings)
-}
-
-/// A bar where it helps: several scenes, a terminal, and nobody who wants quiet.
-fn progress(count: usize, options: Options) -> ProgressBar {
-    if count < 2 || options.quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(count as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
-        bar.set_style(style);
-    }
-    bar
 }
 
 /// What the command line changes in every scene.

@@ -1,15 +1,13 @@
 //! `lcm study`: the four phenomena as a report.
 
 use std::{
-    io::IsTerminal as _,
     path::{Path, PathBuf},
     time::Instant,
 };
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{Failure, Options, Outcome};
+use super::{Failure, Options, Outcome, progress};
 use crate::{registry::Registry, study};
 
 /// Where the report goes when nothing else is said.
@@ -30,7 +28,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     // What cannot be written is better known now than in half a minute.
     writable(folder)?;
     let start = Instant::now();
-    let bar = progress(options);
+    let bar = progress(study::STEPS, options);
     let tell = |what: &str| {
         if bar.is_hidden() {
             options.detail(format_args!("{what} …"));
@@ -58,16 +56,4 @@ fn writable(folder: &Path) -> Outcome {
     std::fs::create_dir_all(folder)
         .and_then(|()| tempfile::tempfile_in(folder).map(drop))
         .map_err(|e| Failure::Write(format!("{} could not be written: {e}", folder.display())))
-}
-
-/// A bar, where there is a terminal and nobody wants quiet.
-fn progress(options: Options) -> ProgressBar {
-    if options.quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(study::STEPS);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
-        bar.set_style(style);
-    }
-    bar
 }

@@ -428,11 +428,10 @@ impl AlbedoCurve {
         Self { harmonics }
     }
 
-    /// The albedo for a view. A view from below counts as its mirror image: interpolated normals turn away
-    /// at silhouettes, where the surface is seen all the same.
+    /// The albedo for a view from above.
     #[must_use]
     pub fn at(&self, v: Vec3, frame: &Frame) -> Vec3 {
-        let (i, weights) = spline(frame.n.dot(v).abs());
+        let (i, weights) = spline(frame.n.dot(v));
         let (x, y) = (frame.t.dot(v), frame.b.dot(v));
         // Along the normal there is no azimuth, and nothing depends on it.
         let cos_2 = (x * x - y * y) / (x * x + y * y).max(f32::MIN_POSITIVE);

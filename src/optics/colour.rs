@@ -57,6 +57,12 @@ pub fn srgb_encode(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// Linear light to sRGB-encoded eight bits; what a display cannot show is clipped.
+#[must_use]
+pub fn srgb_encode8(linear: f32) -> u8 {
+    (255.0 * srgb_encode(linear.clamp(0.0, 1.0))).round() as u8
+}
+
 /// Luminance of a linear Rec. 709 colour.
 #[must_use]
 pub fn luminance(linear: Vec3) -> f32 {

@@ -93,6 +93,12 @@ pub fn normal_reflectance(n: f32, k: f32) -> f32 {
     ((n - 1.0) * (n - 1.0) + k2) / ((n + 1.0) * (n + 1.0) + k2)
 }
 
+/// [`normal_reflectance`] for the three channels.
+#[must_use]
+pub fn normal_reflectance_rgb(n: Vec3, k: Vec3) -> Vec3 {
+    Vec3::new(normal_reflectance(n.x, k.x), normal_reflectance(n.y, k.y), normal_reflectance(n.z, k.z))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

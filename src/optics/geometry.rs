@@ -1,7 +1,7 @@
 //! Directions at a surface point (R8). All vectors are unit vectors; `l` points from the surface
 //! **to** the light, `v` to the observer.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// The local frame of a surface point: normal, tangent, bitangent; orthonormal, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +53,17 @@ impl Frame {
     pub fn to_local(&self, d: Vec3) -> Vec3 {
         Vec3::new(self.t.dot(d), self.b.dot(d), self.n.dot(d))
     }
+}
+
+/// The unit vector of spherical angles in degrees, in the local frame: the normal is +z, the tangent
+/// +x. Calculated in 64 bits, so that 90° is not a hair above the surface.
+#[must_use]
+pub fn direction(theta: f64, phi: f64) -> Vec3 {
+    let (sin_theta, cos_theta) = theta.to_radians().sin_cos();
+    let (sin_phi, cos_phi) = phi.rem_euclid(360.0).to_radians().sin_cos();
+    // cos 90° is not exactly zero in binary.
+    let z = if theta == 90.0 { 0.0 } else { cos_theta };
+    DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, z).as_vec3()
 }
 
 /// The mirror direction `R = 2(N·L)N − L` (law of reflection, T1: the angle of incidence equals the
@@ -152,5 +163,19 @@ mod tests {
         // No normal at all, as of a degenerate polygon: finite.
         let f = Frame::new(Vec3::ZERO, Vec3::X);
         assert!(f.t.is_finite() && f.b.is_finite());
+    }
+
+    #[test]
+    fn angles_become_unit_vectors_around_the_normal() {
+        for (theta, phi, expected) in [
+            (0.0, 77.0, Vec3::Z),
+            (90.0, 0.0, Vec3::X),
+            (90.0, 90.0, Vec3::Y),
+            (90.0, -270.0, Vec3::Y),
+            (180.0, 0.0, Vec3::NEG_Z),
+        ] {
+            assert!((direction(theta, phi) - expected).length() < 1e-6, "{theta} {phi}");
+        }
+        assert_eq!(direction(90.0, 33.0).z, 0.0);
     }
 }

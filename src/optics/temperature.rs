@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::colour::srgb_encode;
+use super::colour::{srgb_encode, srgb_encode8};
 
 /// The lowest colour temperature of a light, kelvin: a dull red glow.
 pub const MIN_TEMPERATURE: f32 = 1000.0;
@@ -65,7 +65,7 @@ pub fn black_body(kelvin: f32) -> Vec3 {
 /// The same, sRGB-encoded in eight bits.
 #[must_use]
 pub fn black_body_rgb8(kelvin: f32) -> [u8; 3] {
-    black_body(kelvin).to_array().map(|c| (255.0 * srgb_encode(c)).round() as u8)
+    black_body(kelvin).to_array().map(srgb_encode8)
 }
 
 /// The temperature in kelvin, rounded to hundreds, whose colour is nearest to an sRGB colour.

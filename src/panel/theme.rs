@@ -207,8 +207,8 @@ pub fn elided(ui: &egui::Ui, text: &str, style: TextStyle, colour: Color32, widt
 /// The colour on screen of a linear reflectance.
 #[must_use]
 pub fn swatch(reflectance: glam::Vec3) -> Color32 {
-    let code = |v: f32| (255.0 * crate::optics::colour::srgb_encode(v.clamp(0.0, 1.0))).round() as u8;
-    Color32::from_rgb(code(reflectance.x), code(reflectance.y), code(reflectance.z))
+    let [r, g, b] = reflectance.to_array().map(crate::optics::colour::srgb_encode8);
+    Color32::from_rgb(r, g, b)
 }
 
 /// Makes the fonts known to egui. Once per context.

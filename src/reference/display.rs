@@ -6,7 +6,7 @@ use glam::{Vec3, Vec4};
 
 use crate::{
     optics::{
-        colour::{BACKGROUND, Encoding, srgb_decode, srgb_encode},
+        colour::{BACKGROUND, Encoding, srgb_decode, srgb_encode8},
         tone::exposure_factor,
     },
     scene::Display,
@@ -30,26 +30,22 @@ impl Encoder {
     /// The slot of 2⁻¹². Numbers below take the slow path of at most one step.
     const FIRST: u32 = ((127 - 12) << 23) >> Self::SHIFT;
 
-    fn exact(x: f32) -> u8 {
-        (255.0 * srgb_encode(x.clamp(0.0, 1.0))).round() as u8
-    }
-
     fn new() -> Self {
         let mut threshold = [0.0; 256];
         for code in 1..=255u8 {
             // The inverse function misses the threshold by a few of the last bits at most.
             let mut x = srgb_decode((f32::from(code) - 0.5) / 255.0);
-            while Self::exact(x) >= code {
+            while srgb_encode8(x) >= code {
                 x = x.next_down();
             }
-            while Self::exact(x) < code {
+            while srgb_encode8(x) < code {
                 x = x.next_up();
             }
             threshold[usize::from(code)] = x;
         }
         let last = 1.0f32.to_bits() >> Self::SHIFT;
         let start =
-            (Self::FIRST..=last).map(|slot| Self::exact(f32::from_bits(slot << Self::SHIFT))).collect();
+            (Self::FIRST..=last).map(|slot| srgb_encode8(f32::from_bits(slot << Self::SHIFT))).collect();
         Self { threshold, start }
     }
 
@@ -123,7 +119,7 @@ mod tests {
                 x = x.next_down();
             }
             for _ in 0..128 {
-                assert_eq!(encode8(x), Encoder::exact(x), "{x}");
+                assert_eq!(encode8(x), srgb_encode8(x), "{x}");
                 x = x.next_up();
             }
         }
@@ -138,7 +134,7 @@ mod tests {
         use rayon::prelude::*;
         (0..=1.0f32.to_bits()).into_par_iter().for_each(|bits| {
             let x = f32::from_bits(bits);
-            assert_eq!(encode8(x), Encoder::exact(x), "{x}");
+            assert_eq!(encode8(x), srgb_encode8(x), "{x}");
         });
     }
 

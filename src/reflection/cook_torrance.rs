@@ -11,7 +11,7 @@ use crate::{
     optics::{
         Frame, Terms,
         distribution::beckmann,
-        fresnel::{conductor_rgb, normal_reflectance},
+        fresnel::{conductor_rgb, normal_reflectance_rgb},
         geometry::half_vector,
         masking::v_cavity,
     },
@@ -133,17 +133,12 @@ impl ReflectionModel for CookTorrance {
     }
 
     fn readouts(&self) -> Vec<Readout> {
-        vec![Readout::of_f0(f0(self.ior, self.extinction)), Readout::of_alpha(self.slope)]
+        vec![Readout::of_f0(normal_reflectance_rgb(self.ior, self.extinction)), Readout::of_alpha(self.slope)]
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
         conductor_preset(material)
     }
-}
-
-/// The reflectance at normal incidence.
-pub(super) fn f0(n: Vec3, k: Vec3) -> Vec3 {
-    Vec3::new(normal_reflectance(n.x, k.x), normal_reflectance(n.y, k.y), normal_reflectance(n.z, k.z))
 }
 
 /// n and k; a metal scatters nothing from inside. How much a dielectric scatters is a matter of its

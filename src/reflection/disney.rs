@@ -266,9 +266,8 @@ impl ReflectionModel for Disney {
         if material.metal {
             return preset::base_colour_metallic(material);
         }
-        // At most 1, F_0 = 8 %: diamond's 17 % are out of reach. As many digits as a knob shows.
-        let specular = (luminance(material.f0) / 0.08).min(1.0);
-        let specular = (specular * 1e4).round() / 1e4;
-        vec![(METALLIC.name, Value::Number(0.0)), (SPECULAR.name, Value::Number(specular))]
+        // At most 1, F_0 = 8 %: diamond's 17 % are out of reach.
+        let specular = preset::fraction(luminance(material.f0) / 0.08);
+        vec![(METALLIC.name, Value::Number(0.0)), (SPECULAR.name, specular)]
     }
 }

@@ -3,7 +3,7 @@ use std::f32::consts::{PI, SQRT_2};
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReadoutValue, ReflectionModel, Term,
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
     parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
     preset,
 };
@@ -12,7 +12,7 @@ use crate::{
         Frame, Terms,
         albedo::LobeAlbedo,
         diffuse, distribution,
-        fresnel::{conductor_rgb, dielectric_rgb, normal_reflectance, schlick},
+        fresnel::{conductor_rgb, dielectric_rgb, normal_reflectance_rgb, schlick},
         geometry::half_vector,
         masking,
     },
@@ -229,12 +229,10 @@ impl Microfacet {
 
     /// `F_0`.
     fn f0(&self) -> Vec3 {
-        let (n, k) = (self.ior, self.extinction);
-        let f0 = |n, k| normal_reflectance(n, k);
         match self.fresnel {
             0 => Vec3::ONE,
-            2 => n.map(|n| f0(n, 0.0)),
-            _ => Vec3::new(f0(n.x, k.x), f0(n.y, k.y), f0(n.z, k.z)),
+            2 => normal_reflectance_rgb(self.ior, Vec3::ZERO),
+            _ => normal_reflectance_rgb(self.ior, self.extinction),
         }
     }
 
@@ -338,12 +336,7 @@ impl ReflectionModel for Microfacet {
     }
 
     fn readouts(&self) -> Vec<Readout> {
-        vec![Readout {
-            symbol: "F_0",
-            label: "reflectance at normal incidence",
-            help: "How much light a microfacet reflects that is met straight on, from n and k.",
-            value: ReadoutValue::Reflectance(self.f0()),
-        }]
+        vec![Readout::of_f0(self.f0())]
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

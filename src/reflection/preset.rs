@@ -14,7 +14,7 @@ use super::{
     parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, REFLECTANCE, Value},
 };
 use crate::{
-    optics::colour::{luminance, srgb_encode},
+    optics::colour::{luminance, srgb_encode8},
     registry::Registry,
 };
 
@@ -109,10 +109,8 @@ pub fn base_colour_metallic(material: &Measured) -> Vec<(&'static str, Value)> {
     if material.metal {
         vec![(BASE_COLOUR.name, colour(material.f0)), (METALLIC.name, Value::Number(1.0))]
     } else {
-        let s = (luminance(material.f0) / 0.16).sqrt().min(1.0);
-        // As many digits as a knob shows, so that the value shown is the value.
-        let s = (s * 1e4).round() / 1e4;
-        vec![(METALLIC.name, Value::Number(0.0)), (REFLECTANCE.name, Value::Number(s))]
+        let s = (luminance(material.f0) / 0.16).sqrt();
+        vec![(METALLIC.name, Value::Number(0.0)), (REFLECTANCE.name, fraction(s))]
     }
 }
 
@@ -137,11 +135,17 @@ pub fn along(model: &ModelEntry, material: &Measured, registry: &Registry) -> Ve
     values
 }
 
+/// A number as the value of a parameter that ends at 1, with as many digits as a knob shows, so that the
+/// value shown is the value.
+#[must_use]
+pub fn fraction(v: f32) -> Value {
+    Value::Number((v.min(1.0) * 1e4).round() / 1e4)
+}
+
 /// A linear reflectance as the value of a parameter that is a colour: sRGB-encoded, 8 bits.
 #[must_use]
 pub fn colour(reflectance: Vec3) -> Value {
-    let code = |v: f32| (255.0 * srgb_encode(v.clamp(0.0, 1.0))).round() as u8;
-    Value::Colour(reflectance.to_array().map(code))
+    Value::Colour(reflectance.to_array().map(srgb_encode8))
 }
 
 #[cfg(test)]

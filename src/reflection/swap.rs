@@ -1,7 +1,10 @@
 //! Exchanging models, modes, parameters and shapes at run time: the frame after the choice shows the
 //! new one, and no frame is without the object.
 
-use std::collections::{HashMap, HashSet};
+use std::{
+    cell::LazyCell,
+    collections::{HashMap, HashSet},
+};
 
 use bevy::{
     asset::{Assets, Handle, RenderAssetUsages},
@@ -212,7 +215,8 @@ pub fn swap(world: &mut World) {
         let mut pending = Vec::new();
         let mut query = world.query::<(Ref<LitObject>, Option<&Drawn>)>();
         let scene = &world.resource::<CurrentScene>().0;
-        let everywhere = shines_from_everywhere(scene, world.resource::<Registry>());
+        // Asked only where something changed: most frames change nothing.
+        let everywhere = LazyCell::new(|| shines_from_everywhere(scene, world.resource::<Registry>()));
         // More objects than a table has rows are no legal scene; what is beyond is not drawn.
         for (row, &entity) in world.resource::<SceneEntities>().objects.iter().enumerate().take(MAX_OBJECTS) {
             let Ok((object, drawn)) = query.get(world, entity) else { continue };
@@ -220,7 +224,7 @@ pub fn swap(world: &mut World) {
                 model: scene.model_of(&object.0).to_owned(),
                 mode: scene.mode_of(&object.0).to_owned(),
                 encoding: scene.display.encoding,
-                everywhere,
+                everywhere: *everywhere,
             };
             if all || object.is_changed() || drawn.is_none() || (scene_changed && drawn != Some(&now())) {
                 pending.push((row, entity, object.0.clone(), now()));

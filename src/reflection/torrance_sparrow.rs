@@ -4,11 +4,16 @@ use glam::Vec3;
 
 use super::{
     Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    cook_torrance::{SPECULAR_WEIGHT, conductor_preset, f0},
+    cook_torrance::{SPECULAR_WEIGHT, conductor_preset},
     parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
 };
 use crate::{
-    optics::{Frame, Terms, fresnel::conductor_rgb, geometry::half_vector, masking::v_cavity},
+    optics::{
+        Frame, Terms,
+        fresnel::{conductor_rgb, normal_reflectance_rgb},
+        geometry::half_vector,
+        masking::v_cavity,
+    },
     parameters,
     shader::wgsl,
 };
@@ -127,7 +132,7 @@ impl ReflectionModel for TorranceSparrow {
     fn readouts(&self) -> Vec<Readout> {
         // Near the normal the tangent is the angle, so the width of slopes is β in radians.
         let alpha = self.facet_spread.to_radians();
-        vec![Readout::of_f0(f0(self.ior, self.extinction)), Readout::of_alpha(alpha)]
+        vec![Readout::of_f0(normal_reflectance_rgb(self.ior, self.extinction)), Readout::of_alpha(alpha)]
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

@@ -5,16 +5,10 @@ use std::f64::consts::PI;
 use glam::Vec3;
 
 use super::fit::Sample;
+use crate::optics::geometry::direction;
 
 const PAINTS: &str = include_str!("../../assets/data/cornell_paints.csv");
 const SGD: &str = include_str!("../../assets/data/sgd_merl100.csv");
-
-/// A direction from its angles to the normal (+z) and to the tangent (+x), degrees.
-#[must_use]
-pub fn direction(theta: f32, phi: f32) -> Vec3 {
-    let ((sin, cos), (s, c)) = (theta.to_radians().sin_cos(), phi.to_radians().sin_cos());
-    Vec3::new(sin * c, sin * s, cos)
-}
 
 /// A measured value: angles in degrees and the BRDF in sr⁻¹ at 630, 550 and 465 nm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,8 +61,8 @@ pub fn samples(paint: &[Measurement], band: usize, keep: impl Fn(&Measurement) -
         .iter()
         .filter(|m| keep(m) && m.f[band] > 0.0)
         .map(|m| Sample {
-            l: direction(m.theta_i, m.phi_i),
-            v: direction(m.theta_o, m.phi_i + m.delta_phi),
+            l: direction(m.theta_i.into(), m.phi_i.into()),
+            v: direction(m.theta_o.into(), (m.phi_i + m.delta_phi).into()),
             value: m.f[band],
         })
         .collect()
@@ -168,8 +162,8 @@ mod tests {
         for material in Sgd::all() {
             for i in 0..8u8 {
                 for j in 0..40u8 {
-                    let l = direction(f32::from(i) * 11.0, 0.0);
-                    let v = direction(f32::from(j % 8) * 11.0, f32::from(j / 8) * 45.0);
+                    let l = direction(f64::from(i) * 11.0, 0.0);
+                    let v = direction(f64::from(j % 8) * 11.0, f64::from(j / 8) * 45.0);
                     let (there, back) = (material.brdf(l, v), material.brdf(v, l));
                     for c in 0..3 {
                         assert!(there[c].is_finite() && there[c] >= 0.0, "{} {there:?}", material.name);

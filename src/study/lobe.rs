@@ -5,14 +5,14 @@ use rayon::prelude::*;
 
 use super::{
     Chapter, Lab, Setting, StudyError, Table, alpha, choice,
-    data::{self, Sgd, direction},
+    data::{self, Sgd},
     fit::{self, Fit, Sample},
     fixed, grid, image, number, pictures,
     plot::{Axis, Line, Mark, Plot, Series},
     svg, words,
 };
 use crate::{
-    optics::{Frame, TermSelection, colour::Encoding, equivalence},
+    optics::{Frame, TermSelection, colour::Encoding, equivalence, geometry::direction},
     reflection::parameter::{Value, Values},
     registry::Registry,
 };
@@ -186,8 +186,8 @@ fn merl_directions() -> Vec<Sample> {
         for j in 0..8u8 {
             for k in 0..7u8 {
                 let (theta_d, phi_d) = (f32::from(j) * 10.0, f32::from(k) * 30.0);
-                let h = direction(theta_h, 0.0);
-                let d = direction(theta_d, phi_d);
+                let h = direction(theta_h.into(), 0.0);
+                let d = direction(theta_d.into(), phi_d.into());
                 // Turned from the normal to the half vector, about y.
                 let (s, c) = theta_h.to_radians().sin_cos();
                 let turn =
@@ -269,8 +269,8 @@ fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, S
     measured.sort_by(|a, b| a.0.total_cmp(&b.0));
     let dense: Vec<Sample> = (-71..=71)
         .map(|a: i16| {
-            let (theta, phi) = if a < 0 { (-f32::from(a), 0.0) } else { (f32::from(a), 180.0) };
-            Sample { l: direction(theta_i, 0.0), v: direction(theta, phi), value: 1.0 }
+            let (theta, phi) = if a < 0 { (-f64::from(a), 0.0) } else { (f64::from(a), 180.0) };
+            Sample { l: direction(theta_i.into(), 0.0), v: direction(theta, phi), value: 1.0 }
         })
         .collect();
     let mut series = vec![Series {
@@ -316,7 +316,7 @@ fn merl_plot(
     let samples: Vec<Sample> = angles
         .iter()
         .map(|theta| {
-            let h = direction(*theta, 0.0);
+            let h = direction((*theta).into(), 0.0);
             let across = glam::Vec3::Y;
             let (s, c) = 30f32.to_radians().sin_cos();
             Sample { l: h * c + across * s, v: h * c - across * s, value: 1.0 }

@@ -6,13 +6,12 @@
 
 use std::{fmt::Write as _, fs, io, path::Path, sync::Arc};
 
-use glam::Vec3;
 use maud::{Markup, PreEscaped, html};
 use thiserror::Error;
 
 use crate::{
     capture::png,
-    optics::{Frame, TermSelection, albedo, colour::Encoding},
+    optics::{Frame, TermSelection, albedo, colour::Encoding, geometry::direction},
     reference,
     reference::Picture,
     reflection::{
@@ -167,12 +166,6 @@ fn alpha(value: f64) -> [Setting; 2] {
     [number("alpha_x", value), number("alpha_y", value)]
 }
 
-/// The view at an angle from the normal, degrees, in the local frame.
-fn view(degrees: f64) -> Vec3 {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    Vec3::new(sin as f32, 0.0, cos as f32)
-}
-
 impl Lab<'_> {
     /// A model with settings, each of which it must have and allow.
     fn surface(&self, id: &str, settings: &[Setting]) -> Result<Arc<dyn Surface>, StudyError> {
@@ -303,7 +296,7 @@ fn svg(plot: &plot::Plot) -> Result<Markup, StudyError> {
 /// The directional albedo of a surface by term, for a viewer at an angle from the normal: diffuse and
 /// specular together, and the specular one alone, green channel.
 fn albedo_at(surface: &dyn Surface, degrees: f64) -> (f64, f64) {
-    let v = view(degrees);
+    let v = direction(degrees, 0.0);
     let frame = &Frame::LOCAL;
     let all = albedo::directional(|l| surface.response(l, v, frame), v, frame);
     let specular = albedo::directional(

@@ -267,7 +267,7 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
             let pairs: Vec<_> = (0..2000).map(|_| (direction(&mut seed), direction(&mut seed))).collect();
             let answers = evaluate(model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
             let surface = model.instantiate(&values, Encoding::Srgb);
-            let frame = Frame { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
+            let frame = Frame::LOCAL;
             for ((l, v), gpu) in pairs.iter().zip(answers) {
                 let cpu = surface.response(*l, *v, &frame);
                 for (g, c) in

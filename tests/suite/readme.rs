@@ -167,7 +167,7 @@ fn every_file_that_a_document_points_to_is_there() {
 fn the_model_of_the_example_is_the_same_in_rust_and_in_wgsl() {
     let model = ModelEntry::of::<example::Toon>();
     let values = Values::default();
-    let frame = Frame { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
+    let frame = Frame::LOCAL;
     // Away from the edges of the tones, where the last bit decides.
     let directions = (0..4).map(|i| 0.125 + 0.25 * i as f32);
     let pairs: Vec<_> = directions.map(|z: f32| (Vec3::new((1.0 - z * z).sqrt(), 0.0, z), Vec3::Z)).collect();

@@ -25,10 +25,9 @@ fn curve_at(mu: f32, harmonic: u32) -> vec4<f32> {
     return b + 0.5 * f * (c - a + f * (2.0 * a - 5.0 * b + 4.0 * c - d + f * (3.0 * (b - c) + d - a)));
 }
 
-// The directional albedo: a0(μ) + a2(μ) cos 2φ + a4(μ) cos 4φ, φ from the tangent. A view from below
-// counts as its mirror image, since interpolated normals turn away at silhouettes.
+// The directional albedo: a0(μ) + a2(μ) cos 2φ + a4(μ) cos 4φ, φ from the tangent.
 fn directional_albedo(v: vec3<f32>, frame: Frame) -> vec3<f32> {
-    let mu = abs(dot(frame.n, v));
+    let mu = dot(frame.n, v);
     var e = curve_at(mu, 0u).rgb;
     if HARMONICS > 1u {
         let x = dot(frame.t, v);

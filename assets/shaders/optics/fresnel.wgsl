@@ -62,3 +62,7 @@ fn dielectric_rgb(n: vec3<f32>, cos_i: f32) -> vec3<f32> {
 fn normal_reflectance(n: f32, k: f32) -> f32 {
     return ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
 }
+
+fn normal_reflectance_rgb(n: vec3<f32>, k: vec3<f32>) -> vec3<f32> {
+    return vec3(normal_reflectance(n.x, k.x), normal_reflectance(n.y, k.y), normal_reflectance(n.z, k.z));
+}

@@ -42,12 +42,7 @@ fn microfacet_f0(m: Parameters) -> vec3<f32> {
     if m.fresnel == 0u {
         return vec3(1.0);
     }
-    let k = select(m.extinction, vec3(0.0), m.fresnel == 2u);
-    return vec3(
-        normal_reflectance(m.ior.x, k.x),
-        normal_reflectance(m.ior.y, k.y),
-        normal_reflectance(m.ior.z, k.z),
-    );
+    return normal_reflectance_rgb(m.ior, select(m.extinction, vec3(0.0), m.fresnel == 2u));
 }
 
 fn microfacet_f(cos_d: f32, m: Parameters) -> vec3<f32> {

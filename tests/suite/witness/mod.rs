@@ -6,7 +6,8 @@ mod microfacet;
 mod practical;
 mod rough;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
+pub use lights_camera_models::optics::geometry::direction;
 use lights_camera_models::{
     optics::Frame,
     reflection::{Surface, brdf},
@@ -26,7 +27,7 @@ pub struct Row {
 }
 
 /// The frame of the rows.
-pub const LOCAL: Frame = Frame { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
+pub const LOCAL: Frame = Frame::LOCAL;
 
 /// The rows of a model of a program whose parameters contain `params`.
 ///
@@ -70,12 +71,6 @@ fn cells(line: &str) -> Vec<String> {
         }
     }
     cells
-}
-
-/// The unit vector of spherical angles in degrees.
-pub fn direction(theta: f64, phi: f64) -> Vec3 {
-    let ((st, ct), (sp, cp)) = (theta.to_radians().sin_cos(), phi.to_radians().sin_cos());
-    DVec3::new(st * cp, st * sp, ct).as_vec3()
 }
 
 /// Whether two values are equal up to `tolerance`, relative; values below 1e-7 count as zero.
