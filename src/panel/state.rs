@@ -18,6 +18,7 @@ use crate::{
     reflection::parameter::Value,
     registry::Registry,
     scene::{Display, Light, MAX_OBJECTS, Object, Observer, Scene, SceneSize},
+    shader::status::ShaderStatus,
 };
 
 /// The most models that keys 1–9 reach.
@@ -62,6 +63,8 @@ pub struct Lab {
     pub status: Status,
     /// What the picture must say about itself, fed by the app.
     pub badges: Vec<Badge>,
+    /// Where shaders are edited and what is wrong with them, fed by the app.
+    pub shaders: ShaderStatus,
     /// The orientation of the camera, fed by the app; turns the axes in the corner of the picture.
     pub camera: Quat,
     /// The question that waits for an answer. While there is one, nothing else can be done.
@@ -527,6 +530,7 @@ impl Lab {
             model_slots: Vec::new(),
             status: Status::default(),
             badges: Vec::new(),
+            shaders: ShaderStatus::default(),
             camera: Quat::IDENTITY,
             question: None,
             picture_rect: egui::Rect::NOTHING,

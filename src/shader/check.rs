@@ -38,6 +38,9 @@ impl std::error::Error for ShaderProblem {}
 /// # Errors
 /// The first problem, located in the author's file.
 pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
+    if let Some(problem) = &composed.problem {
+        return Err(problem.clone());
+    }
     let module = wgsl::parse_str(&composed.text).map_err(|error| {
         locate(composed, place(composed, error.labels().map(|l| l.0)), error.message().to_owned())
     })?;

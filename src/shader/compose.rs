@@ -4,10 +4,17 @@
 //! from the declaration of the model), the reading of curves where rows have them, the model, the light
 //! types, the dispatch over light types (generated), the light loop, the shading mode, and the wrapper
 //! with bindings and entry points. A [`LineMap`] leads from a line of the composed text back to the author's file.
+//!
+//! Any file may ask for another one of the author's: the line `#import "noise.wgsl"` puts that file, named from
+//! the folder of the file that asks, before it, once in a composed source however often it is asked for.
 
-use std::{collections::HashMap, fmt::Write as _};
+use std::{
+    collections::{BTreeMap, BTreeSet, HashSet},
+    fmt::Write as _,
+    sync::Arc,
+};
 
-use super::{Source, wgsl};
+use super::{Source, check::ShaderProblem, wgsl};
 use crate::{
     light::LightEntry,
     optics::albedo::NODES,
@@ -35,22 +42,47 @@ pub const SHADING: Source = wgsl!("shading.wgsl");
 /// The wrapper for the renderer: bindings and entry points.
 pub const WRAPPER: Source = wgsl!("wrapper.wgsl");
 
-/// Where the text of a source comes from: edited copies by path, else the built-in one.
-#[derive(Clone, Debug, Default)]
+/// Where the text of a source comes from: edited copies by path, else the built-in one. Copies are cheap:
+/// they share the texts.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sources {
-    edited: HashMap<String, String>,
+    edited: BTreeMap<String, Arc<str>>,
 }
 
 impl Sources {
     /// The current text of a source.
     #[must_use]
     pub fn text<'a>(&'a self, source: &'a Source) -> &'a str {
-        self.edited.get(source.path).map_or(source.text, String::as_str)
+        self.get(source.path).unwrap_or(source.text)
+    }
+
+    /// The edited text of that path, if there is one.
+    #[must_use]
+    pub fn get(&self, path: &str) -> Option<&str> {
+        self.edited.get(path).map(|text| &**text)
     }
 
     /// Replaces the text of a source by path.
-    pub fn edit(&mut self, path: impl Into<String>, text: impl Into<String>) {
+    pub fn edit(&mut self, path: impl Into<String>, text: impl Into<Arc<str>>) {
         self.edited.insert(path.into(), text.into());
+    }
+
+    /// Goes back to the built-in text of a path.
+    pub fn forget(&mut self, path: &str) {
+        self.edited.remove(path);
+    }
+
+    /// The paths that have an edited text.
+    pub fn edited(&self) -> impl Iterator<Item = &str> {
+        self.edited.keys().map(String::as_str)
+    }
+
+    /// Takes over the edited text of a path, or that it has none.
+    pub fn copy_from(&mut self, other: &Self, path: &str) {
+        match other.edited.get(path) {
+            Some(text) => self.edit(path, text.clone()),
+            None => self.forget(path),
+        }
     }
 }
 
@@ -68,39 +100,162 @@ impl LineMap {
         let (first, path) = self.pieces.iter().rev().find(|(first, _)| *first <= line)?;
         Some((path, line - first + 1))
     }
+
+    /// The files that the composed text was made of, in the order of need. What is generated stands in
+    /// parentheses.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.pieces.iter().map(|(_, path)| path.as_str())
+    }
+
+    /// Whether a file is part of the composed text.
+    #[must_use]
+    pub fn has(&self, path: &str) -> bool {
+        self.files().any(|file| file == path)
+    }
 }
 
 /// A composed source.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Composed {
     /// The WGSL text.
     pub text: String,
     /// Where each line came from.
     pub map: LineMap,
+    /// The files that were asked for by `#import`, found or not: when one changes, so does this.
+    pub imports: BTreeSet<String>,
+    /// The first `#import` that could not be followed.
+    pub problem: Option<Box<ShaderProblem>>,
+}
+
+impl Composed {
+    /// Whether this may change when a file changes.
+    #[must_use]
+    pub fn depends_on(&self, path: &str) -> bool {
+        self.map.has(path) || self.imports.contains(path)
+    }
 }
 
 /// Builds a composed source piece by piece.
-#[derive(Default)]
-struct Composer {
-    text: String,
+struct Composer<'a> {
+    sources: &'a Sources,
+    composed: Composed,
     lines: usize,
-    map: LineMap,
+    /// The files that are being put in: the one that was asked for last stands last.
+    open: Vec<String>,
+    done: HashSet<String>,
 }
 
-impl Composer {
-    fn push(&mut self, path: &str, text: &str) {
-        self.map.pieces.push((self.lines + 1, path.to_owned()));
-        self.text.push_str(text);
-        self.lines += text.matches('\n').count();
-        if !text.ends_with('\n') {
-            self.text.push('\n');
-            self.lines += 1;
+impl<'a> Composer<'a> {
+    fn new(sources: &'a Sources) -> Self {
+        Self { sources, composed: Composed::default(), lines: 0, open: Vec::new(), done: HashSet::new() }
+    }
+
+    /// Puts in a source, after the files that it asks for.
+    fn source(&mut self, source: &Source) {
+        self.file(source.path, self.sources.text(source));
+    }
+
+    fn file(&mut self, path: &str, text: &str) {
+        self.open.push(path.to_owned());
+        let mut own = String::with_capacity(text.len());
+        for (i, line) in text.lines().enumerate() {
+            let line = line.trim_end_matches('\r');
+            match import_of(line) {
+                Some(name) => {
+                    self.import(path, i + 1, line, name);
+                    own.push_str("// ");
+                }
+                None if line.trim_start().starts_with("#define_import_path") => self.complain(
+                    path,
+                    i + 1,
+                    line,
+                    "files of the lab have no import path: leave this line out, and write `#import \"file.wgsl\"` where the file is needed",
+                ),
+                None => {}
+            }
+            own.push_str(line);
+            own.push('\n');
+        }
+        self.open.pop();
+        self.push(path, &own);
+    }
+
+    /// Puts in the file that a line asks for, unless it is there already.
+    fn import(&mut self, from: &str, at: usize, line: &str, name: &str) {
+        let Some(path) = beside(from, name) else {
+            return self.complain(
+                from,
+                at,
+                line,
+                &format!("`{name}` leads out of the folder of the shaders"),
+            );
+        };
+        self.composed.imports.insert(path.clone());
+        if let Some(first) = self.open.iter().position(|open| *open == path) {
+            let mut round: Vec<_> = self.open[first..].to_vec();
+            round.push(path);
+            return self.complain(
+                from,
+                at,
+                line,
+                &format!("the files import each other in a circle: {}", round.join(" → ")),
+            );
+        }
+        if !self.done.insert(path.clone()) {
+            return;
+        }
+        match self.sources.get(&path) {
+            Some(text) => self.file(&path, text),
+            None => self.complain(from, at, line, &format!("there is no file `{path}` to import")),
         }
     }
 
-    fn finish(self) -> Composed {
-        Composed { text: self.text, map: self.map }
+    fn complain(&mut self, file: &str, line: usize, source: &str, message: &str) {
+        let column = source.chars().take_while(|c| c.is_whitespace()).count() + 1;
+        self.composed.problem.get_or_insert_with(|| {
+            Box::new(ShaderProblem {
+                file: file.to_owned(),
+                line,
+                column,
+                source: source.to_owned(),
+                message: message.to_owned(),
+            })
+        });
     }
+
+    /// Puts in a text as it is.
+    fn push(&mut self, path: &str, text: &str) {
+        self.composed.map.pieces.push((self.lines + 1, path.to_owned()));
+        self.composed.text.push_str(text);
+        self.lines += text.matches('\n').count();
+        if !text.ends_with('\n') {
+            self.composed.text.push('\n');
+            self.lines += 1;
+        }
+    }
+}
+
+/// The file that a line `#import "file.wgsl"` asks for. Imports without quotation marks are modules of Bevy.
+fn import_of(line: &str) -> Option<&str> {
+    let rest = line.trim().strip_prefix("#import")?.trim_start().strip_prefix('"')?;
+    let (name, rest) = rest.split_once('"')?;
+    (rest.trim().is_empty() || rest.trim().starts_with("//") || rest.trim() == ";").then_some(name)
+}
+
+/// The path of a file that another one names, from the folder of that one; none if it leads out.
+fn beside(from: &str, name: &str) -> Option<String> {
+    let mut parts: Vec<_> = from.split('/').collect();
+    parts.pop();
+    for part in name.split(['/', '\\']) {
+        match part {
+            "" | "." => {}
+            ".." => {
+                parts.pop()?;
+            }
+            part => parts.push(part),
+        }
+    }
+    (!parts.is_empty()).then(|| parts.join("/"))
 }
 
 /// The WGSL struct `Parameters` of a model. A model without parameters gets an unused field, since
@@ -150,12 +305,12 @@ fn lobe_mean() -> f32 {{
 }
 
 /// The row of a model, and the model.
-fn push_model(c: &mut Composer, sources: &Sources, model: &ModelEntry) {
+fn push_model(c: &mut Composer, model: &ModelEntry) {
     c.push("(row)", &row_struct(model));
     if model.has_curve() {
-        c.push(ALBEDO.path, sources.text(&ALBEDO));
+        c.source(&ALBEDO);
     }
-    c.push(model.declaration.wgsl.path, sources.text(&model.declaration.wgsl));
+    c.source(&model.declaration.wgsl);
     if model.declaration.ambient == Ambient::Albedo {
         c.push("(ambient)", AMBIENT);
     }
@@ -183,34 +338,23 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
 /// The complete source for drawing with a model and a mode under the given light types.
 #[must_use]
 pub fn compose(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[LightEntry]) -> Composed {
-    let mut c = Composer::default();
-    let source = |c: &mut Composer, s: &Source| c.push(s.path, sources.text(s));
-    for s in OPTICS {
-        source(&mut c, s);
-    }
-    source(&mut c, &LIGHTS);
-    source(&mut c, &SHADING);
-    push_model(&mut c, sources, model);
-    for light in lights {
-        source(&mut c, &light.declaration.wgsl);
-    }
+    let mut c = Composer::new(sources);
+    OPTICS.iter().chain([&LIGHTS, &SHADING]).for_each(|s| c.source(s));
+    push_model(&mut c, model);
+    lights.iter().for_each(|light| c.source(&light.declaration.wgsl));
     c.push("(light types)", &light_dispatch(lights));
-    source(&mut c, &LOOP);
-    source(&mut c, &mode.declaration.wgsl);
-    source(&mut c, &WRAPPER);
-    c.finish()
+    [&LOOP, &mode.declaration.wgsl, &WRAPPER].into_iter().for_each(|s| c.source(s));
+    c.composed
 }
 
 /// The source for evaluating a model alone in a compute pass: directions in, terms out.
 #[must_use]
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
-    let mut c = Composer::default();
-    for s in OPTICS {
-        c.push(s.path, sources.text(s));
-    }
-    push_model(&mut c, sources, model);
-    c.push(EVALUATE.path, sources.text(&EVALUATE));
-    c.finish()
+    let mut c = Composer::new(sources);
+    OPTICS.iter().for_each(|s| c.source(s));
+    push_model(&mut c, model);
+    c.source(&EVALUATE);
+    c.composed
 }
 
 /// The entry point of [`compose_evaluation`].
@@ -247,6 +391,53 @@ mod tests {
         let composed = compose(&sources, &registry.models()[0], &registry.modes()[0], registry.lights());
         assert!(composed.text.contains("// edited"));
         assert!(!composed.text.contains("fn illuminate"));
+    }
+
+    #[test]
+    fn a_file_puts_another_one_before_itself_once() {
+        let registry = Registry::builtin();
+        let mut sources = Sources::default();
+        sources.edit(
+            "reflection/lambert.wgsl",
+            "#import \"own/noise.wgsl\"\n#import \"../shared.wgsl\" // twice\nfn f() {}",
+        );
+        sources.edit("reflection/own/noise.wgsl", "#import \"../../shared.wgsl\"\nfn noise() {}");
+        sources.edit("shared.wgsl", "fn shared() {}");
+        let composed = compose_evaluation(&sources, &registry.models()[0]);
+        assert_eq!(composed.problem, None);
+        let files: Vec<_> = composed.map.files().filter(|f| sources.get(f).is_some()).collect();
+        assert_eq!(files, ["shared.wgsl", "reflection/own/noise.wgsl", "reflection/lambert.wgsl"]);
+        assert_eq!(composed.text.matches("fn shared").count(), 1);
+        assert!(composed.depends_on("shared.wgsl") && !composed.depends_on("reflection/phong.wgsl"));
+        let at = composed.text.lines().position(|l| l == "fn f() {}").expect("there");
+        assert_eq!(composed.map.locate(at + 1), Some(("reflection/lambert.wgsl", 3)));
+    }
+
+    #[test]
+    fn imports_that_cannot_be_followed_are_told() {
+        let registry = Registry::builtin();
+        let problem = |files: &[(&str, &str)]| {
+            let mut sources = Sources::default();
+            files.iter().for_each(|(path, text)| sources.edit(*path, *text));
+            let composed = compose_evaluation(&sources, &registry.models()[0]);
+            composed.problem.map(|p| p.to_string()).unwrap_or_default()
+        };
+        assert_eq!(
+            problem(&[("reflection/lambert.wgsl", "//\n  #import \"none.wgsl\"")]),
+            "reflection/lambert.wgsl:2:3: there is no file `reflection/none.wgsl` to import"
+        );
+        assert_eq!(
+            problem(&[
+                ("reflection/lambert.wgsl", "#import \"a.wgsl\""),
+                ("reflection/a.wgsl", "#import \"lambert.wgsl\"")
+            ]),
+            "reflection/a.wgsl:1:1: the files import each other in a circle: reflection/lambert.wgsl → reflection/a.wgsl → reflection/lambert.wgsl"
+        );
+        assert!(
+            problem(&[("terms.wgsl", "#import \"terms.wgsl\"")]).contains("circle: terms.wgsl → terms.wgsl")
+        );
+        assert!(problem(&[("terms.wgsl", "#import \"../../x.wgsl\"")]).contains("leads out"));
+        assert!(problem(&[("terms.wgsl", "#define_import_path a")]).contains("no import path"));
     }
 
     #[test]
