@@ -14,9 +14,10 @@ use crate::{
     light::buffer::{IlluminationBuffer, illumination_bytes, record},
     observer::camera::follow_scene,
     optics::TermSelection,
-    reflection::swap::{self, ComposedShaders, ParameterTables, ShapeMeshes},
+    reflection::swap::{self, ParameterTables, ShapeMeshes},
     registry::{Registry, register_builtin},
     scene::spawn::{CurrentScene, SceneEntities, absorb, reconcile},
+    shader::live::LiveShadersPlugin,
 };
 
 /// The schedule of everything that the lab does in a frame; runs after Bevy's `Update`. A schedule of
@@ -57,7 +58,6 @@ impl Plugin for ScenePlugin {
         app.world_mut().resource_mut::<MainScheduleOrder>().insert_after(Update, LabFrame);
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()
-            .init_resource::<ComposedShaders>()
             .init_resource::<ShapeMeshes>()
             .init_resource::<ParameterTables>()
             .init_resource::<ShownTerms>()
@@ -90,7 +90,8 @@ impl Plugin for ScenePlugin {
                     swap::swap.in_set(LabSystems::Swap),
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
-            );
+            )
+            .add_plugins(LiveShadersPlugin);
     }
 }
 

@@ -1,8 +1,12 @@
-//! Shader sources: text in, text out; composing, checking.
+//! Shader sources: text in, text out; composing, checking, trying, and exchanging them while they are on the
+//! picture.
 
 pub mod check;
 pub mod compose;
+pub mod live;
+pub mod pitfall;
 pub mod status;
+pub mod trial;
 
 /// The WGSL source of one file under `assets/shaders/`, with the copy that is built in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,6 +12,7 @@ mod panels;
 mod pictures;
 mod readme;
 mod reference_renderer;
+mod reload;
 mod saving;
 mod scene_errors;
 mod scene_roundtrip;
