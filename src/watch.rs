@@ -64,6 +64,8 @@ enum Order {
     Add(PathBuf, Kind, Sender<()>),
     /// Watch this no longer; answer when it is done.
     Forget(PathBuf, Sender<()>),
+    /// Report this file once so much time has passed.
+    Remind(PathBuf, Duration),
     /// The system says something.
     Heard(notify::Result<Event>),
     Stop,
@@ -110,6 +112,7 @@ impl Watcher {
             watched: BTreeSet::new(),
             refused: false,
             waiting: Vec::new(),
+            reminders: Vec::new(),
             aftershock: None,
             next_poll: None,
             told: told.clone(),
@@ -140,6 +143,12 @@ impl Watcher {
         self.order(|done| Order::Forget(path.to_owned(), done));
     }
 
+    /// Reports a file after a while, whether it changes or not: for who wants to look again.
+    pub fn report_later(&self, file: &Path, after: Duration) {
+        // An error: the thread is gone.
+        let _ = self.orders.send(Order::Remind(file.to_owned(), after));
+    }
+
     /// Files that may have changed since the last call, each once, once they have been quiet for
     /// [`QUIET`], or after [`PATIENCE`], the oldest change first. Files that were deleted or renamed are
     /// among them; temporary files and backups of editors in watched folders are not. Paths begin as the
@@ -150,8 +159,8 @@ impl Watcher {
         changed.into_iter().map(|(_, file)| file).collect()
     }
 
-    /// How long until something that changed just now is quiet, if there is anything. The thread calls
-    /// `wake` then.
+    /// How long until something that changed just now is quiet, or is to be reported, if there is
+    /// anything. The thread calls `wake` then.
     pub fn pending(&self) -> Option<Duration> {
         lock(&self.told).next.map(|at| at.saturating_duration_since(Instant::now()))
     }
@@ -256,6 +265,8 @@ struct Worker {
     refused: bool,
     /// What changed, the oldest change first.
     waiting: Vec<Change>,
+    /// What is to be reported anyway, and when.
+    reminders: Vec<(Instant, PathBuf)>,
     aftershock: Option<Instant>,
     next_poll: Option<Instant>,
     told: Arc<Mutex<Told>>,
@@ -265,8 +276,7 @@ struct Worker {
 impl Worker {
     fn run(&mut self, orders: &Receiver<Order>) {
         loop {
-            let next = self.waiting.iter().map(Change::due).min();
-            let at = [next, self.aftershock, self.next_poll].into_iter().flatten().min();
+            let at = [self.next_report(), self.aftershock, self.next_poll].into_iter().flatten().min();
             let order = match at {
                 None => orders.recv().map_err(|_| RecvTimeoutError::Disconnected),
                 Some(at) => orders.recv_timeout(at.saturating_duration_since(Instant::now())),
@@ -290,6 +300,7 @@ impl Worker {
                         done.push(ready);
                     }
                     Order::Heard(Ok(event)) => look |= self.hear(&event),
+                    Order::Remind(file, after) => self.reminders.push((Instant::now() + after, file)),
                     // News were lost.
                     Order::Heard(Err(_)) => look = true,
                     Order::Stop => return,
@@ -318,6 +329,7 @@ impl Worker {
         let roots = &self.roots;
         let held = |file: &Path| roots.iter().any(|r| r.holds(file));
         self.waiting.retain(|c| held(&c.path));
+        self.reminders.retain(|(_, file)| held(file));
         lock(&self.told).changed.retain(|(_, file)| held(file));
     }
 
@@ -462,6 +474,10 @@ impl Worker {
         }
     }
 
+    fn next_report(&self) -> Option<Instant> {
+        self.waiting.iter().map(Change::due).chain(self.reminders.iter().map(|r| r.0)).min()
+    }
+
     /// Tells of what is quiet by now.
     fn report(&mut self) {
         let now = Instant::now();
@@ -469,8 +485,10 @@ impl Worker {
         self.waiting = waiting;
         let mut due: Vec<Change> = due;
         due.retain(|change| self.take_note(&change.path));
+        let reminders = self.reminders.extract_if(.., |(at, _)| *at <= now);
+        due.extend(reminders.map(|(at, path)| Change { path, first: at, last: at }));
         let mut told = lock(&self.told);
-        told.next = self.waiting.iter().map(Change::due).min();
+        told.next = self.next_report();
         let before = told.changed.len();
         for Change { path, first, .. } in due {
             if told.changed.iter().all(|(_, known)| *known != path) {
