@@ -1,4 +1,5 @@
 //! What editors do, with real files.
+#![allow(clippy::unwrap_used)]
 
 use std::{fs, fs::File, io::Write as _, process::Command, sync::mpsc::RecvTimeoutError};
 
