@@ -54,7 +54,11 @@ pub fn look(lab: &mut Lab, registry: &Registry, discard: bool, files: &mut dyn F
     let name = path.display();
     match files.look(&path, registry) {
         Looked::Same => {
-            lab.disk_settled();
+            lab.disk.suspect = None;
+            // A message that it was read again stays until it is dismissed.
+            if lab.disk.badge.is_some() {
+                lab.disk_settled();
+            }
             Vec::new()
         }
         Looked::Gone => doubt(lab, files, path, None, Vec::new()),
