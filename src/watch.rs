@@ -11,7 +11,6 @@
 
 use std::{
     collections::{BTreeSet, HashMap},
-    io,
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
@@ -21,11 +20,15 @@ use std::{
     time::{Duration, Instant},
 };
 
-use notify::{ErrorKind, Event, EventKind, RecursiveMode, event::ModifyKind};
+use notify::{Event, EventKind, RecursiveMode, event::ModifyKind};
 
-use self::look::{Found, Place, Print, is_temporary};
+use self::{
+    look::{Found, Place, Print, is_temporary},
+    system::{is_absent, is_reading, reason},
+};
 
 mod look;
+mod system;
 #[cfg(test)]
 mod tests;
 
@@ -190,28 +193,6 @@ impl Drop for Watcher {
 /// A thread that panicked leaves nothing half done here.
 fn lock(told: &Mutex<Told>) -> MutexGuard<'_, Told> {
     told.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Whether news are only about reading.
-fn is_reading(kind: EventKind) -> bool {
-    use notify::event::{AccessKind, AccessMode};
-    matches!(kind, EventKind::Access(access) if access != AccessKind::Close(AccessMode::Write))
-}
-
-/// Why the system does not watch, and what helps.
-fn reason(error: &notify::Error) -> String {
-    /// "Too many open files", which is what Linux says of its limit of inotify instances.
-    const EMFILE: i32 = 24;
-    match &error.kind {
-        ErrorKind::MaxFilesWatch => {
-            "its limit of watched folders is reached (fs.inotify.max_user_watches)".to_owned()
-        }
-        ErrorKind::Io(e) if cfg!(target_os = "linux") && e.raw_os_error() == Some(EMFILE) => {
-            "its limit of watchers is reached (fs.inotify.max_user_instances)".to_owned()
-        }
-        ErrorKind::Io(e) => e.to_string(),
-        _ => error.to_string(),
-    }
 }
 
 /// Something that is watched.
@@ -515,14 +496,5 @@ impl Worker {
             tell |= print.is_some() || before.is_some();
         }
         tell
-    }
-}
-
-/// Whether a folder could not be watched because it is no longer there.
-fn is_absent(error: &notify::Error) -> bool {
-    match &error.kind {
-        ErrorKind::PathNotFound => true,
-        ErrorKind::Io(e) => matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory),
-        _ => false,
     }
 }

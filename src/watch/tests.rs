@@ -1,7 +1,9 @@
 //! What editors do, with real files.
 #![allow(clippy::unwrap_used)]
 
-use std::{fs, fs::File, io::Write as _, process::Command, sync::mpsc::RecvTimeoutError};
+use std::{fs, fs::File, io, io::Write as _, process::Command, sync::mpsc::RecvTimeoutError};
+
+use notify::ErrorKind;
 
 use super::*;
 
