@@ -44,7 +44,7 @@ use crate::{
     panel::{
         PanelPlugin,
         files::{load_settings, run as run_files},
-        state::{Action, Effect, Lab, LabEffect},
+        state::{Action, Badge, Effect, Lab, LabEffect, Note},
         theme::Palette,
     },
     registry::Registry,
@@ -53,9 +53,10 @@ use crate::{
 
 mod camera;
 mod capture;
-mod files;
+pub mod files;
 mod gizmos;
 mod pick;
+pub mod watching;
 
 /// The size of a new window, points.
 const SIZE: UVec2 = UVec2::new(1280, 720);
@@ -112,6 +113,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     add_with_display(&mut app, plugins)?;
     let mut lab = Lab::new(options.scene.clone());
     lab.path.clone_from(&options.file);
+    lab.disk.use_defaults = options.use_defaults;
     load_settings(&mut lab);
     if let Some(registry) = app.world().get_resource::<Registry>() {
         lab.fill_model_slots(registry);
@@ -205,7 +207,7 @@ impl Plugin for WindowSystemsPlugin {
         })
         .init_resource::<Settling>()
         .init_resource::<FrameClock>()
-        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin))
+        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin, watching::WatchingPlugin))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
         .add_systems(Last, measure_frame)
         .add_systems(PreUpdate, close_requested)
@@ -216,7 +218,16 @@ impl Plugin for WindowSystemsPlugin {
         .add_systems(
             LabFrame,
             (
-                (carry_out, pick::pick, lab_to_scene).chain().in_set(LabSystems::Load),
+                (
+                    watching::collect,
+                    watching::watch_document,
+                    watching::follow_document,
+                    carry_out,
+                    pick::pick,
+                    lab_to_scene,
+                )
+                    .chain()
+                    .in_set(LabSystems::Load),
                 scene_to_lab.in_set(LabSystems::Upload),
             ),
         )
@@ -275,6 +286,7 @@ fn carry_out(
     registry: Res<Registry>,
     mut files: ResMut<files::DiskFiles>,
     mut camera: camera::CameraControl,
+    watch: Res<watching::FileWatch>,
     mut exit: MessageWriter<AppExit>,
 ) {
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
@@ -291,6 +303,8 @@ fn carry_out(
             Effect::Quit => {
                 exit.write(AppExit::Success);
             }
+            Effect::LookAgain(path) => watch.0.report_later(&path, watching::GRACE),
+            Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
             dialog @ (Effect::PickOpen | Effect::PickSave) => lab.wanted_dialog = Some(dialog),
@@ -397,7 +411,9 @@ struct Snapshot {
     rect: [f32; 4],
     camera: Option<bevy::transform::components::Transform>,
     terms: ShownTerms,
-    messages: usize,
+    messages: Vec<Note>,
+    badges: Vec<Badge>,
+    question: bool,
 }
 
 /// Asks for another frame while something changes, and for none when nothing does.
@@ -414,7 +430,9 @@ fn redraw(
         rect: [rect.min.x, rect.min.y, rect.max.x, rect.max.y],
         camera: cameras.iter().next().copied(),
         terms: *terms,
-        messages: lab.messages.len() + usize::from(lab.question.is_some()),
+        messages: lab.messages.clone(),
+        badges: lab.disk.badge.iter().chain(&lab.badges).cloned().collect(),
+        question: lab.question.is_some(),
     };
     if settling.last.as_deref() != Some(&now) {
         settling.last = Some(Box::new(now));
