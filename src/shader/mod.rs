@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod compose;
+pub mod interpret;
 pub mod status;
 
 /// The WGSL source of one file under `assets/shaders/`, with the copy that is built in.
