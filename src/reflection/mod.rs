@@ -542,21 +542,11 @@ impl ModelEntry {
     #[must_use]
     pub fn row(&self, values: &Values, encoding: Encoding, everywhere: bool) -> Vec<u8> {
         let mut row = pack(self.parameters, values, encoding);
-        if !self.has_curve() {
-            return row;
+        if self.has_curve() {
+            let surface = self.instantiate(values, encoding);
+            let curve = if everywhere { surface.curve() } else { None };
+            append_curve(&mut row, self.harmonics(), curve, surface.lobe());
         }
-        let surface = self.instantiate(values, encoding);
-        let curve = if everywhere { surface.curve() } else { None };
-        let lobe = surface.lobe().unwrap_or_default();
-        row.resize(row.len().next_multiple_of(16), 0);
-        for harmonic in 0..self.harmonics() {
-            for node in 0..NODES {
-                let rgb = curve.map_or(Vec3::ZERO, |c| c.harmonics[harmonic][node]);
-                let w = if harmonic == 0 { lobe.nodes[node] } else { 0.0 };
-                row.extend(rgb.extend(w).to_array().into_iter().flat_map(f32::to_le_bytes));
-            }
-        }
-        row.extend([lobe.average(), 0.0, 0.0, 0.0].into_iter().flat_map(f32::to_le_bytes));
         row
     }
 
@@ -565,6 +555,20 @@ impl ModelEntry {
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|p| p.name == name)
     }
+}
+
+/// Puts a curve behind the parameters of a row.
+fn append_curve(row: &mut Vec<u8>, harmonics: usize, curve: Option<AlbedoCurve>, lobe: Option<LobeAlbedo>) {
+    let lobe = lobe.unwrap_or_default();
+    row.resize(row.len().next_multiple_of(16), 0);
+    for harmonic in 0..harmonics {
+        for node in 0..NODES {
+            let rgb = curve.map_or(Vec3::ZERO, |c| c.harmonics[harmonic][node]);
+            let w = if harmonic == 0 { lobe.nodes[node] } else { 0.0 };
+            row.extend(rgb.extend(w).to_array().into_iter().flat_map(f32::to_le_bytes));
+        }
+    }
+    row.extend([lobe.average(), 0.0, 0.0, 0.0].into_iter().flat_map(f32::to_le_bytes));
 }
 
 impl fmt::Debug for ModelEntry {

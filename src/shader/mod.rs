@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod compose;
+pub mod interpret;
 pub mod report;
 pub mod status;
 pub mod whole;

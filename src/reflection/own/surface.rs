@@ -15,8 +15,8 @@ use crate::{
         colour::Encoding,
     },
     reflection::{
-        Ambient, Declaration, Instantiate, Lobe, ModelEntry, Readout, Surface,
-        parameter::{Parameter, ParameterKind, Values},
+        Ambient, Declaration, Instantiate, Lobe, ModelEntry, Readout, Surface, append_curve,
+        parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, pack},
     },
     shader::interpret::Program,
 };
@@ -35,8 +35,16 @@ struct Programs {
 }
 
 impl OnCpu {
-    fn new(module: &Module, ambient: Ambient) -> Self {
-        let program = |function| Program::new(module, function).map_err(|e| e.to_string());
+    fn new(module: &Module, ambient: Ambient, lobe: bool) -> Self {
+        // The albedo of a lobe is read from the row of the object.
+        let program = |function| {
+            let program = if lobe {
+                Program::with_table(module, function, "parameter_table")
+            } else {
+                Program::new(module, function)
+            };
+            program.map_err(|e| e.to_string())
+        };
         let programs = program("response").and_then(|response| {
             let ambient = match ambient {
                 Ambient::Formula => Some(program("ambient_response")?),
@@ -60,14 +68,19 @@ impl OnCpu {
     }
 
     /// The results of a function; zeros when it cannot be run.
-    fn run<const N: usize>(&self, which: fn(&Programs) -> Option<&Program>, arguments: &[u32]) -> [f32; N] {
+    fn run<const N: usize>(
+        &self,
+        which: fn(&Programs) -> Option<&Program>,
+        row: &[u32],
+        arguments: &[u32],
+    ) -> [f32; N] {
         let mut results = [0; N];
         let Some(program) = self.programs.as_ref().ok().and_then(which) else { return [0.0; N] };
         // Each run up to the limit takes a while, and a picture asks a million times.
         if self.endless.load(Ordering::Relaxed) {
             return [0.0; N];
         }
-        if program.run(arguments, &mut results).is_err() {
+        if program.run_with(row, arguments, &mut results).is_err() {
             self.endless.store(true, Ordering::Relaxed);
             return [0.0; N];
         }
@@ -82,8 +95,8 @@ pub(super) fn entry(
     lobe: Option<ModelEntry>,
     module: &Module,
 ) -> ModelEntry {
-    let on_cpu = Arc::new(OnCpu::new(module, declaration.ambient));
-    let row = lobe.as_ref().map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
+    let on_cpu = Arc::new(OnCpu::new(module, declaration.ambient, lobe.is_some()));
+    let reads = lobe.as_ref().map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
     let instantiate: Instantiate = {
         let on_cpu = on_cpu.clone();
         Arc::new(move |values, encoding| {
@@ -100,12 +113,13 @@ pub(super) fn entry(
                 ambient: declaration.ambient,
                 anisotropic: declaration.anisotropic,
                 parameters: flattened(parameters, values, encoding),
+                row: lobe.map_or_else(Vec::new, |lobe| row(declaration, parameters, values, encoding, lobe)),
                 lobe,
                 curve: OnceLock::new(),
             })
         })
     };
-    ModelEntry::own(declaration, parameters, row, instantiate, Some(on_cpu))
+    ModelEntry::own(declaration, parameters, reads, instantiate, Some(on_cpu))
 }
 
 /// What makes surfaces that reflect nothing.
@@ -116,6 +130,7 @@ pub(super) fn nothing() -> Instantiate {
             ambient: Ambient::Formula,
             anisotropic: false,
             parameters: Vec::new(),
+            row: Vec::new(),
             lobe: None,
             curve: OnceLock::new(),
         })
@@ -141,27 +156,56 @@ fn flattened(parameters: &[Parameter], values: &Values, encoding: Encoding) -> V
     words
 }
 
+/// The row of an object as the shader reads it, with the albedo of the lobe.
+fn row(
+    declaration: &Declaration,
+    parameters: &[Parameter],
+    values: &Values,
+    encoding: Encoding,
+    lobe: LobeAlbedo,
+) -> Vec<u32> {
+    let mut bytes = pack(parameters, values, encoding);
+    let harmonics = if declaration.anisotropic { 3 } else { 1 };
+    append_curve(&mut bytes, harmonics, None, Some(lobe));
+    bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+}
+
 /// An own model with its parameters set.
 struct Interpreted {
     on_cpu: Arc<OnCpu>,
     ambient: Ambient,
     anisotropic: bool,
     parameters: Vec<u32>,
+    /// As the table of the shader has it, without the curve; empty where that is not read.
+    row: Vec<u32>,
     lobe: Option<LobeAlbedo>,
     curve: OnceLock<Option<AlbedoCurve>>,
 }
 
 impl Interpreted {
-    /// The arguments of a function: vectors, the frame, the parameters.
-    fn arguments(&self, directions: &[Vec3], frame: &Frame) -> Vec<u32> {
+    /// The results of a function of directions, the frame and the parameters.
+    fn ask<const N: usize>(
+        &self,
+        which: fn(&Programs) -> Option<&Program>,
+        directions: &[Vec3],
+        frame: &Frame,
+    ) -> [f32; N] {
+        // Two directions, three vectors of the frame, and as many parameters as there is room for.
+        let mut arguments = [0; 15 + BLOCK_BYTES / 4];
         let vectors = directions.iter().chain([&frame.n, &frame.t, &frame.b]);
-        vectors.flat_map(|v| v.to_array().map(f32::to_bits)).chain(self.parameters.iter().copied()).collect()
+        let words = vectors.flat_map(|v| v.to_array().map(f32::to_bits)).chain(self.parameters.iter().copied());
+        let mut count = 0;
+        for (to, word) in arguments.iter_mut().zip(words) {
+            *to = word;
+            count += 1;
+        }
+        self.on_cpu.run(which, &self.row, &arguments[..count])
     }
 }
 
 impl Surface for Interpreted {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let terms: [f32; 9] = self.on_cpu.run(|p| Some(&p.response), &self.arguments(&[l, v], frame));
+        let terms: [f32; 9] = self.ask(|p| Some(&p.response), &[l, v], frame);
         let vector = |at: usize| Vec3::new(terms[at], terms[at + 1], terms[at + 2]);
         Terms { ambient: vector(0), diffuse: vector(3), specular: vector(6) }
     }
@@ -169,7 +213,7 @@ impl Surface for Interpreted {
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
         match self.ambient {
             Ambient::Formula => {
-                self.on_cpu.run::<3>(|p| p.ambient.as_ref(), &self.arguments(&[v], frame)).into()
+                self.ask::<3>(|p| p.ambient.as_ref(), &[v], frame).into()
             }
             Ambient::Albedo => match self.curve() {
                 Some(curve) => curve.at(v, frame),
