@@ -3,10 +3,13 @@
 
 pub mod check;
 pub mod compose;
+pub mod interpret;
 pub mod live;
 pub mod pitfall;
+pub mod report;
 pub mod status;
 pub mod trial;
+pub mod whole;
 
 /// The WGSL source of one file under `assets/shaders/`, with the copy that is built in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
