@@ -48,7 +48,10 @@ impl Places {
     /// error.
     pub(super) fn open(&self) -> Result<Workshop, Failure> {
         if let Some(named) = self.models.as_deref().filter(|m| !m.exists()) {
-            return Err(Failure::Usage(format!("--models is {}, but there is no such folder", named.display())));
+            return Err(Failure::Usage(format!(
+                "--models is {}, but there is no such folder",
+                named.display()
+            )));
         }
         self.open_for_writing()
     }
@@ -72,6 +75,9 @@ impl Places {
     pub(super) fn open_for_window(&self) -> Result<Workshop, Failure> {
         let folders = self.folders()?;
         let mut registry = Registry::builtin();
+        if let Some(shaders) = &folders.shaders {
+            registry.set_shader_folder(shaders);
+        }
         if let Some(models) = &folders.models {
             tell(&own::read_folder(models, &mut registry, true));
         }
