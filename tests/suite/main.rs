@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 mod albedo;
+mod assets;
 mod command_line;
 mod extension;
 mod golden;
@@ -9,6 +10,7 @@ mod gpu_parity;
 mod hot_swap;
 mod interpret;
 mod laws;
+mod own_models;
 mod panels;
 mod pictures;
 mod readme;
