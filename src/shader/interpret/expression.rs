@@ -281,6 +281,9 @@ impl<'m> Lowering<'m> {
 
     /// The sum of products of the words of two values.
     pub(super) fn dot(&mut self, a: &[Operand], b: &[Operand], float: bool) -> Result<Operand> {
+        if float && let Some(sum) = self.builder.dot(a, b)? {
+            return Ok(sum);
+        }
         let mut sum = None;
         for (x, y) in pairs(a, b) {
             sum = Some(match (sum, float) {
