@@ -23,6 +23,8 @@ mod loads;
 mod lower;
 mod maths;
 mod optimise;
+#[cfg(test)]
+mod random;
 mod shape;
 mod statement;
 #[cfg(test)]
