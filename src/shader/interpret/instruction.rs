@@ -283,7 +283,7 @@ operations! {
     SignF = |a: f32| if a > 0.0 { 1.0f32 } else if a < 0.0 { -1.0 } else { 0.0 };
     MinF = f32::min;
     MaxF = f32::max;
-    ClampF = |a: f32, low: f32, high: f32| a.max(low).min(high);
+    ClampF = clamp;
     Ceil = f32::ceil;
     Floor = f32::floor;
     Round = f32::round_ties_even;
@@ -355,13 +355,18 @@ operations! {
     MulAddF MulAddF3 = |a: f32, b: f32, c: f32| a * b + c;
     Mix Mix3 = |a: f32, b: f32, t: f32| a * (1.0 - t) + b * t;
     MaxF MaxF3 = f32::max;
-    ClampF ClampF3 = |a: f32, low: f32, high: f32| a.max(low).min(high);
+    ClampF ClampF3 = clamp;
 }
+}
+
+/// A number within bounds; the upper one where they are the wrong way round, and what is no number is the lower one.
+fn clamp(a: f32, low: f32, high: f32) -> f32 {
+    a.max(low).min(high)
 }
 
 /// Hermite's cubic between two edges.
 fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
-    let t = ((x - low) / (high - low)).max(0.0).min(1.0);
+    let t = clamp((x - low) / (high - low), 0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 

@@ -85,6 +85,12 @@ fn arithmetic_of_floats() {
     of_floats("ceil(a) + 10.0 * floor(b) + 100.0 * trunc(-a)", [2.25, -2.25], &[3.0 - 30.0 - 200.0]);
     of_floats("vec4(round(a), round(b), fract(a), fract(-b))", [2.5, 3.5], &[2.0, 4.0, 0.5, 0.5]);
     of_floats("vec3(step(a, b), step(b, a), step(a, a))", [1.0, 2.0], &[1.0, 0.0, 1.0]);
+    // Bounds the wrong way round, and an edge of no width.
+    of_floats(
+        "vec3(clamp(a, b, 1.5), smoothstep(a, a, a), smoothstep(a, a, b))",
+        [1.0, 2.0],
+        &[1.5, 0.0, 1.0],
+    );
     of_floats("vec2(mix(a, b, 0.25), smoothstep(a, b, 2.5))", [2.0, 4.0], &[2.5, 0.15625]);
     of_floats("vec2(ldexp(a, 3), ldexp(b, -2))", [1.5, 6.0], &[12.0, 1.5]);
     of_floats(
@@ -509,6 +515,13 @@ fn functions_that_grow_beyond_all_bounds_are_refused() {
     }
     text += "fn f(x: f32) -> f32 { return g1999(x); }";
     assert!(Program::new(&module(&text), "f").expect_err("too deep").what.contains("nested too deeply"));
+    // Types that grow without any call.
+    let mut text = "struct S0 { a: f32, b: f32 }\n".to_owned();
+    for i in 1..25 {
+        text += &format!("struct S{i} {{ a: S{0}, b: S{0} }}\n", i - 1);
+    }
+    text += "fn f() -> f32 { var x: S24; return x.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a; }";
+    assert!(Program::new(&module(&text), "f").expect_err("too large").what.contains("too large"));
 }
 
 #[test]
