@@ -6,6 +6,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
+    author,
     state::{Action, Lab, ViewChange},
     theme::{self, Palette},
 };
@@ -101,6 +102,8 @@ pub fn list<'e, T>(
     let mut row = before.unwrap_or(start).min(found.len().saturating_sub(1));
     let mut moved = before.is_none();
     let mut chosen = None;
+    // A button below that Tab has reached is pressed by Enter itself.
+    let elsewhere = ui.memory(|m| m.focused()).is_some_and(|focus| focus != id.with("text"));
     // Taken before the text field sees them.
     ui.input_mut(|i| {
         if i.consume_key(Modifiers::NONE, Key::ArrowDown) && row + 1 < found.len() {
@@ -109,7 +112,7 @@ pub fn list<'e, T>(
         if i.consume_key(Modifiers::NONE, Key::ArrowUp) && row > 0 {
             (row, moved) = (row - 1, true);
         }
-        if i.consume_key(Modifiers::NONE, Key::Enter) && row < found.len() {
+        if !elsewhere && i.consume_key(Modifiers::NONE, Key::Enter) && row < found.len() {
             chosen = Some(row);
         }
     });
@@ -302,8 +305,9 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
     }
     let mut open = true;
     let mut chosen = None;
+    let mut asked = Vec::new();
     let width = 460.0 * scale;
-    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 120.0 * scale;
+    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 156.0 * scale;
     Popup::from_response(&response)
         .id(id)
         .open_bool(&mut open)
@@ -312,7 +316,12 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         .show(|ui| {
             ui.set_width(width);
             chosen = models(ui, id, height, lab, registry, Some(shown), None).flatten();
+            ui.separator();
+            asked = author::buttons(ui, lab, registry);
         });
+    // What is asked next stands on its own.
+    open &= asked.is_empty();
+    actions.extend(asked);
     if let Some(model) = chosen {
         actions.push(Action::Edit(lab.edit_model(model.declaration.id)));
         open = false;

@@ -16,6 +16,7 @@ mod saving;
 mod scene_errors;
 mod scene_roundtrip;
 mod schema;
+mod shader_panel;
 mod study;
 mod support;
 mod tangents;
