@@ -30,7 +30,7 @@ use bevy::{
         ExitCondition, PresentMode, PrimaryWindow, RequestRedraw, Window, WindowCloseRequested, WindowPlugin,
         WindowResolution,
     },
-    winit::{UpdateMode, WinitSettings},
+    winit::{EventLoopProxyWrapper, UpdateMode, WinitSettings, WinitUserEvent},
 };
 use bevy_egui::{EguiGlobalSettings, EguiInput, EguiPlugin, EguiPreUpdateSet, PrimaryEguiContext, egui};
 use bevy_panorbit_camera::PanOrbitCameraPlugin;
@@ -44,13 +44,15 @@ use crate::{
     panel::{
         PanelPlugin,
         files::{load_settings, run as run_files},
-        state::{Action, Effect, Lab, LabEffect},
+        state::{Action, Effect, Lab, LabEffect, Severity},
         theme::Palette,
     },
     registry::Registry,
     scene::spawn::CurrentScene,
+    shader::status::ShaderStatus,
 };
 
+pub mod authoring;
 mod camera;
 mod capture;
 mod files;
@@ -204,6 +206,7 @@ impl Plugin for WindowSystemsPlugin {
             unfocused_mode: UpdateMode::reactive_low_power(SLEEP),
         })
         .init_resource::<Settling>()
+        .init_resource::<authoring::Editors>()
         .init_resource::<FrameClock>()
         .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
@@ -276,7 +279,12 @@ fn carry_out(
     mut files: ResMut<files::DiskFiles>,
     mut camera: camera::CameraControl,
     mut exit: MessageWriter<AppExit>,
+    editors: Res<authoring::Editors>,
+    proxy: Option<Res<EventLoopProxyWrapper>>,
 ) {
+    for complaint in editors.take() {
+        lab.say(Severity::Error, complaint);
+    }
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
     pending.reverse();
     while let Some(effect) = pending.pop() {
@@ -294,6 +302,14 @@ fn carry_out(
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
             dialog @ (Effect::PickOpen | Effect::PickSave) => lab.wanted_dialog = Some(dialog),
+            Effect::OpenInEditor { path, line } => {
+                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
+                let variable = std::env::var(authoring::EDITOR_VARIABLE).ok();
+                editors.open(variable.as_deref(), &path, line, move || {
+                    // The window sleeps; without it there is nobody to tell.
+                    proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
+                });
+            }
             other => {
                 let more = run_files(&mut lab, &registry, other.clone(), &mut *files);
                 // What comes back unchanged is nobody's.
@@ -398,6 +414,7 @@ struct Snapshot {
     camera: Option<bevy::transform::components::Transform>,
     terms: ShownTerms,
     messages: usize,
+    shaders: ShaderStatus,
 }
 
 /// Asks for another frame while something changes, and for none when nothing does.
@@ -415,6 +432,7 @@ fn redraw(
         camera: cameras.iter().next().copied(),
         terms: *terms,
         messages: lab.messages.len() + usize::from(lab.question.is_some()),
+        shaders: lab.shaders.clone(),
     };
     if settling.last.as_deref() != Some(&now) {
         settling.last = Some(Box::new(now));

@@ -2,7 +2,11 @@
 //!
 //! `LCM_PANEL_PICTURES=folder` also writes pictures, to be looked at.
 
-use std::path::{Path, PathBuf};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
 
 use bevy_egui::egui::{self, Color32, Event, Key, Modifiers, PointerButton, Shape, pos2, vec2};
 use lights_camera_models::{
@@ -19,6 +23,7 @@ use lights_camera_models::{
         check::ShaderProblem,
         status::{Reloaded, ShaderStatus, Trouble},
     },
+    window::authoring::{Editors, editor_command, write_new},
 };
 
 use super::panels::Bench;
@@ -425,6 +430,89 @@ fn a_model_that_vanishes_leaves_a_sentence() {
     for key in [Key::T, Key::Num1, Key::F1, Key::Tab] {
         bench.key(key, Modifiers::NONE);
     }
+}
+
+// ── files and editors ──
+
+#[test]
+fn the_command_of_the_editor_is_split_and_filled_in() {
+    let file = Path::new("/home/mira/my lab/x.wgsl");
+    let command = |variable| editor_command(variable, file, 12);
+    let expected = |program: &str, arguments: &[&str]| {
+        Some((program.to_owned(), arguments.iter().map(|a| (*a).to_owned()).collect::<Vec<_>>()))
+    };
+    let path = "/home/mira/my lab/x.wgsl";
+    assert_eq!(command(Some("gedit")), expected("gedit", &[path]));
+    assert_eq!(command(Some("  emacsclient  -n  ")), expected("emacsclient", &["-n", path]));
+    let goto = "/home/mira/my lab/x.wgsl:12";
+    assert_eq!(command(Some("code --goto {file}:{line}")), expected("code", &["--goto", goto]));
+    assert_eq!(command(Some("vim +{line}")), expected("vim", &["+12", path]));
+    for nothing in [None, Some(""), Some("   ")] {
+        assert_eq!(command(nothing), None, "the system chooses");
+    }
+    // The braces of a file name are its own.
+    let odd = Path::new("/tmp/{line}.wgsl");
+    assert_eq!(editor_command(Some("ed {file}"), odd, 3), expected("ed", &["/tmp/{line}.wgsl"]));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_editor_is_started_and_a_failure_is_told() -> Result<(), Box<dyn std::error::Error>> {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = tempfile::tempdir()?;
+    let (script, told) = (folder.path().join("editor"), folder.path().join("told"));
+    // Renamed at the end, so that the test never reads half of it.
+    let text =
+        format!("#!/bin/sh\nprintf '%s\\n' \"$@\" > '{0}.part'\nmv '{0}.part' '{0}'\n", told.display());
+    fs::write(&script, text)?;
+    fs::set_permissions(&script, fs::Permissions::from_mode(0o755))?;
+    let file = folder.path().join("a model.wgsl");
+    let editors = Editors::default();
+    let (done, woken) = std::sync::mpsc::channel();
+    let wake = || {
+        let done = done.clone();
+        move || {
+            let _ = done.send(());
+        }
+    };
+    let patience = Duration::from_secs(20);
+    editors.open(Some(&format!("{} -n +{{line}}", script.display())), &file, 7, wake());
+    let started = Instant::now();
+    while !told.exists() && started.elapsed() < patience {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(fs::read_to_string(&told)?, format!("-n\n+7\n{}\n", file.display()));
+    assert_eq!(editors.take(), [""; 0]);
+    for (command, why) in [("/nonexistent/editor", "does not start"), ("false", "ended with")] {
+        editors.open(Some(command), &file, 1, wake());
+        woken.recv_timeout(patience)?;
+        let complaints = editors.take();
+        assert_eq!(complaints.len(), 1);
+        for word in [why, command, "LCM_EDITOR", &*file.to_string_lossy()] {
+            assert!(complaints[0].contains(word), "{complaints:?}");
+        }
+    }
+    // An editor that stays open holds nothing up.
+    let started = Instant::now();
+    editors.open(Some("sh -c sleep\t3 {file}"), &file, 1, wake());
+    assert!(started.elapsed() < Duration::from_secs(1));
+    Ok(())
+}
+
+#[test]
+fn a_file_is_written_whole_and_never_over_another_one() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("models/deep/my_velvet.wgsl");
+    write_new(&path, "first\n")?;
+    assert_eq!(fs::read_to_string(&path)?, "first\n");
+    let again = write_new(&path, "second\n").expect_err("it is there");
+    assert_eq!(again.kind(), std::io::ErrorKind::AlreadyExists);
+    assert_eq!(fs::read_to_string(&path)?, "first\n");
+    let left: Vec<_> = fs::read_dir(path.parent().expect("a folder"))?.collect();
+    assert_eq!(left.len(), 1, "nothing is left lying about");
+    fs::write(folder.path().join("file"), "")?;
+    assert!(write_new(&folder.path().join("file/x.wgsl"), "").is_err());
+    Ok(())
 }
 
 // ── pictures ──
