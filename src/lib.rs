@@ -18,6 +18,7 @@
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
 //! - [`capture`]: rendering without a window, PNG files.
 //! - [`study`]: what tells the models apart, as numbers and a report.
+//! - [`watch`]: which files on disk change.
 //! - [`panel`]: what the window shows, as functions of a state that return actions.
 //! - [`app`]: the scene plugin and the order of the systems.
 //! - [`window`]: panels, camera and entities in one window.
@@ -40,6 +41,7 @@ pub mod capture;
 pub mod panel;
 pub mod reference;
 pub mod study;
+pub mod watch;
 
 pub mod app;
 pub mod cli;

@@ -1,0 +1,510 @@
+//! Watching files on disk, so that what others edit is seen at once.
+//!
+//! Editors do not agree on what saving is: some write into the file, some empty it first, some write
+//! another file and rename it over the old one. [`Watcher`] looks at names, not at files, and tells of
+//! a name once it has been quiet for [`QUIET`]. What changed it does not say: whoever is interested
+//! reads the file and compares.
+//!
+//! A thread of its own hears what the operating system tells of folders. Each folder is watched by
+//! itself and remembered with the state of its files, so that nothing is lost in folders that appear,
+//! vanish and come back, behind links that lead elsewhere, or when the system drops news.
+
+use std::{
+    collections::{BTreeSet, HashMap},
+    io,
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        mpsc::{self, Receiver, RecvTimeoutError, Sender},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use notify::{ErrorKind, Event, EventKind, RecursiveMode, event::ModifyKind};
+
+use self::look::{Found, Place, Print, is_temporary};
+
+mod look;
+#[cfg(test)]
+mod tests;
+
+/// A file is reported once nothing has happened to it for so long.
+pub const QUIET: Duration = Duration::from_millis(10);
+/// A file that never rests is reported after so long, and again after as long.
+pub const PATIENCE: Duration = Duration::from_millis(100);
+/// How often files are looked at where the system does not tell of changes.
+const POLL: Duration = Duration::from_millis(500);
+/// After a folder vanished or came, it is looked at once more: news that were on their way then may
+/// concern the folder that had its name before.
+const AFTERSHOCK: Duration = Duration::from_millis(100);
+/// The most news that are read before they are acted upon.
+const BATCH: usize = 4096;
+
+/// Tells of files that change on disk.
+#[derive(Debug)]
+pub struct Watcher {
+    orders: Sender<Order>,
+    told: Arc<Mutex<Told>>,
+}
+
+/// What the thread tells its owner.
+#[derive(Debug, Default)]
+struct Told {
+    /// Files that are quiet, and when they began to change.
+    changed: Vec<(Instant, PathBuf)>,
+    /// When the next file will be quiet.
+    next: Option<Instant>,
+    complaint: Option<String>,
+}
+
+/// What the thread is told.
+enum Order {
+    /// Watch this; answer when it is done.
+    Add(PathBuf, Kind, Sender<()>),
+    /// Watch this no longer; answer when it is done.
+    Forget(PathBuf, Sender<()>),
+    /// The system says something.
+    Heard(notify::Result<Event>),
+    Stop,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Folder,
+    File,
+}
+
+type Backend = Box<dyn notify::Watcher + Send>;
+
+impl Watcher {
+    /// A watcher of nothing yet. `wake` is called from another thread whenever there is news: files
+    /// that [`changed`](Self::changed), or another [`complaint`](Self::complaint).
+    pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
+        Self::with_backend(wake, |news| {
+            let hear = move |event: notify::Result<Event>| {
+                // Who only reads changes nothing.
+                if !matches!(&event, Ok(e) if is_reading(e.kind)) {
+                    // Nobody listens any more when the window closes.
+                    let _ = news.send(Order::Heard(event));
+                }
+            };
+            Ok(Box::new(notify::recommended_watcher(hear)?))
+        })
+    }
+
+    fn with_backend(
+        wake: impl Fn() + Send + Sync + 'static,
+        make: impl FnOnce(Sender<Order>) -> notify::Result<Backend>,
+    ) -> Self {
+        let told = Arc::new(Mutex::new(Told::default()));
+        let (orders, received) = mpsc::channel();
+        let (backend, refusal) = match make(orders.clone()) {
+            Ok(backend) => (Some(backend), None),
+            Err(error) => (None, Some(reason(&error))),
+        };
+        let mut worker = Worker {
+            backend,
+            refusal,
+            roots: Vec::new(),
+            watched: BTreeSet::new(),
+            refused: false,
+            waiting: Vec::new(),
+            aftershock: None,
+            next_poll: None,
+            told: told.clone(),
+            wake: Box::new(wake),
+        };
+        let started =
+            thread::Builder::new().name("file watcher".to_owned()).spawn(move || worker.run(&received));
+        if let Err(error) = started {
+            lock(&told).complaint = Some(format!("Changes of files on disk will not be noticed: {error}."));
+        }
+        Self { orders, told }
+    }
+
+    /// Watches a folder and everything below it, through links too, but without hidden folders. It may
+    /// not exist yet: then it is noticed when it appears. It may be deleted and come back.
+    pub fn watch_folder(&mut self, folder: &Path) {
+        self.order(|done| Order::Add(folder.to_owned(), Kind::Folder, done));
+    }
+
+    /// Watches one file through its folder: atomic renames, deletion and making it anew are noticed. It
+    /// may be a link, and may not exist yet.
+    pub fn watch_file(&mut self, file: &Path) {
+        self.order(|done| Order::Add(file.to_owned(), Kind::File, done));
+    }
+
+    /// Watches a file or folder no longer, as it was named when that began.
+    pub fn forget(&mut self, path: &Path) {
+        self.order(|done| Order::Forget(path.to_owned(), done));
+    }
+
+    /// Files that may have changed since the last call, each once, once they have been quiet for
+    /// [`QUIET`], or after [`PATIENCE`], the oldest change first. Files that were deleted or renamed are
+    /// among them; temporary files and backups of editors in watched folders are not. Paths begin as the
+    /// watched folder was named.
+    pub fn changed(&self) -> Vec<PathBuf> {
+        let mut changed = std::mem::take(&mut lock(&self.told).changed);
+        changed.sort_by_key(|(first, _)| *first);
+        changed.into_iter().map(|(_, file)| file).collect()
+    }
+
+    /// How long until something that changed just now is quiet, if there is anything. The thread calls
+    /// `wake` then.
+    pub fn pending(&self) -> Option<Duration> {
+        lock(&self.told).next.map(|at| at.saturating_duration_since(Instant::now()))
+    }
+
+    /// What people should know: that the system does not tell of changes, so that files are looked at
+    /// twice a second instead.
+    pub fn complaint(&self) -> Option<String> {
+        lock(&self.told).complaint.clone()
+    }
+
+    /// Gives an order and waits until it is carried out.
+    fn order(&self, order: impl FnOnce(Sender<()>) -> Order) {
+        let (done, wait) = mpsc::channel();
+        if self.orders.send(order(done)).is_ok() {
+            // An error: the thread is gone.
+            let _ = wait.recv();
+        }
+    }
+}
+
+impl Drop for Watcher {
+    fn drop(&mut self) {
+        let _ = self.orders.send(Order::Stop);
+    }
+}
+
+/// A thread that panicked leaves nothing half done here.
+fn lock(told: &Mutex<Told>) -> MutexGuard<'_, Told> {
+    told.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Whether news are only about reading.
+fn is_reading(kind: EventKind) -> bool {
+    use notify::event::{AccessKind, AccessMode};
+    matches!(kind, EventKind::Access(access) if access != AccessKind::Close(AccessMode::Write))
+}
+
+/// Why the system does not watch, and what helps.
+fn reason(error: &notify::Error) -> String {
+    /// "Too many open files", which is what Linux says of its limit of inotify instances.
+    const EMFILE: i32 = 24;
+    match &error.kind {
+        ErrorKind::MaxFilesWatch => {
+            "its limit of watched folders is reached (fs.inotify.max_user_watches)".to_owned()
+        }
+        ErrorKind::Io(e) if cfg!(target_os = "linux") && e.raw_os_error() == Some(EMFILE) => {
+            "its limit of watchers is reached (fs.inotify.max_user_instances)".to_owned()
+        }
+        ErrorKind::Io(e) => e.to_string(),
+        _ => error.to_string(),
+    }
+}
+
+/// Something that is watched.
+struct Root {
+    path: PathBuf,
+    kind: Kind,
+    /// The files as they were when they were last reported, or found at the beginning.
+    known: HashMap<PathBuf, Print>,
+    /// Where changes are of interest.
+    places: Vec<Place>,
+}
+
+impl Root {
+    fn look(&self) -> Found {
+        match self.kind {
+            Kind::Folder => look::folder(&self.path),
+            Kind::File => look::file(&self.path),
+        }
+    }
+
+    /// Whether a file belongs to it.
+    fn holds(&self, file: &Path) -> bool {
+        match self.kind {
+            Kind::Folder => file.starts_with(&self.path),
+            Kind::File => file == self.path,
+        }
+    }
+}
+
+/// A change that is not reported yet.
+struct Change {
+    path: PathBuf,
+    first: Instant,
+    last: Instant,
+}
+
+impl Change {
+    fn due(&self) -> Instant {
+        (self.last + QUIET).min(self.first + PATIENCE)
+    }
+}
+
+/// The thread.
+struct Worker {
+    backend: Option<Backend>,
+    /// Why there is no backend.
+    refusal: Option<String>,
+    roots: Vec<Root>,
+    watched: BTreeSet<PathBuf>,
+    /// Whether the system refuses to watch a folder.
+    refused: bool,
+    /// What changed, the oldest change first.
+    waiting: Vec<Change>,
+    aftershock: Option<Instant>,
+    next_poll: Option<Instant>,
+    told: Arc<Mutex<Told>>,
+    wake: Box<dyn Fn() + Send + Sync>,
+}
+
+impl Worker {
+    fn run(&mut self, orders: &Receiver<Order>) {
+        loop {
+            let next = self.waiting.iter().map(Change::due).min();
+            let at = [next, self.aftershock, self.next_poll].into_iter().flatten().min();
+            let order = match at {
+                None => orders.recv().map_err(|_| RecvTimeoutError::Disconnected),
+                Some(at) => orders.recv_timeout(at.saturating_duration_since(Instant::now())),
+            };
+            let mut look = false;
+            let mut done = Vec::new();
+            let more = std::iter::from_fn(|| orders.try_recv().ok());
+            let batch = match order {
+                Ok(order) => Some(order).into_iter().chain(more).take(BATCH),
+                Err(RecvTimeoutError::Timeout) => None.into_iter().chain(more).take(0),
+                Err(RecvTimeoutError::Disconnected) => return,
+            };
+            for order in batch {
+                match order {
+                    Order::Add(path, kind, ready) => {
+                        self.add(path, kind);
+                        done.push(ready);
+                    }
+                    Order::Forget(path, ready) => {
+                        self.forget(&path);
+                        done.push(ready);
+                    }
+                    Order::Heard(Ok(event)) => look |= self.hear(&event),
+                    // News were lost.
+                    Order::Heard(Err(_)) => look = true,
+                    Order::Stop => return,
+                }
+            }
+            self.catch_up(look || !done.is_empty());
+            self.report();
+            for ready in done {
+                let _ = ready.send(());
+            }
+        }
+    }
+
+    fn add(&mut self, path: PathBuf, kind: Kind) {
+        if self.roots.iter().any(|r| r.path == path && r.kind == kind) {
+            return;
+        }
+        let mut root = Root { path, kind, known: HashMap::new(), places: Vec::new() };
+        // What is there now is no news.
+        root.known = root.look().files;
+        self.roots.push(root);
+    }
+
+    fn forget(&mut self, path: &Path) {
+        self.roots.retain(|r| r.path != path);
+        let roots = &self.roots;
+        let held = |file: &Path| roots.iter().any(|r| r.holds(file));
+        self.waiting.retain(|c| held(&c.path));
+        lock(&self.told).changed.retain(|(_, file)| held(file));
+    }
+
+    /// Takes in what the system says. Returns whether folders must be looked at.
+    fn hear(&mut self, event: &Event) -> bool {
+        let now = Instant::now();
+        let mut look = event.need_rescan();
+        let only_data = matches!(event.kind, EventKind::Modify(ModifyKind::Data(_)) | EventKind::Access(_));
+        let mut changed = Vec::new();
+        for path in &event.paths {
+            if self.watched.contains(path) && !only_data {
+                // A folder itself came, went or was renamed.
+                look = true;
+                self.aftershock = Some(now + AFTERSHOCK);
+                continue;
+            }
+            let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else { continue };
+            let places = self.roots.iter().flat_map(|r| &r.places).filter(|p| p.folder == folder);
+            for place in places {
+                match &place.name {
+                    None if is_temporary(name) => continue,
+                    None => changed.extend(place.shown.as_ref().map(|folder| folder.join(name))),
+                    Some(wanted) if wanted == name => changed.extend(place.shown.clone()),
+                    Some(_) => continue,
+                }
+                look |= !only_data;
+            }
+        }
+        for path in changed {
+            self.note(path, now);
+        }
+        look
+    }
+
+    fn note(&mut self, path: PathBuf, now: Instant) {
+        match self.waiting.iter_mut().find(|c| c.path == path) {
+            Some(change) => change.last = now,
+            None => self.waiting.push(Change { path, first: now, last: now }),
+        }
+    }
+
+    /// Looks at folders when something asks for it: news, or the clock.
+    fn catch_up(&mut self, look: bool) {
+        let now = Instant::now();
+        let over = |at: Option<Instant>| at.is_some_and(|at| at <= now);
+        let shaken = over(self.aftershock);
+        if shaken {
+            self.aftershock = None;
+        }
+        if look || shaken || over(self.next_poll) {
+            self.look(shaken);
+            let polls = self.refused && !self.roots.is_empty();
+            self.next_poll = polls.then(|| Instant::now() + POLL);
+        }
+    }
+
+    /// Looks at everything that is watched, notes what differs, and watches the folders that there are.
+    /// `anew` watches again what seems to be watched.
+    fn look(&mut self, anew: bool) {
+        if anew {
+            for folder in std::mem::take(&mut self.watched) {
+                self.unwatch(&folder);
+            }
+        }
+        // What appears between looking and watching is seen by the next look.
+        for _ in 0..4 {
+            self.compare();
+            if !self.watch_places() {
+                break;
+            }
+        }
+    }
+
+    fn compare(&mut self) {
+        let now = Instant::now();
+        let mut differing = BTreeSet::new();
+        for root in &mut self.roots {
+            let Found { files, places } = root.look();
+            root.places = places;
+            let new = files.iter().filter(|(path, print)| root.known.get(*path) != Some(print));
+            let gone = root.known.keys().filter(|path| !files.contains_key(*path));
+            differing.extend(new.map(|(path, _)| path).chain(gone).cloned());
+        }
+        for path in differing {
+            self.note(path, now);
+        }
+    }
+
+    /// Watches the folders of interest and no others. Returns whether there were new ones.
+    fn watch_places(&mut self) -> bool {
+        let places = self.roots.iter().flat_map(|r| &r.places);
+        let wanted: BTreeSet<_> = places.map(|p| p.folder.clone()).collect();
+        let stale: Vec<_> = self.watched.difference(&wanted).cloned().collect();
+        for folder in stale {
+            self.unwatch(&folder);
+            self.watched.remove(&folder);
+        }
+        let mut problem = self.refusal.clone();
+        let mut new = false;
+        let Some(backend) = &mut self.backend else {
+            self.complain(problem);
+            return false;
+        };
+        for folder in wanted {
+            if self.watched.contains(&folder) {
+                continue;
+            }
+            match backend.watch(&folder, RecursiveMode::NonRecursive) {
+                Ok(()) => {
+                    self.watched.insert(folder);
+                    new = true;
+                }
+                Err(error) if is_absent(&error) => self.aftershock = Some(Instant::now() + AFTERSHOCK),
+                Err(error) => {
+                    problem = Some(format!("{}, says the system of {}", reason(&error), folder.display()));
+                }
+            }
+        }
+        self.complain(problem);
+        new
+    }
+
+    fn unwatch(&mut self, folder: &Path) {
+        if let Some(backend) = &mut self.backend {
+            // Of a folder that is gone the system forgets by itself.
+            let _ = backend.unwatch(folder);
+        }
+    }
+
+    fn complain(&mut self, problem: Option<String>) {
+        self.refused = problem.is_some();
+        let complaint = problem.map(|why| {
+            format!(
+                "The system does not tell when files change: {why}. They are looked at twice a second instead."
+            )
+        });
+        let mut told = lock(&self.told);
+        if told.complaint != complaint {
+            told.complaint = complaint;
+            drop(told);
+            (self.wake)();
+        }
+    }
+
+    /// Tells of what is quiet by now.
+    fn report(&mut self) {
+        let now = Instant::now();
+        let (due, waiting) = std::mem::take(&mut self.waiting).into_iter().partition(|c| c.due() <= now);
+        self.waiting = waiting;
+        let mut due: Vec<Change> = due;
+        due.retain(|change| self.take_note(&change.path));
+        let mut told = lock(&self.told);
+        told.next = self.waiting.iter().map(Change::due).min();
+        let before = told.changed.len();
+        for Change { path, first, .. } in due {
+            if told.changed.iter().all(|(_, known)| *known != path) {
+                told.changed.push((first, path));
+            }
+        }
+        let news = told.changed.len() > before;
+        drop(told);
+        if news {
+            (self.wake)();
+        }
+    }
+
+    /// Remembers a file as it is now. Returns whether there is something to tell: folders are not told
+    /// of, nor what came and went in the meantime.
+    fn take_note(&mut self, path: &Path) -> bool {
+        let print = Print::of(path);
+        let mut tell = false;
+        for root in self.roots.iter_mut().filter(|r| r.holds(path)) {
+            let before = match print {
+                Some(print) => root.known.insert(path.to_owned(), print),
+                None => root.known.remove(path),
+            };
+            tell |= print.is_some() || before.is_some();
+        }
+        tell
+    }
+}
+
+/// Whether a folder could not be watched because it is no longer there.
+fn is_absent(error: &notify::Error) -> bool {
+    match &error.kind {
+        ErrorKind::PathNotFound => true,
+        ErrorKind::Io(e) => matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory),
+        _ => false,
+    }
+}

@@ -1,0 +1,151 @@
+//! Looking at folders: which files there are, and where to listen for changes of them.
+
+use std::{
+    collections::{HashMap, HashSet},
+    ffi::{OsStr, OsString},
+    fs::{self, Metadata},
+    path::{Component, Path, PathBuf},
+    time::SystemTime,
+};
+
+/// Links that lead to links are followed so far.
+const MAX_LINKS: usize = 16;
+/// Folders in folders are followed so deep.
+const MAX_DEPTH: usize = 32;
+
+/// The state of a file, as far as it can be told without reading it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Print {
+    length: u64,
+    modified: Option<SystemTime>,
+    /// Tells a file from another one that takes its place.
+    number: u64,
+}
+
+impl Print {
+    /// The state of a file; `None` when there is none.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let metadata = fs::metadata(path).ok()?;
+        (!metadata.is_dir()).then(|| Self::from_metadata(&metadata))
+    }
+
+    fn from_metadata(metadata: &Metadata) -> Self {
+        #[cfg(unix)]
+        let number = std::os::unix::fs::MetadataExt::ino(metadata);
+        #[cfg(not(unix))]
+        let number = 0;
+        Self { length: metadata.len(), modified: metadata.modified().ok(), number }
+    }
+}
+
+/// Where a change is of interest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    /// The folder, without links in its path.
+    pub(super) folder: PathBuf,
+    /// The name in it; `None` for every name.
+    pub(super) name: Option<OsString>,
+    /// What the file is called in reports, or the folder of the files; `None` where a change only means
+    /// that everything must be looked at again.
+    pub(super) shown: Option<PathBuf>,
+}
+
+/// What was found.
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) files: HashMap<PathBuf, Print>,
+    pub(super) places: Vec<Place>,
+}
+
+/// Looks for one file.
+pub(super) fn file(path: &Path) -> Found {
+    let mut found = Found::default();
+    trace(path, Some(path), &mut found.places, 0);
+    found.files.extend(Print::of(path).map(|print| (path.to_owned(), print)));
+    found
+}
+
+/// Looks at a folder and what lies below.
+pub(super) fn folder(path: &Path) -> Found {
+    let mut found = Found::default();
+    trace(path, None, &mut found.places, 0);
+    walk(path, &mut found, &mut HashSet::new(), 0);
+    found
+}
+
+/// Follows a path name by name and lists where it can come to lead elsewhere: where the first name is
+/// missing, at every link, and at its end if that is a file.
+fn trace(path: &Path, shown: Option<&Path>, places: &mut Vec<Place>, links: usize) {
+    let Ok(absolute) = std::path::absolute(path) else { return };
+    let mut at = PathBuf::new();
+    let mut names = absolute.components().peekable();
+    while let Some(name) = names.next() {
+        let parent = at.clone();
+        at.push(name);
+        let Component::Normal(name) = name else { continue };
+        let metadata = fs::symlink_metadata(&at);
+        let is_link = metadata.as_ref().is_ok_and(Metadata::is_symlink);
+        let is_last = names.peek().is_none();
+        let shown = shown.filter(|_| is_last);
+        // A folder tells by itself when it is moved, on Linux.
+        let is_end = is_last && (shown.is_some() || cfg!(not(target_os = "linux")));
+        if is_link || is_end || metadata.is_err() {
+            let Some(folder) = fs::canonicalize(&parent).ok().filter(|f| f.is_dir()) else { return };
+            places.push(Place { folder, name: Some(name.to_owned()), shown: shown.map(Path::to_owned) });
+        }
+        if is_link
+            && links < MAX_LINKS
+            && let Ok(target) = fs::read_link(&at)
+        {
+            trace(&parent.join(target), shown, places, links + 1);
+        }
+        if metadata.is_err() {
+            return;
+        }
+    }
+}
+
+fn walk(shown: &Path, found: &mut Found, seen: &mut HashSet<PathBuf>, depth: usize) {
+    let Ok(folder) = fs::canonicalize(shown) else { return };
+    // Links may lead in circles.
+    if depth > MAX_DEPTH || !folder.is_dir() || !seen.insert(folder.clone()) {
+        return;
+    }
+    found.places.push(Place { folder, name: None, shown: Some(shown.to_owned()) });
+    let Ok(entries) = fs::read_dir(shown) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        if is_temporary(&name) {
+            continue;
+        }
+        let path = shown.join(name);
+        if entry.file_type().is_ok_and(|t| t.is_symlink()) {
+            trace(&path, Some(&path), &mut found.places, 0);
+        }
+        match fs::metadata(&path) {
+            Ok(metadata) if metadata.is_dir() => walk(&path, found, seen, depth + 1),
+            Ok(metadata) => drop(found.files.insert(path, Print::from_metadata(&metadata))),
+            Err(_) => {}
+        }
+    }
+}
+
+/// Whether a name looks like what editors and tools leave for a moment or as a backup, or is hidden.
+pub(super) fn is_temporary(name: &OsStr) -> bool {
+    let name = name.to_string_lossy();
+    let extension = Path::new(&*name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    // What `sed -i` writes.
+    let is_seds = name
+        .strip_prefix("sed")
+        .is_some_and(|rest| rest.chars().count() == 6 && rest.chars().all(|c| c.is_ascii_alphanumeric()));
+    // Vim tries whether it may write with 4913, or a greater number when that is taken.
+    let is_vims = name.len() >= 4 && name.chars().all(|c| c.is_ascii_digit());
+    name.starts_with('.')
+        || name.ends_with('~')
+        || (name.starts_with('#') && name.ends_with('#'))
+        || name.ends_with("___jb_tmp___")
+        || name.ends_with("___jb_old___")
+        || matches!(extension.as_deref(), Some("tmp" | "bak" | "swp" | "swo" | "swx" | "swpx" | "lock"))
+        || is_seds
+        || is_vims
+}
