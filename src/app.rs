@@ -14,7 +14,10 @@ use crate::{
     light::buffer::{IlluminationBuffer, illumination_bytes, record},
     observer::camera::follow_scene,
     optics::TermSelection,
-    reflection::swap::{self, ComposedShaders, ParameterTables, ShapeMeshes},
+    reflection::{
+        material::MaterialApp as _,
+        swap::{self, ComposedShaders, ParameterTables, ShapeMeshes},
+    },
     registry::{Registry, register_builtin},
     scene::spawn::{CurrentScene, SceneEntities, absorb, reconcile},
 };
@@ -54,6 +57,7 @@ pub struct ScenePlugin;
 impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
         register_builtin(app);
+        app.add_own_material();
         app.world_mut().resource_mut::<MainScheduleOrder>().insert_after(Update, LabFrame);
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()

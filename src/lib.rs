@@ -11,6 +11,7 @@
 //!
 //! - [`optics`]: the vocabulary of every model, pure functions on vectors, no Bevy.
 //! - [`reflection`], [`shading`], [`light`], [`shape`]: a trait and a list each; one file per kind.
+//! - [`assets`]: where shader files and own models are read from.
 //! - [`registry`]: what is known, looked up by id; registration from inside and outside the crate.
 //! - [`observer`]: the camera.
 //! - [`scene`]: the scene as a value; JSON; entities.
@@ -44,5 +45,6 @@ pub mod study;
 pub mod watch;
 
 pub mod app;
+pub mod assets;
 pub mod cli;
 pub mod window;

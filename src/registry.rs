@@ -11,6 +11,11 @@
 //! app.add_reflection_model::<Lambert>();
 //! ```
 
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
 use bevy::{app::App, ecs::resource::Resource};
 
 use crate::{
@@ -18,8 +23,10 @@ use crate::{
     reflection::{
         self, ModelEntry, ReflectionModel,
         material::MaterialApp,
+        own::OwnModel,
         parameter::{BLOCK_BYTES, Parameter, layout},
     },
+    shader::compose::Sources,
     shading::{self, ModeEntry, ShadingMode},
     shape::{self, ObjectType, ShapeEntry},
 };
@@ -51,6 +58,21 @@ pub struct Registry {
     modes: Vec<ModeEntry>,
     lights: Vec<LightEntry>,
     shapes: Vec<ShapeEntry>,
+    sources: Sources,
+    files: Files,
+}
+
+/// What is known of files: shaders and own models.
+#[derive(Clone, Debug, Default)]
+struct Files {
+    /// The folder that shaders were read from.
+    shaders: Option<PathBuf>,
+    /// The folder that own models were read from.
+    models: Option<PathBuf>,
+    /// The files by the id of their model.
+    own: BTreeMap<&'static str, PathBuf>,
+    /// By id why a file gives no model.
+    broken: BTreeMap<String, String>,
 }
 
 impl Registry {
@@ -114,6 +136,91 @@ impl Registry {
     #[must_use]
     pub fn shape(&self, id: &str) -> Option<&ShapeEntry> {
         self.shapes.iter().find(|s| s.declaration.id == id)
+    }
+
+    /// The current texts of shader files, where they differ from the built-in ones, and those of own models.
+    #[must_use]
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// The current texts of shader files, to change them.
+    pub fn sources_mut(&mut self) -> &mut Sources {
+        &mut self.sources
+    }
+
+    /// Notes where shaders are read from.
+    pub fn set_shader_folder(&mut self, folder: &Path) {
+        self.files.shaders = Some(folder.to_owned());
+    }
+
+    /// The file on disk of a source that messages call by its path, if it was read from one.
+    #[must_use]
+    pub fn path_on_disk(&self, source: &str) -> Option<PathBuf> {
+        let own = self.own_models().find(|(m, _)| m.declaration.wgsl.path == source).map(|(_, path)| path.to_owned());
+        let below = |folder: &Option<PathBuf>, file: &str| {
+            Some(folder.as_ref()?.join(file)).filter(|path| path.is_file())
+        };
+        let models = || below(&self.files.models, source.strip_prefix("models/")?);
+        own.or_else(models).or_else(|| below(&self.files.shaders, source))
+    }
+
+    /// Makes a model from a file known, with its text. A second one with the same id replaces the first, in its
+    /// place.
+    pub fn put_own_model(&mut self, model: OwnModel) {
+        self.sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
+        self.put_stand_in(model);
+    }
+
+    /// Makes a model from a file known whose text is no good yet: the text that is known stays, and where there is
+    /// none a stand-in is drawn.
+    pub fn put_stand_in(&mut self, model: OwnModel) {
+        let id = model.entry.declaration.id;
+        self.files.broken.remove(id);
+        self.files.own.insert(id, model.path);
+        put(&mut self.models, model.entry, |m| m.declaration.id);
+    }
+
+    /// Forgets a model, and its text if it came from a file.
+    pub fn remove_model(&mut self, id: &str) {
+        let Some(at) = self.models.iter().position(|m| m.declaration.id == id) else { return };
+        let model = self.models.remove(at);
+        if self.files.own.remove(id).is_some() {
+            self.sources.forget(model.declaration.wgsl.path);
+        }
+    }
+
+    /// The file of a model that came from one.
+    #[must_use]
+    pub fn own_file(&self, id: &str) -> Option<&Path> {
+        self.files.own.get(id).map(PathBuf::as_path)
+    }
+
+    /// The models that came from files, with these.
+    pub fn own_models(&self) -> impl Iterator<Item = (&ModelEntry, &Path)> {
+        self.models.iter().filter_map(|m| Some((m, self.own_file(m.declaration.id)?)))
+    }
+
+    /// Notes where own models are read from.
+    pub fn set_own_folder(&mut self, folder: &Path) {
+        self.files.models = Some(folder.to_owned());
+    }
+
+    /// Where own models are read from, if they are.
+    #[must_use]
+    pub fn own_folder(&self) -> Option<&Path> {
+        self.files.models.as_deref()
+    }
+
+    /// Notes why the file of that id gives no model, or none as it is.
+    pub fn mark_broken(&mut self, id: &str, why: String) {
+        self.files.broken.insert(id.to_owned(), why);
+    }
+
+    /// Why the file of that id gives no model: where it is wrong and what is.
+    #[must_use]
+    pub fn broken_model(&self, id: &str) -> Option<&str> {
+        self.files.broken.get(id).map(String::as_str)
     }
 
     /// Every parameter that some model declares, each name once, in order of first declaration.

@@ -24,11 +24,12 @@ use crate::{
 };
 
 /// The response of a model to pairs of directions (to the light, to the viewer) in the local frame
-/// (normal +z, tangent +x), calculated by its WGSL on the GPU.
+/// (normal +z, tangent +x), calculated by its WGSL on the GPU. The texts are those of `sources`.
 ///
 /// # Errors
 /// Without a driver, or when the model's WGSL is not valid.
 pub fn evaluate(
+    sources: &Sources,
     model: &ModelEntry,
     values: &Values,
     encoding: Encoding,
@@ -37,7 +38,9 @@ pub fn evaluate(
     if pairs.is_empty() {
         return Ok(Vec::new());
     }
-    Evaluator::new(model, values, encoding)?.evaluate(pairs)
+    let mut evaluator = Evaluator::new(sources, model)?;
+    evaluator.set(values, encoding);
+    evaluator.evaluate(pairs)
 }
 
 /// The directional albedos of a model for views in the local frame, by its WGSL on the GPU: where to
@@ -46,6 +49,7 @@ pub fn evaluate(
 /// # Errors
 /// As [`evaluate`].
 pub fn albedos(
+    sources: &Sources,
     model: &ModelEntry,
     values: &Values,
     encoding: Encoding,
@@ -56,7 +60,8 @@ pub fn albedos(
     if views.is_empty() {
         return Ok(Vec::new());
     }
-    let evaluator = Evaluator::new(model, values, encoding)?;
+    let mut evaluator = Evaluator::new(sources, model)?;
+    evaluator.set(values, encoding);
     let mut albedos = Vec::with_capacity(views.len());
     for views in views.chunks(VIEWS) {
         albedos.extend(directional_in_batches(views, |pairs| evaluator.evaluate(pairs))?);
@@ -64,13 +69,23 @@ pub fn albedos(
     Ok(albedos)
 }
 
+/// The parameters of a model as its shader reads them. The response asks for the lobe, not for the albedo.
+fn row(device: &RenderDevice, model: &ModelEntry, values: &Values, encoding: Encoding) -> Buffer {
+    device.create_buffer_with_data(&BufferInitDescriptor {
+        label: Some("row"),
+        contents: &model.row(values, encoding, false),
+        usage: BufferUsages::STORAGE,
+    })
+}
+
 /// Bytes of `Pair` in `evaluate.wgsl`: two vec3, each padded to 16.
 const PAIR_BYTES: usize = 32;
 /// Bytes of `Terms` in `terms.wgsl`: three vec3, each padded to 16.
 const ANSWER_BYTES: usize = 48;
 
-/// A model with its parameters on the GPU, ready to be asked again and again.
-struct Evaluator {
+/// A model on the GPU, ready to be asked again and again with one set of parameters after the other.
+pub struct Evaluator {
+    model: ModelEntry,
     device: RenderDevice,
     queue: RenderQueue,
     layout: BindGroupLayout,
@@ -79,16 +94,15 @@ struct Evaluator {
 }
 
 impl Evaluator {
-    fn new(model: &ModelEntry, values: &Values, encoding: Encoding) -> Result<Self, GpuError> {
-        let composed = compose_evaluation(&Sources::default(), model);
-        check::validate(&composed).map_err(|e| GpuError::Shader(e.to_string()))?;
+    /// The model with its default parameters.
+    ///
+    /// # Errors
+    /// Without a driver, or when the model's WGSL is not valid.
+    pub fn new(sources: &Sources, model: &ModelEntry) -> Result<Self, GpuError> {
+        let composed = compose_evaluation(sources, model);
+        check::validate(&composed).map_err(GpuError::Invalid)?;
         let RenderResources(device, queue, ..) = device()?;
-        // The response asks for the lobe, not for the albedo.
-        let row = device.create_buffer_with_data(&BufferInitDescriptor {
-            label: Some("row"),
-            contents: &model.row(values, encoding, false),
-            usage: BufferUsages::STORAGE,
-        });
+        let row = row(&device, model, &Values::default(), Encoding::Srgb);
         let module = device.create_and_validate_shader_module(ShaderModuleDescriptor {
             label: Some("evaluate"),
             source: ShaderSource::Wgsl(composed.text.into()),
@@ -118,11 +132,19 @@ impl Evaluator {
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
-        Ok(Self { device, queue, layout, pipeline, row })
+        Ok(Self { model: model.clone(), device, queue, layout, pipeline, row })
+    }
+
+    /// Answers with these parameters from now on.
+    pub fn set(&mut self, values: &Values, encoding: Encoding) {
+        self.row = row(&self.device, &self.model, values, encoding);
     }
 
     /// The responses to pairs of directions, in as many passes as they need.
-    fn evaluate(&self, pairs: &[(Vec3, Vec3)]) -> Result<Vec<Terms>, GpuError> {
+    ///
+    /// # Errors
+    /// When the answers cannot be copied from the GPU.
+    pub fn evaluate(&self, pairs: &[(Vec3, Vec3)]) -> Result<Vec<Terms>, GpuError> {
         let limit = self.device.limits().max_storage_buffer_binding_size as usize / ANSWER_BYTES;
         let mut answers = Vec::with_capacity(pairs.len());
         for chunk in pairs.chunks(limit.min(65_535 * 64)) {

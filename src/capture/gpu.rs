@@ -37,6 +37,7 @@ use crate::{
     observer::camera::picture_camera,
     optics::TermSelection,
     scene::{Scene, spawn::CurrentScene},
+    shader::check::ShaderProblem,
 };
 
 /// Why the GPU renderer could not draw.
@@ -56,6 +57,9 @@ pub enum GpuError {
     /// A shader could not be compiled.
     #[error("a shader could not be compiled: {0}")]
     Shader(String),
+    /// A shader is wrong, and where is known.
+    #[error("a shader is not valid: {0}")]
+    Invalid(Box<ShaderProblem>),
     /// The picture could not be copied from the GPU.
     #[error("the picture could not be copied from the GPU: {0}")]
     Copy(String),

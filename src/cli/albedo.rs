@@ -6,9 +6,10 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::{
-    Failure, Outcome,
+    Outcome,
     angles::{self, Column},
     evaluate::{Arguments, Machine, find},
+    workshop::valid,
 };
 use crate::{
     capture::evaluate::albedos,
@@ -24,6 +25,8 @@ const COLUMNS: [Column; 1] = [Column { name: "mu", range: Some((ABOVE_ZERO as f6
 pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
     let model = find(registry, &arguments.model)?;
     let values = arguments.set.values(model)?;
+    valid(registry, model)?;
+    arguments.on.can_run(model)?;
     let rows = angles::from_stdin(&COLUMNS)?;
     let views: Vec<Vec3> = rows
         .iter()
@@ -39,9 +42,10 @@ pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
             views.par_iter().map(of).collect()
         }
         Machine::Gpu => {
-            albedos(model, &values, Encoding::Srgb, &views).map_err(|e| Failure::NoRenderer(e.to_string()))?
+            albedos(registry.sources(), model, &values, Encoding::Srgb, &views)?
         }
     };
+    arguments.on.can_run(model)?;
     let mut out = BufWriter::new(io::stdout().lock());
     writeln!(out, "mu,e_r,e_g,e_b")?;
     for (row, e) in rows.iter().zip(albedos) {

@@ -11,6 +11,7 @@ use glam::Vec3;
 use super::{
     Failure, Outcome,
     angles::{self, Column},
+    workshop::{not_on_cpu, valid},
 };
 use crate::{
     capture::evaluate::evaluate,
@@ -49,10 +50,20 @@ pub(super) struct Settings {
 /// Who evaluates a model.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum Machine {
-    /// The Rust functions
+    /// The Rust functions; the WGSL of own models, interpreted
     Cpu,
     /// The WGSL functions, in a compute pass; software Vulkan will do
     Gpu,
+}
+
+impl Machine {
+    /// Whether it can run a model, or could when it last tried.
+    pub(super) fn can_run(self, model: &ModelEntry) -> Outcome {
+        match (self, model.not_on_cpu()) {
+            (Self::Cpu, Some(why)) => Err(Failure::NoRenderer(not_on_cpu(model, &why, "--on gpu"))),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// One `NAME=VALUE`.
@@ -82,6 +93,8 @@ const COLUMNS: [Column; 4] = [
 pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
     let model = find(registry, &arguments.model)?;
     let values = arguments.set.values(model)?;
+    valid(registry, model)?;
+    arguments.on.can_run(model)?;
     let rows = angles::from_stdin(&COLUMNS)?;
     let pairs: Vec<_> = rows
         .iter()
@@ -96,13 +109,13 @@ pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
             let surface = model.instantiate(&values, Encoding::Srgb);
             pairs.iter().map(|(l, v)| brdf(surface.as_ref(), *l, *v, &frame)).collect()
         }
-        Machine::Gpu => evaluate(model, &values, Encoding::Srgb, &pairs)
-            .map_err(|e| Failure::NoRenderer(e.to_string()))?
+        Machine::Gpu => evaluate(registry.sources(), model, &values, Encoding::Srgb, &pairs)?
             .into_iter()
             .zip(&pairs)
             .map(|(terms, (l, v))| brdf_of(terms, *l, *v, &frame))
             .collect(),
     };
+    arguments.on.can_run(model)?;
     let mut out = BufWriter::new(io::stdout().lock());
     writeln!(out, "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b")?;
     for (row, f) in rows.iter().zip(brdfs) {

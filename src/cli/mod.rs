@@ -15,17 +15,21 @@ use clap::{Args, Parser, Subcommand, error::ErrorKind};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{registry::Registry, scene::load::Defaults};
+use workshop::Places;
 
 mod albedo;
+mod assets;
 mod angles;
 mod check;
 mod evaluate;
 mod models;
 mod new;
+mod own;
 mod render;
 mod scenes;
 mod study;
 mod view;
+mod workshop;
 
 pub use view::ViewOptions;
 
@@ -41,6 +45,8 @@ struct Cli {
     view: view::Arguments,
     #[command(flatten)]
     options: Options,
+    #[command(flatten)]
+    places: Places,
 }
 
 /// With or without a command.
@@ -104,12 +110,11 @@ enum Command {
         /// The file to write
         file: PathBuf,
     },
-    /// List the reflection models with their laws and parameters
-    Models {
-        /// As JSON
-        #[arg(long)]
-        json: bool,
-    },
+    /// List the reflection models with their laws and parameters, or write and check own ones
+    Models(models::Arguments),
+    /// Copy the built-in shaders and the example models to a folder, to edit them there
+    #[command(subcommand)]
+    Assets(assets::Command),
     /// Evaluate the BRDF of a model: angles from standard input, values to standard output, as CSV
     ///
     /// Reads the columns theta_i, phi_i, theta_o, phi_o: degrees from the normal and around it from the tangent, to
@@ -200,21 +205,22 @@ pub fn main() -> ExitCode {
 
 fn run(cli: Cli) -> Outcome {
     let options = cli.options;
-    let registry = Registry::builtin();
     if let Some(stray) = cli.view.given().filter(|_| cli.command.is_some()) {
         return Err(Failure::Usage(format!("{stray} stands before the command; write it behind")));
     }
+    let places = &cli.places;
     match cli.command {
-        None => view::run(cli.view, options, &registry),
-        Some(Command::View(arguments)) => view::run(arguments, options, &registry),
-        Some(Command::Render(arguments)) => render::run(&arguments, options, &registry),
-        Some(Command::Check(arguments)) => check::run(&arguments, options, &registry),
-        Some(Command::New { file }) => new::run(&file, options, &registry),
-        Some(Command::Models { json }) => models::run(json, &registry),
-        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &registry),
-        Some(Command::Study(arguments)) => study::run(&arguments, options, &registry),
-        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &registry),
-        Some(Command::Schema) => print(&crate::scene::schema::text(&registry)),
+        None => view::run(cli.view, options, places),
+        Some(Command::View(arguments)) => view::run(arguments, options, places),
+        Some(Command::Render(arguments)) => render::run(&arguments, options, &places.open()?.registry),
+        Some(Command::Check(arguments)) => check::run(&arguments, options, &places.open()?.registry),
+        Some(Command::New { file }) => new::run(&file, options, &Registry::builtin()),
+        Some(Command::Models(arguments)) => models::run(arguments, options, places),
+        Some(Command::Assets(command)) => assets::run(&command, options, &Registry::builtin()),
+        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &places.open()?.registry),
+        Some(Command::Study(arguments)) => study::run(&arguments, options, &Registry::builtin()),
+        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &places.open()?.registry),
+        Some(Command::Schema) => print(&crate::scene::schema::text(&places.open()?.registry)),
     }
 }
 

@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 
 use serde_json::{Value as Json, json};
 
-use super::{Outcome, print};
+use clap::{Args, Subcommand};
+
+use super::{Options, Outcome, own, print, workshop::Places};
 use crate::{
     reflection::{
         ModelEntry, Term,
@@ -14,16 +16,56 @@ use crate::{
     scene::schema::{number, value},
 };
 
-pub(super) fn run(as_json: bool, registry: &Registry) -> Outcome {
+#[derive(Args, Debug)]
+#[command(args_conflicts_with_subcommands = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// Write a commented file for an own model to start from
+    New {
+        /// What the model is to be called; its id and the name of the file follow
+        name: String,
+    },
+    /// Write a model that there is as a file: the same picture, the same knobs
+    Duplicate {
+        /// The id of the model, as `lcm models` lists it
+        id: String,
+        /// What the copy is to be called; without it, the id with _copy
+        name: Option<String>,
+    },
+    /// Try to find the laws that a model claims broken, on the graphics card; software Vulkan will do
+    Check {
+        /// The id of the model, as `lcm models` lists it
+        id: String,
+    },
+}
+
+pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Outcome {
+    match arguments.command {
+        Some(Command::New { name }) => own::new(&name, options, places),
+        Some(Command::Duplicate { id, name }) => own::duplicate(&id, name.as_deref(), options, places),
+        Some(Command::Check { id }) => own::check(&id, options, &places.open()?.registry),
+        None => list(arguments.json, &places.open()?.registry),
+    }
+}
+
+fn list(as_json: bool, registry: &Registry) -> Outcome {
     if as_json {
-        let models: Vec<_> = registry.models().iter().map(model).collect();
+        let models: Vec<_> = registry.models().iter().map(|m| model(m, registry)).collect();
         return print(&format!("{:#}\n", Json::from(models)));
     }
     print(&table(registry))
 }
 
 /// A model as programs read it.
-fn model(entry: &ModelEntry) -> Json {
+fn model(entry: &ModelEntry, registry: &Registry) -> Json {
     let d = entry.declaration;
     let laws = |kept: bool| -> Vec<_> {
         d.laws.list().into_iter().filter(|(_, k)| *k == kept).map(|(name, _)| name).collect()
@@ -36,7 +78,7 @@ fn model(entry: &ModelEntry) -> Json {
     };
     let equation: Vec<_> =
         d.equation.iter().map(|part| json!({ "term": term(part.term), "text": part.text })).collect();
-    json!({
+    let mut json = json!({
         "id": d.id,
         "name": d.name,
         "family": d.family.name(),
@@ -46,7 +88,11 @@ fn model(entry: &ModelEntry) -> Json {
         "equation": equation,
         "laws": { "kept": laws(true), "broken": laws(false) },
         "parameters": entry.parameters.iter().map(parameter).collect::<Vec<_>>(),
-    })
+    });
+    if let Some(file) = registry.own_file(d.id) {
+        json["file"] = file.display().to_string().into();
+    }
+    json
 }
 
 /// A parameter as programs read it.
@@ -109,6 +155,9 @@ fn table(registry: &Registry) -> String {
         let laws =
             d.laws.list().map(|(name, kept)| if kept { name.to_owned() } else { format!("not {name}") });
         let _ = writeln!(text, "  {:ids$}  {}", "", laws.join(", "));
+        if let Some(file) = registry.own_file(d.id) {
+            let _ = writeln!(text, "  {:ids$}  {}", "", file.display());
+        }
         for p in m.parameters {
             let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
             let _ = writeln!(

@@ -9,7 +9,11 @@ use std::{
 
 use clap::{Args, ValueEnum};
 
-use super::{Failure, Options, Outcome, progress, scenes::Source};
+use super::{
+    Failure, Options, Outcome, progress,
+    scenes::Source,
+    workshop::{drawable, not_on_cpu},
+};
 use crate::{
     capture::{
         gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
@@ -146,6 +150,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         return Err(Failure::Invalid(problems.join("\n")));
     }
 
+    for scene in &scenes {
+        drawable(registry, scene)?;
+    }
     let bar = progress(scenes.len() as u64, options);
     let mut painter = Painter::new(arguments.renderer)?;
     for ((scene, source), file) in scenes.iter().zip(&sources).zip(&files) {
@@ -174,6 +181,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
 
 /// Makes pictures, one after the other, with the renderer that was asked for.
 struct Painter {
+    renderer: Renderer,
     gpu: bool,
     /// The renderer of the last picture, with its size and samples: the next picture likely has the same.
     last: Option<((u32, u32, u32), GpuRenderer)>,
@@ -191,13 +199,14 @@ impl Painter {
             // there is nothing to ask.
             Renderer::Auto => may_have_hardware() && find_adapter().is_ok_and(|a| !a.software),
         };
-        Ok(Self { gpu, last: None })
+        Ok(Self { renderer, gpu, last: None })
     }
 
     /// Makes one picture.
     fn draw(&mut self, job: &Job, registry: &Registry) -> Outcome {
-        let rgb8 = if self.gpu { self.on_gpu(job)? } else { on_cpu(job, registry) };
-        let renderer = if self.gpu { "GPU" } else { "CPU" };
+        let gpu = self.gpu || self.renderer == Renderer::Auto && cpu_can_draw(job.scene, registry).is_err();
+        let rgb8 = if gpu { self.on_gpu(job, registry)? } else { on_cpu(job, registry)? };
+        let renderer = if gpu { "GPU" } else { "CPU" };
         let facts = [
             ("Software", concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION"))),
             ("Title", job.scene.name.as_deref().unwrap_or_default()),
@@ -210,15 +219,21 @@ impl Painter {
             .map_err(|e| Failure::Write(format!("{} could not be written: {e}", job.file.display())))
     }
 
-    fn on_gpu(&mut self, job: &Job) -> Result<Vec<u8>, Failure> {
+    fn on_gpu(&mut self, job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
         let key = (job.width, job.height, job.samples);
-        let failed = |e: GpuError| Failure::NoRenderer(format!("{}: {e}", job.file.display()));
+        let failed = |e: GpuError| match e {
+            GpuError::Invalid(_) => e.into(),
+            e => Failure::NoRenderer(format!("{}: {e}", job.file.display())),
+        };
         let renderer = match &mut self.last {
             Some((last, renderer)) if *last == key => renderer,
             slot => {
                 let samples = if job.samples == 4 { 4 } else { 1 };
                 let renderer =
-                    GpuRenderer::new(job.width, job.height, samples, gpu::Output::Display).map_err(failed)?;
+                    GpuRenderer::extended(job.width, job.height, samples, gpu::Output::Display, |app| {
+                        app.insert_resource(registry.clone());
+                    })
+                    .map_err(failed)?;
                 &mut slot.insert((key, renderer)).1
             }
         };
@@ -229,10 +244,23 @@ impl Painter {
     }
 }
 
-fn on_cpu(job: &Job, registry: &Registry) -> Vec<u8> {
+fn on_cpu(job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
+    cpu_can_draw(job.scene, registry)?;
     let settings =
         reference::Settings { width: job.width, height: job.height, samples: job.samples, terms: job.terms };
-    reference::render_rgb8(job.scene, registry, &settings)
+    let rgb8 = reference::render_rgb8(job.scene, registry, &settings);
+    // That a function has no end shows when it is run.
+    cpu_can_draw(job.scene, registry).map(|()| rgb8)
+}
+
+/// Whether the CPU renderer knows all that the models of a scene do, as far as one can tell.
+fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
+    for model in scene.objects.iter().filter_map(|o| registry.model(scene.model_of(o))) {
+        if let Some(why) = model.not_on_cpu() {
+            return Err(Failure::NoRenderer(not_on_cpu(model, &why, "--renderer gpu")));
+        }
+    }
+    Ok(())
 }
 
 /// What the command line changes in every scene.

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Failure, Options, Outcome, render::Size, scenes::Source};
+use super::{Failure, Options, Outcome, render::Size, scenes::Source, workshop::Places};
 use crate::{
+    assets::Folders,
     registry::Registry,
     scene::{
         Scene,
@@ -56,13 +57,19 @@ pub struct ViewOptions {
     pub exit_after: Option<u32>,
     /// Write the whole window to this file before it closes.
     pub capture: Option<PathBuf>,
+    /// What is known, own models included.
+    pub registry: Registry,
+    /// Where shaders and own models are read from. The shaders are not read yet.
+    pub folders: Folders,
     /// Log more.
     pub verbose: bool,
     /// Log errors only.
     pub quiet: bool,
 }
 
-pub(super) fn run(arguments: Arguments, options: Options, registry: &Registry) -> Outcome {
+pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Outcome {
+    let workshop = places.open_for_window()?;
+    let registry = &workshop.registry;
     let source = Source::of(arguments.scene.as_deref());
     let Arguments { exit_after, capture, size, .. } = arguments;
     let Options { verbose, quiet, .. } = options;
@@ -74,6 +81,8 @@ pub(super) fn run(arguments: Arguments, options: Options, registry: &Registry) -
         size: size.map(|s| [s.width, s.height]),
         exit_after,
         capture,
+        registry: registry.clone(),
+        folders: workshop.folders.clone(),
         verbose,
         quiet,
     };
@@ -107,7 +116,8 @@ pub(super) fn run(arguments: Arguments, options: Options, registry: &Registry) -
 
 /// `lcm rendr room.json` is not a scene called rendr.
 fn meant_command(path: &Path) -> Outcome {
-    const COMMANDS: [&str; 7] = ["view", "render", "check", "new", "models", "evaluate", "schema"];
+    const COMMANDS: [&str; 10] =
+        ["view", "render", "check", "new", "models", "evaluate", "schema", "albedo", "study", "assets"];
     let Some(word) = path.to_str().filter(|w| !w.contains(['.', '/', '\\'])) else { return Ok(()) };
     if path.exists() {
         return Ok(());

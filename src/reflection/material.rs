@@ -27,7 +27,7 @@ use bevy::{
     shader::Shader,
 };
 
-use super::ReflectionModel;
+use super::{ReflectionModel, own::OwnFile};
 
 /// The tangent of the vertex. Three numbers, not Bevy's four: the bitangent is always `n × t`.
 pub const TANGENT: MeshVertexAttribute =
@@ -55,10 +55,10 @@ pub struct Ingredients {
     pub faces: bool,
 }
 
-/// The material of objects under the model `M`.
+/// The material of objects under the model `M`; models from files share [`OwnFile`].
 #[derive(Asset, AsBindGroup, Clone, Debug)]
 #[bind_group_data(PipelineKey)]
-pub struct ModelMaterial<M: ReflectionModel> {
+pub struct ModelMaterial<M: Clone + 'static> {
     #[storage(0, read_only)]
     parameters: Handle<ShaderBuffer>,
     #[storage(1, read_only)]
@@ -75,13 +75,13 @@ pub struct PipelineKey {
     faces: bool,
 }
 
-impl<M: ReflectionModel> From<&ModelMaterial<M>> for PipelineKey {
+impl<M: Clone + 'static> From<&ModelMaterial<M>> for PipelineKey {
     fn from(material: &ModelMaterial<M>) -> Self {
         Self { shader: material.shader.clone(), faces: material.faces }
     }
 }
 
-impl<M: ReflectionModel> From<Ingredients> for ModelMaterial<M> {
+impl<M: Clone + 'static> From<Ingredients> for ModelMaterial<M> {
     fn from(i: Ingredients) -> Self {
         Self {
             parameters: i.parameters,
@@ -94,7 +94,7 @@ impl<M: ReflectionModel> From<Ingredients> for ModelMaterial<M> {
 }
 
 // By hand, so that authors of models need not know Bevy's reflection.
-impl<M: ReflectionModel> TypePath for ModelMaterial<M> {
+impl<M: Clone + 'static> TypePath for ModelMaterial<M> {
     fn type_path() -> &'static str {
         std::any::type_name::<Self>()
     }
@@ -104,7 +104,7 @@ impl<M: ReflectionModel> TypePath for ModelMaterial<M> {
     }
 }
 
-impl<M: ReflectionModel> Material for ModelMaterial<M> {
+impl<M: Clone + 'static> Material for ModelMaterial<M> {
     // Objects neither shadow nor light each other (AB5, AB6), so no depth-only passes.
     fn enable_prepass() -> bool {
         false
@@ -155,33 +155,58 @@ pub struct Attachment {
     pub detach: fn(&mut EntityWorldMut),
 }
 
-/// The [`Attachment`] of every registered model, by id.
+/// The [`Attachment`] of every registered model.
 #[derive(Default, Resource)]
-pub struct Attachments(pub HashMap<&'static str, Attachment>);
+pub struct Attachments {
+    by_id: HashMap<&'static str, Attachment>,
+    /// That of all models from files, whose ids come and go.
+    own: Option<Attachment>,
+}
+
+impl Attachments {
+    /// The attachment of a model that is registered, or was.
+    #[must_use]
+    pub fn get(&self, id: &str) -> Option<Attachment> {
+        self.by_id.get(id).copied().or(self.own)
+    }
+}
 
 /// Makes Material types known to the renderer.
 pub trait MaterialApp {
     /// Makes the Material type of the model `M` known.
     fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self;
+    /// Makes the Material type of all models from files known.
+    fn add_own_material(&mut self) -> &mut Self;
 }
 
 impl MaterialApp for App {
     fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self {
-        if !self.is_plugin_added::<MaterialPlugin<ModelMaterial<M>>>() {
-            self.add_plugins(MaterialPlugin::<ModelMaterial<M>>::default());
-        }
-        self.init_resource::<Attachments>();
-        let attachment = Attachment { attach: attach::<M>, detach: detach::<M> };
-        self.world_mut().resource_mut::<Attachments>().0.insert(M::DECLARATION.id, attachment);
+        let attachment = attachment::<M>(self);
+        self.world_mut().resource_mut::<Attachments>().by_id.insert(M::DECLARATION.id, attachment);
+        self
+    }
+
+    fn add_own_material(&mut self) -> &mut Self {
+        let attachment = attachment::<OwnFile>(self);
+        self.world_mut().resource_mut::<Attachments>().own = Some(attachment);
         self
     }
 }
 
+/// The attachment of a type of material that the renderer now knows.
+fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
+    if !app.is_plugin_added::<MaterialPlugin<ModelMaterial<M>>>() {
+        app.add_plugins(MaterialPlugin::<ModelMaterial<M>>::default());
+    }
+    app.init_resource::<Attachments>();
+    Attachment { attach: attach::<M>, detach: detach::<M> }
+}
+
 /// The materials of one model by shader: one for each shading mode in use.
 #[derive(Resource)]
-struct SharedMaterials<M: ReflectionModel>(HashMap<AssetId<Shader>, Handle<ModelMaterial<M>>>);
+struct SharedMaterials<M: Clone + 'static>(HashMap<AssetId<Shader>, Handle<ModelMaterial<M>>>);
 
-fn attach<M: ReflectionModel>(entity: &mut EntityWorldMut, ingredients: Ingredients) {
+fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, ingredients: Ingredients) {
     let handle = entity.world_scope(|world: &mut World| {
         let key = ingredients.shader.id();
         world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
@@ -206,6 +231,6 @@ fn attach<M: ReflectionModel>(entity: &mut EntityWorldMut, ingredients: Ingredie
     }
 }
 
-fn detach<M: ReflectionModel>(entity: &mut EntityWorldMut) {
+fn detach<M: Clone + 'static>(entity: &mut EntityWorldMut) {
     entity.remove::<MeshMaterial3d<ModelMaterial<M>>>();
 }

@@ -23,7 +23,9 @@ use crate::{
     shader::Source,
 };
 
+pub mod laws;
 pub mod material;
+pub mod own;
 pub mod parameter;
 pub mod preset;
 pub mod swap;
@@ -100,7 +102,7 @@ pub fn register_builtin(to: &mut impl Register) {
 }
 
 /// What a model is called, where it comes from and what it claims.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct Declaration {
     /// The name in scene files: lower case, underscores.
     pub id: &'static str,
@@ -426,10 +428,25 @@ pub struct ModelEntry {
     pub parameters: &'static [Parameter],
     /// See [`ReflectionModel::preset`].
     pub preset: fn(&Measured) -> Vec<(&'static str, Value)>,
-    lobe: bool,
-    instantiate: Arc<dyn Fn(&Values, Encoding) -> Arc<dyn Surface> + Send + Sync>,
+    lobe: Lobe,
+    instantiate: Instantiate,
+    on_cpu: Option<Arc<own::OnCpu>>,
     /// Surfaces with curves, by their packed parameters: objects of one material share one.
     kept: Arc<Mutex<HashMap<Vec<u8>, Arc<dyn Surface>>>>,
+}
+
+/// Makes a surface of parameters.
+pub(crate) type Instantiate = Arc<dyn Fn(&Values, Encoding) -> Arc<dyn Surface> + Send + Sync>;
+
+/// Whether the shader of a model reads the albedo of a specular lobe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lobe {
+    /// It does not.
+    None,
+    /// It reads that of the lobe of the model itself.
+    Own,
+    /// It reads that of the lobe of a built-in model, by id.
+    Of(&'static str),
 }
 
 /// How many surfaces with curves are kept.
@@ -443,11 +460,48 @@ impl ModelEntry {
             declaration: const { &M::DECLARATION },
             parameters: M::PARAMETERS,
             preset: M::preset,
-            lobe: M::LOBE,
+            lobe: if M::LOBE { Lobe::Own } else { Lobe::None },
             instantiate: Arc::new(|values, encoding| {
                 Arc::new(Instance { model: M::from_values(values, encoding), curve: OnceLock::new() })
             }),
+            on_cpu: None,
             kept: Arc::default(),
+        }
+    }
+
+    /// The entry of a model from a file.
+    pub(crate) fn own(
+        declaration: &'static Declaration,
+        parameters: &'static [Parameter],
+        lobe: Lobe,
+        instantiate: Instantiate,
+        on_cpu: Option<Arc<own::OnCpu>>,
+    ) -> Self {
+        let preset = preset::by_names(parameters);
+        Self { declaration, parameters, preset, lobe, instantiate, on_cpu, kept: Arc::default() }
+    }
+
+    /// Why the CPU cannot run the model, if it cannot: it interprets the WGSL of models from files, and does not
+    /// know all of it. The graphics card runs them all the same. That a function does not come to an end shows
+    /// only when it is run.
+    #[must_use]
+    pub fn not_on_cpu(&self) -> Option<String> {
+        self.on_cpu.as_ref().and_then(|on_cpu| on_cpu.trouble())
+    }
+
+    /// Whether the model has a lobe of its own whose albedo its shader reads.
+    #[must_use]
+    pub fn has_lobe(&self) -> bool {
+        self.lobe == Lobe::Own
+    }
+
+    /// The id of the model whose lobe the shader reads the albedo of.
+    #[must_use]
+    pub fn lobe_of(&self) -> Option<&'static str> {
+        match self.lobe {
+            Lobe::None => None,
+            Lobe::Own => Some(self.declaration.id),
+            Lobe::Of(id) => Some(id),
         }
     }
 
@@ -473,7 +527,7 @@ impl ModelEntry {
     /// Whether the row of an object holds a curve beside the parameters.
     #[must_use]
     pub fn has_curve(&self) -> bool {
-        self.lobe || self.declaration.ambient == Ambient::Albedo
+        self.lobe != Lobe::None || self.declaration.ambient == Ambient::Albedo
     }
 
     /// How many harmonics of the azimuth a curve has.
@@ -488,21 +542,11 @@ impl ModelEntry {
     #[must_use]
     pub fn row(&self, values: &Values, encoding: Encoding, everywhere: bool) -> Vec<u8> {
         let mut row = pack(self.parameters, values, encoding);
-        if !self.has_curve() {
-            return row;
+        if self.has_curve() {
+            let surface = self.instantiate(values, encoding);
+            let curve = if everywhere { surface.curve() } else { None };
+            append_curve(&mut row, self.harmonics(), curve, surface.lobe());
         }
-        let surface = self.instantiate(values, encoding);
-        let curve = if everywhere { surface.curve() } else { None };
-        let lobe = surface.lobe().unwrap_or_default();
-        row.resize(row.len().next_multiple_of(16), 0);
-        for harmonic in 0..self.harmonics() {
-            for node in 0..NODES {
-                let rgb = curve.map_or(Vec3::ZERO, |c| c.harmonics[harmonic][node]);
-                let w = if harmonic == 0 { lobe.nodes[node] } else { 0.0 };
-                row.extend(rgb.extend(w).to_array().into_iter().flat_map(f32::to_le_bytes));
-            }
-        }
-        row.extend([lobe.average(), 0.0, 0.0, 0.0].into_iter().flat_map(f32::to_le_bytes));
         row
     }
 
@@ -511,6 +555,20 @@ impl ModelEntry {
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|p| p.name == name)
     }
+}
+
+/// Puts a curve behind the parameters of a row.
+fn append_curve(row: &mut Vec<u8>, harmonics: usize, curve: Option<AlbedoCurve>, lobe: Option<LobeAlbedo>) {
+    let lobe = lobe.unwrap_or_default();
+    row.resize(row.len().next_multiple_of(16), 0);
+    for harmonic in 0..harmonics {
+        for node in 0..NODES {
+            let rgb = curve.map_or(Vec3::ZERO, |c| c.harmonics[harmonic][node]);
+            let w = if harmonic == 0 { lobe.nodes[node] } else { 0.0 };
+            row.extend(rgb.extend(w).to_array().into_iter().flat_map(f32::to_le_bytes));
+        }
+    }
+    row.extend([lobe.average(), 0.0, 0.0, 0.0].into_iter().flat_map(f32::to_le_bytes));
 }
 
 impl fmt::Debug for ModelEntry {

@@ -11,7 +11,7 @@ use serde::Deserialize;
 
 use super::{
     Family, ModelEntry,
-    parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, REFLECTANCE, Value},
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, REFLECTANCE, Value},
 };
 use crate::{
     optics::colour::{luminance, srgb_encode8},
@@ -111,6 +111,19 @@ pub fn base_colour_metallic(material: &Measured) -> Vec<(&'static str, Value)> {
     } else {
         let s = (luminance(material.f0) / 0.16).sqrt();
         vec![(METALLIC.name, Value::Number(0.0)), (REFLECTANCE.name, fraction(s))]
+    }
+}
+
+/// What makes a model with these parameters a measured material, judged by their names: for models from files.
+#[must_use]
+pub(super) fn by_names(parameters: &[Parameter]) -> fn(&Measured) -> Vec<(&'static str, Value)> {
+    let has = |wanted: &[&Parameter]| wanted.iter().all(|w| parameters.iter().any(|p| p == *w));
+    if has(&[&IOR, &EXTINCTION]) {
+        conductor
+    } else if has(&[&BASE_COLOUR, &METALLIC, &REFLECTANCE]) {
+        base_colour_metallic
+    } else {
+        |_| Vec::new()
     }
 }
 

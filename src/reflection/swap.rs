@@ -24,7 +24,7 @@ use crate::{
         MAX_OBJECTS, Scene,
         spawn::{CurrentScene, LitObject, SceneEntities},
     },
-    shader::compose::{Sources, compose},
+    shader::compose::compose,
     shading::Stage,
     shape::PolygonMesh,
 };
@@ -95,7 +95,6 @@ impl ParameterTables {
 /// The composed shaders by model and mode, made when first needed.
 #[derive(Default, Resource)]
 pub struct ComposedShaders {
-    sources: Sources,
     /// By model, mode, and the number of light types that were known.
     handles: HashMap<(&'static str, &'static str, usize), Handle<Shader>>,
 }
@@ -113,7 +112,7 @@ impl ComposedShaders {
         self.handles
             .entry(key)
             .or_insert_with(|| {
-                let composed = compose(&self.sources, model, mode, registry.lights());
+                let composed = compose(registry.sources(), model, mode, registry.lights());
                 shaders.add(Shader::from_wgsl(composed.text, format!("composed/{}/{}.wgsl", key.0, key.1)))
             })
             .clone()
@@ -278,8 +277,8 @@ pub fn swap(world: &mut World) {
         let old = world
             .get::<Drawn>(entity)
             .filter(|d| d.model != now.model)
-            .and_then(|d| attachments.0.get(d.model.as_str()).copied());
-        let Some(new) = attachments.0.get(now.model.as_str()).copied() else { continue };
+            .and_then(|d| attachments.get(d.model.as_str()));
+        let Some(new) = attachments.get(now.model.as_str()) else { continue };
         let Ok(mut entity) = world.get_entity_mut(entity) else { continue };
         if let Some(old) = old {
             (old.detach)(&mut entity);

@@ -19,7 +19,10 @@ use crate::{
         temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
         tone::ToneMapping,
     },
-    reflection::parameter::{Parameter, ParameterKind, Value, Values},
+    reflection::{
+        own,
+        parameter::{Parameter, ParameterKind, Value, Values},
+    },
     registry::Registry,
     shape::ShapeEntry,
 };
@@ -194,7 +197,20 @@ pub(super) fn unknown_material_parameter(registry: &Registry, name: &str) -> Str
 /// The id of a reflection model.
 pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
     let known = registry.models().iter().map(|m| (m.declaration.id, m.declaration.name));
-    one_of("the reflection model", id, known)
+    one_of("the reflection model", id, known).map_err(|rule| match registry.broken_model(id) {
+        Some(why) => format!("the file of that own model has a mistake: {why}"),
+        None => rule + &own_model_missing(registry, id),
+    })
+}
+
+/// That there is no file for an id, where own models are kept: it may have been left behind.
+fn own_model_missing(registry: &Registry, id: &str) -> String {
+    match registry.own_folder() {
+        Some(folder) if folder.is_dir() && own::is_id(id) => {
+            format!("; among the own models there is no {}", folder.join(id).with_extension(own::EXTENSION).display())
+        }
+        _ => String::new(),
+    }
 }
 
 /// The id of a shading mode.

@@ -68,11 +68,13 @@ fn place(composed: &Composed, spans: impl Iterator<Item = naga::Span>) -> Option
 fn locate(composed: &Composed, place: Option<(usize, usize)>, message: String) -> Box<ShaderProblem> {
     let (line, column) = place.unwrap_or((1, 1));
     let (file, file_line) = composed.map.locate(line).unwrap_or(("(composed)", line));
+    let source = composed.text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
     Box::new(ShaderProblem {
         file: file.to_owned(),
         line: file_line,
-        column,
-        source: composed.text.lines().nth(line.saturating_sub(1)).unwrap_or_default().to_owned(),
+        // naga counts bytes.
+        column: source.char_indices().take_while(|(at, _)| at + 1 < column).count() + 1,
+        source: source.to_owned(),
         message,
     })
 }

@@ -2,7 +2,10 @@
 
 pub mod check;
 pub mod compose;
+pub mod interpret;
+pub mod report;
 pub mod status;
+pub mod whole;
 
 /// The WGSL source of one file under `assets/shaders/`, with the copy that is built in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

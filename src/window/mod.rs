@@ -112,6 +112,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
         WindowSystemsPlugin,
     );
     add_with_display(&mut app, plugins)?;
+    app.insert_resource(options.registry.clone());
     let mut lab = Lab::new(options.scene.clone());
     lab.path.clone_from(&options.file);
     load_settings(&mut lab);

@@ -248,7 +248,7 @@ fn rows_lie_where_rust_puts_them() {
 /// The largest difference between the curve and both quadratures.
 fn differences(model: &ModelEntry, values: &Values, views: &[Vec3]) -> [f64; 2] {
     let surface = model.instantiate(values, Encoding::Srgb);
-    let gpu = albedos(model, values, Encoding::Srgb, views).expect("the GPU evaluates");
+    let gpu = albedos(&Sources::default(), model, values, Encoding::Srgb, views).expect("the GPU evaluates");
     let mut worst = [0.0f64; 2];
     for (v, gpu) in views.iter().zip(gpu) {
         let cpu = directional(|l| surface.response(l, *v, &Frame::LOCAL), *v, &Frame::LOCAL);
@@ -282,7 +282,7 @@ fn curve_and_quadrature_agree_on_both_machines() {
     let model = registry.model("patchwork").unwrap();
     let surface = model.instantiate(&values(&[("alpha_x", 0.31)]), Encoding::Srgb);
     let v = view(0.25, 0.0);
-    let right = albedos(model, &values(&[("alpha_x", 0.3)]), Encoding::Srgb, &[v]).unwrap()[0];
+    let right = albedos(&Sources::default(), model, &values(&[("alpha_x", 0.3)]), Encoding::Srgb, &[v]).unwrap()[0];
     let wrong = directional(|l| surface.response(l, v, &Frame::LOCAL), v, &Frame::LOCAL);
     assert!((right - wrong).abs().max_element() > 1e-3);
     let turned = values(&[("alpha_x", 0.6), ("alpha_y", 0.25)]);
@@ -304,7 +304,7 @@ fn the_lobe_in_the_row_is_the_lobe_of_the_model() {
             (view((i * 0.618).fract().max(0.05), i), view((i * 0.754).fract().max(0.05), 1.7 * i))
         })
         .collect();
-    let gpu = evaluate(model, &set, Encoding::Srgb, &pairs).expect("the GPU evaluates");
+    let gpu = evaluate(&Sources::default(), model, &set, Encoding::Srgb, &pairs).expect("the GPU evaluates");
     let surface = model.instantiate(&set, Encoding::Srgb);
     let worst = |of: &dyn Fn(Vec3, Vec3) -> f32| {
         let differ = |((l, v), gpu): (&(Vec3, Vec3), &Terms)| (gpu.specular.x / of(*l, *v) - 1.0).abs();

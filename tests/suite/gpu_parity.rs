@@ -9,9 +9,13 @@ use lights_camera_models::{
     },
     optics::{Frame, TermSelection, colour::BACKGROUND, colour::Encoding, tone::ToneMapping},
     reference,
-    reflection::parameter::{ParameterKind, Value, Values},
+    reflection::{
+        ModelEntry,
+        parameter::{ParameterKind, Value, Values},
+    },
     registry::Registry,
     scene::{Display, Light, Scene},
+    shader::compose::Sources,
 };
 
 use crate::pictures::{Difference, close_up, compare};
@@ -218,16 +222,46 @@ fn lights_in_lumen_and_kelvin_give_the_same_picture() {
 }
 
 /// Values of a small deterministic generator, uniform in [0, 1).
-fn random(seed: &mut u64) -> f32 {
+pub fn random(seed: &mut u64) -> f32 {
     *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*seed >> 40) as f32 / (1u64 << 24) as f32
 }
 
-fn direction(seed: &mut u64) -> Vec3 {
+/// A direction above the surface.
+pub fn direction(seed: &mut u64) -> Vec3 {
     let z = random(seed);
     let phi = std::f32::consts::TAU * random(seed);
     let r = (1.0 - z * z).max(0.0).sqrt();
     Vec3::new(r * phi.cos(), r * phi.sin(), z)
+}
+
+/// Legal values of all parameters of a model.
+pub fn random_values(model: &ModelEntry, seed: &mut u64) -> Values {
+    let mut values = Values::default();
+    for p in model.parameters {
+        let r = random(seed);
+        values.set(
+            p.name,
+            match p.kind {
+                ParameterKind::Number { min, max, .. } => Value::Number(min + r * (max - min)),
+                ParameterKind::Integer { min, max, slider_max, .. } => {
+                    Value::Integer(min + (r * (max.unwrap_or(slider_max) - min) as f32) as i64)
+                }
+                ParameterKind::Colour { .. } => Value::Colour([
+                    (255.0 * r) as u8,
+                    (255.0 * random(seed)) as u8,
+                    (255.0 * random(seed)) as u8,
+                ]),
+                ParameterKind::Triple { min, max, .. } => {
+                    Value::Triple([0; 3].map(|_| min + random(seed) * (max - min)))
+                }
+                ParameterKind::Choice { options, .. } => {
+                    Value::Choice(options[(r * options.len() as f32) as usize].0.into())
+                }
+            },
+        );
+    }
+    values
 }
 
 #[test]
@@ -240,32 +274,9 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
             model.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::Choice { .. })).count();
         let mut wrong_twin_noticed = false;
         for _ in 0..8 * (1 + choices) {
-            let mut values = Values::default();
-            for p in model.parameters {
-                let r = random(&mut seed);
-                values.set(
-                    p.name,
-                    match p.kind {
-                        ParameterKind::Number { min, max, .. } => Value::Number(min + r * (max - min)),
-                        ParameterKind::Integer { min, max, slider_max, .. } => {
-                            Value::Integer(min + (r * (max.unwrap_or(slider_max) - min) as f32) as i64)
-                        }
-                        ParameterKind::Colour { .. } => Value::Colour([
-                            (255.0 * r) as u8,
-                            (255.0 * random(&mut seed)) as u8,
-                            (255.0 * random(&mut seed)) as u8,
-                        ]),
-                        ParameterKind::Triple { min, max, .. } => {
-                            Value::Triple([0; 3].map(|_| min + random(&mut seed) * (max - min)))
-                        }
-                        ParameterKind::Choice { options, .. } => {
-                            Value::Choice(options[(r * options.len() as f32) as usize].0.into())
-                        }
-                    },
-                );
-            }
+            let values = random_values(model, &mut seed);
             let pairs: Vec<_> = (0..2000).map(|_| (direction(&mut seed), direction(&mut seed))).collect();
-            let answers = evaluate(model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
+            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
             let surface = model.instantiate(&values, Encoding::Srgb);
             let frame = Frame::LOCAL;
             for ((l, v), gpu) in pairs.iter().zip(answers) {
@@ -328,7 +339,7 @@ fn at_the_ends_of_all_ranges_both_languages_are_finite_and_agree() {
                 };
                 values.set(p.name, value);
             }
-            let answers = evaluate(model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
+            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
             let surface = model.instantiate(&values, Encoding::Srgb);
             for ((l, v), gpu) in pairs.iter().zip(answers) {
                 let cpu = surface.response(*l, *v, &Frame::LOCAL);

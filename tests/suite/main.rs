@@ -7,6 +7,7 @@ mod extension;
 mod golden;
 mod gpu_parity;
 mod hot_swap;
+mod interpret;
 mod laws;
 mod panels;
 mod pictures;

@@ -1,0 +1,35 @@
+//! `lcm assets`: copies of the built-in shaders and of the example models, to edit.
+
+use std::path::PathBuf;
+
+use clap::Subcommand;
+
+use super::{Failure, Options, Outcome, complain, print};
+use crate::{assets, registry::Registry};
+
+#[derive(Subcommand, Debug)]
+pub(super) enum Command {
+    /// Write the built-in shaders to FOLDER/shaders and the example models to FOLDER/models; files that are there
+    /// and differ are left alone
+    Export {
+        /// The folder; it is made if it is not there
+        folder: PathBuf,
+    },
+}
+
+pub(super) fn run(command: &Command, options: Options, registry: &Registry) -> Outcome {
+    let Command::Export { folder } = command;
+    let exported = assets::export(folder, registry).map_err(|e| Failure::Write(e.to_string()))?;
+    let paths: String = exported.written.iter().map(|path| format!("{}\n", path.display())).collect();
+    print(&paths)?;
+    for path in &exported.kept {
+        complain(format_args!("{} differs from the built-in one; it was left alone", path.display()));
+    }
+    options.tell(format_args!(
+        "wrote {} files, {} were there already; lcm view --assets {} shows what you change in them",
+        exported.written.len(),
+        exported.same + exported.kept.len(),
+        folder.display()
+    ));
+    Ok(())
+}

@@ -1,0 +1,374 @@
+//! Trying to find the laws of a model broken: over random directions and legal parameters, the same ones in
+//! every run, and at the ends of all ranges. Tests judge the built-in models by it on the CPU, `lcm models check`
+//! any model on the graphics card.
+
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
+
+use glam::Vec3;
+
+use super::{
+    Laws, ModelEntry, brdf_of,
+    parameter::{Parameter, ParameterKind, Value, Values},
+};
+use crate::optics::{Frame, Terms};
+
+/// The largest relative difference between there and back that rounding may make.
+pub const RECIPROCITY_TOLERANCE: f32 = 2e-3;
+/// The largest directional albedo that the quadrature may make of 1.
+pub const LARGEST_ALBEDO: f32 = 1.01;
+/// How far rounding may take a response below 0.
+pub const NEGATIVE_TOLERANCE: f32 = 1e-6;
+/// Steps of the quadrature of an albedo along tangent and bitangent.
+pub const COARSE: usize = 48;
+/// The same where the coarse one finds nearly 1 or more, so that its error is no verdict.
+pub const FINE: usize = 160;
+/// From this albedo on the finer quadrature is asked.
+pub const NEARLY_ALL: f32 = 0.98;
+
+/// A small generator of random numbers: the same ones in every run (G. Marsaglia 2003, xorshift).
+#[derive(Clone, Debug)]
+pub struct Random(pub u64);
+
+impl Random {
+    /// A number from 0 up to, but not, 1.
+    pub fn unit(&mut self) -> f32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 40) as f32 / (1u64 << 24) as f32
+    }
+
+    /// A unit vector in any direction.
+    pub fn direction(&mut self) -> Vec3 {
+        let z = 2.0 * self.unit() - 1.0;
+        let (sin, cos) = (TAU * self.unit()).sin_cos();
+        Vec3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z)
+    }
+
+    /// A unit vector on the outer side, up to grazing.
+    pub fn above(&mut self, frame: &Frame) -> Vec3 {
+        let d = self.direction();
+        let d = if d.dot(frame.n) < 0.0 { -d } else { d };
+        // Every fourth close to grazing.
+        let tilt = if self.unit() < 0.25 { self.unit() * 0.05 } else { 1.0 };
+        let flat = d - d.dot(frame.n) * frame.n;
+        (flat + tilt * d.dot(frame.n) * frame.n).normalize_or(frame.n)
+    }
+
+    /// A legal value; the ends of the range often.
+    pub fn value(&mut self, parameter: &Parameter) -> Value {
+        let pick = self.unit();
+        let within = self.unit();
+        match &parameter.kind {
+            ParameterKind::Number { min, max, .. } => Value::Number(match pick {
+                p if p < 0.15 => *min,
+                p if p < 0.3 => *max,
+                _ => (min + within * (max - min)).clamp(*min, *max),
+            }),
+            ParameterKind::Integer { min, max, slider_max, .. } => Value::Integer(match pick {
+                p if p < 0.15 => *min,
+                p if p < 0.3 => max.unwrap_or(1_000_000),
+                _ => min + (within * (max.unwrap_or(*slider_max) - min) as f32) as i64,
+            }),
+            ParameterKind::Colour { .. } => Value::Colour(if pick < 0.3 {
+                [255; 3]
+            } else {
+                [0; 3].map(|_: u8| (self.unit() * 255.99) as u8)
+            }),
+            ParameterKind::Triple { min, max, .. } => Value::Triple(match pick {
+                p if p < 0.15 => [*min; 3],
+                p if p < 0.3 => [*max; 3],
+                _ => [0; 3].map(|_: u8| (min + self.unit() * (max - min)).clamp(*min, *max)),
+            }),
+            ParameterKind::Choice { options, .. } => {
+                let i = ((within * options.len() as f32) as usize).min(options.len() - 1);
+                Value::Choice(options[i].0.into())
+            }
+        }
+    }
+
+    /// Legal values of all parameters of a model.
+    pub fn values(&mut self, model: &ModelEntry) -> Values {
+        let mut values = Values::default();
+        for parameter in model.parameters {
+            values.set(parameter.name, self.value(parameter));
+        }
+        values
+    }
+
+    /// Every number at one of its ends, colours white or black.
+    pub fn corner(&mut self, model: &ModelEntry) -> Values {
+        let mut values = Values::default();
+        for parameter in model.parameters {
+            let high = self.unit() < 0.5;
+            values.set(parameter.name, end(parameter, high, self));
+        }
+        values
+    }
+}
+
+/// The smallest or largest value of a parameter; of choices any.
+fn end(parameter: &Parameter, high: bool, random: &mut Random) -> Value {
+    match parameter.kind {
+        ParameterKind::Number { min, max, .. } => Value::Number(if high { max } else { min }),
+        ParameterKind::Integer { min, max, .. } => {
+            Value::Integer(if high { max.unwrap_or(1_000_000) } else { min })
+        }
+        ParameterKind::Colour { .. } => Value::Colour([if high { 255 } else { 0 }; 3]),
+        ParameterKind::Triple { min, max, .. } => Value::Triple([if high { max } else { min }; 3]),
+        ParameterKind::Choice { .. } => random.value(parameter),
+    }
+}
+
+/// White, and every number at its smallest.
+#[must_use]
+pub fn least(model: &ModelEntry) -> Values {
+    ends(model, false)
+}
+
+/// White, and every number at its largest.
+fn most(model: &ModelEntry) -> Values {
+    ends(model, true)
+}
+
+fn ends(model: &ModelEntry, high: bool) -> Values {
+    let mut values = Values::default();
+    for parameter in model.parameters {
+        if matches!(parameter.kind, ParameterKind::Number { .. } | ParameterKind::Integer { .. }) {
+            values.set(parameter.name, end(parameter, high, &mut Random(1)));
+        }
+    }
+    values
+}
+
+/// How far a BRDF there and back differ, relative to the larger of the two; differences of what is dark do not
+/// count. 0 where a cosine is so small that rounding decides.
+#[must_use]
+pub fn reciprocity_error(there: Terms, back: Terms, l: Vec3, v: Vec3, frame: &Frame) -> f32 {
+    if frame.n.dot(l) < 0.01 || frame.n.dot(v) < 0.01 {
+        return 0.0;
+    }
+    let (there, back) = (brdf_of(there, l, v, frame), brdf_of(back, v, l, frame));
+    let scale = there.abs().max(back.abs()).max_element().max(1e-3);
+    (there - back).abs().max_element() / scale
+}
+
+/// The smallest number in a response.
+#[must_use]
+pub fn smallest(terms: &Terms) -> f32 {
+    terms.ambient.min_element().min(terms.diffuse.min_element()).min(terms.specular.min_element())
+}
+
+/// Whether a response has neither NaN nor infinity in it.
+#[must_use]
+pub fn is_finite(terms: &Terms) -> bool {
+    terms.ambient.is_finite() && terms.diffuse.is_finite() && terms.specular.is_finite()
+}
+
+/// Directions to the light with weights, so that the weighted sum of the responses is the directional albedo for
+/// a view: `∫ f_r cos θ dω` over the slopes of the facets that mirror `v` to `l`, by the midpoint rule with `rows`
+/// steps along the tangent and as many along the bitangent.
+#[must_use]
+pub fn albedo_directions(v: Vec3, frame: &Frame, rows: usize) -> Vec<(Vec3, f32)> {
+    // Slopes are spaced as u³/(1 − u²), so that lobes that are narrow in one direction or both are
+    // resolved: those of all models lie around the slope 0.
+    let steps: Vec<_> = (0..rows)
+        .map(|i| {
+            let u = 2.0 * (i as f32 + 0.5) / rows as f32 - 1.0;
+            let rest = 1.0 - u * u;
+            (u.powi(3) / rest, u * u * (3.0 - u * u) / (rest * rest) * 2.0 / rows as f32)
+        })
+        .collect();
+    let mut directions = Vec::with_capacity(rows * rows);
+    for (x, width) in &steps {
+        for (y, height) in &steps {
+            let scale = (1.0 + x * x + y * y).sqrt().recip();
+            let h = scale * (frame.n + x * frame.t + y * frame.b);
+            let cos_d = v.dot(h);
+            let l = 2.0 * cos_d * h - v;
+            if cos_d > 0.0 && frame.n.dot(l) > 0.0 {
+                // dω_l = 4 L·H dω_h and dω_h = dx dy (N·H)³. Response is π f_r cos θ.
+                directions.push((l, 4.0 * cos_d * scale.powi(3) * width * height / PI));
+            }
+        }
+    }
+    directions
+}
+
+/// The directional albedo of the channel that has most, from the responses in [`albedo_directions`].
+#[must_use]
+pub fn albedo(directions: &[(Vec3, f32)], responses: impl IntoIterator<Item = Terms>) -> f32 {
+    let weighted = directions.iter().zip(responses).map(|((_, weight), t)| (t.diffuse + t.specular) * *weight);
+    weighted.sum::<Vec3>().max_element()
+}
+
+/// Where something was found, in the local frame (normal +z, tangent +x).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Case {
+    /// The parameters.
+    pub values: Values,
+    /// To the light; none for integrals over it.
+    pub l: Option<Vec3>,
+    /// To the viewer.
+    pub v: Vec3,
+}
+
+/// The furthest that was found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Extreme {
+    /// How far.
+    pub size: f32,
+    /// Where; nowhere if nothing could be compared.
+    pub case: Option<Case>,
+}
+
+impl Extreme {
+    fn note(&mut self, size: f32, further: bool, case: impl FnOnce() -> Case) {
+        if further || self.case.is_none() {
+            *self = Self { size, case: Some(case()) };
+        }
+    }
+}
+
+/// How much is tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Sets of parameters.
+    pub sets: usize,
+    /// Pairs of directions for each.
+    pub pairs: usize,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { sets: 60, pairs: 1000 }
+    }
+}
+
+/// What was found of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Findings {
+    /// The largest relative difference between there and back.
+    pub reciprocity: Extreme,
+    /// The largest directional albedo.
+    pub albedo: Extreme,
+    /// The smallest number in a response.
+    pub smallest: Extreme,
+    /// How many responses there were.
+    pub responses: usize,
+    /// How many of them have NaN or infinity in them.
+    pub not_finite: usize,
+    /// The first of those.
+    pub first_not_finite: Option<Case>,
+}
+
+impl Findings {
+    /// The laws that were not found broken.
+    #[must_use]
+    pub fn kept(&self) -> Laws {
+        Laws {
+            reciprocal: self.reciprocity.size <= RECIPROCITY_TOLERANCE,
+            energy_conserving: self.albedo.size <= LARGEST_ALBEDO,
+            non_negative: self.smallest.size >= -NEGATIVE_TOLERANCE,
+        }
+    }
+}
+
+/// Tries to find the laws of a model broken. `ask` answers with the responses to pairs of directions (to the
+/// light, to the viewer) in the local frame.
+///
+/// # Errors
+/// Those of `ask`.
+pub fn examine<E>(
+    model: &ModelEntry,
+    effort: Effort,
+    mut ask: impl FnMut(&Values, &[(Vec3, Vec3)]) -> Result<Vec<Terms>, E>,
+) -> Result<Findings, E> {
+    let mut random = Random(0x5eed);
+    let mut findings = Findings::default();
+    for set in 0..effort.sets {
+        let values = match set {
+            0 => Values::default(),
+            1 => least(model),
+            2 => most(model),
+            3..15 => random.corner(model),
+            _ => random.values(model),
+        };
+        compare(&values, effort.pairs, &mut random, &mut findings, &mut ask)?;
+        integrate(&values, &mut random, &mut findings, &mut ask)?;
+    }
+    Ok(findings)
+}
+
+/// Responses in any directions, and there and back.
+fn compare<E>(
+    values: &Values,
+    pairs: usize,
+    random: &mut Random,
+    findings: &mut Findings,
+    ask: &mut impl FnMut(&Values, &[(Vec3, Vec3)]) -> Result<Vec<Terms>, E>,
+) -> Result<(), E> {
+    let frame = Frame::LOCAL;
+    let grazing = Vec3::new(1.0, 0.0, 1e-7).normalize();
+    let special = [Vec3::Z, Vec3::NEG_Z, Vec3::X, Vec3::NEG_X, Vec3::Y, grazing];
+    let mut directions: Vec<_> = special.iter().flat_map(|l| special.map(|v| (*l, v))).collect();
+    directions.extend((0..pairs).map(|_| (random.direction(), random.direction())));
+    let both = directions.len();
+    for _ in 0..pairs {
+        let (l, v) = (random.above(&frame), random.above(&frame));
+        directions.extend([(l, v), (v, l)]);
+    }
+    let answers = ask(values, &directions)?;
+    for ((l, v), terms) in directions.iter().zip(&answers) {
+        let case = || Case { values: values.clone(), l: Some(*l), v: *v };
+        findings.responses += 1;
+        if is_finite(terms) {
+            let least = smallest(terms);
+            findings.smallest.note(least, least < findings.smallest.size, case);
+        } else {
+            findings.not_finite += 1;
+            findings.first_not_finite.get_or_insert_with(case);
+        }
+    }
+    let opposite = directions[both..].chunks_exact(2).zip(answers[both..].chunks_exact(2));
+    for (pair, answer) in opposite {
+        let ((l, v), [there, back]) = (pair[0], [answer[0], answer[1]]);
+        if is_finite(&there) && is_finite(&back) {
+            let error = reciprocity_error(there, back, l, v, &frame);
+            let case = || Case { values: values.clone(), l: Some(l), v };
+            findings.reciprocity.note(error, error > findings.reciprocity.size, case);
+        }
+    }
+    Ok(())
+}
+
+/// Directional albedos, the largest by the finer quadrature.
+fn integrate<E>(
+    values: &Values,
+    random: &mut Random,
+    findings: &mut Findings,
+    ask: &mut impl FnMut(&Values, &[(Vec3, Vec3)]) -> Result<Vec<Terms>, E>,
+) -> Result<(), E> {
+    let tilts = [0.02, 0.5, 0.8, 0.95, 0.99, random.unit() * 0.99];
+    for (i, tilt) in tilts.into_iter().enumerate() {
+        let (sin, cos) = (FRAC_PI_2 * tilt).sin_cos();
+        // From the side and along the tangent in turn.
+        let (sin_azimuth, cos_azimuth) = if i % 2 == 0 { (0.0, 1.0) } else { (TAU * random.unit()).sin_cos() };
+        let v = Vec3::new(sin * cos_azimuth, sin * sin_azimuth, cos);
+        let mut found = 0.0;
+        for rows in [COARSE, FINE] {
+            let directions = albedo_directions(v, &Frame::LOCAL, rows);
+            let pairs: Vec<_> = directions.iter().map(|(l, _)| (*l, v)).collect();
+            let answers = ask(values, &pairs)?;
+            found = albedo(&directions, answers);
+            if found <= NEARLY_ALL {
+                break;
+            }
+        }
+        let case = || Case { values: values.clone(), l: None, v };
+        if found.is_finite() {
+            findings.albedo.note(found, found > findings.albedo.size, case);
+        }
+    }
+    Ok(())
+}

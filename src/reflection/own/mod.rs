@@ -1,0 +1,385 @@
+//! Models that users write, one file each: `models/ID.wgsl` declares at its top what the model is called
+//! and which parameters it has, and defines below it `fn response` in WGSL. Nothing is compiled into the
+//! program: files are read at start, and again when they change.
+//!
+//! ```wgsl
+//! /* lcm
+//! {
+//!     "name": "Matt",
+//!     "laws": ["reciprocal", "energy conserving", "non-negative"],
+//!     "parameters": ["base_colour", { "name": "strength", "min": 0, "max": 1, "default": 0.8 }],
+//! }
+//! */
+//! fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+//!     let cos_l = max(dot(frame.n, l), 0.0);
+//!     return Terms(vec3(0.0), m.strength * m.base_colour * cos_l, vec3(0.0));
+//! }
+//! ```
+//!
+//! The graphics card runs the file as it is, the CPU interprets it. With a second function
+//! `fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>` the model answers to light
+//! from everywhere by a formula of its own, without it by its directional albedo.
+
+use std::{
+    collections::BTreeMap,
+    fs, io,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use naga::{Module, ScalarKind, TypeInner, VectorSize};
+
+use super::{Ambient, Declaration, Family, Lobe, ModelEntry, parameter::Parameter};
+use crate::{
+    registry::Registry,
+    shader::{
+        Source,
+        check::{self, ShaderProblem},
+        compose::{compose, compose_evaluation},
+        whole::validate_drawing,
+    },
+    shading::Stage,
+};
+
+mod declaration;
+mod intern;
+mod surface;
+mod write;
+
+pub use declaration::MARKER;
+pub use surface::OnCpu;
+pub use write::{NotDuplicated, duplicate, id_of_name, template};
+
+/// The ending of the files.
+pub const EXTENSION: &str = "wgsl";
+/// The largest file that is read, bytes.
+pub const MAX_BYTES: u64 = 1 << 20;
+
+/// What every own model's material is made of: they share one type of material, since their shaders, not
+/// their types, tell them apart.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnFile;
+
+/// A model from a file.
+#[derive(Clone, Debug)]
+pub struct OwnModel {
+    /// What the rest of the program knows of it. Its [`Source`] is `models/ID.wgsl`; the text built into that is
+    /// a stand-in that is drawn as long as the file has no good version.
+    pub entry: ModelEntry,
+    /// The file.
+    pub path: PathBuf,
+    /// Its text, declaration included, so that lines count as in the file.
+    pub text: Arc<str>,
+}
+
+/// How messages and [`Sources`](crate::shader::compose::Sources) call the file of a model.
+#[must_use]
+pub fn source_path(id: &str) -> String {
+    format!("models/{id}.{EXTENSION}")
+}
+
+/// The id of the model in a file: its name without the ending.
+#[must_use]
+pub fn id_of(path: &Path) -> Option<&str> {
+    path.extension().filter(|e| *e == EXTENSION).and(path.file_stem()).and_then(|stem| stem.to_str())
+}
+
+/// Whether a word can be the id of a model: lower-case letters, digits and underscores, a letter first.
+#[must_use]
+pub fn is_id(word: &str) -> bool {
+    declaration::identifier(word).is_ok()
+}
+
+/// Whether a text is that of a model: it declares one, or defines `response`. Other files of the folder hold
+/// functions that models share.
+#[must_use]
+pub fn is_model(text: &str) -> bool {
+    declaration::comment(text).is_ok() || declaration::definition(text, "response").is_some()
+}
+
+/// The WGSL files in a folder, by name; none where there is no folder.
+///
+/// # Errors
+/// When the folder cannot be read.
+pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(e) => return Err(e),
+    };
+    let mut files = Vec::new();
+    for entry in entries {
+        let path = entry?.path();
+        let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
+        if path.extension().is_some_and(|e| e == EXTENSION) && !hidden && path.is_file() {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// The text of a file, without a byte order mark.
+///
+/// # Errors
+/// When it cannot be read, is too large or is not UTF-8.
+pub fn text_of(path: &Path) -> Result<String, ShaderProblem> {
+    let failed = |line, column, source: &str, message: String| ShaderProblem {
+        file: named(path),
+        line,
+        column,
+        source: source.to_owned(),
+        message,
+    };
+    let unreadable = |e: &io::Error| failed(1, 1, "", format!("the file could not be read: {e}"));
+    let size = fs::metadata(path).map_err(|e| unreadable(&e))?.len();
+    if size > MAX_BYTES {
+        return Err(failed(1, 1, "", format!("the file is larger than {} MiB, which no shader is", MAX_BYTES >> 20)));
+    }
+    let bytes = fs::read(path).map_err(|e| unreadable(&e))?;
+    let text = String::from_utf8(bytes).map_err(|e| {
+        let good = e.utf8_error().valid_up_to();
+        let before = String::from_utf8_lossy(&e.as_bytes()[..good]).into_owned();
+        let (line, column, source) = place(&before, before.len());
+        failed(line, column, source, "this is not UTF-8 text; save the file as UTF-8".to_owned())
+    })?;
+    Ok(text.strip_prefix('\u{FEFF}').map_or(text.clone(), str::to_owned))
+}
+
+/// How messages call a file before its name is known to be good.
+fn named(path: &Path) -> String {
+    format!("models/{}", path.file_name().unwrap_or_default().to_string_lossy())
+}
+
+/// Line and column of a byte, both from 1, and the line; columns count characters.
+fn place(text: &str, at: usize) -> (usize, usize, &str) {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
+    let line = text[..start].matches('\n').count() + 1;
+    (line, text[start..at].chars().count() + 1, text[start..].lines().next().unwrap_or_default())
+}
+
+/// A problem at a byte of a model's file.
+fn problem(path: &Path, text: &str, (at, message): declaration::Mistake) -> ShaderProblem {
+    let (line, column, source) = place(text, at);
+    ShaderProblem { file: named(path), line, column, source: source.to_owned(), message }
+}
+
+/// Reads a model: its declaration, and its WGSL as far as one can tell without drawing. A registry that knows
+/// an own model of the same id takes this one for its next version.
+///
+/// # Errors
+/// Everything that is wrong with the declaration, or the first thing that is wrong with the WGSL.
+pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel, Vec<ShaderProblem>> {
+    let (model, lobe) = declared(path, text, registry)?;
+    let problem_at = |at, message: String| vec![problem(path, text, (at, message))];
+    if declaration::definition(text, "response").is_none() {
+        let end = declaration::comment(text).map_or(0, |c| c.end);
+        return Err(problem_at(end, format!("the function response is missing; it is {RESPONSE}")));
+    }
+    let mut sources = registry.sources().clone();
+    sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
+    let module = check::validate(&compose_evaluation(&sources, &model.entry)).map_err(|found| {
+        // What calls the model is not what is wrong.
+        if found.file == crate::shader::compose::EVALUATE.path
+            && let Some(at) = declaration::definition(text, "response")
+        {
+            return problem_at(at, format!("response must be {RESPONSE}: {}", found.message));
+        }
+        vec![*found]
+    })?;
+    if model.entry.declaration.ambient == Ambient::Formula
+        && !has_ambient_signature(&module)
+        && let Some(at) = declaration::definition(text, "ambient_response")
+    {
+        return Err(problem_at(at, format!("ambient_response must be {AMBIENT_RESPONSE}")));
+    }
+    for mode in registry.modes() {
+        let composed = compose(&sources, &model.entry, mode, registry.lights());
+        let faces = mode.declaration.stage == Stage::Polygon;
+        validate_drawing(&composed, faces).map_err(|found| {
+            // What the light loop, a light or a mode calls its own comes after the model, and is told to be there twice.
+            let name = found.message.strip_prefix("redefinition of `").and_then(|rest| rest.split('`').next());
+            match name.and_then(|name| Some((name, defined_at(text, name)?))) {
+                Some((name, at)) if found.file != model.entry.declaration.wgsl.path => {
+                    problem_at(at, format!("{} defines {name} too; choose another name", found.file))
+                }
+                _ => vec![*found],
+            }
+        })?;
+    }
+    let entry = surface::entry(model.entry.declaration, model.entry.parameters, lobe, &module);
+    Ok(OwnModel { entry, ..model })
+}
+
+/// Reads the declaration of a model and leaves its WGSL alone: what is drawn, on both machines, is a stand-in. For
+/// a window that opens while a file is broken.
+///
+/// # Errors
+/// Everything that is wrong with the declaration.
+pub fn declare(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel, Vec<ShaderProblem>> {
+    declared(path, text, registry).map(|(model, _)| model)
+}
+
+/// The byte where a text defines something of that name.
+fn defined_at(text: &str, name: &str) -> Option<usize> {
+    let word = |c: char| c.is_alphanumeric() || c == '_';
+    let plain = declaration::without_comments(text);
+    plain.match_indices(name).map(|(at, _)| at).find(|at| {
+        let whole = !plain[..*at].ends_with(word) && !plain[at + name.len()..].starts_with(word);
+        let before = plain[..*at].trim_end();
+        let defines = ["fn", "struct", "const", "var", "alias", "override", ">"].iter().any(|w| before.ends_with(w));
+        whole && defines
+    })
+}
+
+/// What the functions of a model are, for messages.
+const RESPONSE: &str =
+    "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms";
+const AMBIENT_RESPONSE: &str =
+    "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>";
+
+/// The declared model, drawn as the stand-in; and the model whose lobe it uses.
+fn declared(
+    path: &Path,
+    text: &str,
+    registry: &Registry,
+) -> Result<(OwnModel, Option<ModelEntry>), Vec<ShaderProblem>> {
+    let wrong = |mistake| problem(path, text, mistake);
+    let id = usable_id(path, registry).map_err(|what| vec![wrong((0, what))])?;
+    let said = declaration::read(text, id, registry)
+        .map_err(|mistakes| mistakes.into_iter().map(wrong).collect::<Vec<_>>())?;
+    let formula = declaration::definition(&text[said.end..], "ambient_response").is_some();
+    let (ambient, stand_in) = if formula {
+        (Ambient::Formula, FORMULA_STAND_IN)
+    } else {
+        (Ambient::Albedo, STAND_IN)
+    };
+    let declaration = intern::declaration(Declaration {
+        id: intern::text(id),
+        name: said.name,
+        family: Family::Own,
+        author: said.author,
+        source: said.source,
+        summary: said.summary,
+        equation: said.equation,
+        laws: said.laws,
+        ambient,
+        anisotropic: said.anisotropic,
+        wgsl: Source { path: intern::text(&source_path(id)), text: stand_in },
+    });
+    let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
+    let module = stand_in_module(declaration, said.parameters, lobe.as_ref()).map_err(|found| vec![*found])?;
+    let entry = surface::entry(declaration, said.parameters, lobe.clone(), &module);
+    Ok((OwnModel { entry, path: path.to_owned(), text: text.into() }, lobe))
+}
+
+/// The module of a model as its stand-in is drawn.
+fn stand_in_module(
+    declaration: &'static Declaration,
+    parameters: &'static [Parameter],
+    lobe: Option<&ModelEntry>,
+) -> Result<Module, Box<ShaderProblem>> {
+    let row = lobe.map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
+    let bare = ModelEntry::own(declaration, parameters, row, surface::nothing(), None);
+    check::validate(&compose_evaluation(&crate::shader::compose::Sources::default(), &bare))
+}
+
+/// The id of a file, if it can be one.
+fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String> {
+    let id = id_of(path).ok_or_else(|| {
+        format!("the file is called {}, but a model is a file ID.{EXTENSION}", path.display())
+    })?;
+    declaration::identifier(id).map_err(|rule| {
+        format!("the name of the file is the id of the model: {id} {rule}")
+    })?;
+    if registry.model(id).is_some() && registry.own_file(id).is_none() {
+        return Err(format!("{id} is the id of a built-in model; give the file another name"));
+    }
+    Ok(id)
+}
+
+/// Lambert's law in grey, whatever the parameters: stands in for models without a good version.
+const STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
+}
+";
+/// The same for models that answer to light from everywhere by a formula.
+const FORMULA_STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
+}
+fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    return vec3(0.5);
+}
+";
+
+/// Whether the function for light from everywhere takes and gives what the light loop expects.
+fn has_ambient_signature(module: &Module) -> bool {
+    let vector = |ty| {
+        matches!(
+            module.types[ty].inner,
+            TypeInner::Vector { size: VectorSize::Tri, scalar } if scalar.kind == ScalarKind::Float
+        )
+    };
+    let called = |ty, name: &str| module.types[ty].name.as_deref() == Some(name);
+    module.functions.iter().any(|(_, f)| {
+        f.name.as_deref() == Some("ambient_response")
+            && f.result.as_ref().is_some_and(|r| vector(r.ty))
+            && matches!(
+                f.arguments.as_slice(),
+                [v, frame, m] if vector(v.ty) && called(frame.ty, "Frame") && called(m.ty, "Parameters")
+            )
+    })
+}
+
+
+/// Reads all models of a folder into a registry. A file that has a mistake is told of and left out; a scene that
+/// names it is told why (see [`Registry::broken_model`]). With `stand_in` a model whose WGSL alone is wrong is
+/// known and drawn as a stand-in, for a window in which the file is mended.
+pub fn read_folder(folder: &Path, registry: &mut Registry, stand_in: bool) -> Vec<(PathBuf, ShaderProblem)> {
+    registry.set_own_folder(folder);
+    let paths = match files_in(folder) {
+        Ok(paths) => paths,
+        Err(e) => {
+            let message = format!("the folder could not be read: {e}");
+            let problem =
+                ShaderProblem { file: "models".to_owned(), line: 1, column: 1, source: String::new(), message };
+            return vec![(folder.to_owned(), problem)];
+        }
+    };
+    let mut problems = Vec::new();
+    let mut models = Vec::new();
+    for path in paths {
+        match text_of(&path) {
+            Ok(text) if is_model(&text) => models.push((path, text)),
+            // What models share is known by name before the first of them is read.
+            Ok(text) => registry.sources_mut().edit(named(&path), text),
+            Err(problem) => problems.push((path, problem)),
+        }
+    }
+    for (path, text) in models {
+        match read(&path, &text, registry) {
+            Ok(model) => registry.put_own_model(model),
+            Err(found) => {
+                if stand_in && let Ok(model) = declare(&path, &text, registry) {
+                    registry.put_stand_in(model);
+                }
+                problems.extend(found.into_iter().map(|problem| (path.clone(), problem)));
+            }
+        }
+    }
+    let mut first: BTreeMap<&Path, &ShaderProblem> = BTreeMap::new();
+    for (path, problem) in &problems {
+        first.entry(path).or_insert(problem);
+    }
+    for (path, problem) in first {
+        if let Some(id) = id_of(path) {
+            let place = format!("{}:{}:{}", path.display(), problem.line, problem.column);
+            registry.mark_broken(id, format!("{place}: {}", problem.message));
+        }
+    }
+    problems
+}

@@ -1,0 +1,258 @@
+//! Writing code: registers, constants, folding, and what has been calculated before.
+
+use std::collections::HashMap;
+
+use super::{
+    Unsupported,
+    instruction::{Instruction, Operation},
+};
+
+/// How many registers there are, of variables, intermediate values and constants.
+pub(super) const REGISTERS: usize = 1 << 16;
+/// How many instructions, calls and expressions a program may have when all calls are written out.
+const WORK: usize = 1 << 20;
+/// How deep blocks and calls may nest.
+const DEPTH: usize = 200;
+
+/// One word that is known now, or when the program runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Operand {
+    Constant(u32),
+    Register(u16),
+}
+
+type Result<T> = std::result::Result<T, Unsupported>;
+
+fn too_large() -> Unsupported {
+    Unsupported { what: "it is too large when every call is written out".to_owned() }
+}
+
+#[derive(Default)]
+pub(super) struct Builder {
+    pub(super) code: Vec<Instruction>,
+    /// The register 65 535 − i holds the constant i.
+    pub(super) constants: Vec<u32>,
+    places: HashMap<u32, u16>,
+    blocks: HashMap<Vec<u32>, u16>,
+    /// For each register below the constants whether it is written more than once.
+    mutable: Vec<bool>,
+    /// Where the value of an operation on values that do not change stands.
+    known: HashMap<(Operation, [Operand; 3]), u16>,
+    /// What was put into `known`, in this order.
+    log: Vec<(Operation, [Operand; 3])>,
+    work: usize,
+    depth: usize,
+}
+
+impl Builder {
+    /// Counts a piece of work.
+    pub(super) fn work(&mut self) -> Result<()> {
+        self.work += 1;
+        if self.work > WORK { Err(too_large()) } else { Ok(()) }
+    }
+
+    /// Goes one block or call deeper.
+    pub(super) fn enter(&mut self) -> Result<()> {
+        self.depth += 1;
+        if self.depth > DEPTH {
+            return Err(Unsupported { what: "its blocks and calls are nested too deeply".to_owned() });
+        }
+        Ok(())
+    }
+
+    /// Comes back from [`enter`](Self::enter).
+    pub(super) fn leave(&mut self) {
+        self.depth -= 1;
+    }
+
+    fn allocate(&mut self, words: usize, mutable: bool) -> Result<u16> {
+        let base = self.mutable.len();
+        if base + words + self.constants.len() > REGISTERS {
+            return Err(too_large());
+        }
+        self.mutable.resize(base + words, mutable);
+        u16::try_from(base).map_err(|_| too_large())
+    }
+
+    /// New registers that may be written again and again.
+    pub(super) fn variable(&mut self, words: usize) -> Result<u16> {
+        self.allocate(words, true)
+    }
+
+    /// New registers that are filled before the program starts.
+    pub(super) fn input(&mut self, words: usize) -> Result<u16> {
+        self.allocate(words, false)
+    }
+
+    /// The registers in use below the constants.
+    pub(super) fn registers(&self) -> usize {
+        self.mutable.len()
+    }
+
+    fn push_constant(&mut self, bits: u32) -> Result<u16> {
+        if self.mutable.len() + self.constants.len() >= REGISTERS {
+            return Err(too_large());
+        }
+        self.constants.push(bits);
+        Ok((REGISTERS - self.constants.len()) as u16)
+    }
+
+    /// The register of an operand.
+    pub(super) fn register(&mut self, operand: Operand) -> Result<u16> {
+        match operand {
+            Operand::Register(register) => Ok(register),
+            Operand::Constant(bits) => {
+                if let Some(&register) = self.places.get(&bits) {
+                    return Ok(register);
+                }
+                let register = self.push_constant(bits)?;
+                self.places.insert(bits, register);
+                Ok(register)
+            }
+        }
+    }
+
+    /// Whether a register may be written again.
+    pub(super) fn is_mutable(&self, register: u16) -> bool {
+        self.mutable.get(usize::from(register)).copied().unwrap_or(false)
+    }
+
+    fn settled(&self, operand: Operand) -> bool {
+        match operand {
+            Operand::Constant(_) => true,
+            Operand::Register(register) => !self.is_mutable(register),
+        }
+    }
+
+    /// Writes an instruction as it is.
+    pub(super) fn push(&mut self, instruction: Instruction) -> Result<()> {
+        self.work()?;
+        self.code.push(instruction);
+        Ok(())
+    }
+
+    /// The value of a pure operation: known, known to stand somewhere, or calculated by a new instruction.
+    pub(super) fn emit(&mut self, operation: Operation, operands: &[Operand]) -> Result<Operand> {
+        let mut words = [Operand::Constant(0); 3];
+        for (word, operand) in words.iter_mut().zip(operands) {
+            *word = *operand;
+        }
+        if let [Operand::Constant(a), Operand::Constant(b), Operand::Constant(c)] = words {
+            return Ok(Operand::Constant(operation.evaluate([a, b, c])));
+        }
+        let settled = words.iter().all(|w| self.settled(*w));
+        if settled && let Some(&register) = self.known.get(&(operation, words)) {
+            return Ok(Operand::Register(register));
+        }
+        let mut registers = [0; 3];
+        for (register, word) in registers.iter_mut().zip(words).take(operation.arity()) {
+            *register = self.register(word)?;
+        }
+        let [a, b, c] = registers;
+        let d = self.allocate(1, false)?;
+        self.push(Instruction { operation, d, a, b, c })?;
+        if settled {
+            self.known.insert((operation, words), d);
+            self.log.push((operation, words));
+        }
+        Ok(Operand::Register(d))
+    }
+
+    /// Puts a value into a variable.
+    pub(super) fn store(&mut self, register: u16, value: Operand) -> Result<()> {
+        let a = self.register(value)?;
+        if a == register {
+            return Ok(());
+        }
+        self.push(Instruction { operation: Operation::Copy, d: register, a, b: 0, c: 0 })
+    }
+
+    /// The word at a place that is known when the program runs.
+    pub(super) fn load_at(&mut self, base: usize, offset: u16) -> Result<Operand> {
+        let d = self.allocate(1, false)?;
+        let b = base as u16;
+        self.push(Instruction { operation: Operation::LoadAt, d, a: offset, b, c: 0 })?;
+        Ok(Operand::Register(d))
+    }
+
+    /// Puts a value at a place that is known when the program runs.
+    pub(super) fn store_at(&mut self, base: usize, offset: u16, value: Operand) -> Result<()> {
+        let a = self.register(value)?;
+        self.push(Instruction { operation: Operation::StoreAt, d: base as u16, a, b: offset, c: 0 })
+    }
+
+    /// The first of the registers in a row that hold these values.
+    pub(super) fn in_a_row(&mut self, values: &[Operand]) -> Result<u16> {
+        let constants: Option<Vec<u32>> = values
+            .iter()
+            .map(|v| match v {
+                Operand::Constant(bits) => Some(*bits),
+                Operand::Register(_) => None,
+            })
+            .collect();
+        if let Some(constants) = constants {
+            return self.block_of(constants);
+        }
+        if let Some(Operand::Register(first)) = values.first() {
+            let follows = |(i, v): (usize, &Operand)| matches!(v, Operand::Register(r) if usize::from(*r) == usize::from(*first) + i);
+            if values.iter().enumerate().all(follows) {
+                return Ok(*first);
+            }
+        }
+        let base = self.variable(values.len())?;
+        for (i, value) in values.iter().enumerate() {
+            self.store(base + i as u16, *value)?;
+        }
+        Ok(base)
+    }
+
+    fn block_of(&mut self, constants: Vec<u32>) -> Result<u16> {
+        if let Some(&base) = self.blocks.get(&constants) {
+            return Ok(base);
+        }
+        let mut base = 0;
+        for bits in constants.iter().rev() {
+            base = self.push_constant(*bits)?;
+        }
+        self.blocks.insert(constants, base);
+        Ok(base)
+    }
+
+    /// Where the next instruction stands.
+    pub(super) fn here(&self) -> usize {
+        self.code.len()
+    }
+
+    /// Writes a jump whose target is said later, by [`land`](Self::land).
+    pub(super) fn jump(&mut self, operation: Operation, a: u16, d: u16) -> Result<usize> {
+        self.push(Instruction { operation, d, a, b: 0, c: 0 })?;
+        Ok(self.code.len() - 1)
+    }
+
+    /// Writes a jump to a target.
+    pub(super) fn jump_to(&mut self, operation: Operation, a: u16, target: usize) -> Result<()> {
+        let at = self.jump(operation, a, 0)?;
+        self.code[at].aim(target);
+        Ok(())
+    }
+
+    /// Lets jumps come here.
+    pub(super) fn land(&mut self, jumps: &[usize]) {
+        let here = self.here();
+        for jump in jumps {
+            self.code[*jump].aim(here);
+        }
+    }
+
+    /// Starts code that may not be run, or not before what follows it.
+    pub(super) fn scope(&self) -> usize {
+        self.log.len()
+    }
+
+    /// Forgets what was calculated since [`scope`](Self::scope).
+    pub(super) fn forget(&mut self, scope: usize) {
+        for key in self.log.drain(scope..) {
+            self.known.remove(&key);
+        }
+    }
+}

@@ -1,0 +1,402 @@
+//! The instructions of a program, and what each does to words of 32 bits.
+
+use std::f32::consts::PI;
+
+use super::{STEPS, StepLimit, builder::REGISTERS};
+
+/// The registers of a running program. They are floats since most instructions calculate with these: moves between
+/// the processor's registers for whole numbers and for floats would take longer than the calculation. Other
+/// words stand in them bit by bit.
+pub(super) type Registers = [f32; REGISTERS];
+
+/// What a word of 32 bits holds.
+trait Bits: Copy {
+    fn read(word: f32) -> Self;
+    fn write(self) -> f32;
+}
+
+impl Bits for u32 {
+    #[inline(always)]
+    fn read(word: f32) -> Self {
+        word.to_bits()
+    }
+    #[inline(always)]
+    fn write(self) -> f32 {
+        f32::from_bits(self)
+    }
+}
+
+impl Bits for i32 {
+    #[inline(always)]
+    fn read(word: f32) -> Self {
+        word.to_bits().cast_signed()
+    }
+    #[inline(always)]
+    fn write(self) -> f32 {
+        f32::from_bits(self.cast_unsigned())
+    }
+}
+
+impl Bits for f32 {
+    #[inline(always)]
+    fn read(word: f32) -> Self {
+        word
+    }
+    #[inline(always)]
+    fn write(self) -> f32 {
+        self
+    }
+}
+
+impl Bits for bool {
+    #[inline(always)]
+    fn read(word: f32) -> Self {
+        word.to_bits() != 0
+    }
+    #[inline(always)]
+    fn write(self) -> f32 {
+        f32::from_bits(u32::from(self))
+    }
+}
+
+/// A function of one to three words without side effects.
+trait Pure<Types> {
+    const ARITY: usize;
+    /// The value, of words that are asked for by their place.
+    fn apply(self, word: impl Fn(usize) -> f32) -> f32;
+}
+
+impl<A: Bits, R: Bits, F: Fn(A) -> R> Pure<(A, R)> for F {
+    const ARITY: usize = 1;
+    #[inline(always)]
+    fn apply(self, word: impl Fn(usize) -> f32) -> f32 {
+        self(A::read(word(0))).write()
+    }
+}
+
+impl<A: Bits, B: Bits, R: Bits, F: Fn(A, B) -> R> Pure<(A, B, R)> for F {
+    const ARITY: usize = 2;
+    #[inline(always)]
+    fn apply(self, word: impl Fn(usize) -> f32) -> f32 {
+        self(A::read(word(0)), B::read(word(1))).write()
+    }
+}
+
+impl<A: Bits, B: Bits, C: Bits, R: Bits, F: Fn(A, B, C) -> R> Pure<(A, B, C, R)> for F {
+    const ARITY: usize = 3;
+    #[inline(always)]
+    fn apply(self, word: impl Fn(usize) -> f32) -> f32 {
+        self(A::read(word(0)), B::read(word(1)), C::read(word(2))).write()
+    }
+}
+
+fn arity<Types, F: Pure<Types>>(_: F) -> usize {
+    F::ARITY
+}
+
+macro_rules! operations {
+    ($($name:ident = $function:expr;)*) => {
+        /// What an instruction does. Pure operations put a function of registers `a`, `b`, `c` into `d`.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u8)]
+        pub(super) enum Operation {
+            $($name,)*
+            /// Goes on at the target.
+            Jump,
+            /// Goes on at the target unless `a` is true.
+            JumpUnless,
+            /// Goes on at the target if `a` and `d` are the same word.
+            JumpIfEqual,
+            /// Goes on at the target unless `a < d`, numbers.
+            JumpUnlessLess,
+            /// Goes on at the target unless `a ≤ d`, numbers.
+            JumpUnlessLessEqual,
+            /// Goes back to the target, and counts.
+            Repeat,
+            /// Goes back to the target unless `a` is true, and counts.
+            RepeatUnless,
+            /// Puts the register number `b` + content of `a` into `d`.
+            LoadAt,
+            /// Puts `a` into the register number `d` + content of `b`.
+            StoreAt,
+        }
+
+        impl Operation {
+            /// How many of `a`, `b`, `c` a pure operation reads; of others 0.
+            pub(super) fn arity(self) -> usize {
+                match self {
+                    $(Self::$name => arity($function),)*
+                    _ => 0,
+                }
+            }
+
+            /// The value of a pure operation; of others 0.
+            pub(super) fn evaluate(self, words: [u32; 3]) -> u32 {
+                let word = |i: usize| f32::from_bits(words[i]);
+                let value = match self {
+                    $(Self::$name => Pure::apply($function, word),)*
+                    _ => 0.0,
+                };
+                value.to_bits()
+            }
+        }
+
+        /// Runs instructions until they end. There are as many registers as numbers of 16 bits, so that none
+        /// needs to be checked.
+        pub(super) fn execute(code: &[Instruction], registers: &mut Registers) -> Result<(), StepLimit> {
+            let mut at = 0;
+            let mut steps = 0;
+            while let Some(i) = code.get(at) {
+                at += 1;
+                let (a, d) = (usize::from(i.a), usize::from(i.d));
+                match i.operation {
+                    $(Operation::$name => {
+                        let value = Pure::apply($function, |k| registers[usize::from([i.a, i.b, i.c][k])]);
+                        registers[d] = value;
+                    })*
+                    Operation::Jump => at = i.target(),
+                    Operation::JumpUnless => {
+                        if !bool::read(registers[a]) {
+                            at = i.target();
+                        }
+                    }
+                    Operation::JumpIfEqual => {
+                        if registers[a].to_bits() == registers[d].to_bits() {
+                            at = i.target();
+                        }
+                    }
+                    Operation::JumpUnlessLess => {
+                        let less = registers[a] < registers[d];
+                        if !less {
+                            at = i.target();
+                        }
+                    }
+                    Operation::JumpUnlessLessEqual => {
+                        let less = registers[a] <= registers[d];
+                        if !less {
+                            at = i.target();
+                        }
+                    }
+                    Operation::Repeat | Operation::RepeatUnless => {
+                        if i.operation == Operation::RepeatUnless && bool::read(registers[a]) {
+                            continue;
+                        }
+                        steps += at - i.target();
+                        if steps > STEPS {
+                            return Err(StepLimit);
+                        }
+                        at = i.target();
+                    }
+                    Operation::LoadAt => {
+                        let place = i.b.wrapping_add(registers[a].to_bits() as u16);
+                        registers[d] = registers[usize::from(place)];
+                    }
+                    Operation::StoreAt => {
+                        let place = i.d.wrapping_add(registers[usize::from(i.b)].to_bits() as u16);
+                        registers[usize::from(place)] = registers[a];
+                    }
+                }
+            }
+            Ok(())
+        }
+    };
+}
+
+operations! {
+    Copy = |a: u32| a;
+    // The offset of an element: indices beyond the end count as the last, as on the graphics card.
+    Index = |i: u32, last: u32, stride: u32| i.min(last).wrapping_mul(stride);
+    Select = |condition: bool, a: u32, b: u32| if condition { a } else { b };
+
+    AddF = |a: f32, b: f32| a + b;
+    SubF = |a: f32, b: f32| a - b;
+    MulF = |a: f32, b: f32| a * b;
+    DivF = |a: f32, b: f32| a / b;
+    RemF = |a: f32, b: f32| a % b;
+    NegF = |a: f32| -a;
+    // Rounded twice, as separate instructions would.
+    MulAddF = |a: f32, b: f32, c: f32| a * b + c;
+    EqualF = |a: f32, b: f32| a == b;
+    NotEqualF = |a: f32, b: f32| a != b;
+    LessF = |a: f32, b: f32| a < b;
+    LessEqualF = |a: f32, b: f32| a <= b;
+
+    AddI = u32::wrapping_add;
+    SubI = u32::wrapping_sub;
+    MulI = u32::wrapping_mul;
+    NegI = u32::wrapping_neg;
+    // Division by zero gives the dividend, and the remainder 0.
+    DivS = |a: i32, b: i32| if b == 0 { a } else { a.wrapping_div(b) };
+    DivU = |a: u32, b: u32| a.checked_div(b).unwrap_or(a);
+    RemS = |a: i32, b: i32| if b == 0 { 0 } else { a.wrapping_rem(b) };
+    RemU = |a: u32, b: u32| a.checked_rem(b).unwrap_or(0);
+    And = |a: u32, b: u32| a & b;
+    Or = |a: u32, b: u32| a | b;
+    Xor = |a: u32, b: u32| a ^ b;
+    Complement = |a: u32| !a;
+    Not = |a: bool| !a;
+    ShiftLeft = u32::wrapping_shl;
+    ShiftRightS = i32::wrapping_shr;
+    ShiftRightU = u32::wrapping_shr;
+    EqualI = |a: u32, b: u32| a == b;
+    NotEqualI = |a: u32, b: u32| a != b;
+    LessS = |a: i32, b: i32| a < b;
+    LessEqualS = |a: i32, b: i32| a <= b;
+    LessU = |a: u32, b: u32| a < b;
+    LessEqualU = |a: u32, b: u32| a <= b;
+
+    FloatToS = |a: f32| a as i32;
+    FloatToU = |a: f32| a as u32;
+    SToFloat = |a: i32| a as f32;
+    UToFloat = |a: u32| a as f32;
+    BoolToFloat = |a: bool| if a { 1.0f32 } else { 0.0 };
+    FloatToBool = |a: f32| a != 0.0;
+    IntToBool = |a: u32| a != 0;
+
+    AbsF = f32::abs;
+    SignF = |a: f32| if a > 0.0 { 1.0f32 } else if a < 0.0 { -1.0 } else { 0.0 };
+    MinF = f32::min;
+    MaxF = f32::max;
+    ClampF = |a: f32, low: f32, high: f32| a.max(low).min(high);
+    Ceil = f32::ceil;
+    Floor = f32::floor;
+    Round = f32::round_ties_even;
+    Fract = |a: f32| a - a.floor();
+    Trunc = f32::trunc;
+    Sqrt = f32::sqrt;
+    InverseSqrt = |a: f32| 1.0 / a.sqrt();
+    Exp = f32::exp;
+    Exp2 = f32::exp2;
+    Log = f32::ln;
+    Log2 = f32::log2;
+    Pow = f32::powf;
+    Sin = f32::sin;
+    Cos = f32::cos;
+    Tan = f32::tan;
+    Asin = f32::asin;
+    Acos = f32::acos;
+    Atan = f32::atan;
+    Atan2 = f32::atan2;
+    Sinh = f32::sinh;
+    Cosh = f32::cosh;
+    Tanh = f32::tanh;
+    Asinh = f32::asinh;
+    Acosh = f32::acosh;
+    Atanh = f32::atanh;
+    Radians = |a: f32| a * (PI / 180.0);
+    Degrees = |a: f32| a * (180.0 / PI);
+    Step = |edge: f32, x: f32| if edge <= x { 1.0f32 } else { 0.0 };
+    Mix = |a: f32, b: f32, t: f32| a * (1.0 - t) + b * t;
+    SmoothStep = smooth_step;
+    Ldexp = |a: f32, e: i32| (f64::from(a) * f64::from(e.clamp(-300, 300)).exp2()) as f32;
+    FrexpFraction = |a: f32| frexp(a).0;
+    FrexpExponent = |a: f32| frexp(a).1;
+
+    AbsS = i32::wrapping_abs;
+    SignS = i32::signum;
+    MinS = |a: i32, b: i32| a.min(b);
+    MaxS = |a: i32, b: i32| a.max(b);
+    MinU = |a: u32, b: u32| a.min(b);
+    MaxU = |a: u32, b: u32| a.max(b);
+    CountOnes = u32::count_ones;
+    TrailingZeros = u32::trailing_zeros;
+    LeadingZeros = u32::leading_zeros;
+    ReverseBits = u32::reverse_bits;
+    // The place of a bit; −1 if there is none.
+    FirstTrailing = |a: u32| if a == 0 { u32::MAX } else { a.trailing_zeros() };
+    FirstLeadingU = first_leading;
+    FirstLeadingS = |a: i32| first_leading((if a < 0 { !a } else { a }).cast_unsigned());
+    ExtractU = |a: u32, offset: u32, count: u32| match field(offset, count) {
+        (_, 0) => 0,
+        (offset, count) => a << (32 - count - offset) >> (32 - count),
+    };
+    ExtractS = |a: i32, offset: u32, count: u32| match field(offset, count) {
+        (_, 0) => 0,
+        (offset, count) => a << (32 - count - offset) >> (32 - count),
+    };
+    FieldMask = |offset: u32, count: u32| match field(offset, count) {
+        (_, 0) => 0,
+        (offset, count) => u32::MAX >> (32 - count) << offset,
+    };
+}
+
+/// Hermite's cubic between two edges.
+fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
+    let t = ((x - low) / (high - low)).max(0.0).min(1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Fraction in [0.5, 1) and exponent of a number; zero, infinities and what is no number have the exponent 0.
+fn frexp(a: f32) -> (f32, i32) {
+    if a == 0.0 || !a.is_finite() {
+        return (a, 0);
+    }
+    // Every number of 32 bits is a normal one of 64.
+    let bits = f64::from(a).to_bits();
+    let exponent = (bits >> 52 & 0x7ff) as i32 - 1022;
+    (f64::from_bits(bits & !(0x7ff << 52) | 1022 << 52) as f32, exponent)
+}
+
+fn first_leading(a: u32) -> u32 {
+    if a == 0 { u32::MAX } else { 31 - a.leading_zeros() }
+}
+
+/// Offset and count of bits that lie within a word.
+fn field(offset: u32, count: u32) -> (u32, u32) {
+    let offset = offset.min(32);
+    (offset, count.min(32 - offset))
+}
+
+/// An instruction: an operation, the register that it writes, and those that it reads. Jumps have their
+/// target in `b` and `c`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Instruction {
+    pub(super) operation: Operation,
+    pub(super) d: u16,
+    pub(super) a: u16,
+    pub(super) b: u16,
+    pub(super) c: u16,
+}
+
+impl Instruction {
+    /// Where a jump goes.
+    #[inline(always)]
+    pub(super) fn target(self) -> usize {
+        usize::from(self.b) << 16 | usize::from(self.c)
+    }
+
+    /// Says where a jump goes.
+    pub(super) fn aim(&mut self, target: usize) {
+        self.b = (target >> 16) as u16;
+        self.c = target as u16;
+    }
+
+    /// Whether it has a target.
+    pub(super) fn jumps(self) -> bool {
+        use Operation::{
+            Jump, JumpIfEqual, JumpUnless, JumpUnlessLess, JumpUnlessLessEqual, Repeat, RepeatUnless,
+        };
+        matches!(
+            self.operation,
+            Jump | JumpUnless | JumpIfEqual | JumpUnlessLess | JumpUnlessLessEqual | Repeat | RepeatUnless
+        )
+    }
+
+    /// The registers that it reads by number.
+    pub(super) fn reads(&self) -> impl Iterator<Item = u16> + use<> {
+        use Operation as O;
+        let (words, count) = match self.operation {
+            O::Jump | O::Repeat => ([0; 3], 0),
+            O::JumpUnless | O::RepeatUnless | O::LoadAt => ([self.a, 0, 0], 1),
+            O::JumpIfEqual | O::JumpUnlessLess | O::JumpUnlessLessEqual => ([self.a, self.d, 0], 2),
+            O::StoreAt => ([self.a, self.b, 0], 2),
+            pure => ([self.a, self.b, self.c], pure.arity()),
+        };
+        words.into_iter().take(count)
+    }
+
+    /// The register that it writes, if that is known by number.
+    pub(super) fn writes(self) -> Option<u16> {
+        (!self.jumps() && self.operation != Operation::StoreAt).then_some(self.d)
+    }
+}

@@ -1,0 +1,535 @@
+//! From naga's functions to instructions: functions, calls, statements.
+//!
+//! Calls are written out in place, vectors and structs are taken apart into words. What only rearranges words
+//! (swizzles, constructors, members) costs no instruction, and arguments are not copied.
+
+use std::{collections::HashMap, rc::Rc};
+
+use naga::{
+    AddressSpace, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Statement,
+    SwitchValue, TypeInner, front::Typifier, proc::ResolveContext,
+};
+
+use super::{
+    Unsupported,
+    builder::{Builder, Operand},
+    instruction::Operation as O,
+    loads::{Facts, facts},
+    shape::{self, Layout},
+};
+
+pub(super) type Result<T> = std::result::Result<T, Unsupported>;
+
+pub(super) fn unsupported<T>(what: impl Into<String>) -> Result<T> {
+    Err(Unsupported { what: what.into() })
+}
+
+/// What an expression stands for.
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    /// The words of a value.
+    Words(Rc<[Operand]>),
+    /// A pointer.
+    Place(Place),
+}
+
+/// Where a pointer leads.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// The register, apart from what is known only when the program runs.
+    pub(super) base: usize,
+    /// The register with an offset to add.
+    pub(super) offset: Option<u16>,
+    pub(super) layout: Layout,
+}
+
+/// A function that is being written out.
+pub(super) struct Frame<'m> {
+    pub(super) function: &'m Function,
+    pub(super) types: Rc<Typifier>,
+    pub(super) facts: Rc<Facts>,
+    pub(super) arguments: Vec<Value>,
+    pub(super) values: Vec<Option<Value>>,
+    pub(super) locals: Vec<u16>,
+    /// Where results go; `None` if the one `return` is the end, and its value needs no copy.
+    results: Option<u16>,
+    /// The value of that one `return`.
+    returned: Rc<[Operand]>,
+    /// Jumps to the end.
+    returns: Vec<usize>,
+    /// Loops and switches around, the innermost last.
+    around: Vec<Around>,
+}
+
+/// A loop or a switch around a statement: jumps out of it, and to the next turn.
+struct Around {
+    breaks: Vec<usize>,
+    continues: Option<Vec<usize>>,
+}
+
+pub(super) struct Lowering<'m> {
+    pub(super) module: &'m Module,
+    pub(super) builder: Builder,
+    /// The values of the module's constant expressions; `None` where that is not supported.
+    constants: Vec<Option<Rc<[Operand]>>>,
+    looked_at: HashMap<Handle<Function>, (Rc<Typifier>, Rc<Facts>)>,
+    /// The registers of private variables that are reached.
+    globals: HashMap<Handle<GlobalVariable>, u16>,
+    /// What private variables start with.
+    pub(super) initial: Vec<(u16, u32)>,
+    /// The buffer that is an input, and its first register.
+    pub(super) row: Option<(Handle<GlobalVariable>, u16)>,
+}
+
+/// The bits of a number; `None` if it has not 32.
+pub(super) fn literal(literal: Literal) -> Option<u32> {
+    match literal {
+        Literal::F32(v) => Some(v.to_bits()),
+        Literal::U32(v) => Some(v),
+        Literal::I32(v) => Some(v.cast_unsigned()),
+        Literal::Bool(v) => Some(u32::from(v)),
+        Literal::AbstractInt(v) => i32::try_from(v).ok().map(i32::cast_unsigned),
+        Literal::AbstractFloat(v) => Some((v as f32).to_bits()),
+        Literal::F64(_) | Literal::F16(_) | Literal::U64(_) | Literal::I64(_) => None,
+    }
+}
+
+/// Whether nothing after a statement is run.
+fn leaves(block: &Block) -> bool {
+    match block.last() {
+        Some(Statement::Return { .. } | Statement::Break | Statement::Continue) => true,
+        Some(Statement::Block(inner)) => leaves(inner),
+        _ => false,
+    }
+}
+
+impl<'m> Lowering<'m> {
+    pub(super) fn new(module: &'m Module) -> Self {
+        let mut lowering = Self {
+            module,
+            builder: Builder::default(),
+            constants: Vec::new(),
+            looked_at: HashMap::new(),
+            globals: HashMap::new(),
+            initial: Vec::new(),
+            row: None,
+        };
+        for (_, expression) in module.global_expressions.iter() {
+            let value = lowering.constant_expression(expression);
+            lowering.constants.push(value);
+        }
+        lowering
+    }
+
+    /// The value of an expression of the module; those that it is made of come before it.
+    fn constant_expression(&self, expression: &Expression) -> Option<Rc<[Operand]>> {
+        let known = |handle: Handle<Expression>| self.constants.get(handle.index())?.clone();
+        match expression {
+            Expression::Literal(v) => Some(Rc::new([Operand::Constant(literal(*v)?)])),
+            Expression::Constant(constant) => known(self.module.constants[*constant].init),
+            Expression::ZeroValue(ty) => {
+                let words = shape::words(self.module, &self.module.types[*ty].inner).ok()?;
+                Some(vec![Operand::Constant(0); words].into())
+            }
+            Expression::Compose { components, .. } => {
+                let parts: Option<Vec<_>> = components.iter().map(|c| known(*c)).collect();
+                Some(parts?.iter().flat_map(|p| p.iter().copied()).collect())
+            }
+            Expression::Splat { size, value } => Some(vec![*known(*value)?.first()?; *size as usize].into()),
+            _ => None,
+        }
+    }
+
+    /// The value of a constant of the module.
+    pub(super) fn constant(&self, constant: Handle<naga::Constant>) -> Result<Rc<[Operand]>> {
+        let constant = &self.module.constants[constant];
+        match self.constants.get(constant.init.index()) {
+            Some(Some(value)) => Ok(value.clone()),
+            _ => {
+                let name = constant.name.as_deref().unwrap_or("without a name");
+                unsupported(format!(
+                    "it uses the constant {name}, whose value does not consist of 32-bit numbers"
+                ))
+            }
+        }
+    }
+
+    /// A pointer to a variable of the module.
+    pub(super) fn global(&mut self, handle: Handle<GlobalVariable>) -> Result<Place> {
+        if let Some((row, base)) = self.row
+            && row == handle
+        {
+            return Ok(Place { base: usize::from(base), offset: None, layout: Layout::Buffer });
+        }
+        let variable = &self.module.global_variables[handle];
+        let name = variable.name.as_deref().unwrap_or_default();
+        match variable.space {
+            AddressSpace::Private => {}
+            AddressSpace::Uniform | AddressSpace::Storage { .. } => {
+                return unsupported(format!("it uses the buffer {name}"));
+            }
+            AddressSpace::Handle => return unsupported(format!("it uses the texture or sampler {name}")),
+            _ => {
+                return unsupported(format!(
+                    "it uses the variable {name}, which belongs to a stage of the pipeline"
+                ));
+            }
+        }
+        let place = |base: u16| Place { base: usize::from(base), offset: None, layout: Layout::Packed };
+        if let Some(&base) = self.globals.get(&handle) {
+            return Ok(place(base));
+        }
+        let words = shape::words(self.module, &self.module.types[variable.ty].inner)?;
+        let base = self.builder.variable(words)?;
+        let value = match variable.init {
+            None => vec![Operand::Constant(0); words].into(),
+            Some(init) => match self.constants.get(init.index()) {
+                Some(Some(value)) => value.clone(),
+                _ => {
+                    return unsupported(format!(
+                        "it uses the variable {name}, which does not start with a constant"
+                    ));
+                }
+            },
+        };
+        for (i, word) in value.iter().enumerate() {
+            if let Operand::Constant(bits) = word {
+                self.initial.push((base + i as u16, *bits));
+            }
+        }
+        self.globals.insert(handle, base);
+        Ok(place(base))
+    }
+
+    fn look_at(&mut self, handle: Handle<Function>) -> Result<(Rc<Typifier>, Rc<Facts>)> {
+        if let Some(known) = self.looked_at.get(&handle) {
+            return Ok(known.clone());
+        }
+        let function = &self.module.functions[handle];
+        let context =
+            ResolveContext::with_locals(self.module, &function.local_variables, &function.arguments);
+        let mut types = Typifier::new();
+        for (expression, _) in function.expressions.iter() {
+            if types.grow(expression, &function.expressions, &context).is_err() {
+                return unsupported("it has an expression without a type");
+            }
+        }
+        let known = (Rc::new(types), Rc::new(facts(function)));
+        self.looked_at.insert(handle, known.clone());
+        Ok(known)
+    }
+
+    /// Writes out a call; gives the words of the result.
+    pub(super) fn call(&mut self, handle: Handle<Function>, arguments: Vec<Value>) -> Result<Rc<[Operand]>> {
+        let function = &self.module.functions[handle];
+        let (types, facts) = self.look_at(handle)?;
+        self.builder.enter()?;
+        let count = match &function.result {
+            Some(result) => shape::words(self.module, &self.module.types[result.ty].inner)?,
+            None => 0,
+        };
+        let results = if facts.returns_last { None } else { Some(self.builder.variable(count)?) };
+        let mut frame = Frame {
+            function,
+            types,
+            facts,
+            arguments,
+            values: vec![None; function.expressions.len()],
+            locals: Vec::new(),
+            results,
+            returned: Rc::new([]),
+            returns: Vec::new(),
+            around: Vec::new(),
+        };
+        self.locals(&mut frame)?;
+        let scope = self.builder.scope();
+        self.block(&mut frame, &function.body)?;
+        self.builder.land(&frame.returns);
+        self.builder.leave();
+        let Some(base) = results else { return Ok(frame.returned) };
+        self.builder.forget(scope);
+        Ok((0..count).map(|i| Operand::Register(base + i as u16)).collect())
+    }
+
+    /// Gives local variables their registers and first values.
+    fn locals(&mut self, frame: &mut Frame<'m>) -> Result<()> {
+        let function = frame.function;
+        for (handle, variable) in function.local_variables.iter() {
+            let words = shape::words(self.module, &self.module.types[variable.ty].inner)?;
+            let base = self.builder.variable(words)?;
+            frame.locals.push(base);
+            if !frame.facts.starts[handle.index()] {
+                continue;
+            }
+            let value = match variable.init {
+                Some(init) => self.words(frame, init)?,
+                None => vec![Operand::Constant(0); words].into(),
+            };
+            for (i, word) in value.iter().enumerate() {
+                self.builder.store(base + i as u16, *word)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn block(&mut self, frame: &mut Frame<'m>, block: &'m Block) -> Result<()> {
+        self.builder.enter()?;
+        for statement in block {
+            self.builder.work()?;
+            self.statement(frame, statement)?;
+        }
+        self.builder.leave();
+        Ok(())
+    }
+
+    /// A block whose values are not known after it.
+    fn inner(&mut self, frame: &mut Frame<'m>, block: &'m Block) -> Result<()> {
+        let scope = self.builder.scope();
+        self.block(frame, block)?;
+        self.builder.forget(scope);
+        Ok(())
+    }
+
+    fn statement(&mut self, frame: &mut Frame<'m>, statement: &'m Statement) -> Result<()> {
+        match statement {
+            Statement::Emit(range) => {
+                for handle in range.clone() {
+                    self.builder.work()?;
+                    let value = self.expression(frame, handle)?;
+                    frame.values[handle.index()] = Some(value);
+                }
+                Ok(())
+            }
+            Statement::Block(block) => self.block(frame, block),
+            Statement::If { condition, accept, reject } => self.branch(frame, *condition, accept, reject),
+            Statement::Switch { selector, cases } => self.switch(frame, *selector, cases),
+            Statement::Loop { body, continuing, break_if } => self.repeat(frame, body, continuing, *break_if),
+            Statement::Break => {
+                let jump = self.builder.jump(O::Jump, 0, 0)?;
+                if let Some(around) = frame.around.last_mut() {
+                    around.breaks.push(jump);
+                }
+                Ok(())
+            }
+            Statement::Continue => {
+                let jump = self.builder.jump(O::Jump, 0, 0)?;
+                if let Some(continues) = frame.around.iter_mut().rev().find_map(|a| a.continues.as_mut()) {
+                    continues.push(jump);
+                }
+                Ok(())
+            }
+            Statement::Return { value } => self.give_back(frame, *value),
+            Statement::Store { pointer, value } => self.assign(frame, *pointer, *value),
+            Statement::Call { function, arguments, result } => {
+                let mut values = Vec::with_capacity(arguments.len());
+                for argument in arguments {
+                    values.push(self.value(frame, *argument)?);
+                }
+                let words = self.call(*function, values)?;
+                if let Some(result) = result {
+                    frame.values[result.index()] = Some(Value::Words(words));
+                }
+                Ok(())
+            }
+            Statement::Kill => unsupported("it discards a fragment"),
+            Statement::ControlBarrier(_)
+            | Statement::MemoryBarrier(_)
+            | Statement::WorkGroupUniformLoad { .. } => unsupported("it waits at a barrier"),
+            Statement::ImageStore { .. } | Statement::ImageAtomic { .. } => {
+                unsupported("it writes a texture")
+            }
+            Statement::Atomic { .. } => unsupported("it uses atomics"),
+            Statement::RayQuery { .. } | Statement::RayPipelineFunction(_) => unsupported("it traces rays"),
+            Statement::SubgroupBallot { .. }
+            | Statement::SubgroupGather { .. }
+            | Statement::SubgroupCollectiveOperation { .. } => {
+                unsupported("it asks other invocations of its subgroup")
+            }
+            Statement::CooperativeStore { .. } => unsupported("it uses cooperative matrices"),
+        }
+    }
+
+    fn give_back(&mut self, frame: &mut Frame<'m>, value: Option<Handle<Expression>>) -> Result<()> {
+        let words = match value {
+            Some(value) => self.words(frame, value)?,
+            None => Rc::new([]),
+        };
+        let Some(base) = frame.results else {
+            frame.returned = words;
+            return Ok(());
+        };
+        for (i, word) in words.iter().enumerate() {
+            self.builder.store(base + i as u16, *word)?;
+        }
+        frame.returns.push(self.builder.jump(O::Jump, 0, 0)?);
+        Ok(())
+    }
+
+    fn branch(
+        &mut self,
+        frame: &mut Frame<'m>,
+        condition: Handle<Expression>,
+        accept: &'m Block,
+        reject: &'m Block,
+    ) -> Result<()> {
+        let condition = match self.word(frame, condition)? {
+            Operand::Constant(0) => return self.inner(frame, reject),
+            Operand::Constant(_) => return self.inner(frame, accept),
+            Operand::Register(register) => register,
+        };
+        let past = self.builder.jump(O::JumpUnless, condition, 0)?;
+        self.inner(frame, accept)?;
+        if reject.is_empty() {
+            self.builder.land(&[past]);
+            return Ok(());
+        }
+        let end = if leaves(accept) { None } else { Some(self.builder.jump(O::Jump, 0, 0)?) };
+        self.builder.land(&[past]);
+        self.inner(frame, reject)?;
+        if let Some(end) = end {
+            self.builder.land(&[end]);
+        }
+        Ok(())
+    }
+
+    fn switch(
+        &mut self,
+        frame: &mut Frame<'m>,
+        selector: Handle<Expression>,
+        cases: &'m [naga::SwitchCase],
+    ) -> Result<()> {
+        let selector = self.word(frame, selector)?;
+        let selector = self.builder.register(selector)?;
+        let mut tests = vec![None; cases.len()];
+        for (case, test) in cases.iter().zip(&mut tests) {
+            let bits = match case.value {
+                SwitchValue::I32(v) => v.cast_unsigned(),
+                SwitchValue::U32(v) => v,
+                SwitchValue::Default => continue,
+            };
+            let value = self.builder.register(Operand::Constant(bits))?;
+            *test = Some(self.builder.jump(O::JumpIfEqual, selector, value)?);
+        }
+        let otherwise = self.builder.jump(O::Jump, 0, 0)?;
+        let mut has_default = false;
+        frame.around.push(Around { breaks: Vec::new(), continues: None });
+        for (i, (case, test)) in cases.iter().zip(tests).enumerate() {
+            has_default |= test.is_none();
+            self.builder.land(&[test.unwrap_or(otherwise)]);
+            self.inner(frame, &case.body)?;
+            let last = i + 1 == cases.len();
+            if !case.fall_through && !last && !leaves(&case.body) {
+                let jump = self.builder.jump(O::Jump, 0, 0)?;
+                if let Some(around) = frame.around.last_mut() {
+                    around.breaks.push(jump);
+                }
+            }
+        }
+        if !has_default {
+            self.builder.land(&[otherwise]);
+        }
+        self.land_breaks(frame);
+        Ok(())
+    }
+
+    fn land_breaks(&mut self, frame: &mut Frame<'m>) {
+        if let Some(around) = frame.around.pop() {
+            self.builder.land(&around.breaks);
+        }
+    }
+
+    fn repeat(
+        &mut self,
+        frame: &mut Frame<'m>,
+        body: &'m Block,
+        continuing: &'m Block,
+        break_if: Option<Handle<Expression>>,
+    ) -> Result<()> {
+        let top = self.builder.here();
+        frame.around.push(Around { breaks: Vec::new(), continues: Some(Vec::new()) });
+        self.inner(frame, body)?;
+        if let Some(continues) = frame.around.last_mut().and_then(|a| a.continues.take()) {
+            self.builder.land(&continues);
+        }
+        let scope = self.builder.scope();
+        self.block(frame, continuing)?;
+        match break_if {
+            None => self.builder.jump_to(O::Repeat, 0, top)?,
+            Some(condition) => {
+                let condition = self.word(frame, condition)?;
+                let condition = self.builder.register(condition)?;
+                self.builder.jump_to(O::RepeatUnless, condition, top)?;
+            }
+        }
+        self.builder.forget(scope);
+        self.land_breaks(frame);
+        Ok(())
+    }
+
+    fn assign(
+        &mut self,
+        frame: &mut Frame<'m>,
+        pointer: Handle<Expression>,
+        value: Handle<Expression>,
+    ) -> Result<()> {
+        let words = self.words(frame, value)?;
+        let place = self.place(frame, pointer)?;
+        if place.layout == Layout::Buffer {
+            return unsupported("it writes into a buffer");
+        }
+        for (i, word) in words.iter().enumerate() {
+            match place.offset {
+                None => self.builder.store((place.base + i) as u16, *word)?,
+                Some(offset) => self.builder.store_at(place.base + i, offset, *word)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// The type of an expression.
+    pub(super) fn type_of<'f>(&'f self, frame: &'f Frame<'m>, handle: Handle<Expression>) -> &'f TypeInner {
+        match frame.types.get(handle, &self.module.types) {
+            TypeInner::Pointer { base, .. } => &self.module.types[*base].inner,
+            inner => inner,
+        }
+    }
+
+    /// What an expression stands for: calculated before, or needing no calculation.
+    pub(super) fn value(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Value> {
+        if let Some(value) = &frame.values[handle.index()] {
+            return Ok(value.clone());
+        }
+        let value = self.expression(frame, handle)?;
+        // Variables keep their places, constants their values.
+        frame.values[handle.index()] = Some(value.clone());
+        Ok(value)
+    }
+
+    /// The words of a value.
+    pub(super) fn words(
+        &mut self,
+        frame: &mut Frame<'m>,
+        handle: Handle<Expression>,
+    ) -> Result<Rc<[Operand]>> {
+        match self.value(frame, handle)? {
+            Value::Words(words) => Ok(words),
+            Value::Place(_) => unsupported("it uses a pointer as a value"),
+        }
+    }
+
+    /// The one word of a value.
+    pub(super) fn word(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Operand> {
+        match self.words(frame, handle)?.first() {
+            Some(word) => Ok(*word),
+            None => unsupported("it uses a value of no size"),
+        }
+    }
+
+    /// Where a pointer leads.
+    pub(super) fn place(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Place> {
+        match self.value(frame, handle)? {
+            Value::Place(place) => Ok(place),
+            Value::Words(_) => unsupported("it uses a value as a pointer"),
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! Running WGSL on the CPU: a function of a checked module becomes a program for a small machine.
+//!
+//! Models that users write have no Rust twin. With this the CPU renderer, the tables of the command line
+//! and the curves of directional albedo can ask them all the same.
+//!
+//! A program is a list of instructions on registers of 32 bits: vectors and structs are taken apart, and calls
+//! written out in place, which WGSL allows since its functions do not call themselves. Whole numbers follow the
+//! rules of WGSL (they wrap, division by zero gives the dividend, shifts go by the last five bits of the
+//! distance), floats are those of Rust. Indices beyond the end of an array mean its last element, as `wgpu` has
+//! it on the graphics card.
+
+use std::{
+    cell::RefCell,
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+use naga::{Module, TypeInner};
+
+mod builder;
+mod expression;
+mod instruction;
+mod loads;
+mod lower;
+mod maths;
+mod shape;
+#[cfg(test)]
+mod tests;
+
+use builder::{Operand, REGISTERS};
+use instruction::{Instruction, Registers, execute};
+use lower::{Lowering, Value, unsupported};
+
+/// How many instructions of loops a run may have, a few milliseconds.
+pub const STEPS: usize = 1 << 22;
+
+/// What a function uses that cannot be run on the CPU.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{what}")]
+pub struct Unsupported {
+    /// A sentence about the function, e.g. "it samples a texture".
+    pub what: String,
+}
+
+/// A program ran longer than [`STEPS`], perhaps for ever; its results are undefined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("it ran {STEPS} steps of its loops and did not end")]
+pub struct StepLimit;
+
+/// A function of a module with all that it calls, ready to be run.
+///
+/// Values go in and out as words of 32 bits: `f32` by its bits, `bool` as 0 or 1; vectors, matrices (column by
+/// column), arrays and structs flattened in the order of their members, without padding.
+#[derive(Debug)]
+pub struct Program {
+    code: Box<[Instruction]>,
+    /// The register 65 535 − i holds the constant i.
+    constants: Box<[u32]>,
+    /// What private variables start with.
+    initial: Box<[(u16, u32)]>,
+    argument_words: usize,
+    row_words: usize,
+    results: Box<[u16]>,
+    /// Tells programs apart.
+    id: u64,
+}
+
+/// Registers that are kept from run to run, and the program whose constants they hold.
+struct Scratch {
+    registers: Box<Registers>,
+    program: u64,
+}
+
+impl Scratch {
+    fn new() -> Self {
+        let registers = vec![0.0; REGISTERS].into_boxed_slice();
+        let registers = registers.try_into().unwrap_or_else(|_| Box::new([0.0; REGISTERS]));
+        Self { registers, program: 0 }
+    }
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::new(Scratch::new());
+}
+
+static PROGRAMS: AtomicU64 = AtomicU64::new(1);
+
+impl Program {
+    /// Makes a function of a validated module, with all that it calls, ready to be run.
+    ///
+    /// # Errors
+    /// When there is no such function, or when it reaches something that only a graphics card has.
+    pub fn new(module: &Module, function: &str) -> Result<Self, Unsupported> {
+        Self::build(module, function, None)
+    }
+
+    /// The same for a function that may read a table in a buffer: a read-only array of that name, of which
+    /// [`run_with`](Self::run_with) is given one row. Every index means that row.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_table(module: &Module, function: &str, table: &str) -> Result<Self, Unsupported> {
+        Self::build(module, function, Some(table))
+    }
+
+    fn build(module: &Module, name: &str, table: Option<&str>) -> Result<Self, Unsupported> {
+        let found = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name));
+        let Some((handle, function)) = found else {
+            return unsupported(format!("there is no function {name}"));
+        };
+        let mut lowering = Lowering::new(module);
+        let mut arguments = Vec::with_capacity(function.arguments.len());
+        for argument in &function.arguments {
+            let inner = &module.types[argument.ty].inner;
+            if matches!(inner, TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. }) {
+                return unsupported("it takes a pointer");
+            }
+            let words = shape::words(module, inner)?;
+            let base = lowering.builder.input(words)?;
+            arguments.push(Value::Words((0..words).map(|i| Operand::Register(base + i as u16)).collect()));
+        }
+        let argument_words = lowering.builder.registers();
+        let variable =
+            module.global_variables.iter().find(|(_, v)| table.is_some() && v.name.as_deref() == table);
+        let mut row_words = 0;
+        if let Some((handle, variable)) = variable {
+            row_words = shape::span(module, &module.types[variable.ty].inner);
+            let base = lowering.builder.input(row_words)?;
+            lowering.row = Some((handle, base));
+        }
+        let results = lowering.call(handle, arguments)?;
+        let results =
+            results.iter().map(|word| lowering.builder.register(*word)).collect::<Result<_, _>>()?;
+        Ok(Self {
+            code: lowering.builder.code.into(),
+            constants: lowering.builder.constants.into(),
+            initial: lowering.initial.into(),
+            argument_words,
+            row_words,
+            results,
+            id: PROGRAMS.fetch_add(1, Ordering::Relaxed),
+        })
+    }
+
+    /// How many words the arguments have.
+    #[must_use]
+    pub fn argument_words(&self) -> usize {
+        self.argument_words
+    }
+
+    /// How many words the result has.
+    #[must_use]
+    pub fn result_words(&self) -> usize {
+        self.results.len()
+    }
+
+    /// How many words a row of the table has that the program was made with, padding included; 0 without one.
+    #[must_use]
+    pub fn row_words(&self) -> usize {
+        self.row_words
+    }
+
+    /// Runs the function. Arguments that are missing are zero; results are written as far as there is room.
+    ///
+    /// # Errors
+    /// When it does not end.
+    pub fn run(&self, arguments: &[u32], results: &mut [u32]) -> Result<(), StepLimit> {
+        self.run_with(&[], arguments, results)
+    }
+
+    /// Runs the function with a row of the table of [`with_table`](Self::with_table), as it stands in the
+    /// buffer: with padding, in words. Words that are missing are zero.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_with(&self, row: &[u32], arguments: &[u32], results: &mut [u32]) -> Result<(), StepLimit> {
+        SCRATCH.with_borrow_mut(|scratch| {
+            if scratch.program != self.id {
+                for (register, constant) in scratch.registers.iter_mut().rev().zip(&self.constants) {
+                    *register = f32::from_bits(*constant);
+                }
+                scratch.program = self.id;
+            }
+            let registers = &mut *scratch.registers;
+            let (to_arguments, rest) = registers.split_at_mut(self.argument_words);
+            fill(to_arguments, arguments);
+            fill(&mut rest[..self.row_words], row);
+            for (register, word) in &self.initial {
+                registers[usize::from(*register)] = f32::from_bits(*word);
+            }
+            execute(&self.code, registers)?;
+            for (result, register) in results.iter_mut().zip(&self.results) {
+                *result = registers[usize::from(*register)].to_bits();
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Copies words; what is missing is zero.
+fn fill(to: &mut [f32], from: &[u32]) {
+    let given = to.len().min(from.len());
+    for (to, from) in to.iter_mut().zip(from) {
+        *to = f32::from_bits(*from);
+    }
+    to[given..].fill(0.0);
+}

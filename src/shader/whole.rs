@@ -1,0 +1,123 @@
+//! Checking composed sources that draw, wrapper included, without a renderer: what the wrapper imports from Bevy
+//! is replaced by functions that look the same to those who call them.
+
+use super::{
+    check::{ShaderProblem, validate},
+    compose::Composed,
+};
+
+/// What the wrapper imports, and what stands in for it.
+const IMPORTS: &[(&str, &str)] = &[
+    (
+        "bevy_pbr::mesh_functions",
+        "fn mesh_functions__get_tag(i: u32) -> u32 { return i; }
+fn mesh_functions__get_world_from_local(i: u32) -> mat4x4<f32> { return mat4x4<f32>(); }
+",
+    ),
+    (
+        "bevy_pbr::mesh_view_bindings::view",
+        "struct BevyView { world_position: vec3<f32> }
+var<private> view: BevyView;
+",
+    ),
+    (
+        "bevy_pbr::view_transformations::position_world_to_clip",
+        "fn position_world_to_clip(p: vec3<f32>) -> vec4<f32> { return vec4(p, 1.0); }
+",
+    ),
+];
+
+/// Checks a source that draws; `faces` as for modes that calculate per polygon. What uses more of Bevy than the
+/// wrapper that is shipped cannot be judged here and passes.
+///
+/// # Errors
+/// The first problem, located in the author's file.
+pub fn validate_drawing(composed: &Composed, faces: bool) -> Result<(), Box<ShaderProblem>> {
+    if let Some(problem) = &composed.problem {
+        return Err(problem.clone());
+    }
+    let Some(text) = standing_alone(&composed.text, faces) else { return Ok(()) };
+    validate(&Composed { text, ..composed.clone() }).map(drop)
+}
+
+/// The text without what a preprocessor is needed for; places stay the same.
+fn standing_alone(text: &str, faces: bool) -> Option<String> {
+    let mut out = String::with_capacity(text.len() + 512);
+    let mut stand_ins = String::new();
+    // For each open condition whether its lines count.
+    let mut conditions: Vec<bool> = Vec::new();
+    for line in text.lines() {
+        let directive = line.trim();
+        if !directive.starts_with('#') || directive.starts_with("#{") {
+            if conditions.iter().all(|c| *c) {
+                out.push_str(line);
+            }
+        } else if let Some(module) = directive.strip_prefix("#import ") {
+            stand_ins.push_str(IMPORTS.iter().find(|(name, _)| *name == module.trim())?.1);
+        } else if let Some(name) = directive.strip_prefix("#ifdef ") {
+            conditions.push(faces && name.trim() == "FACES");
+        } else if let Some(name) = directive.strip_prefix("#ifndef ") {
+            conditions.push(!(faces && name.trim() == "FACES"));
+        } else if directive == "#else" {
+            let last = conditions.last_mut()?;
+            *last = !*last;
+        } else if directive == "#endif" {
+            conditions.pop()?;
+        } else {
+            return None;
+        }
+        out.push('\n');
+    }
+    let group = "#{MATERIAL_BIND_GROUP}";
+    let out = out.replace("mesh_functions::", "mesh_functions__").replace(group, &format!("{:<1$}", 2, group.len()));
+    Some(out + &stand_ins)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        registry::Registry,
+        shader::compose::{Sources, compose},
+        shading::Stage,
+    };
+
+    fn problem(path: &str, text: &str, mode: &str) -> Option<String> {
+        let registry = Registry::builtin();
+        let mut sources = Sources::default();
+        sources.edit(path, text);
+        let mode = registry.mode(mode).expect("built in");
+        let composed = compose(&sources, &registry.models()[0], mode, registry.lights());
+        let faces = mode.declaration.stage == Stage::Polygon;
+        validate_drawing(&composed, faces).err().map(|p| p.to_string())
+    }
+
+    #[test]
+    fn every_model_is_valid_in_every_mode() {
+        let registry = Registry::builtin();
+        for model in registry.models() {
+            for mode in registry.modes() {
+                let composed = compose(&Sources::default(), model, mode, registry.lights());
+                let faces = mode.declaration.stage == Stage::Polygon;
+                assert_eq!(validate_drawing(&composed, faces), Ok(()), "{}", model.declaration.id);
+            }
+        }
+    }
+
+    #[test]
+    fn mistakes_anywhere_are_found_where_they_are() {
+        let wrapper = crate::shader::compose::WRAPPER.text;
+        let at = wrapper.lines().position(|l| l.contains("corner.position =")).expect("there") + 1;
+        let broken = wrapper.replace("corner.position =", "corner.postion =");
+        let said = problem("wrapper.wgsl", &broken, "phong").expect("is broken");
+        assert!(said.starts_with(&format!("wrapper.wgsl:{at}:")), "{said}");
+        let at = wrapper.lines().position(|l| l.contains("corner.face_centre =")).expect("there") + 1;
+        let broken = wrapper.replace("corner.face_centre =", "corner.face_center =");
+        let said = problem("wrapper.wgsl", &broken, "flat").expect("is broken");
+        assert!(said.starts_with(&format!("wrapper.wgsl:{at}:")), "{said}");
+        assert_eq!(problem("wrapper.wgsl", &broken, "phong"), None);
+        assert!(problem("loop.wgsl", "fn illuminate( {", "phong").expect("is broken").starts_with("loop.wgsl:1:"));
+        // More of Bevy than is known here is not judged.
+        assert_eq!(problem("wrapper.wgsl", &format!("#import bevy_pbr::shadows\n{broken}"), "flat"), None);
+    }
+}
