@@ -18,7 +18,10 @@ pub const DATA_VARIABLE: &str = "LCM_DATA_DIR";
 
 /// The models that are shipped as files: name and text of each.
 pub const EXAMPLES: &[(&str, &str)] = &[
-    ("charlie_sheen.wgsl", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/charlie_sheen.wgsl"))),
+    (
+        "charlie_sheen.wgsl",
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/charlie_sheen.wgsl")),
+    ),
     ("gooch.wgsl", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/gooch.wgsl"))),
 ];
 
@@ -69,7 +72,8 @@ impl Surroundings {
         let folder = |name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
         let beside = || Some(env::current_exe().ok()?.parent()?.to_owned());
         let roots = [folder("BEVY_ASSET_ROOT"), folder("CARGO_MANIFEST_DIR"), beside()];
-        let usual = || Some(directories::ProjectDirs::from("", "", "lights-camera-models")?.data_dir().to_owned());
+        let usual =
+            || Some(directories::ProjectDirs::from("", "", "lights-camera-models")?.data_dir().to_owned());
         Self { roots: roots.into_iter().flatten().collect(), data: folder(DATA_VARIABLE).or_else(usual) }
     }
 }
@@ -143,7 +147,8 @@ pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
         compose::WRAPPER,
         compose::EVALUATE,
     ];
-    let models = registry.models().iter().map(|m| m.declaration).filter(|d| registry.own_file(d.id).is_none());
+    let models =
+        registry.models().iter().map(|m| m.declaration).filter(|d| registry.own_file(d.id).is_none());
     compose::OPTICS
         .iter()
         .copied()
@@ -287,7 +292,10 @@ mod tests {
         fs::create_dir_all(root.join("assets/shaders"))?;
         fs::write(root.join("file"), "")?;
         let said = |assets: Option<&Path>, models: Option<&Path>| {
-            Folders::find_in(assets, models, &Surroundings::default()).err().map(|e| e.to_string()).unwrap_or_default()
+            Folders::find_in(assets, models, &Surroundings::default())
+                .err()
+                .map(|e| e.to_string())
+                .unwrap_or_default()
         };
         let meant = format!("did you mean {}?", root.join("assets").display());
         assert!(said(Some(root), None).contains(&meant));

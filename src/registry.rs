@@ -157,7 +157,10 @@ impl Registry {
     /// The file on disk of a source that messages call by its path, if it was read from one.
     #[must_use]
     pub fn path_on_disk(&self, source: &str) -> Option<PathBuf> {
-        let own = self.own_models().find(|(m, _)| m.declaration.wgsl.path == source).map(|(_, path)| path.to_owned());
+        let own = self
+            .own_models()
+            .find(|(m, _)| m.declaration.wgsl.path == source)
+            .map(|(_, path)| path.to_owned());
         let below = |folder: &Option<PathBuf>, file: &str| {
             Some(folder.as_ref()?.join(file)).filter(|path| path.is_file())
         };

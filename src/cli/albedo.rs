@@ -41,9 +41,7 @@ pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
             let of = |v: &Vec3| directional(|l| surface.response(l, *v, &Frame::LOCAL), *v, &Frame::LOCAL);
             views.par_iter().map(of).collect()
         }
-        Machine::Gpu => {
-            albedos(registry.sources(), model, &values, Encoding::Srgb, &views)?
-        }
+        Machine::Gpu => albedos(registry.sources(), model, &values, Encoding::Srgb, &views)?,
     };
     arguments.on.can_run(model)?;
     let mut out = BufWriter::new(io::stdout().lock());

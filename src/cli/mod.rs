@@ -18,8 +18,8 @@ use crate::{registry::Registry, scene::load::Defaults};
 use workshop::Places;
 
 mod albedo;
-mod assets;
 mod angles;
+mod assets;
 mod check;
 mod evaluate;
 mod models;

@@ -48,7 +48,10 @@ impl Places {
     /// error.
     pub(super) fn open(&self) -> Result<Workshop, Failure> {
         if let Some(named) = self.models.as_deref().filter(|m| !m.exists()) {
-            return Err(Failure::Usage(format!("--models is {}, but there is no such folder", named.display())));
+            return Err(Failure::Usage(format!(
+                "--models is {}, but there is no such folder",
+                named.display()
+            )));
         }
         self.open_for_writing()
     }

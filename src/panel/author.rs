@@ -12,11 +12,7 @@ use super::{
     state::{Action, Effect, Lab, Severity},
     theme::{self, Palette},
 };
-use crate::{
-    reflection::{Declaration, Family},
-    registry::Registry,
-    shader::status::ShaderStatus,
-};
+use crate::{reflection::own::source_path, registry::Registry, shader::status::ShaderStatus};
 
 /// Id of the panel that shows the shaders.
 pub const SHADER_TAB: &str = "shader";
@@ -79,12 +75,11 @@ pub fn check_id(id: &str, registry: &Registry) -> Result<(), String> {
     if id.len() > LONGEST_ID {
         return Err(format!("At most {LONGEST_ID} characters; these are {}.", id.len()));
     }
-    match registry.model(id) {
-        Some(model) => Err(format!(
-            "{} has this name already; {} is free.",
-            model.declaration.name,
-            free_id(id, registry)
-        )),
+    // A file that gives no model is a file too.
+    let broken = registry.broken_model(id).map(|_| source_path(id));
+    let taken = registry.model(id).map(|m| m.declaration.name.to_owned()).or(broken);
+    match taken {
+        Some(by) => Err(format!("{by} has this name already; {} is free.", free_id(id, registry))),
         None => Ok(()),
     }
 }
@@ -109,41 +104,18 @@ fn plain(text: &str) -> Option<String> {
 
 /// An id that no model has: the one given, or that with a number.
 fn free_id(id: &str, registry: &Registry) -> String {
-    let taken = |id: &str| registry.model(id).is_some();
+    let taken = |id: &str| registry.model(id).is_some() || registry.broken_model(id).is_some();
     let numbered = (2..).map(|n| format!("{id}_{n}"));
     std::iter::once(id.to_owned()).chain(numbered).find(|id| !taken(id)).unwrap_or_default()
 }
 
-/// The name for people that an id suggests: `my_velvet` becomes "My velvet".
-#[must_use]
-pub fn name_of_id(id: &str) -> String {
-    let words = id.replace('_', " ");
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// Where the file of a shader is on disk, by the path that messages name; none for built-in copies.
+/// Where the file of a shader is on disk, or will be, by the path that messages name; none for built-in copies.
 #[must_use]
 pub fn on_disk(status: &ShaderStatus, path: &str) -> Option<PathBuf> {
-    match path.strip_prefix(OWN_FOLDER) {
+    match path.strip_prefix("models/") {
         Some(own) => Some(status.models.as_ref()?.join(own)),
         None => Some(status.shaders.as_ref()?.join(path)),
     }
-}
-
-/// What the paths of own models begin with in messages.
-const OWN_FOLDER: &str = "models/";
-
-/// The path of the file of an own model, as messages name it.
-#[must_use]
-pub fn own_path(id: &str) -> String {
-    format!("{OWN_FOLDER}{id}.wgsl")
-}
-
-/// Whether a model is a user's file.
-#[must_use]
-pub fn is_own(declaration: &Declaration) -> bool {
-    declaration.family == Family::Own
 }
 
 impl Lab {
@@ -205,16 +177,14 @@ impl Lab {
         let ModelDraft { of, id } = draft;
         vec![match of {
             Some(model) => Effect::DuplicateModel { model, id },
-            None => {
-                let name = name_of_id(&id);
-                Effect::NewModel { id, name }
-            }
+            // Its file will say what people call it.
+            None => Effect::NewModel { name: id.clone(), id },
         }]
     }
 
     fn edit_shown(&mut self, registry: &Registry) -> Vec<Effect> {
         let id = self.model_shown();
-        let path = registry.model(id).map_or_else(|| own_path(id), |m| m.declaration.wgsl.path.to_owned());
+        let path = registry.model(id).map_or_else(|| source_path(id), |m| m.declaration.wgsl.path.to_owned());
         match on_disk(&self.shaders, &path) {
             Some(file) => vec![Effect::OpenInEditor { path: file, line: self.line_of_trouble(&path) }],
             None => {
@@ -255,7 +225,7 @@ pub fn buttons(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         if copy.clicked() {
             actions.push(Action::Author(Ask::Duplicate));
         }
-        let path = shown.map_or_else(|| own_path(lab.model_shown()), |d| d.wgsl.path.to_owned());
+        let path = shown.map_or_else(|| source_path(lab.model_shown()), |d| d.wgsl.path.to_owned());
         let file = on_disk(&lab.shaders, &path);
         let open = ui
             .add_enabled(file.is_some(), Button::new("Open in editor"))
@@ -351,8 +321,8 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
     ui.add_space(2.0 * scale);
     match &checked {
         Ok(()) => {
-            let path = on_disk(&lab.shaders, &own_path(&draft.id));
-            let path = path.map_or_else(|| own_path(&draft.id), |p| p.display().to_string());
+            let path = on_disk(&lab.shaders, &source_path(&draft.id));
+            let path = path.map_or_else(|| source_path(&draft.id), |p| p.display().to_string());
             ui.add(egui::Label::new(theme::small(ui, format!("Will be written to {path}"))).wrap());
         }
         Err(why) => {
@@ -422,6 +392,9 @@ mod tests {
             let better = plain(text).expect("a letter");
             assert!(is_plain(&better) && better.len() <= LONGEST_ID, "{text}: {better}");
         }
-        assert_eq!(name_of_id("my_velvet"), "My velvet");
+        let mut registry = Registry::builtin();
+        registry.mark_broken("my_velvet", "why".to_owned());
+        let said = check_id("my_velvet", &registry).expect_err("there is a file");
+        assert!(said.contains("models/my_velvet.wgsl has this name already; my_velvet_2 is free"), "{said}");
     }
 }

@@ -10,7 +10,10 @@ use super::{
     state::{Action, Lab, ViewChange},
     theme::{self, Palette},
 };
-use crate::{reflection::ModelEntry, registry::Registry};
+use crate::{
+    reflection::{Family, ModelEntry},
+    registry::Registry,
+};
 
 /// Whether every word of a search occurs in a text, in any order.
 #[must_use]
@@ -264,12 +267,21 @@ pub fn about(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
     let palette = Palette::here(ui);
     ui.label(theme::strong(ui, d.name));
-    ui.label(d.summary);
-    for (law, holds) in d.laws.list() {
+    if !d.summary.is_empty() {
+        ui.label(d.summary);
+    }
+    // A file of one's own that does not claim a law does not deny it either.
+    let own = d.family == Family::Own;
+    for (law, holds) in d.laws.list().into_iter().filter(|(_, holds)| *holds || !own) {
         let text = if holds { format!("✓ {law}") } else { format!("✗ not {law}") };
         ui.label(RichText::new(text).small().color(if holds { palette.text } else { palette.weak }));
     }
-    ui.label(theme::small(ui, d.source));
+    if own {
+        ui.label(theme::small(ui, d.wgsl.path));
+    }
+    if !d.source.is_empty() {
+        ui.label(theme::small(ui, d.source));
+    }
 }
 
 /// The button and, when it is open, the list. They are about the model that the selected object has of its

@@ -214,7 +214,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
                 model_header(ui, model);
                 equation(ui, lab, model, actions);
             }
-            None => missing_model(ui, lab, lab.scene.model_of(object), actions),
+            None => missing_model(ui, lab, registry, lab.scene.model_of(object), actions),
         }
         if let Some(mode) = mode {
             stage(ui, mode);
@@ -437,7 +437,9 @@ fn model_header(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(d.name).heading());
-        ui.label(theme::small(ui, d.author));
+        if !d.author.is_empty() {
+            ui.label(theme::small(ui, d.author));
+        }
     })
     .response
     .on_hover_ui(|ui| {
@@ -447,7 +449,7 @@ fn model_header(ui: &mut Ui, model: &ModelEntry) {
 }
 
 /// What stands in the place of a model that is not there: its file is gone, or never worked.
-fn missing_model(ui: &mut Ui, lab: &Lab, id: &str, actions: &mut Vec<Action>) {
+fn missing_model(ui: &mut Ui, lab: &Lab, registry: &Registry, id: &str, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     ui.horizontal_top(|ui| {
@@ -455,7 +457,7 @@ fn missing_model(ui: &mut Ui, lab: &Lab, id: &str, actions: &mut Vec<Action>) {
         let (sign, _) = ui.allocate_exact_size(vec2(16.0, 20.0) * scale, Sense::hover());
         icon::severity(ui.painter(), sign.center(), 6.0 * scale, Severity::Error, &palette);
         ui.vertical(|ui| {
-            ui.add(egui::Label::new(shader::missing_model(lab, id)).wrap().selectable(true));
+            ui.add(egui::Label::new(shader::missing_model(lab, registry, id)).wrap().selectable(true));
             ui.horizontal_wrapped(|ui| {
                 if ui.button("Choose another model").clicked() {
                     actions.push(Action::View(ViewChange::Chooser(true)));

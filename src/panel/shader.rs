@@ -13,9 +13,11 @@ use super::{
     theme::{self, Palette},
 };
 use crate::{
+    reflection::own::source_path,
     registry::Registry,
     shader::{
         compose::{self, File, Part},
+        report::annotated,
         status::Trouble,
     },
 };
@@ -124,7 +126,7 @@ fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>)
     let scale = theme::scale_here(ui);
     let (Some(model), Some(mode)) = (registry.model(lab.model_shown()), registry.mode(lab.mode_shown()))
     else {
-        ui.add(egui::Label::new(missing_model(lab, lab.model_shown())).wrap());
+        ui.add(egui::Label::new(missing_model(lab, registry, lab.model_shown())).wrap());
         return;
     };
     ui.horizontal(|ui| {
@@ -137,7 +139,7 @@ fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>)
         ui.set_width(ui.available_width() - 8.0 * scale);
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = ROW * scale;
-        for file in compose::files(&lab.sources, model, mode, registry.lights()) {
+        for file in compose::files(registry.sources(), model, mode, registry.lights()) {
             self::file(ui, lab, &file, actions);
         }
     });
@@ -244,14 +246,13 @@ fn file(ui: &mut Ui, lab: &Lab, file: &File, actions: &mut Vec<Action>) {
 
 /// What is said of a model that a scene names and that is not there.
 #[must_use]
-pub fn missing_model(lab: &Lab, id: &str) -> String {
-    let path = author::own_path(id);
-    let broken = lab.shaders.troubles.iter().find(|t| t.problem.file == path);
-    match broken {
-        Some(t) => format!(
-            "There is no version of the file {path} yet that works: {}. Correct it, and the model is there; or choose \
-             another one.",
-            t.problem
+pub fn missing_model(lab: &Lab, registry: &Registry, id: &str) -> String {
+    let path = source_path(id);
+    let trouble = lab.shaders.troubles.iter().find(|t| t.problem.file == path).map(|t| t.problem.to_string());
+    match trouble.or_else(|| registry.broken_model(id).map(str::to_owned)) {
+        Some(why) => format!(
+            "There is no version of the file {path} yet that works: {why}. Correct it, and the model is there; or \
+             choose another one."
         ),
         None => format!(
             "There is no reflection model “{id}”: the file {path} is gone. Put it back, and its knobs are here again; \
@@ -334,21 +335,12 @@ pub fn excerpt(source: &str, column: usize, room: usize) -> Excerpt {
     Excerpt { text: chars.into_iter().collect(), caret }
 }
 
-/// A problem as text: place, message, the line with a caret, what it means.
+/// A problem as text: message, place, the line with a caret, what it means.
 #[must_use]
 pub fn report(trouble: &Trouble) -> String {
-    let p = &trouble.problem;
-    let line = excerpt(&p.source, p.column, usize::MAX);
-    // Signs that are two cells wide in a terminal need two spaces below them.
-    let pad: usize = line.text.chars().take(line.caret).map(|c| if is_wide(c) { 2 } else { 1 }).sum();
-    format!("{p}\n    {}\n    {}^\n{}\n", line.text, " ".repeat(pad), consequence(trouble))
-}
-
-/// Whether a character takes two cells in a terminal: East Asian scripts and pictograms.
-fn is_wide(c: char) -> bool {
-    matches!(c, '\u{1100}'..='\u{115f}' | '\u{2e80}'..='\u{a4cf}' | '\u{ac00}'..='\u{d7a3}' | '\u{f900}'..='\u{faff}'
-        | '\u{fe30}'..='\u{fe6f}' | '\u{ff00}'..='\u{ff60}' | '\u{ffe0}'..='\u{ffe6}' | '\u{1f300}'..='\u{1faff}'
-        | '\u{20000}'..='\u{3fffd}')
+    let path = trouble.path.as_ref().map(|path| path.display().to_string());
+    let text = annotated(&trouble.problem, path.as_deref().unwrap_or(&trouble.problem.file));
+    format!("{text}\n{}\n", consequence(trouble))
 }
 
 fn troubles(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {

@@ -23,7 +23,7 @@ use crate::{
     reflection::parameter::Value,
     registry::Registry,
     scene::{Display, Light, MAX_OBJECTS, Object, Observer, Scene, SceneSize},
-    shader::{compose::Sources, status::ShaderStatus},
+    shader::status::ShaderStatus,
 };
 
 /// The most models that keys 1–9 reach.
@@ -70,8 +70,6 @@ pub struct Lab {
     pub badges: Vec<Badge>,
     /// Where shaders are edited and what is wrong with them, fed by the app.
     pub shaders: ShaderStatus,
-    /// The texts of the shaders as they are edited, fed by the app.
-    pub sources: Sources,
     /// The model of one's own that is about to be written.
     pub draft: Option<ModelDraft>,
     /// The model that is chosen as soon as it is known: one whose file was just written.
@@ -571,7 +569,6 @@ impl Lab {
             status: Status::default(),
             badges: Vec::new(),
             shaders: ShaderStatus::default(),
-            sources: Sources::default(),
             draft: None,
             wanted_model: None,
             camera: Quat::IDENTITY,

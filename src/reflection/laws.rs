@@ -198,7 +198,8 @@ pub fn albedo_directions(v: Vec3, frame: &Frame, rows: usize) -> Vec<(Vec3, f32)
 /// The directional albedo of the channel that has most, from the responses in [`albedo_directions`].
 #[must_use]
 pub fn albedo(directions: &[(Vec3, f32)], responses: impl IntoIterator<Item = Terms>) -> f32 {
-    let weighted = directions.iter().zip(responses).map(|((_, weight), t)| (t.diffuse + t.specular) * *weight);
+    let weighted =
+        directions.iter().zip(responses).map(|((_, weight), t)| (t.diffuse + t.specular) * *weight);
     weighted.sum::<Vec3>().max_element()
 }
 
@@ -353,7 +354,8 @@ fn integrate<E>(
     for (i, tilt) in tilts.into_iter().enumerate() {
         let (sin, cos) = (FRAC_PI_2 * tilt).sin_cos();
         // From the side and along the tangent in turn.
-        let (sin_azimuth, cos_azimuth) = if i % 2 == 0 { (0.0, 1.0) } else { (TAU * random.unit()).sin_cos() };
+        let (sin_azimuth, cos_azimuth) =
+            if i % 2 == 0 { (0.0, 1.0) } else { (TAU * random.unit()).sin_cos() };
         let v = Vec3::new(sin * cos_azimuth, sin * sin_azimuth, cos);
         let mut found = 0.0;
         for rows in [COARSE, FINE] {

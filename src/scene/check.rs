@@ -207,7 +207,10 @@ pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
 fn own_model_missing(registry: &Registry, id: &str) -> String {
     match registry.own_folder() {
         Some(folder) if folder.is_dir() && own::is_id(id) => {
-            format!("; among the own models there is no {}", folder.join(id).with_extension(own::EXTENSION).display())
+            format!(
+                "; among the own models there is no {}",
+                folder.join(id).with_extension(own::EXTENSION).display()
+            )
         }
         _ => String::new(),
     }

@@ -18,7 +18,7 @@ use super::{Source, check::ShaderProblem, wgsl};
 use crate::{
     light::LightEntry,
     optics::albedo::NODES,
-    reflection::{Ambient, ModelEntry, parameter},
+    reflection::{Ambient, Family, ModelEntry, parameter},
     shading::ModeEntry,
 };
 
@@ -377,7 +377,7 @@ pub struct File {
     pub part: Part,
     /// Its path, as messages name it.
     pub path: String,
-    /// Whether its text differs from the built-in one.
+    /// Whether its text differs from the built-in one. Own models have none to differ from.
     pub edited: bool,
 }
 
@@ -400,7 +400,9 @@ pub fn files(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[
         .collect::<Vec<_>>();
     let file = |path: &str| {
         let source = known.iter().find(|(_, source)| source.path == path);
-        let edited = source.is_some_and(|(_, s)| sources.get(path).is_some_and(|text| text != s.text));
+        let own = model.declaration.family == Family::Own && path == model.declaration.wgsl.path;
+        let differs = |s: &Source| sources.get(path).is_some_and(|text| text != s.text);
+        let edited = !own && source.is_some_and(|(_, s)| differs(s));
         File { part: source.map_or(Part::Import, |(part, _)| *part), path: path.to_owned(), edited }
     };
     let composed = compose(sources, model, mode, lights);

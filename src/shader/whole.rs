@@ -69,7 +69,9 @@ fn standing_alone(text: &str, faces: bool) -> Option<String> {
         out.push('\n');
     }
     let group = "#{MATERIAL_BIND_GROUP}";
-    let out = out.replace("mesh_functions::", "mesh_functions__").replace(group, &format!("{:<1$}", 2, group.len()));
+    let out = out
+        .replace("mesh_functions::", "mesh_functions__")
+        .replace(group, &format!("{:<1$}", 2, group.len()));
     Some(out + &stand_ins)
 }
 
@@ -116,7 +118,9 @@ mod tests {
         let said = problem("wrapper.wgsl", &broken, "flat").expect("is broken");
         assert!(said.starts_with(&format!("wrapper.wgsl:{at}:")), "{said}");
         assert_eq!(problem("wrapper.wgsl", &broken, "phong"), None);
-        assert!(problem("loop.wgsl", "fn illuminate( {", "phong").expect("is broken").starts_with("loop.wgsl:1:"));
+        assert!(
+            problem("loop.wgsl", "fn illuminate( {", "phong").expect("is broken").starts_with("loop.wgsl:1:")
+        );
         // More of Bevy than is known here is not judged.
         assert_eq!(problem("wrapper.wgsl", &format!("#import bevy_pbr::shadows\n{broken}"), "flat"), None);
     }

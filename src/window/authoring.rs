@@ -4,7 +4,7 @@
 use std::{
     fs,
     io::{self, Write as _},
-    path::Path,
+    path::{Path, PathBuf},
     process::{Command, Stdio},
     sync::{Arc, Mutex, PoisonError},
     thread,
@@ -12,6 +12,16 @@ use std::{
 };
 
 use bevy::ecs::prelude::*;
+
+use crate::{
+    assets::{self, Exported, Folders},
+    panel::{
+        author::ModelDraft,
+        state::{Effect, Lab, Severity},
+    },
+    reflection::own,
+    registry::Registry,
+};
 
 /// The environment variable that names the editor: a command, split at spaces. `{file}` and `{line}` stand
 /// for the file and the line; without `{file}` the file comes last.
@@ -98,6 +108,86 @@ fn start(command: Option<(String, Vec<String>)>, file: &Path) -> Result<(), Stri
         }
         _ => Ok(()),
     }
+}
+
+/// Carries out an effect that writes a file of one's own: says what became of it, and wishes for a new model to be
+/// chosen. Returns the folder whose shaders and models are to be read from now on, if there is a new one.
+pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<PathBuf> {
+    match effect {
+        Effect::NewModel { id, name } => new_file(lab, registry, id, None, &own::template(id, name)),
+        Effect::DuplicateModel { model, id } => {
+            let Some(entry) = registry.model(model) else {
+                lab.say(Severity::Error, format!("There is no reflection model “{model}” to copy."));
+                return None;
+            };
+            match own::duplicate(entry, registry.sources(), id) {
+                Ok(text) => new_file(lab, registry, id, Some(model), &text),
+                Err(why) => {
+                    lab.say(Severity::Error, format!("{} was not copied: {why}.", entry.declaration.name));
+                }
+            }
+        }
+        Effect::ExportShaders(folder) => match assets::export(folder, registry) {
+            Ok(exported) => {
+                lab.say(Severity::Info, told(&exported, folder));
+                return Some(folder.clone());
+            }
+            Err(why) => lab.say(Severity::Error, format!("The shaders were not written out: {why}.")),
+        },
+        _ => {}
+    }
+    None
+}
+
+/// Where own models are: where they are read from, else where they would be looked for.
+fn models_folder(lab: &Lab, registry: &Registry) -> Option<PathBuf> {
+    let known = lab.shaders.models.clone().or_else(|| registry.own_folder().map(Path::to_owned));
+    known.or_else(|| Folders::find(None, None).ok()?.models)
+}
+
+fn new_file(lab: &mut Lab, registry: &Registry, id: &str, of: Option<&str>, text: &str) {
+    let Some(folder) = models_folder(lab, registry) else {
+        let why = "There is no folder for own models: name one with `lcm --models FOLDER`.";
+        return lab.say(Severity::Error, why);
+    };
+    let path = folder.join(format!("{id}.{}", own::EXTENSION));
+    match write_new(&path, text) {
+        Ok(()) => {
+            lab.wanted_model = Some(id.to_owned());
+            lab.say(
+                Severity::Info,
+                format!(
+                    "{} was written. Open it in an editor (Ctrl+E), change it and save it: the picture follows.",
+                    path.display()
+                ),
+            );
+        }
+        Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
+            // Asked again, with what was typed.
+            lab.draft = Some(ModelDraft { of: of.map(str::to_owned), id: id.to_owned() });
+            lab.say(
+                Severity::Error,
+                format!("{} exists already and was left as it is; choose another name.", path.display()),
+            );
+        }
+        Err(e) => lab.say(Severity::Error, format!("{} could not be written: {e}.", path.display())),
+    }
+}
+
+/// What an export did, in words.
+fn told(exported: &Exported, folder: &Path) -> String {
+    let count = |n: usize| if n == 1 { "1 file".to_owned() } else { format!("{n} files") };
+    let mut text = match exported.written.len() {
+        0 => format!("The shaders are in {} already", folder.display()),
+        n => format!("{} of shaders and example models were written to {}", count(n), folder.display()),
+    };
+    if !exported.kept.is_empty() {
+        text += &format!("; {} that differ were left as they are", count(exported.kept.len()));
+    }
+    format!(
+        "{text}. Change one and save it: the picture follows. `lcm --assets {}` begins with them the next time.",
+        folder.display()
+    )
 }
 
 /// Writes a file that does not exist yet, all or nothing; makes its folder where there is none.

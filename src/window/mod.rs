@@ -282,6 +282,7 @@ fn carry_out(
     mut exit: MessageWriter<AppExit>,
     editors: Res<authoring::Editors>,
     proxy: Option<Res<EventLoopProxyWrapper>>,
+    mut commands: Commands,
 ) {
     for complaint in editors.take() {
         lab.say(Severity::Error, complaint);
@@ -303,6 +304,12 @@ fn carry_out(
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
             dialog @ (Effect::PickOpen | Effect::PickSave) => lab.wanted_dialog = Some(dialog),
+            dialog @ Effect::PickShaderFolder => lab.wanted_dialog = Some(dialog),
+            Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {
+                if let Some(folder) = authoring::write(&effect, &mut lab, &registry) {
+                    commands.queue(move |world: &mut World| read_from(world, &folder));
+                }
+            }
             Effect::OpenInEditor { path, line } => {
                 let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
                 let variable = std::env::var(authoring::EDITOR_VARIABLE).ok();
@@ -317,6 +324,14 @@ fn carry_out(
                 pending.extend(more.into_iter().rev().filter(|e| *e != other));
             }
         }
+    }
+}
+
+/// From now on shaders and own models are those of a folder.
+fn read_from(world: &mut World, folder: &std::path::Path) {
+    if let Some(mut registry) = world.get_resource_mut::<Registry>() {
+        registry.set_shader_folder(&folder.join("shaders"));
+        registry.set_own_folder(&folder.join("models"));
     }
 }
 

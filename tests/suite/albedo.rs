@@ -282,7 +282,8 @@ fn curve_and_quadrature_agree_on_both_machines() {
     let model = registry.model("patchwork").unwrap();
     let surface = model.instantiate(&values(&[("alpha_x", 0.31)]), Encoding::Srgb);
     let v = view(0.25, 0.0);
-    let right = albedos(&Sources::default(), model, &values(&[("alpha_x", 0.3)]), Encoding::Srgb, &[v]).unwrap()[0];
+    let right =
+        albedos(&Sources::default(), model, &values(&[("alpha_x", 0.3)]), Encoding::Srgb, &[v]).unwrap()[0];
     let wrong = directional(|l| surface.response(l, v, &Frame::LOCAL), v, &Frame::LOCAL);
     assert!((right - wrong).abs().max_element() > 1e-3);
     let turned = values(&[("alpha_x", 0.6), ("alpha_y", 0.25)]);

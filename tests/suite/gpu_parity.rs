@@ -276,7 +276,8 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
         for _ in 0..8 * (1 + choices) {
             let values = random_values(model, &mut seed);
             let pairs: Vec<_> = (0..2000).map(|_| (direction(&mut seed), direction(&mut seed))).collect();
-            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
+            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs)
+                .expect("the GPU evaluates");
             let surface = model.instantiate(&values, Encoding::Srgb);
             let frame = Frame::LOCAL;
             for ((l, v), gpu) in pairs.iter().zip(answers) {
@@ -339,7 +340,8 @@ fn at_the_ends_of_all_ranges_both_languages_are_finite_and_agree() {
                 };
                 values.set(p.name, value);
             }
-            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
+            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs)
+                .expect("the GPU evaluates");
             let surface = model.instantiate(&values, Encoding::Srgb);
             for ((l, v), gpu) in pairs.iter().zip(answers) {
                 let cpu = surface.response(*l, *v, &Frame::LOCAL);

@@ -9,8 +9,8 @@ use lights_camera_models::{
     reflection::{
         ModelEntry, Surface, brdf,
         laws::{
-            self, COARSE, FINE, LARGEST_ALBEDO, NEARLY_ALL, NEGATIVE_TOLERANCE, RECIPROCITY_TOLERANCE, Random,
-            is_finite, least, reciprocity_error, smallest,
+            self, COARSE, FINE, LARGEST_ALBEDO, NEARLY_ALL, NEGATIVE_TOLERANCE, RECIPROCITY_TOLERANCE,
+            Random, is_finite, least, reciprocity_error, smallest,
         },
         parameter::{Value, Values},
     },

@@ -172,7 +172,8 @@ fn the_model_of_the_example_is_the_same_in_rust_and_in_wgsl() {
     // Away from the edges of the tones, where the last bit decides.
     let directions = (0..4).map(|i| 0.125 + 0.25 * i as f32);
     let pairs: Vec<_> = directions.map(|z: f32| (Vec3::new((1.0 - z * z).sqrt(), 0.0, z), Vec3::Z)).collect();
-    let answers = evaluate(&Sources::default(), &model, &values, Encoding::Srgb, &pairs).expect("software Vulkan is installed");
+    let answers = evaluate(&Sources::default(), &model, &values, Encoding::Srgb, &pairs)
+        .expect("software Vulkan is installed");
     let surface = model.instantiate(&values, Encoding::Srgb);
     for (i, ((l, v), gpu)) in pairs.iter().zip(answers).enumerate() {
         let cpu = surface.response(*l, *v, &frame).diffuse;

@@ -29,8 +29,19 @@ const MODEL_KEYS: &[&str] =
     &["name", "author", "source", "summary", "equation", "laws", "anisotropic", "lobe", "parameters"];
 /// What an entry of `parameters` may say.
 const PARAMETER_KEYS: &[&str] = &[
-    "name", "symbol", "label", "unit", "help", "type", "range", "min", "max", "above", "slider_max",
-    "default", "choices",
+    "name",
+    "symbol",
+    "label",
+    "unit",
+    "help",
+    "type",
+    "range",
+    "min",
+    "max",
+    "above",
+    "slider_max",
+    "default",
+    "choices",
 ];
 /// What a part of the equation says.
 const PART_KEYS: &[&str] = &["term", "text"];
@@ -114,7 +125,8 @@ pub(super) fn comment(text: &str) -> Result<Comment<'_>, Mistake> {
         };
         let inside = &text[at + 2..end - 2];
         let word = inside.trim_start();
-        if let Some(json) = word.strip_prefix(MARKER).filter(|j| !j.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
+        if let Some(json) =
+            word.strip_prefix(MARKER).filter(|j| !j.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
         {
             return Ok(Comment { json, start: end - 2 - json.len(), end });
         }
@@ -185,9 +197,22 @@ pub(super) fn humanised(id: &str) -> String {
 /// The symbol of a parameter that gives none: a Greek letter where the name begins with the name of one.
 fn symbol_of(name: &str) -> String {
     const GREEK: &[(&str, &str)] = &[
-        ("alpha", "α"), ("beta", "β"), ("gamma", "γ"), ("delta", "δ"), ("epsilon", "ε"), ("eta", "η"),
-        ("theta", "θ"), ("kappa", "κ"), ("lambda", "λ"), ("mu", "μ"), ("nu", "ν"), ("rho", "ρ"),
-        ("sigma", "σ"), ("tau", "τ"), ("phi", "φ"), ("omega", "ω"),
+        ("alpha", "α"),
+        ("beta", "β"),
+        ("gamma", "γ"),
+        ("delta", "δ"),
+        ("epsilon", "ε"),
+        ("eta", "η"),
+        ("theta", "θ"),
+        ("kappa", "κ"),
+        ("lambda", "λ"),
+        ("mu", "μ"),
+        ("nu", "ν"),
+        ("rho", "ρ"),
+        ("sigma", "σ"),
+        ("tau", "τ"),
+        ("phi", "φ"),
+        ("omega", "ω"),
     ];
     let (first, rest) = name.split_once('_').map_or((name, None), |(f, r)| (f, Some(r)));
     let first = GREEK.iter().find(|(n, _)| *n == first).map_or(first, |(_, letter)| letter);
@@ -223,8 +248,7 @@ pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Ve
         let what = "the declaration is empty; it must be an object: { \"name\": …, \"parameters\": […] }";
         return Err(vec![(comment.start, what.to_owned())]);
     };
-    let mut reader =
-        Reader { json: comment.json, start: comment.start, id, registry, mistakes: Vec::new() };
+    let mut reader = Reader { json: comment.json, start: comment.start, id, registry, mistakes: Vec::new() };
     let said = reader.model(&root, comment.end);
     let mut mistakes = reader.mistakes;
     match said {
@@ -328,13 +352,22 @@ impl Reader<'_> {
                 Some(key) => fields.push((key, property)),
                 None => {
                     let spelling = written.replace("color", "colour");
-                    let words = [("title", "name"), ("description", "summary"), ("options", "choices"), ("params", "parameters")];
-                    let candidates = known.iter().map(|k| (*k, *k)).chain(words).filter(|(_, k)| known.contains(k));
+                    let words = [
+                        ("title", "name"),
+                        ("description", "summary"),
+                        ("options", "choices"),
+                        ("params", "parameters"),
+                    ];
+                    let candidates =
+                        known.iter().map(|k| (*k, *k)).chain(words).filter(|(_, k)| known.contains(k));
                     let hint = nearest(&spelling, candidates).map_or_else(
                         || format!("; {what} has the keys {}", listed(known, "and")),
                         |n| format!("; did you mean {}?", quoted(n)),
                     );
-                    self.mistake(property.start(), format!("{at}{} is not a key of {what}{hint}", shortened(written)));
+                    self.mistake(
+                        property.start(),
+                        format!("{at}{} is not a key of {what}{hint}", shortened(written)),
+                    );
                 }
             }
         }
@@ -345,7 +378,9 @@ impl Reader<'_> {
     fn text(&mut self, fields: &Fields, key: &str, longest: usize) -> Option<&'static str> {
         let value = fields.get(key)?;
         match value {
-            Ast::StringLit(text) if text.value.chars().count() <= longest && !text.value.contains(char::is_control) => {
+            Ast::StringLit(text)
+                if text.value.chars().count() <= longest && !text.value.contains(char::is_control) =>
+            {
                 if key == "name" && text.value.trim().is_empty() {
                     self.wrong(value, &fields.path(key), "a name must have letters");
                     return None;
@@ -372,7 +407,13 @@ impl Reader<'_> {
     }
 
     /// One of some words, each of which stands for something.
-    fn word<T: Copy>(&mut self, value: &Ast, path: &str, what: &str, known: &[(&'static str, T)]) -> Option<T> {
+    fn word<T: Copy>(
+        &mut self,
+        value: &Ast,
+        path: &str,
+        what: &str,
+        known: &[(&'static str, T)],
+    ) -> Option<T> {
         let words: Vec<_> = known.iter().map(|(word, _)| quoted(word)).collect();
         let rule = format!("{what} must be {}", listed(&words, "or"));
         let Ast::StringLit(text) = value else {
@@ -424,7 +465,8 @@ impl Reader<'_> {
                 }
             }
             Some(value) => {
-                let rule = "it must be text, or a list of parts: [{ \"term\": \"diffuse\", \"text\": \"I_d = …\" }]";
+                let rule =
+                    "it must be text, or a list of parts: [{ \"term\": \"diffuse\", \"text\": \"I_d = …\" }]";
                 self.wrong(value, "equation", rule);
             }
         }
@@ -440,7 +482,8 @@ impl Reader<'_> {
         let Some(value) = fields.get("laws") else { return laws };
         let Ast::Array(list) = value else {
             let names = laws.list().map(|(name, _)| quoted(name));
-            let rule = format!("it must be a list of the laws that the model keeps, of {}", listed(&names, "and"));
+            let rule =
+                format!("it must be a list of the laws that the model keeps, of {}", listed(&names, "and"));
             self.wrong(value, "laws", &rule);
             return laws;
         };
@@ -505,7 +548,8 @@ impl Reader<'_> {
 
     /// The parameter of that name of some built-in model.
     fn built_in(&self, name: &str) -> Option<&'static Parameter> {
-        let built_in = |m: &&crate::reflection::ModelEntry| self.registry.own_file(m.declaration.id).is_none();
+        let built_in =
+            |m: &&crate::reflection::ModelEntry| self.registry.own_file(m.declaration.id).is_none();
         self.registry.models().iter().filter(built_in).find_map(|m| m.parameter(name))
     }
 
@@ -522,7 +566,10 @@ impl Reader<'_> {
             .map(|p| (p.name, p.name))
             .collect();
         let hint = nearest(&name.replace("color", "colour"), known.into_iter()).map_or_else(
-            || "; to declare a new one write { \"name\": …, \"min\": …, \"max\": …, \"default\": … }".to_owned(),
+            || {
+                "; to declare a new one write { \"name\": …, \"min\": …, \"max\": …, \"default\": … }"
+                    .to_owned()
+            },
             |n| format!("; did you mean {}?", quoted(n)),
         );
         self.wrong(value, path, &format!("no built-in model has a parameter of that name{hint}"));
@@ -532,7 +579,11 @@ impl Reader<'_> {
     fn parameter(&mut self, value: &Ast, path: String, model: &str) -> Option<Parameter> {
         let fields = self.fields(value, path, PARAMETER_KEYS, "a parameter")?;
         let Some(named) = fields.get("name") else {
-            self.lacking(&fields, "name", "it is what scene files call the parameter, and the shader: m.NAME");
+            self.lacking(
+                &fields,
+                "name",
+                "it is what scene files call the parameter, and the shader: m.NAME",
+            );
             return None;
         };
         let Ast::StringLit(name) = named else {
@@ -542,10 +593,12 @@ impl Reader<'_> {
         let name = intern::text(&name.value);
         let rule = match identifier(name) {
             Err(rule) => Some(format!("it {rule}")),
-            Ok(()) if name.contains("color") => Some(format!(
-                "scene files spell {}", name.replace("color", "colour")
-            )),
-            Ok(()) if !allowed_in_wgsl(name) => Some("that is a reserved word in WGSL; choose another".to_owned()),
+            Ok(()) if name.contains("color") => {
+                Some(format!("scene files spell {}", name.replace("color", "colour")))
+            }
+            Ok(()) if !allowed_in_wgsl(name) => {
+                Some("that is a reserved word in WGSL; choose another".to_owned())
+            }
             Ok(()) => None,
         };
         if let Some(rule) = rule {
@@ -646,7 +699,9 @@ impl Reader<'_> {
     fn whole(&mut self, value: &Ast, path: &str) -> Option<i64> {
         const EXACT: f64 = 16_777_216.0;
         let number = match value {
-            Ast::NumberLit(number) => number.value.parse::<f64>().ok().filter(|n| n.fract() == 0.0 && n.abs() <= EXACT),
+            Ast::NumberLit(number) => {
+                number.value.parse::<f64>().ok().filter(|n| n.fract() == 0.0 && n.abs() <= EXACT)
+            }
             _ => None,
         };
         if number.is_none() {
@@ -667,7 +722,10 @@ impl Reader<'_> {
         let (mut low, mut high, mut good) = (min, max, true);
         if let Some((value, path)) = given("range") {
             if let Some(other) = ["min", "max", "above"].into_iter().find(|key| fields.get(key).is_some()) {
-                self.mistake(value.start(), format!("{path} is given, but so is {other}; a range is [min, max]"));
+                self.mistake(
+                    value.start(),
+                    format!("{path} is given, but so is {other}; a range is [min, max]"),
+                );
                 return None;
             }
             let Ast::Array(list) = value else {
@@ -719,7 +777,9 @@ impl Reader<'_> {
         let probe = Parameter { name: "", symbol: "", label: "", unit: "", help: "", kind: parameter };
         if !probe.allows(&probe.default_value()) {
             match fields.get("default") {
-                Some(value) => self.wrong(value, &fields.path("default"), &format!("it must be {}", probe.rule())),
+                Some(value) => {
+                    self.wrong(value, &fields.path("default"), &format!("it must be {}", probe.rule()))
+                }
                 None => self.lacking(fields, "default", &format!("it must be {}", probe.rule())),
             }
             return None;
@@ -761,10 +821,15 @@ impl Reader<'_> {
         let inside = |v: i64| v >= min && max.is_none_or(|m| v <= m);
         let default = given.or(usual.filter(|u| inside(*u))).unwrap_or(min);
         let slider = slider_given.or(slider.filter(|s| *s > min));
-        let slider_max = max.map_or_else(|| slider.unwrap_or(default.max(min) + 16), |m| slider.unwrap_or(m).min(m));
+        let slider_max =
+            max.map_or_else(|| slider.unwrap_or(default.max(min) + 16), |m| slider.unwrap_or(m).min(m));
         if slider_max <= min {
             if let Some(value) = fields.get("slider_max") {
-                self.wrong(value, &fields.path("slider_max"), &format!("it must be greater than {min}, where the slider begins"));
+                self.wrong(
+                    value,
+                    &fields.path("slider_max"),
+                    &format!("it must be greater than {min}, where the slider begins"),
+                );
             }
             return None;
         }
@@ -776,7 +841,9 @@ impl Reader<'_> {
             Some(ParameterKind::Colour { default }) => *default,
             _ => [255; 3],
         };
-        let Some(value) = fields.get("default") else { return Some(ParameterKind::Colour { default: usual }) };
+        let Some(value) = fields.get("default") else {
+            return Some(ParameterKind::Colour { default: usual });
+        };
         let channel = |e: &Ast| match e {
             Ast::NumberLit(n) => n.value.parse::<u8>().ok(),
             _ => None,
@@ -833,7 +900,11 @@ impl Reader<'_> {
             options = self.choices(value, &fields.path("choices"))?;
         }
         if options.is_empty() {
-            self.lacking(fields, "choices", "a choice has some: [\"one\", \"other\"], or { \"one\": \"its name\" }");
+            self.lacking(
+                fields,
+                "choices",
+                "a choice has some: [\"one\", \"other\"], or { \"one\": \"its name\" }",
+            );
             return None;
         }
         let known: Vec<_> = options.iter().enumerate().map(|(i, (id, _))| (*id, i)).collect();
@@ -869,14 +940,21 @@ impl Reader<'_> {
             Ast::Object(object) => {
                 for property in &object.properties {
                     match &property.value {
-                        Ast::StringLit(name) if !name.value.trim().is_empty() && name.value.chars().count() <= LONGEST_NAME => {
+                        Ast::StringLit(name)
+                            if !name.value.trim().is_empty()
+                                && name.value.chars().count() <= LONGEST_NAME =>
+                        {
                             add(self, property.start(), property.name.as_str(), &name.value);
                         }
                         other => self.wrong(other, path, "the name of a choice must be a short text"),
                     }
                 }
             }
-            _ => self.wrong(value, path, "it must be a list: [\"one\", \"other\"], or an object: { \"one\": \"its name\" }"),
+            _ => self.wrong(
+                value,
+                path,
+                "it must be a list: [\"one\", \"other\"], or an object: { \"one\": \"its name\" }",
+            ),
         }
         (self.mistakes.len() == before).then_some(options)
     }

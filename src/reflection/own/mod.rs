@@ -134,7 +134,12 @@ pub fn text_of(path: &Path) -> Result<String, ShaderProblem> {
     let unreadable = |e: &io::Error| failed(1, 1, "", format!("the file could not be read: {e}"));
     let size = fs::metadata(path).map_err(|e| unreadable(&e))?.len();
     if size > MAX_BYTES {
-        return Err(failed(1, 1, "", format!("the file is larger than {} MiB, which no shader is", MAX_BYTES >> 20)));
+        return Err(failed(
+            1,
+            1,
+            "",
+            format!("the file is larger than {} MiB, which no shader is", MAX_BYTES >> 20),
+        ));
     }
     let bytes = fs::read(path).map_err(|e| unreadable(&e))?;
     let text = String::from_utf8(bytes).map_err(|e| {
@@ -202,7 +207,8 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel, Ve
         let faces = mode.declaration.stage == Stage::Polygon;
         validate_drawing(&composed, faces).map_err(|found| {
             // What the light loop, a light or a mode calls its own comes after the model, and is told to be there twice.
-            let name = found.message.strip_prefix("redefinition of `").and_then(|rest| rest.split('`').next());
+            let name =
+                found.message.strip_prefix("redefinition of `").and_then(|rest| rest.split('`').next());
             match name.and_then(|name| Some((name, defined_at(text, name)?))) {
                 Some((name, at)) if found.file != model.entry.declaration.wgsl.path => {
                     problem_at(at, format!("{} defines {name} too; choose another name", found.file))
@@ -231,16 +237,15 @@ fn defined_at(text: &str, name: &str) -> Option<usize> {
     plain.match_indices(name).map(|(at, _)| at).find(|at| {
         let whole = !plain[..*at].ends_with(word) && !plain[at + name.len()..].starts_with(word);
         let before = plain[..*at].trim_end();
-        let defines = ["fn", "struct", "const", "var", "alias", "override", ">"].iter().any(|w| before.ends_with(w));
+        let defines =
+            ["fn", "struct", "const", "var", "alias", "override", ">"].iter().any(|w| before.ends_with(w));
         whole && defines
     })
 }
 
 /// What the functions of a model are, for messages.
-const RESPONSE: &str =
-    "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms";
-const AMBIENT_RESPONSE: &str =
-    "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>";
+const RESPONSE: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms";
+const AMBIENT_RESPONSE: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>";
 
 /// The declared model, drawn as the stand-in; and the model whose lobe it uses.
 fn declared(
@@ -253,11 +258,8 @@ fn declared(
     let said = declaration::read(text, id, registry)
         .map_err(|mistakes| mistakes.into_iter().map(wrong).collect::<Vec<_>>())?;
     let formula = declaration::definition(&text[said.end..], "ambient_response").is_some();
-    let (ambient, stand_in) = if formula {
-        (Ambient::Formula, FORMULA_STAND_IN)
-    } else {
-        (Ambient::Albedo, STAND_IN)
-    };
+    let (ambient, stand_in) =
+        if formula { (Ambient::Formula, FORMULA_STAND_IN) } else { (Ambient::Albedo, STAND_IN) };
     let declaration = intern::declaration(Declaration {
         id: intern::text(id),
         name: said.name,
@@ -272,7 +274,8 @@ fn declared(
         wgsl: Source { path: intern::text(&source_path(id)), text: stand_in },
     });
     let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
-    let module = stand_in_module(declaration, said.parameters, lobe.as_ref()).map_err(|found| vec![*found])?;
+    let module =
+        stand_in_module(declaration, said.parameters, lobe.as_ref()).map_err(|found| vec![*found])?;
     let entry = surface::entry(declaration, said.parameters, lobe.clone(), &module);
     Ok((OwnModel { entry, path: path.to_owned(), text: text.into() }, lobe))
 }
@@ -293,9 +296,8 @@ fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String>
     let id = id_of(path).ok_or_else(|| {
         format!("the file is called {}, but a model is a file ID.{EXTENSION}", path.display())
     })?;
-    declaration::identifier(id).map_err(|rule| {
-        format!("the name of the file is the id of the model: {id} {rule}")
-    })?;
+    declaration::identifier(id)
+        .map_err(|rule| format!("the name of the file is the id of the model: {id} {rule}"))?;
     if registry.model(id).is_some() && registry.own_file(id).is_none() {
         return Err(format!("{id} is the id of a built-in model; give the file another name"));
     }
@@ -308,7 +310,8 @@ const STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m:
 }
 ";
 /// The same for models that answer to light from everywhere by a formula.
-const FORMULA_STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+const FORMULA_STAND_IN: &str =
+    "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
 }
 fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
@@ -335,7 +338,6 @@ fn has_ambient_signature(module: &Module) -> bool {
     })
 }
 
-
 /// Reads all models of a folder into a registry. A file that has a mistake is told of and left out; a scene that
 /// names it is told why (see [`Registry::broken_model`]). With `stand_in` a model whose WGSL alone is wrong is
 /// known and drawn as a stand-in, for a window in which the file is mended.
@@ -345,8 +347,13 @@ pub fn read_folder(folder: &Path, registry: &mut Registry, stand_in: bool) -> Ve
         Ok(paths) => paths,
         Err(e) => {
             let message = format!("the folder could not be read: {e}");
-            let problem =
-                ShaderProblem { file: "models".to_owned(), line: 1, column: 1, source: String::new(), message };
+            let problem = ShaderProblem {
+                file: "models".to_owned(),
+                line: 1,
+                column: 1,
+                source: String::new(),
+                message,
+            };
             return vec![(folder.to_owned(), problem)];
         }
     };

@@ -142,7 +142,9 @@ fn flattened(parameters: &[Parameter], values: &Values, encoding: Encoding) -> V
     let mut words = Vec::with_capacity(3 * parameters.len());
     for p in parameters {
         match p.kind {
-            ParameterKind::Number { .. } | ParameterKind::Integer { .. } => words.push(values.number(p).to_bits()),
+            ParameterKind::Number { .. } | ParameterKind::Integer { .. } => {
+                words.push(values.number(p).to_bits())
+            }
             ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => {
                 words.extend(values.colour(p, encoding).to_array().map(f32::to_bits));
             }
@@ -193,7 +195,8 @@ impl Interpreted {
         // Two directions, three vectors of the frame, and as many parameters as there is room for.
         let mut arguments = [0; 15 + BLOCK_BYTES / 4];
         let vectors = directions.iter().chain([&frame.n, &frame.t, &frame.b]);
-        let words = vectors.flat_map(|v| v.to_array().map(f32::to_bits)).chain(self.parameters.iter().copied());
+        let words =
+            vectors.flat_map(|v| v.to_array().map(f32::to_bits)).chain(self.parameters.iter().copied());
         let mut count = 0;
         for (to, word) in arguments.iter_mut().zip(words) {
             *to = word;
@@ -212,9 +215,7 @@ impl Surface for Interpreted {
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
         match self.ambient {
-            Ambient::Formula => {
-                self.ask::<3>(|p| p.ambient.as_ref(), &[v], frame).into()
-            }
+            Ambient::Formula => self.ask::<3>(|p| p.ambient.as_ref(), &[v], frame).into(),
             Ambient::Albedo => match self.curve() {
                 Some(curve) => curve.at(v, frame),
                 None => albedo::directional(|l| self.response(l, v, frame), v, frame).as_vec3(),

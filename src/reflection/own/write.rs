@@ -120,7 +120,9 @@ pub fn duplicate(entry: &ModelEntry, sources: &Sources, id: &str) -> Result<Stri
     let name = format!("{} (copy)", d.name);
     // Writing to a String cannot fail; here and below.
     let mut out = format!("/* {MARKER}\n{{\n");
-    for (key, value) in [("name", name.as_str()), ("author", d.author), ("source", d.source), ("summary", d.summary)] {
+    for (key, value) in
+        [("name", name.as_str()), ("author", d.author), ("source", d.source), ("summary", d.summary)]
+    {
         let _ = writeln!(out, "    \"{key}\": {},", text(value));
     }
     let term = |t| match t {
@@ -131,19 +133,18 @@ pub fn duplicate(entry: &ModelEntry, sources: &Sources, id: &str) -> Result<Stri
     };
     out.push_str("    \"equation\": [\n");
     for part in d.equation {
-        let _ = writeln!(
-            out,
-            "        {{ \"term\": \"{}\", \"text\": {} }},",
-            term(part.term),
-            text(part.text)
-        );
+        let _ =
+            writeln!(out, "        {{ \"term\": \"{}\", \"text\": {} }},", term(part.term), text(part.text));
     }
     out.push_str("    ],\n");
     let laws: Vec<_> = d.laws.list().into_iter().filter(|(_, kept)| *kept).map(|(name, _)| name).collect();
     let _ = writeln!(out, "    \"laws\": {},", spaced(&json!(laws)));
     let _ = writeln!(out, "    \"anisotropic\": {},", d.anisotropic);
     if let Some(lobe) = entry.lobe_of() {
-        let _ = writeln!(out, "    // The shader calls lobe_albedo and average_lobe_albedo: the lobe of this model.");
+        let _ = writeln!(
+            out,
+            "    // The shader calls lobe_albedo and average_lobe_albedo: the lobe of this model."
+        );
         let _ = writeln!(out, "    \"lobe\": \"{lobe}\",");
     }
     out.push_str("    \"parameters\": [\n");

@@ -149,7 +149,8 @@ fn narrow_lobes_are_the_same_on_the_gpu() {
                 })
                 .collect();
             let surface = model.instantiate(&values, Encoding::Srgb);
-            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs).expect("the GPU evaluates");
+            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs)
+                .expect("the GPU evaluates");
             for ((l, v), gpu) in pairs.iter().zip(answers) {
                 let cpu = surface.response(*l, *v, &LOCAL).specular.x;
                 let error = (gpu.specular.x - cpu).abs() / cpu.max(1e-2);

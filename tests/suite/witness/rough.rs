@@ -446,7 +446,8 @@ fn the_narrowest_and_the_widest_lobes_are_the_same_on_the_gpu() {
         }
         let model = registry.model(id).unwrap();
         let surface = model.instantiate(&values, Encoding::Srgb);
-        let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs).expect("software Vulkan is installed");
+        let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs)
+            .expect("software Vulkan is installed");
         let mut wrong_twin_noticed = false;
         for ((l, v), gpu) in pairs.iter().zip(answers) {
             let cpu = surface.response(*l, *v, &LOCAL);
