@@ -313,6 +313,11 @@ impl LiveShaders {
             self.current = registry.sources().clone();
         }
         let wanted = compose(&self.current, model, mode, registry.lights());
+        // From here on these files are used.
+        for path in wanted.map.files() {
+            self.unused.remove(path);
+            self.unused_problems.remove(path);
+        }
         let mut refused = None;
         let mut due = false;
         let mut shown = None;

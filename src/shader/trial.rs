@@ -266,21 +266,37 @@ fn compose(
         Err(ShaderCacheError::ProcessShaderError(error)) => Err(refusal(composed, &error)),
         Err(ShaderCacheError::ShaderImportNotYetAvailable | ShaderCacheError::ShaderNotLoaded(_)) => {
             let known = |import: &ShaderImport| tools.shaders.iter().any(|(_, s)| s.import_path == *import);
-            let Some(missing) = imports.iter().find(|import| !known(import)) else {
-                return Err(Refusal::NotYet);
-            };
-            let name = missing.module_name();
-            let line = composed.text.lines().position(|line| {
-                line.trim_start().starts_with("#import")
-                    && line.contains(name.split("::").last().unwrap_or_default())
-            });
-            let message = format!(
-                "there is no module `{name}` to import; files of your own are imported by name: `#import \"file.wgsl\"`"
-            );
-            Err(Refusal::Problem(locate(composed, line.map(|line| (line + 1, 1)), message)))
+            match imports.iter().find(|import| !known(import)) {
+                Some(missing) => {
+                    Err(Refusal::Problem(unknown_import(composed, &missing.module_name(), tools)))
+                }
+                None => Err(Refusal::NotYet),
+            }
         }
         Err(error) => Err(Refusal::Problem(locate(composed, None, error.to_string()))),
     }
+}
+
+/// That a module of Bevy is asked for that there is not: by the line that imports it, or by the line that uses a
+/// name that nothing imports.
+fn unknown_import(composed: &Composed, name: &str, tools: Tools) -> Box<ShaderProblem> {
+    let modules: Vec<_> =
+        tools.shaders.iter().map(|(_, s)| s.import_path.module_name().into_owned()).collect();
+    let exists = |path: &str| modules.iter().any(|m| path == m || path.starts_with(&format!("{m}::")));
+    let lines = || composed.text.lines().enumerate();
+    let wrong = lines().find_map(|(i, line)| {
+        let rest = line.trim_start().strip_prefix("#import")?.trim_start();
+        let path = rest.split([' ', '{', ',']).next()?.trim_end_matches(':');
+        (!exists(path)).then_some((i + 1, path))
+    });
+    if let Some((line, path)) = wrong {
+        let message = format!(
+            "there is no module `{path}` to import; files of your own are imported by name: `#import \"file.wgsl\"`"
+        );
+        return locate(composed, Some((line, 1)), message);
+    }
+    let used = lines().find_map(|(i, line)| Some((i + 1, line.find(&format!("{name}::"))? + 1)));
+    locate(composed, used, format!("`{name}` is used, but no `#import` brings it"))
 }
 
 /// What the composer says, in terms of the author's file.

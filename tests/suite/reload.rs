@@ -182,6 +182,13 @@ const BREAKAGES: &[Breakage] = &[
         line: "no_such_module",
     },
     Breakage {
+        name: "missing import",
+        file: "wrapper.wgsl",
+        change: |t| replaced(t, "#import bevy_pbr::mesh_functions\n", "\n"),
+        said: "`mesh_functions` is used, but no `#import` brings it",
+        line: "mesh_functions::",
+    },
+    Breakage {
         name: "unknown file to import",
         file: "reflection/phong.wgsl",
         change: |t| format!("#import \"missing.wgsl\"\n{t}").into_bytes(),

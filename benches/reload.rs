@@ -1,0 +1,118 @@
+//! From saving a shader to the picture: median and 95th percentile for a model, a term that all models use, and
+//! the light loop, in the default scene at the size of a window. A file is written, the watcher tells of it, the
+//! new version is tried, exchanged, compiled and drawn; frames follow each other as in a window that was woken.
+//!
+//! Criterion reports means and medians; the 95th percentile is printed beside them.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::mpsc,
+    time::{Duration, Instant},
+};
+
+use bevy::ecs::change_detection::Mut;
+use criterion::{Criterion, criterion_group, criterion_main};
+use lights_camera_models::{
+    assets::{Folders, built_in_sources},
+    capture::gpu::{GpuRenderer, Output},
+    registry::Registry,
+    scene::Scene,
+    shader::{compose::Sources, live::LiveShaders},
+    watch::Watcher,
+};
+
+/// The lab with its shaders in a folder that is watched.
+struct Lab {
+    renderer: GpuRenderer,
+    watcher: Watcher,
+    news: mpsc::Receiver<()>,
+    folder: PathBuf,
+}
+
+impl Lab {
+    fn new(folder: &Path) -> Self {
+        let folder = folder.canonicalize().expect("the folder is there");
+        for source in built_in_sources(&Registry::builtin()) {
+            let file = folder.join(source.path);
+            fs::create_dir_all(file.parent().expect("below the folder")).expect("writable");
+            fs::write(file, source.text).expect("writable");
+        }
+        let mut renderer =
+            GpuRenderer::new(1280, 720, 1, Output::Display).expect("a Vulkan driver, software will do");
+        let folders = Folders { shaders: Some(folder.clone()), models: None };
+        renderer.app().world_mut().resource_mut::<LiveShaders>().start(Sources::default(), folders);
+        renderer.set_scene(Scene::default());
+        renderer.settle().expect("the GPU draws");
+        let (wake, news) = mpsc::channel();
+        let mut watcher = Watcher::new(move || {
+            let _ = wake.send(());
+        });
+        watcher.watch_folder(&folder);
+        Self { renderer, watcher, news, folder }
+    }
+
+    /// Saves a file and waits for the picture with the new version.
+    fn save(&mut self, path: &str, text: &str) -> Duration {
+        while self.news.try_recv().is_ok() {}
+        let start = Instant::now();
+        fs::write(self.folder.join(path), text).expect("writable");
+        loop {
+            self.news.recv_timeout(Duration::from_secs(10)).expect("the watcher tells");
+            let changed = self.watcher.changed();
+            if changed.is_empty() {
+                continue;
+            }
+            let world = self.renderer.app().world_mut();
+            world.resource_scope(|world, mut live: Mut<LiveShaders>| {
+                changed.iter().for_each(|f| live.look_at(f, &mut world.resource_mut::<Registry>()));
+            });
+            self.renderer.step();
+            self.renderer.wait();
+            let elapsed = start.elapsed();
+            let live = self.renderer.app().world().resource::<LiveShaders>();
+            assert!(live.is_up_to_date(), "{:?}", live.status().troubles);
+            assert_eq!(live.sources().get(path), Some(text), "the new version is shown");
+            return elapsed;
+        }
+    }
+}
+
+fn latency(criterion: &mut Criterion) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut lab = Lab::new(folder.path());
+    let mut group = criterion.benchmark_group("save to picture");
+    group.sample_size(30).measurement_time(Duration::from_secs(10));
+    for (name, path) in [
+        ("the model", "reflection/lambert.wgsl"),
+        ("a term of all models", "terms.wgsl"),
+        ("the light loop", "loop.wgsl"),
+    ] {
+        let original = built_in_sources(&Registry::builtin())
+            .into_iter()
+            .find(|s| s.path == path)
+            .expect("built in")
+            .text;
+        let mut times = Vec::new();
+        let mut version = 0;
+        group.bench_function(name, |b| {
+            b.iter_custom(|rounds| {
+                (0..rounds)
+                    .map(|_| {
+                        version += 1;
+                        let time = lab.save(path, &format!("{original}// {version}\n"));
+                        times.push(time);
+                        time
+                    })
+                    .sum()
+            });
+        });
+        times.sort_unstable();
+        let at = |share: f64| times.get((times.len() as f64 * share) as usize).copied().unwrap_or_default();
+        println!("{name}: median {:.1?}, 95th percentile {:.1?} of {}", at(0.5), at(0.95), times.len());
+    }
+    group.finish();
+}
+
+criterion_group!(benches, latency);
+criterion_main!(benches);
