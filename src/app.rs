@@ -1,5 +1,7 @@
 //! The plugins and the order of the systems.
 
+use std::path::Path;
+
 use bevy::{
     app::{App, MainScheduleOrder, Plugin, Update},
     asset::Assets,
@@ -16,10 +18,11 @@ use crate::{
     optics::TermSelection,
     reflection::{
         material::MaterialApp as _,
-        swap::{self, ComposedShaders, ParameterTables, ShapeMeshes},
+        swap::{self, ParameterTables, ShapeMeshes},
     },
     registry::{Registry, register_builtin},
     scene::spawn::{CurrentScene, SceneEntities, absorb, reconcile},
+    shader::live::{LiveShaders, LiveShadersPlugin},
 };
 
 /// The schedule of everything that the lab does in a frame; runs after Bevy's `Update`. A schedule of
@@ -61,7 +64,6 @@ impl Plugin for ScenePlugin {
         app.world_mut().resource_mut::<MainScheduleOrder>().insert_after(Update, LabFrame);
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()
-            .init_resource::<ComposedShaders>()
             .init_resource::<ShapeMeshes>()
             .init_resource::<ParameterTables>()
             .init_resource::<ShownTerms>()
@@ -94,8 +96,21 @@ impl Plugin for ScenePlugin {
                     swap::swap.in_set(LabSystems::Swap),
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
-            );
+            )
+            .add_plugins(LiveShadersPlugin);
     }
+}
+
+/// Draws with what a registry knows, the texts of its shaders included, instead of what is built in. Goes after
+/// [`ScenePlugin`].
+pub fn use_registry(app: &mut App, registry: Registry) {
+    if let Some(mut shaders) = app.world_mut().get_resource_mut::<LiveShaders>() {
+        let folder = |folder: Option<&Path>| folder.map(Path::to_owned);
+        let folders = [registry.shader_folder(), registry.own_folder()].map(folder);
+        let [of_shaders, of_models] = folders;
+        shaders.start(registry.sources().clone(), of_shaders, of_models);
+    }
+    app.insert_resource(registry);
 }
 
 /// Writes the lights and how they are shown into the shared buffer when any of it changed.

@@ -39,6 +39,7 @@ pub mod maths;
 pub mod messages;
 pub mod picture;
 pub mod question;
+pub mod reload;
 pub mod settings;
 pub mod state;
 pub mod status;

@@ -11,7 +11,6 @@ use bevy::{
     ecs::prelude::*,
     mesh::{Indices, Mesh, Mesh3d, MeshTag, PrimitiveTopology},
     render::storage::ShaderBuffer,
-    shader::Shader,
 };
 use rayon::prelude::*;
 
@@ -24,7 +23,7 @@ use crate::{
         MAX_OBJECTS, Scene,
         spawn::{CurrentScene, LitObject, SceneEntities},
     },
-    shader::compose::compose,
+    shader::live::LiveShaders,
     shading::Stage,
     shape::PolygonMesh,
 };
@@ -89,33 +88,6 @@ impl ParameterTables {
                 buffer.data = Some(table.bytes.clone());
             }
         }
-    }
-}
-
-/// The composed shaders by model and mode, made when first needed.
-#[derive(Default, Resource)]
-pub struct ComposedShaders {
-    /// By model, mode, and the number of light types that were known.
-    handles: HashMap<(&'static str, &'static str, usize), Handle<Shader>>,
-}
-
-impl ComposedShaders {
-    /// The shader of a model and a mode.
-    fn get(
-        &mut self,
-        model: &super::ModelEntry,
-        mode: &crate::shading::ModeEntry,
-        registry: &Registry,
-        shaders: &mut Assets<Shader>,
-    ) -> Handle<Shader> {
-        let key = (model.declaration.id, mode.declaration.id, registry.lights().len());
-        self.handles
-            .entry(key)
-            .or_insert_with(|| {
-                let composed = compose(registry.sources(), model, mode, registry.lights());
-                shaders.add(Shader::from_wgsl(composed.text, format!("composed/{}/{}.wgsl", key.0, key.1)))
-            })
-            .clone()
     }
 }
 
@@ -193,6 +165,20 @@ pub struct Drawn {
     everywhere: bool,
 }
 
+impl Drawn {
+    /// Id of the reflection model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// Id of the shading mode.
+    #[must_use]
+    pub fn mode(&self) -> &str {
+        &self.mode
+    }
+}
+
 /// Whether some light of a scene shines from everywhere alike, so that albedos are asked for.
 fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
     scene.lights.iter().any(|light| {
@@ -264,8 +250,8 @@ pub fn swap(world: &mut World) {
                 })
                 .clone()
         });
-        let shader = world.resource_scope(|world, mut composed: Mut<ComposedShaders>| {
-            composed.get(model, mode, &registry, &mut world.resource_mut::<Assets<Shader>>())
+        let shader = world.resource_scope(|world, mut shaders: Mut<LiveShaders>| {
+            shaders.get(world, model, mode, &registry)
         });
         let faces = mode.declaration.stage == Stage::Polygon;
         let table = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {

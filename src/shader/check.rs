@@ -2,13 +2,14 @@
 
 use std::fmt;
 
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use naga::{
     Module,
     front::wgsl,
     valid::{Capabilities, ValidationFlags, Validator},
 };
 
-use super::compose::Composed;
+use super::{compose::Composed, pitfall};
 
 /// What is wrong with a shader, located in the author's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,6 +34,26 @@ impl fmt::Display for ShaderProblem {
 
 impl std::error::Error for ShaderProblem {}
 
+impl ShaderProblem {
+    /// The problem with the source line and a caret below the column, as compilers show theirs.
+    #[must_use]
+    pub fn report(&self, coloured: bool) -> String {
+        let start = self
+            .source
+            .char_indices()
+            .nth(self.column.saturating_sub(1))
+            .map_or(self.source.len(), |(i, _)| i);
+        let end = start + self.source[start..].chars().next().map_or(0, char::len_utf8);
+        let snippet = Snippet::source(self.source.as_str())
+            .line_start(self.line)
+            .path(self.file.as_str())
+            .annotation(AnnotationKind::Primary.span(start..end));
+        let report = [Level::ERROR.primary_title(self.message.as_str()).element(snippet)];
+        let renderer = if coloured { Renderer::styled() } else { Renderer::plain() };
+        renderer.render(&report)
+    }
+}
+
 /// Parses and validates a composed source that has no imports left.
 ///
 /// # Errors
@@ -44,17 +65,25 @@ pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     let module = wgsl::parse_str(&composed.text).map_err(|error| {
         locate(composed, place(composed, error.labels().map(|l| l.0)), error.message().to_owned())
     })?;
-    Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).map_err(|error| {
-        // The outermost message only says that some function is invalid; the innermost says why.
-        let mut message = error.as_inner().to_string();
-        let mut source = std::error::Error::source(error.as_inner());
-        while let Some(inner) = source {
-            message = format!("{message}: {inner}");
-            source = inner.source();
-        }
-        locate(composed, place(composed, error.spans().map(|s| s.0)), message)
-    })?;
-    Ok(module)
+    Validator::new(ValidationFlags::all(), Capabilities::all())
+        .validate(&module)
+        .map_err(|e| locate(composed, place(composed, e.spans().map(|s| s.0)), reason(e.as_inner())))?;
+    match pitfall::find(&module) {
+        Some((span, message)) => Err(locate(composed, place(composed, [span].into_iter()), message)),
+        None => Ok(module),
+    }
+}
+
+/// What the validator says in full: the outermost message only says that some function is invalid, the
+/// innermost says why.
+pub(super) fn reason(error: &dyn std::error::Error) -> String {
+    let mut message = error.to_string();
+    let mut source = error.source();
+    while let Some(inner) = source {
+        message = format!("{message}: {inner}");
+        source = inner.source();
+    }
+    message
 }
 
 /// Line and column of the first span that is one: naga may list some that point nowhere.
@@ -65,7 +94,12 @@ fn place(composed: &Composed, spans: impl Iterator<Item = naga::Span>) -> Option
     })
 }
 
-fn locate(composed: &Composed, place: Option<(usize, usize)>, message: String) -> Box<ShaderProblem> {
+/// A problem at a line and column of the composed text, told in terms of the author's file.
+pub(super) fn locate(
+    composed: &Composed,
+    place: Option<(usize, usize)>,
+    message: String,
+) -> Box<ShaderProblem> {
     let (line, column) = place.unwrap_or((1, 1));
     let (file, file_line) = composed.map.locate(line).unwrap_or(("(composed)", line));
     let source = composed.text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
@@ -140,6 +174,12 @@ mod tests {
             .edit("reflection/lambert.wgsl", "// mine\nfn response(l: vec3<f32>) -> Terms { return 1.0; }\n");
         let problem = validate(&compose_evaluation(&sources, &registry.models()[0])).expect_err("broken");
         assert_eq!((problem.file.as_str(), problem.line), ("reflection/lambert.wgsl", 2), "{problem}");
+        let report = problem.report(false);
+        assert!(
+            report.contains("reflection/lambert.wgsl:2:") && report.contains("2 | fn response(l"),
+            "{report}"
+        );
+        assert!(report.lines().any(|line| line.trim_start_matches([' ', '|']).starts_with('^')), "{report}");
         sources.edit("reflection/lambert.wgsl", "fn f( {");
         let problem = validate(&compose_evaluation(&sources, &registry.models()[0])).expect_err("broken");
         assert_eq!((problem.file.as_str(), problem.line), ("reflection/lambert.wgsl", 1), "{problem}");

@@ -37,14 +37,14 @@ use bevy_panorbit_camera::PanOrbitCameraPlugin;
 use glam::UVec2;
 
 use crate::{
-    app::{LabFrame, LabSystems, ScenePlugin, ShownTerms},
+    app::{LabFrame, LabSystems, ScenePlugin, ShownTerms, use_registry},
     capture::gpu::{find_adapter, wgpu_settings},
     cli::{Failure, ViewOptions},
     observer::camera::{PictureCamera, picture_camera},
     panel::{
         PanelPlugin,
         files::{load_settings, run as run_files},
-        state::{Action, Effect, Lab, LabEffect},
+        state::{Action, Badge, Effect, Lab, LabEffect, Note},
         theme::Palette,
     },
     registry::Registry,
@@ -53,9 +53,10 @@ use crate::{
 
 mod camera;
 mod capture;
-mod files;
+pub mod files;
 mod gizmos;
 mod pick;
+pub mod watching;
 
 /// The size of a new window, points.
 const SIZE: UVec2 = UVec2::new(1280, 720);
@@ -110,9 +111,10 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
         WindowSystemsPlugin,
     );
     add_with_display(&mut app, plugins)?;
-    app.insert_resource(options.registry.clone());
+    use_registry(&mut app, options.registry);
     let mut lab = Lab::new(options.scene.clone());
     lab.path.clone_from(&options.file);
+    lab.disk.use_defaults = options.use_defaults;
     load_settings(&mut lab);
     if let Some(registry) = app.world().get_resource::<Registry>() {
         lab.fill_model_slots(registry);
@@ -206,7 +208,7 @@ impl Plugin for WindowSystemsPlugin {
         })
         .init_resource::<Settling>()
         .init_resource::<FrameClock>()
-        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin))
+        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin, watching::WatchingPlugin))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
         .add_systems(Last, measure_frame)
         .add_systems(PreUpdate, close_requested)
@@ -217,7 +219,16 @@ impl Plugin for WindowSystemsPlugin {
         .add_systems(
             LabFrame,
             (
-                (carry_out, pick::pick, lab_to_scene).chain().in_set(LabSystems::Load),
+                (
+                    watching::collect,
+                    watching::watch_document,
+                    watching::follow_document,
+                    carry_out,
+                    pick::pick,
+                    lab_to_scene,
+                )
+                    .chain()
+                    .in_set(LabSystems::Load),
                 scene_to_lab.in_set(LabSystems::Upload),
             ),
         )
@@ -276,6 +287,7 @@ fn carry_out(
     registry: Res<Registry>,
     mut files: ResMut<files::DiskFiles>,
     mut camera: camera::CameraControl,
+    watch: Res<watching::FileWatch>,
     mut exit: MessageWriter<AppExit>,
 ) {
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
@@ -292,6 +304,8 @@ fn carry_out(
             Effect::Quit => {
                 exit.write(AppExit::Success);
             }
+            Effect::LookAgain(path) => watch.0.report_later(&path, watching::GRACE),
+            Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
             dialog @ (Effect::PickOpen | Effect::PickSave) => lab.wanted_dialog = Some(dialog),
@@ -398,7 +412,9 @@ struct Snapshot {
     rect: [f32; 4],
     camera: Option<bevy::transform::components::Transform>,
     terms: ShownTerms,
-    messages: usize,
+    messages: Vec<Note>,
+    badges: Vec<Badge>,
+    question: bool,
 }
 
 /// Asks for another frame while something changes, and for none when nothing does.
@@ -415,7 +431,9 @@ fn redraw(
         rect: [rect.min.x, rect.min.y, rect.max.x, rect.max.y],
         camera: cameras.iter().next().copied(),
         terms: *terms,
-        messages: lab.messages.len() + usize::from(lab.question.is_some()),
+        messages: lab.messages.clone(),
+        badges: lab.disk.badge.iter().chain(&lab.badges).cloned().collect(),
+        question: lab.question.is_some(),
     };
     if settling.last.as_deref() != Some(&now) {
         settling.last = Some(Box::new(now));
