@@ -1,7 +1,5 @@
 //! The plugins and the order of the systems.
 
-use std::path::Path;
-
 use bevy::{
     app::{App, MainScheduleOrder, Plugin, Update},
     asset::Assets,
@@ -22,7 +20,7 @@ use crate::{
     },
     registry::{Registry, register_builtin},
     scene::spawn::{CurrentScene, SceneEntities, absorb, reconcile},
-    shader::live::{LiveShaders, LiveShadersPlugin},
+    shader::live::LiveShadersPlugin,
 };
 
 /// The schedule of everything that the lab does in a frame; runs after Bevy's `Update`. A schedule of
@@ -99,18 +97,6 @@ impl Plugin for ScenePlugin {
             )
             .add_plugins(LiveShadersPlugin);
     }
-}
-
-/// Draws with what a registry knows, the texts of its shaders included, instead of what is built in. Goes after
-/// [`ScenePlugin`].
-pub fn use_registry(app: &mut App, registry: Registry) {
-    if let Some(mut shaders) = app.world_mut().get_resource_mut::<LiveShaders>() {
-        let folder = |folder: Option<&Path>| folder.map(Path::to_owned);
-        let folders = [registry.shader_folder(), registry.own_folder()].map(folder);
-        let [of_shaders, of_models] = folders;
-        shaders.start(registry.sources().clone(), of_shaders, of_models);
-    }
-    app.insert_resource(registry);
 }
 
 /// Writes the lights and how they are shown into the shared buffer when any of it changed.

@@ -154,12 +154,6 @@ impl Registry {
         self.files.shaders = Some(folder.to_owned());
     }
 
-    /// Where shaders are read from, if they are.
-    #[must_use]
-    pub fn shader_folder(&self) -> Option<&Path> {
-        self.files.shaders.as_deref()
-    }
-
     /// The file on disk of a source that messages call by its path, if it was read from one.
     #[must_use]
     pub fn path_on_disk(&self, source: &str) -> Option<PathBuf> {

@@ -15,7 +15,6 @@ use super::{
     workshop::{drawable, not_on_cpu},
 };
 use crate::{
-    app::use_registry,
     capture::{
         gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
         png,
@@ -232,7 +231,7 @@ impl Painter {
                 let samples = if job.samples == 4 { 4 } else { 1 };
                 let renderer =
                     GpuRenderer::extended(job.width, job.height, samples, gpu::Output::Display, |app| {
-                        use_registry(app, registry.clone());
+                        app.insert_resource(registry.clone());
                     })
                     .map_err(failed)?;
                 &mut slot.insert((key, renderer)).1

@@ -14,6 +14,7 @@ use crate::{
     shader::{
         check::{self, ShaderProblem},
         compose::{compose, compose_evaluation},
+        report::annotated,
         whole::validate_drawing,
     },
     shading::Stage,
@@ -84,11 +85,6 @@ impl Places {
     }
 }
 
-/// A problem with its line, under the name of the file on disk.
-fn annotated(problem: &ShaderProblem, file: String) -> String {
-    ShaderProblem { file, ..problem.clone() }.report(false)
-}
-
 /// Tells of files that are wrong.
 fn tell(problems: &[(PathBuf, ShaderProblem)]) {
     if !problems.is_empty() {
@@ -99,14 +95,14 @@ fn tell(problems: &[(PathBuf, ShaderProblem)]) {
 /// Problems one below the other.
 pub(super) fn all_annotated(problems: &[(PathBuf, ShaderProblem)]) -> String {
     let each: Vec<_> =
-        problems.iter().map(|(path, problem)| annotated(problem, path.display().to_string())).collect();
+        problems.iter().map(|(path, problem)| annotated(problem, &path.display().to_string())).collect();
     each.join("\n")
 }
 
 impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {
         match error {
-            GpuError::Invalid(problem) => Self::Invalid(problem.report(false)),
+            GpuError::Invalid(problem) => Self::Invalid(annotated(&problem, &problem.file)),
             other => Self::NoRenderer(other.to_string()),
         }
     }
@@ -137,7 +133,7 @@ pub(super) fn valid(registry: &Registry, model: &ModelEntry) -> Outcome {
 
 /// That a shader is not valid.
 fn invalid(registry: &Registry, problem: &ShaderProblem) -> Failure {
-    Failure::Invalid(annotated(problem, on_disk(registry, &problem.file)))
+    Failure::Invalid(annotated(problem, &on_disk(registry, &problem.file)))
 }
 
 /// Whether everything that draws a scene is valid as the files on disk have it.

@@ -35,7 +35,8 @@ use crate::{
 /// tables are made anew, and every object takes its material again.
 #[derive(Default, Resource)]
 pub struct ParameterTables {
-    tables: HashMap<&'static str, Table>,
+    /// By model, and by its declaration, from which the layout follows.
+    tables: HashMap<(&'static str, usize), Table>,
     rows: usize,
 }
 
@@ -66,7 +67,9 @@ impl ParameterTables {
         parameters: &[u8],
         buffers: &mut Assets<ShaderBuffer>,
     ) -> Handle<ShaderBuffer> {
-        let table = self.tables.entry(model.declaration.id).or_insert_with(|| {
+        let declaration = std::ptr::from_ref(model.declaration) as usize;
+        self.tables.retain(|(id, known), _| *id != model.declaration.id || *known == declaration);
+        let table = self.tables.entry((model.declaration.id, declaration)).or_insert_with(|| {
             let bytes = vec![0; parameters.len() * self.rows];
             let buffer = buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()));
             Table { bytes, buffer, changed: true }
@@ -163,6 +166,8 @@ pub struct Drawn {
     mode: String,
     encoding: Encoding,
     everywhere: bool,
+    /// What was known of the model: a file that is read again makes another.
+    version: usize,
 }
 
 impl Drawn {
@@ -200,6 +205,8 @@ pub fn swap(world: &mut World) {
         let mut pending = Vec::new();
         let mut query = world.query::<(Ref<LitObject>, Option<&Drawn>)>();
         let scene = &world.resource::<CurrentScene>().0;
+        let registry = world.resource_ref::<Registry>();
+        let scene_changed = scene_changed || registry.is_changed();
         // Asked only where something changed: most frames change nothing.
         let everywhere = LazyCell::new(|| shines_from_everywhere(scene, world.resource::<Registry>()));
         // More objects than a table has rows are no legal scene; what is beyond is not drawn.
@@ -210,6 +217,7 @@ pub fn swap(world: &mut World) {
                 mode: scene.mode_of(&object.0).to_owned(),
                 encoding: scene.display.encoding,
                 everywhere: *everywhere,
+                version: registry.model(scene.model_of(&object.0)).map_or(0, super::ModelEntry::version),
             };
             if all || object.is_changed() || drawn.is_none() || (scene_changed && drawn != Some(&now())) {
                 pending.push((row, entity, object.0.clone(), now()));

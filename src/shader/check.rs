@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use naga::{
     Module,
     front::wgsl,
@@ -33,26 +32,6 @@ impl fmt::Display for ShaderProblem {
 }
 
 impl std::error::Error for ShaderProblem {}
-
-impl ShaderProblem {
-    /// The problem with the source line and a caret below the column, as compilers show theirs.
-    #[must_use]
-    pub fn report(&self, coloured: bool) -> String {
-        let start = self
-            .source
-            .char_indices()
-            .nth(self.column.saturating_sub(1))
-            .map_or(self.source.len(), |(i, _)| i);
-        let end = start + self.source[start..].chars().next().map_or(0, char::len_utf8);
-        let snippet = Snippet::source(self.source.as_str())
-            .line_start(self.line)
-            .path(self.file.as_str())
-            .annotation(AnnotationKind::Primary.span(start..end));
-        let report = [Level::ERROR.primary_title(self.message.as_str()).element(snippet)];
-        let renderer = if coloured { Renderer::styled() } else { Renderer::plain() };
-        renderer.render(&report)
-    }
-}
 
 /// Parses and validates a composed source that has no imports left.
 ///
@@ -174,12 +153,6 @@ mod tests {
             .edit("reflection/lambert.wgsl", "// mine\nfn response(l: vec3<f32>) -> Terms { return 1.0; }\n");
         let problem = validate(&compose_evaluation(&sources, &registry.models()[0])).expect_err("broken");
         assert_eq!((problem.file.as_str(), problem.line), ("reflection/lambert.wgsl", 2), "{problem}");
-        let report = problem.report(false);
-        assert!(
-            report.contains("reflection/lambert.wgsl:2:") && report.contains("2 | fn response(l"),
-            "{report}"
-        );
-        assert!(report.lines().any(|line| line.trim_start_matches([' ', '|']).starts_with('^')), "{report}");
         sources.edit("reflection/lambert.wgsl", "fn f( {");
         let problem = validate(&compose_evaluation(&sources, &registry.models()[0])).expect_err("broken");
         assert_eq!((problem.file.as_str(), problem.line), ("reflection/lambert.wgsl", 1), "{problem}");

@@ -24,15 +24,15 @@ use bevy::{
 };
 
 use super::{
-    Source,
     check::ShaderProblem,
-    compose::{ALBEDO, Composed, EVALUATE, LIGHTS, LOOP, OPTICS, SHADING, Sources, WRAPPER, compose},
+    compose::{Composed, Sources, WRAPPER, compose, compose_evaluation},
     status::{Reloaded, ShaderStatus, Trouble},
     trial::{Bench, COMPOSED, Tools, TrialPlugin, Verdict},
 };
 use crate::{
     app::{LabFrame, LabSystems},
-    reflection::{ModelEntry, swap::Drawn},
+    assets::{Folders, built_in_sources},
+    reflection::{ModelEntry, own, swap::Drawn},
     registry::Registry,
     shading::{ModeEntry, Stage},
 };
@@ -93,13 +93,15 @@ pub struct LiveShaders {
     /// The text of each file as it last came through.
     good: Sources,
     shaders: HashMap<Key, Live>,
-    /// Files that cannot be read, and since when.
-    unreadable: BTreeMap<String, (ShaderProblem, Instant)>,
+    /// Files that cannot be read and own models with mistakes, and since when.
+    unusable: BTreeMap<String, (Vec<ShaderProblem>, Instant)>,
     /// Changed files that no shader is made of: whether they are right is tried on the side.
     unused: BTreeSet<String>,
     /// What is wrong with those.
     unused_problems: BTreeMap<String, (Box<ShaderProblem>, Instant)>,
-    folders: (Option<PathBuf>, Option<PathBuf>),
+    folders: Folders,
+    /// Whether there are texts to begin with.
+    started: bool,
     /// The file that changed last, and when that became known.
     change: Option<(String, Instant)>,
     last: Option<Reloaded>,
@@ -110,9 +112,10 @@ pub struct LiveShaders {
 
 impl LiveShaders {
     /// Begins with these texts instead of the built-in ones, from these folders.
-    pub fn start(&mut self, sources: Sources, shaders: Option<PathBuf>, models: Option<PathBuf>) {
+    pub fn start(&mut self, sources: Sources, folders: Folders) {
         self.current = sources;
-        self.folders = (shaders, models);
+        self.folders = folders;
+        self.started = true;
         self.shaders.values_mut().for_each(|live| live.due = true);
         self.stale_status = true;
     }
@@ -146,15 +149,15 @@ impl LiveShaders {
     pub fn is_up_to_date(&self) -> bool {
         !self.is_trying()
             && self.shaders.values().all(|live| live.refused.is_none())
-            && self.unreadable.is_empty()
+            && self.unusable.is_empty()
     }
 
     /// The problems that are too young to be told.
     fn fresh_problems(&self) -> impl Iterator<Item = Instant> {
         let refused = self.shaders.values().filter_map(|live| live.refused.as_ref().map(|r| r.at));
-        let unreadable = self.unreadable.values().map(|(_, at)| *at);
+        let unusable = self.unusable.values().map(|(_, at)| *at);
         let unused = self.unused_problems.values().map(|(_, at)| *at);
-        refused.chain(unreadable).chain(unused).filter(|at| at.elapsed() < GRACE)
+        refused.chain(unusable).chain(unused).filter(|at| at.elapsed() < GRACE)
     }
 
     /// The path by which a file on disk is known, if it is one of ours.
@@ -168,7 +171,7 @@ impl LiveShaders {
             let parts: Option<Vec<_>> = rest.iter().map(|p| p.to_str()).collect();
             Some(format!("{prefix}{}", parts?.join("/")))
         };
-        below(&self.folders.1, "models/").or_else(|| below(&self.folders.0, ""))
+        below(&self.folders.models, "models/").or_else(|| below(&self.folders.shaders, ""))
     }
 
     /// The file on disk behind a path.
@@ -178,32 +181,62 @@ impl LiveShaders {
             return None;
         }
         match path.strip_prefix("models/") {
-            Some(name) => Some(self.folders.1.as_ref()?.join(name)),
-            None => Some(self.folders.0.as_ref()?.join(path)),
+            Some(name) => Some(self.folders.models.as_ref()?.join(name)),
+            None => Some(self.folders.shaders.as_ref()?.join(path)),
         }
     }
 
-    /// Reads a file that may have changed. Files that are none of ours are passed over.
-    pub fn look_at(&mut self, file: &Path, registry: &Registry) {
+    /// Reads a file that may have changed. Files that are none of ours are passed over; own models go into the
+    /// registry.
+    pub fn look_at(&mut self, file: &Path, registry: &mut Registry) {
         let Some(path) = self.path_of(file) else { return };
+        let model = path.starts_with("models/") && !path["models/".len()..].contains('/');
         match read(file) {
+            Ok(text) if model && own::is_model(&text) => self.look_at_model(file, &path, &text, registry),
             Ok(text) => self.change(&path, &text, registry),
             Err(problem) => {
-                let known = built_in(registry, &path).is_some() || self.current.get(&path).is_some();
-                let news = self.unreadable.get(&path).is_none_or(|(known, _)| *known != problem.at(&path));
-                if known && news {
-                    self.unreadable.insert(path.clone(), (problem.at(&path), Instant::now()));
-                    self.stale_status = true;
+                let own = own::id_of(file).is_some_and(|id| model && registry.own_file(id).is_some());
+                if own || built_in(registry, &path).is_some() || self.current.get(&path).is_some() {
+                    self.cannot_use(&path, vec![problem.at(&path)]);
                 }
             }
         }
     }
 
-    /// A file has another text. Nothing happens when it is the one that is known.
-    pub fn change(&mut self, path: &str, text: &str, registry: &Registry) {
-        if self.unreadable.remove(path).is_some() {
+    /// Reads an own model. One with a mistake leaves what is known of it as it was.
+    fn look_at_model(&mut self, file: &Path, path: &str, text: &str, registry: &mut Registry) {
+        let known = own::id_of(file).filter(|id| registry.own_file(id).is_some());
+        if known.is_some() && self.current.get(path) == Some(text) {
+            self.stale_status |= self.unusable.remove(path).is_some();
+            return;
+        }
+        match own::read(file, text, registry) {
+            Ok(model) => {
+                registry.put_own_model(model);
+                self.change(path, text, registry);
+            }
+            Err(problems) => {
+                // A new file whose declaration is right can be chosen, and is drawn as a stand-in.
+                if known.is_none()
+                    && let Ok(model) = own::declare(file, text, registry)
+                {
+                    registry.put_stand_in(model);
+                }
+                self.cannot_use(path, problems);
+            }
+        }
+    }
+
+    fn cannot_use(&mut self, path: &str, problems: Vec<ShaderProblem>) {
+        if self.unusable.get(path).is_none_or(|(known, _)| *known != problems) {
+            self.unusable.insert(path.to_owned(), (problems, Instant::now()));
             self.stale_status = true;
         }
+    }
+
+    /// A file has another text. Nothing happens when it is the one that is known.
+    fn change(&mut self, path: &str, text: &str, registry: &mut Registry) {
+        self.stale_status |= self.unusable.remove(path).is_some();
         let built_in = built_in(registry, path);
         let known = self.current.get(path).or(built_in);
         if known == Some(text) {
@@ -213,6 +246,8 @@ impl LiveShaders {
             Some(original) if original == text => self.current.forget(path),
             _ => self.current.edit(path, text),
         }
+        registry.sources_mut().copy_from(&self.current, path);
+        self.read_again(path, registry);
         self.change = Some((path.to_owned(), Instant::now()));
         let mut used = false;
         for live in self.shaders.values_mut() {
@@ -229,6 +264,28 @@ impl LiveShaders {
         }
     }
 
+    /// Reads the own models again that import a file: the CPU runs them from what was read.
+    fn read_again(&mut self, path: &str, registry: &mut Registry) {
+        let imports = |model: &ModelEntry| compose_evaluation(&self.current, model).imports.contains(path);
+        let importing: Vec<_> = registry
+            .own_models()
+            .filter(|(model, _)| imports(model))
+            .filter_map(|(model, file)| {
+                let text = self.current.get(model.declaration.wgsl.path)?;
+                Some((model.declaration.wgsl.path, file.to_owned(), text.to_owned()))
+            })
+            .collect();
+        for (own_path, file, text) in importing {
+            match own::read(&file, &text, registry) {
+                Ok(model) => {
+                    registry.put_own_model(model);
+                    self.stale_status |= self.unusable.remove(own_path).is_some();
+                }
+                Err(problems) => self.cannot_use(own_path, problems),
+            }
+        }
+    }
+
     /// The shader of a model and a mode.
     pub(crate) fn get(
         &mut self,
@@ -240,6 +297,10 @@ impl LiveShaders {
         let key = key(model, mode, registry);
         if let Some(live) = self.shaders.get(&key) {
             return live.handle.clone();
+        }
+        if !self.started {
+            self.started = true;
+            self.current = registry.sources().clone();
         }
         let wanted = compose(&self.current, model, mode, registry.lights());
         let mut refused = None;
@@ -443,10 +504,13 @@ impl LiveShaders {
         let old = |at: &Instant| at.elapsed() >= GRACE;
         let mut keys: Vec<_> = self.shaders.keys().collect();
         keys.sort_unstable();
-        for (path, (problem, _)) in self.unreadable.iter().filter(|(_, (_, at))| old(at)) {
-            add(problem, None);
-            for key in keys.iter().filter(|k| visible.has(k) && self.shaders[**k].shown.depends_on(path)) {
-                add(problem, Some(name(key)));
+        for (path, (problems, _)) in self.unusable.iter().filter(|(_, (_, at))| old(at)) {
+            for problem in problems {
+                add(problem, None);
+                for key in keys.iter().filter(|k| visible.has(k) && self.shaders[**k].shown.depends_on(path))
+                {
+                    add(problem, Some(name(key)));
+                }
             }
         }
         for key in keys {
@@ -457,7 +521,7 @@ impl LiveShaders {
         for (problem, _) in self.unused_problems.values().filter(|(_, at)| old(at)) {
             add(problem, None);
         }
-        let (shaders, models) = self.folders.clone();
+        let Folders { shaders, models } = self.folders.clone();
         let status = ShaderStatus { shaders, models, troubles, last: self.last.clone() };
         if self.status != status {
             self.status = status;
@@ -546,18 +610,9 @@ fn take_back(error: &RenderError, main: &mut World, render: &mut World) -> Rende
     if taken_back { RenderErrorPolicy::Ignore } else { usual(error, main, render) }
 }
 
-/// Every source that is built in.
-pub fn built_in_sources(registry: &Registry) -> impl Iterator<Item = Source> {
-    let fixed = OPTICS.iter().chain([&ALBEDO, &LIGHTS, &SHADING, &LOOP, &WRAPPER, &EVALUATE]).copied();
-    fixed
-        .chain(registry.models().iter().map(|m| m.declaration.wgsl))
-        .chain(registry.lights().iter().map(|l| l.declaration.wgsl))
-        .chain(registry.modes().iter().map(|m| m.declaration.wgsl))
-}
-
 /// The built-in text of a path.
 fn built_in(registry: &Registry, path: &str) -> Option<&'static str> {
-    built_in_sources(registry).find(|s| s.path == path).map(|s| s.text)
+    built_in_sources(registry).into_iter().find(|s| s.path == path).map(|s| s.text)
 }
 
 /// Whether a text ends in the middle of a function, or is empty.

@@ -6,6 +6,7 @@ pub mod compose;
 pub mod interpret;
 pub mod live;
 pub mod pitfall;
+pub mod report;
 pub mod status;
 pub mod trial;
 pub mod whole;

@@ -37,7 +37,7 @@ use bevy_panorbit_camera::PanOrbitCameraPlugin;
 use glam::UVec2;
 
 use crate::{
-    app::{LabFrame, LabSystems, ScenePlugin, ShownTerms, use_registry},
+    app::{LabFrame, LabSystems, ScenePlugin, ShownTerms},
     capture::gpu::{find_adapter, wgpu_settings},
     cli::{Failure, ViewOptions},
     observer::camera::{PictureCamera, picture_camera},
@@ -111,7 +111,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
         WindowSystemsPlugin,
     );
     add_with_display(&mut app, plugins)?;
-    use_registry(&mut app, options.registry);
+    app.insert_resource(options.registry.clone());
     let mut lab = Lab::new(options.scene.clone());
     lab.path.clone_from(&options.file);
     lab.disk.use_defaults = options.use_defaults;

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use glam::Vec3;
 use lights_camera_models::{
-    app::use_registry,
     assets::EXAMPLES,
     capture::{
         evaluate::{Evaluator, evaluate},
@@ -350,7 +349,7 @@ fn a_model_without_a_good_version_is_drawn_as_a_stand_in() {
 fn renderer(registry: &Registry) -> GpuRenderer {
     let registry = registry.clone();
     GpuRenderer::extended(64, 64, 1, Output::Linear, |app| {
-        use_registry(app, registry);
+        app.insert_resource(registry);
     })
     .expect("software Vulkan is installed")
 }

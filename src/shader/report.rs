@@ -1,0 +1,50 @@
+//! Problems with shaders as people read them: the message, file, line and column, the line itself and a caret
+//! below the character that is meant.
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+
+use super::check::ShaderProblem;
+
+/// A problem as several lines of plain text. `file` is how the reader calls the file: its path on disk where it
+/// has one.
+#[must_use]
+pub fn annotated(problem: &ShaderProblem, file: &str) -> String {
+    let mut characters = problem.source.char_indices().skip(problem.column.saturating_sub(1));
+    let end = problem.source.len();
+    let start = characters.next().map_or(end, |(at, _)| at);
+    let next = characters.next().map_or(end, |(at, _)| at);
+    let snippet = Snippet::source(&problem.source)
+        .line_start(problem.line)
+        .path(file)
+        .annotation(AnnotationKind::Primary.span(start..next));
+    Renderer::plain().render(&[Level::ERROR.primary_title(&problem.message).element(snippet)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_caret_stands_below_the_character_that_is_meant() {
+        let mut problem = ShaderProblem {
+            file: "models/a.wgsl".to_owned(),
+            line: 12,
+            column: 5,
+            source: "α = βx;".to_owned(),
+            message: "there is no βx".to_owned(),
+        };
+        let text = annotated(&problem, "/tmp/a.wgsl");
+        let lines: Vec<_> = text.lines().collect();
+        assert_eq!(lines[0], "error: there is no βx");
+        assert!(lines[1].ends_with("--> /tmp/a.wgsl:12:5"), "{text}");
+        let at = |line: &str, what| line.chars().position(|c| c == what);
+        let source = lines.iter().find(|l| l.contains("α = βx;")).expect("shows the line");
+        let caret = lines.iter().find(|l| l.contains('^')).expect("has a caret");
+        assert_eq!(at(caret, '^'), at(source, 'β'), "{text}");
+        // Beyond the line, and in an empty one.
+        problem.column = 99;
+        assert!(annotated(&problem, "a").contains("there is no"));
+        problem.source.clear();
+        assert!(annotated(&problem, "a").contains("a:12:1"));
+    }
+}
