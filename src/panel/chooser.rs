@@ -6,10 +6,14 @@ use bevy_egui::egui::{
 };
 
 use super::{
+    author,
     state::{Action, Lab, ViewChange},
     theme::{self, Palette},
 };
-use crate::{reflection::ModelEntry, registry::Registry};
+use crate::{
+    reflection::{Family, ModelEntry},
+    registry::Registry,
+};
 
 /// Whether every word of a search occurs in a text, in any order.
 #[must_use]
@@ -101,6 +105,8 @@ pub fn list<'e, T>(
     let mut row = before.unwrap_or(start).min(found.len().saturating_sub(1));
     let mut moved = before.is_none();
     let mut chosen = None;
+    // A button below that Tab has reached is pressed by Enter itself.
+    let elsewhere = ui.memory(|m| m.focused()).is_some_and(|focus| focus != id.with("text"));
     // Taken before the text field sees them.
     ui.input_mut(|i| {
         if i.consume_key(Modifiers::NONE, Key::ArrowDown) && row + 1 < found.len() {
@@ -109,7 +115,7 @@ pub fn list<'e, T>(
         if i.consume_key(Modifiers::NONE, Key::ArrowUp) && row > 0 {
             (row, moved) = (row - 1, true);
         }
-        if i.consume_key(Modifiers::NONE, Key::Enter) && row < found.len() {
+        if !elsewhere && i.consume_key(Modifiers::NONE, Key::Enter) && row < found.len() {
             chosen = Some(row);
         }
     });
@@ -261,12 +267,21 @@ pub fn about(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
     let palette = Palette::here(ui);
     ui.label(theme::strong(ui, d.name));
-    ui.label(d.summary);
-    for (law, holds) in d.laws.list() {
+    if !d.summary.is_empty() {
+        ui.label(d.summary);
+    }
+    // A file of one's own that does not claim a law does not deny it either.
+    let own = d.family == Family::Own;
+    for (law, holds) in d.laws.list().into_iter().filter(|(_, holds)| *holds || !own) {
         let text = if holds { format!("✓ {law}") } else { format!("✗ not {law}") };
         ui.label(RichText::new(text).small().color(if holds { palette.text } else { palette.weak }));
     }
-    ui.label(theme::small(ui, d.source));
+    if own {
+        ui.label(theme::small(ui, d.wgsl.path));
+    }
+    if !d.source.is_empty() {
+        ui.label(theme::small(ui, d.source));
+    }
 }
 
 /// The button and, when it is open, the list. They are about the model that the selected object has of its
@@ -302,8 +317,9 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
     }
     let mut open = true;
     let mut chosen = None;
+    let mut asked = Vec::new();
     let width = 460.0 * scale;
-    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 120.0 * scale;
+    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 156.0 * scale;
     Popup::from_response(&response)
         .id(id)
         .open_bool(&mut open)
@@ -312,7 +328,12 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         .show(|ui| {
             ui.set_width(width);
             chosen = models(ui, id, height, lab, registry, Some(shown), None).flatten();
+            ui.separator();
+            asked = author::buttons(ui, lab, registry);
         });
+    // What is asked next stands on its own.
+    open &= asked.is_empty();
+    actions.extend(asked);
     if let Some(model) = chosen {
         actions.push(Action::Edit(lab.edit_model(model.declaration.id)));
         open = false;

@@ -140,7 +140,11 @@ pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
 
 /// The sign of a severity: its shape says as much as its colour.
 pub fn severity(painter: &Painter, centre: Pos2, radius: f32, severity: Severity, palette: &Palette) {
-    let colour = palette.severity(severity);
+    severity_in(painter, centre, radius, severity, palette.severity(severity));
+}
+
+/// The same in another colour, for a ground that has the colour of the severity.
+pub fn severity_in(painter: &Painter, centre: Pos2, radius: f32, severity: Severity, colour: Color32) {
     let r = radius;
     let stroke = Stroke::new((r / 4.0).max(1.2), colour);
     let mark = |top: f32, bottom: f32, dot: f32| {

@@ -6,12 +6,12 @@ use bevy_egui::egui::{
 use glam::Vec3;
 
 use super::{
-    Panel, Place, chooser,
+    Panel, Place, author, chooser,
     icon::{self, Icon},
     knob::{self, Caption},
     limits::{self, Limits},
-    maths,
-    state::{Action, Edit, Lab, LightField, ObjectField, Selection, ViewChange},
+    maths, shader,
+    state::{Action, Edit, Lab, LightField, ObjectField, Selection, Severity, ViewChange},
     theme::{self, Palette},
     top::segmented,
 };
@@ -209,9 +209,12 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
     let model = registry.model(lab.scene.model_of(object));
     let mode = registry.mode(lab.scene.mode_of(object));
     section(ui, "Reflection", true, |ui| {
-        if let Some(model) = model {
-            model_header(ui, model);
-            equation(ui, lab, model, actions);
+        match model {
+            Some(model) => {
+                model_header(ui, model);
+                equation(ui, lab, model, actions);
+            }
+            None => missing_model(ui, lab, registry, lab.scene.model_of(object), actions),
         }
         if let Some(mode) = mode {
             stage(ui, mode);
@@ -220,7 +223,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
 
     section(ui, "Material", true, |ui| {
         let Some(model) = model else {
-            ui.label("The reflection model of this object is not known here; choose another one.");
+            ui.label(theme::small(ui, "The knobs belong to the model; they are here again when it is."));
             return;
         };
         if let Some(values) = measured(ui, registry, model, object) {
@@ -434,7 +437,9 @@ fn model_header(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(d.name).heading());
-        ui.label(theme::small(ui, d.author));
+        if !d.author.is_empty() {
+            ui.label(theme::small(ui, d.author));
+        }
     })
     .response
     .on_hover_ui(|ui| {
@@ -443,8 +448,35 @@ fn model_header(ui: &mut Ui, model: &ModelEntry) {
     });
 }
 
+/// What stands in the place of a model that is not there: its file is gone, or never worked.
+fn missing_model(ui: &mut Ui, lab: &Lab, registry: &Registry, id: &str, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0 * scale;
+        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 20.0) * scale, Sense::hover());
+        icon::severity(ui.painter(), sign.center(), 6.0 * scale, Severity::Error, &palette);
+        ui.vertical(|ui| {
+            ui.add(egui::Label::new(shader::missing_model(lab, registry, id)).wrap().selectable(true));
+            ui.horizontal_wrapped(|ui| {
+                if ui.button("Choose another model").clicked() {
+                    actions.push(Action::View(ViewChange::Chooser(true)));
+                }
+                if !lab.shaders.troubles.is_empty() && ui.button("Show the error").clicked() {
+                    actions.push(Action::View(ViewChange::BottomTab(author::SHADER_TAB.to_owned())));
+                }
+            });
+        });
+    });
+    ui.add_space(6.0 * scale);
+}
+
 fn equation(ui: &mut Ui, lab: &Lab, model: &ModelEntry, actions: &mut Vec<Action>) {
     let d = model.declaration;
+    // Own models need not say one.
+    if d.equation.is_empty() {
+        return;
+    }
     let name = |symbol: &str| -> Option<String> {
         let parameter = model.parameters.iter().find(|p| maths::same_symbol(p.symbol, symbol));
         match parameter {

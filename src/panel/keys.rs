@@ -2,7 +2,10 @@
 
 use bevy_egui::egui::{self, Key, Modifiers};
 
-use super::state::{Action, Lab, ViewChange};
+use super::{
+    author::{Ask, SHADER_TAB},
+    state::{Action, Lab, ViewChange},
+};
 use crate::registry::Registry;
 
 /// A key and what it does.
@@ -87,6 +90,9 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
         add("Reflection and shading", false, false, key, &label, Action::RecentModel(slot));
     }
     add("Reflection and shading", false, false, Key::T, "Next term of the equation alone", Action::NextTerms);
+    add("Own models", true, true, Key::N, "New reflection model…", Action::Author(Ask::New));
+    add("Own models", true, true, Key::D, "Duplicate the model as a file…", Action::Author(Ask::Duplicate));
+    add("Own models", true, false, Key::E, "Open the model in an editor", Action::Author(Ask::EditShown));
     add("Picture", false, false, Key::Tab, "Next object", Action::SelectNext);
     add("Picture", false, true, Key::Tab, "Previous object", Action::SelectPrevious);
     add("Picture", false, false, Key::H, "Home: the observer's view", Action::HomeView);
@@ -94,7 +100,13 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
     add("Picture", false, false, Key::Plus, "Brighter by ½ EV", Action::Expose(0.5));
     add("Picture", false, false, Key::Minus, "Darker by ½ EV", Action::Expose(-0.5));
     add("Window", false, false, Key::F1, "This list", Action::View(ViewChange::Keys(!lab.view.keys_open)));
-    add("Window", false, false, Key::F8, "Messages", Action::View(ViewChange::Bottom(!lab.view.bottom_open)));
+    add("Window", false, false, Key::F8, "Messages", Action::View(lab.strip_change()));
+    let shader = if lab.view.bottom_open && lab.view.bottom_tab == SHADER_TAB {
+        ViewChange::Bottom(false)
+    } else {
+        ViewChange::BottomTab(SHADER_TAB.to_owned())
+    };
+    add("Window", false, false, Key::F9, "Shader: files and errors", Action::View(shader));
     all
 }
 

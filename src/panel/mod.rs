@@ -21,12 +21,14 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Button, Frame, Id, LayerId, Margin, Rect, Ui, UiBuilder, vec2},
 };
-use egui_file_dialog::{DialogState, FileDialog};
+use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
 use crate::registry::Registry;
-use state::{Action, Effect, Lab, LabEffect, ViewChange};
+use author::Ask;
+use state::{Action, Effect, Lab, LabEffect, Severity, ViewChange};
 use theme::Palette;
 
+pub mod author;
 pub mod chooser;
 pub mod files;
 pub mod help;
@@ -41,6 +43,7 @@ pub mod picture;
 pub mod question;
 pub mod reload;
 pub mod settings;
+pub mod shader;
 pub mod state;
 pub mod status;
 pub mod theme;
@@ -52,6 +55,7 @@ pub fn register_builtin(to: &mut Panels) {
     to.add(top::TopBar);
     to.add(status::StatusLine);
     to.add(messages::Messages);
+    to.add(shader::Shader);
     to.add(tree::Tree);
     to.add(inspector::Inspector);
 }
@@ -79,6 +83,10 @@ pub trait Panel: Send + Sync + 'static {
     fn title(&self) -> &'static str;
     /// Where it is.
     fn place(&self) -> Place;
+    /// What its tab says beside the title, such as how many errors it tells of.
+    fn note(&self, _lab: &Lab) -> Option<(Severity, String)> {
+        None
+    }
     /// Shows it. What the user does comes back as actions.
     fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action>;
 }
@@ -151,6 +159,7 @@ impl PanelApp for App {
 pub struct Dialogs {
     open: FileDialog,
     save: FileDialog,
+    folder: FileDialog,
 }
 
 impl Default for Dialogs {
@@ -167,7 +176,17 @@ impl Default for Dialogs {
                 .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
                 .default_file_name("scene.json")
         };
-        Self { open: dialog("Open a scene", "open dialog"), save: dialog("Save the scene as", "save dialog") }
+        let folder = FileDialog::new()
+            .title("Write the shaders into which folder?")
+            .id("folder dialog")
+            .labels(FileDialogLabels { open_button: "Write here".to_owned(), ..FileDialogLabels::default() })
+            .default_size(vec2(720.0, 440.0))
+            .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
+        Self {
+            open: dialog("Open a scene", "open dialog"),
+            save: dialog("Save the scene as", "save dialog"),
+            folder,
+        }
     }
 }
 
@@ -175,7 +194,7 @@ impl Dialogs {
     /// Whether one is open.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        [&self.open, &self.save].into_iter().any(|d| *d.state() == DialogState::Open)
+        [&self.open, &self.save, &self.folder].into_iter().any(|d| *d.state() == DialogState::Open)
     }
 
     fn start(&mut self, effect: &Effect, lab: &Lab) -> bool {
@@ -183,6 +202,10 @@ impl Dialogs {
         let (dialog, save) = match effect {
             Effect::PickOpen => (&mut self.open, false),
             Effect::PickSave => (&mut self.save, true),
+            Effect::PickShaderFolder => {
+                self.folder.pick_directory();
+                return true;
+            }
             _ => return false,
         };
         if let Some(folder) = folder {
@@ -217,6 +240,8 @@ impl Dialogs {
         } else if was_open && *self.save.state() == DialogState::Cancelled {
             lab.not_saved();
         }
+        self.folder.update(ctx);
+        actions.extend(self.folder.take_picked().map(|folder| Action::Author(Ask::Export(folder))));
         actions
     }
 }
@@ -244,10 +269,12 @@ pub fn show(
     let style = ctx.global_style();
     ui.set_style(style);
     lab.panels = panels.list();
+    lab.notice_shaders(registry);
     let palette = Palette::of(&lab.view);
     let scale = theme::scale(&lab.view);
     let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, lab, registry) };
     actions.extend(help::show(&ctx, lab, registry));
+    actions.extend(author::show(&ctx, lab, registry));
     let whole = ui.available_rect_before_wrap();
 
     for panel in panels.at(Place::Top) {
@@ -301,10 +328,11 @@ pub fn show(
 
     let rect = ui.available_rect_before_wrap();
     lab.picture_rect = rect;
-    picture::overlays(ui, rect, lab, registry);
+    let (asked, covered) = picture::overlays(ui, rect, lab, registry);
+    actions.extend(asked);
     actions.extend(question::show(&ctx, lab));
     actions.extend(dialogs.update(&ctx, lab));
-    steering(&ctx, lab, rect, dialogs.is_open());
+    steering(&ctx, lab, rect, covered, dialogs.is_open());
 
     let mut effects = Vec::new();
     for action in actions {
@@ -350,7 +378,13 @@ fn bottom(
                 let text = if on { text } else { text.color(palette.weak) };
                 if tabs.len() == 1 {
                     ui.label(text);
-                } else if ui.add(Button::selectable(on, text)).clicked() {
+                    continue;
+                }
+                let mut button = Button::selectable(on, text);
+                if let Some((severity, note)) = panel.note(lab) {
+                    button = button.right_text(theme::strong(ui, note).color(palette.severity(severity)));
+                }
+                if ui.add(button).clicked() {
                     actions.push(Action::View(ViewChange::BottomTab(panel.id().to_owned())));
                 }
             }
@@ -386,13 +420,16 @@ fn remember_sizes(ctx: &egui::Context, lab: &Lab, sizes: (f32, f32, f32), action
     }
 }
 
-/// Writes down whether the pointer and the keys belong to the picture.
-fn steering(ctx: &egui::Context, lab: &mut Lab, rect: Rect, dialog: bool) {
+/// Writes down whether the pointer and the keys belong to the picture. What is clicked in `covered` is not the
+/// picture.
+fn steering(ctx: &egui::Context, lab: &mut Lab, rect: Rect, covered: Rect, dialog: bool) {
     let pointer = ctx.input(|i| i.pointer.latest_pos());
     let busy = lab.question.is_some() || dialog;
     // Panels are no layers of their own; menus, popups, windows and dialogs are.
     let over = pointer.is_some_and(|p| {
-        rect.contains(p) && ctx.layer_id_at(p).is_none_or(|l| l.order == egui::Order::Background)
+        rect.contains(p)
+            && !covered.contains(p)
+            && ctx.layer_id_at(p).is_none_or(|l| l.order == egui::Order::Background)
     });
     lab.pointer_in_picture = over && !busy && !ctx.egui_is_using_pointer();
     lab.keyboard_free = !busy && ctx.memory(|m| m.focused()).is_none();

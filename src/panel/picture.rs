@@ -1,31 +1,122 @@
 //! What is painted over the picture: badges, caption, axes, hints.
 
 use bevy_egui::egui::{
-    self, Align2, Color32, FontFamily, FontId, Painter, Pos2, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2,
+    self, Align2, Color32, FontFamily, FontId, Painter, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo,
+    WidgetType, pos2, vec2,
 };
 use glam::Vec3;
 
 use super::{
-    icon, maths,
-    state::{Lab, Selection, Shaders},
+    author::SHADER_TAB,
+    icon,
+    inspector::plural,
+    maths, shader,
+    state::{Action, Lab, Selection, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     reflection::Term,
     registry::Registry,
+    shader::status::ShaderStatus,
 };
 
-/// Paints the overlays into the rectangle of the picture.
-pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) {
+/// Paints the overlays into the rectangle of the picture. Returns what was asked for there, and the place that
+/// can be clicked, which does not belong to the picture.
+pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Rect) {
     if rect.width() < 80.0 || rect.height() < 80.0 {
-        return;
+        return (Vec::new(), Rect::NOTHING);
     }
     let scale = theme::scale(&lab.view);
-    badges(ui, rect, lab, scale);
+    let (actions, covered) = stale(ui, rect, lab, registry, scale);
+    let top = if covered.is_positive() { covered.bottom() + 4.0 } else { rect.top() + 8.0 };
+    badges(ui, rect, top, lab, scale);
     caption(ui, rect, lab, registry, scale);
     axes(ui, rect, lab, scale);
     hint(ui, rect, lab);
+    (actions, covered)
+}
+
+/// What the picture says of itself while a shader has an error: a heading, and where the errors are. The model
+/// that people call `shown` is named first.
+#[must_use]
+pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<String>)> {
+    /// More would hide the picture.
+    const MOST: usize = 3;
+    let mut names = status.stale();
+    if names.is_empty() {
+        return None;
+    }
+    names.sort_by_key(|name| *name != shown);
+    let few = |all: Vec<&str>| {
+        let more = format!("{} more", all.len().saturating_sub(MOST));
+        let shown: Vec<_> = all.iter().take(MOST).copied().collect();
+        shader::listed(&if all.len() > MOST { [shown, vec![more.as_str()]].concat() } else { shown })
+    };
+    let heading = format!("Showing the last good version of {}", few(names));
+    let causes: Vec<_> = status.troubles.iter().filter(|t| !t.stale.is_empty()).collect();
+    let mut lines: Vec<_> = causes.iter().take(MOST).map(|t| t.problem.to_string()).collect();
+    if causes.len() > MOST {
+        lines.push(format!("and {}", plural(causes.len() - MOST, "more error")));
+    }
+    Some((heading, lines))
+}
+
+/// Says that the picture is not what the shaders say, in a way that is not overlooked on any picture: a frame, and
+/// a filled plate that leads to the panel with the errors.
+fn stale(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) -> (Vec<Action>, Rect) {
+    let shown = registry.model(lab.model_shown()).map_or("", |m| m.declaration.name);
+    let Some((heading, lines)) = stale_words(&lab.shaders, shown) else {
+        return (Vec::new(), Rect::NOTHING);
+    };
+    let palette = Palette::here(ui);
+    let painter = ui.painter_at(rect);
+    painter.rect_stroke(rect, 0.0, Stroke::new(3.0 * scale, palette.error), egui::StrokeKind::Inside);
+    let padding = vec2(10.0, 7.0) * scale;
+    let left = 26.0 * scale;
+    let margin = 10.0 * scale;
+    let room = (rect.width() - 2.0 * margin).min(560.0 * scale) - left - 2.0 * padding.x;
+    let ink = palette.panel;
+    let lay_out = |text: &str, font: FontId, rows: usize| {
+        let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, ink, room.max(64.0));
+        job.wrap.max_rows = rows;
+        painter.layout_job(job)
+    };
+    let body = TextStyle::Body.resolve(ui.style()).size;
+    let mut galleys = vec![lay_out(&heading, FontId::new(1.12 * body, theme::semibold()), 3)];
+    galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2)));
+    let height: f32 = galleys.iter().map(|g| g.size().y + 2.0 * scale).sum();
+    let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
+    let size = vec2(width + left, height) + 2.0 * padding;
+    let place = Rect::from_min_size(rect.min + vec2(margin, margin), size);
+    let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
+    let said = format!("{heading}: {}", lines.join("; "));
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
+    // The rim stands out where the picture has the colour of the plate.
+    let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.panel };
+    painter.rect(place, 5.0, palette.error, Stroke::new(2.0 * scale, rim), egui::StrokeKind::Outside);
+    let mut at = place.min + padding;
+    let sign = pos2(at.x + 8.0 * scale, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
+    icon::severity_in(&painter, sign, 8.0 * scale, Severity::Error, ink);
+    at.x += left;
+    for galley in galleys {
+        let height = galley.size().y;
+        painter.galley(at, galley, ink);
+        at.y += height + 2.0 * scale;
+    }
+    let response = response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_ui(|ui| {
+        ui.set_max_width(340.0 * scale);
+        ui.label(
+            "A shader has an error, so the picture shows these models as they were before the last change. Correct the \
+             file and save it: the picture follows by itself.",
+        );
+        ui.label(theme::small(ui, "Click, or key F9: the line and the message"));
+    });
+    let mut actions = Vec::new();
+    if response.clicked() {
+        actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
+    }
+    (actions, place)
 }
 
 /// Words on a ground that can be read over any picture, in lines that leave the axes free. Returns the
@@ -50,9 +141,9 @@ fn plate(
     rect
 }
 
-fn badges(ui: &mut Ui, rect: Rect, lab: &Lab, scale: f32) {
+fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, scale: f32) {
     let palette = Palette::here(ui);
-    let mut y = rect.top() + 8.0;
+    let mut y = top;
     for (i, badge) in lab.disk.badge.iter().chain(&lab.badges).enumerate() {
         let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
         let painter = ui.painter_at(rect);

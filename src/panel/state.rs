@@ -11,7 +11,13 @@ use bevy::ecs::{message::Message, resource::Resource};
 use bevy_egui::egui;
 use glam::{Quat, Vec3};
 
-use super::{PanelInfo, limits, reload::OnDisk, settings::Settings};
+use super::{
+    PanelInfo,
+    author::{Ask, ModelDraft},
+    limits,
+    reload::OnDisk,
+    settings::Settings,
+};
 use crate::{
     light::MAX_LIGHTS,
     optics::TermSelection,
@@ -67,6 +73,10 @@ pub struct Lab {
     pub disk: OnDisk,
     /// Where shaders are edited and what is wrong with them, fed by the app.
     pub shaders: ShaderStatus,
+    /// The model of one's own that is about to be written.
+    pub draft: Option<ModelDraft>,
+    /// The model that is chosen as soon as it is known: one whose file was just written.
+    pub wanted_model: Option<String>,
     /// The orientation of the camera, fed by the app; turns the axes in the corner of the picture.
     pub camera: Quat,
     /// The question that waits for an answer. While there is one, nothing else can be done.
@@ -96,6 +106,8 @@ pub struct Lab {
     pub(super) defaulted: Vec<String>,
     /// Slots of [`Self::model_slots`] in the order of use, latest last.
     slot_use: Vec<String>,
+    /// The problems of the shaders in the frame before, by file and message.
+    pub(super) seen_troubles: Vec<(String, String)>,
 }
 
 /// A message to the user.
@@ -369,6 +381,8 @@ pub enum Action {
     ObserverFromView,
     /// Put text on the clipboard.
     Copy(String),
+    /// Something about models and shaders of one's own.
+    Author(Ask),
     /// Say something.
     Say(Severity, String),
     /// Remove a message.
@@ -532,6 +546,31 @@ pub enum Effect {
     CopyText(String),
     /// Write the settings.
     SaveSettings,
+    /// Write the file of a new model of one's own.
+    NewModel {
+        /// Its id, which is also the name of the file.
+        id: String,
+        /// What people call it.
+        name: String,
+    },
+    /// Write a model as a file of one's own.
+    DuplicateModel {
+        /// Id of the model that is copied.
+        model: String,
+        /// Id of the copy, which is also the name of the file.
+        id: String,
+    },
+    /// Open a file in an editor.
+    OpenInEditor {
+        /// The file.
+        path: PathBuf,
+        /// The line to go to, from 1.
+        line: usize,
+    },
+    /// Show the dialog that chooses a folder for the shaders.
+    PickShaderFolder,
+    /// Write the shaders into a folder, to be edited there.
+    ExportShaders(PathBuf),
 }
 
 /// An [`Effect`] on its way to the systems that carry it out.
@@ -561,6 +600,8 @@ impl Lab {
             badges: Vec::new(),
             disk: OnDisk::default(),
             shaders: ShaderStatus::default(),
+            draft: None,
+            wanted_model: None,
             camera: Quat::IDENTITY,
             question: None,
             picture_rect: egui::Rect::NOTHING,
@@ -573,6 +614,7 @@ impl Lab {
             may_discard: false,
             defaulted: Vec::new(),
             slot_use: Vec::new(),
+            seen_troubles: Vec::new(),
         };
         lab.select_first();
         lab.use_slot(&lab.scene.reflection_model.clone());
@@ -640,6 +682,16 @@ impl Lab {
         match self.own_mode() {
             Some((i, _)) => Edit::Object(i, ObjectField::Mode(Some(id.to_owned()))),
             None => Edit::Mode(id.to_owned()),
+        }
+    }
+
+    /// The change that folds the strip at the bottom away, or unfolds it with the messages.
+    #[must_use]
+    pub fn strip_change(&self) -> ViewChange {
+        if self.view.bottom_open {
+            ViewChange::Bottom(false)
+        } else {
+            ViewChange::BottomTab("messages".to_owned())
         }
     }
 
@@ -765,6 +817,7 @@ impl Lab {
             Action::FocusSelection => return vec![Effect::FocusSelection],
             Action::ObserverFromView => return vec![Effect::ObserverFromView],
             Action::Copy(text) => return vec![Effect::CopyText(text)],
+            Action::Author(ask) => return self.author(ask, registry),
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => {
                 if index < self.messages.len() {

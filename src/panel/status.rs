@@ -1,12 +1,15 @@
 //! The line at the bottom: what is selected, what is in progress, what needs attention.
 
-use bevy_egui::egui::{self, Align, Button, Layout, ProgressBar, Sense, Ui, WidgetInfo, WidgetType, vec2};
+use bevy_egui::egui::{
+    self, Align, Button, Layout, ProgressBar, RichText, Sense, Ui, WidgetInfo, WidgetType, vec2,
+};
 
 use super::{
     Panel, Place,
+    author::SHADER_TAB,
     icon::{self, Icon},
     inspector::plural,
-    state::{Action, Lab, Shaders, ViewChange},
+    state::{Action, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
 use crate::registry::Registry;
@@ -58,18 +61,20 @@ impl Panel for StatusLine {
             button
                 .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("Messages: {count}")));
             if button.on_hover_text(says).clicked() {
-                actions.push(Action::View(ViewChange::Bottom(!lab.view.bottom_open)));
+                actions.push(Action::View(lab.strip_change()));
             }
+            shader_errors(ui, lab, &mut actions);
             let (words, help) = match lab.status.shaders {
                 Shaders::Ready => ("", ""),
                 Shaders::Compiling => (
                     "Compiling shaders…",
                     "The graphics card’s programs are being made; the picture follows.",
                 ),
-                Shaders::Stale => (
+                Shaders::Stale if lab.shaders.troubles.is_empty() => (
                     "Shader has an error: the picture shows the last good one",
                     "The message says where the error is.",
                 ),
+                Shaders::Stale => ("", ""),
             };
             if !words.is_empty() {
                 ui.label(theme::small(ui, words)).on_hover_text(help);
@@ -84,5 +89,28 @@ impl Panel for StatusLine {
             });
         });
         actions
+    }
+}
+
+/// How many errors the shaders have, and whether the picture suffers from them; leads to the panel that says more.
+fn shader_errors(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
+    let count = lab.shaders.troubles.len();
+    if count == 0 {
+        return;
+    }
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let stale = if lab.shaders.stale().is_empty() {
+        "nothing on the picture depends on it"
+    } else {
+        "the picture shows the last good version"
+    };
+    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0) * scale, Sense::hover());
+    icon::severity(ui.painter(), rect.center(), 5.5 * scale, Severity::Error, &palette);
+    let text = format!("{}: {stale}", plural(count, "shader error"));
+    let text = RichText::new(text).small().color(palette.error);
+    let button = ui.add(Button::new(text).frame_when_inactive(false).small());
+    if button.on_hover_text("Show where the errors are (F9)").clicked() {
+        actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
     }
 }

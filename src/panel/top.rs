@@ -3,7 +3,9 @@
 use bevy_egui::egui::{self, Align, Button, Layout, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
-    Panel, Place, chooser,
+    Panel, Place,
+    author::{Ask, SHADER_TAB},
+    chooser,
     keys::{self, Binding},
     state::{Action, Lab, Selection, ThemeChoice, ViewChange},
     theme::{self, Palette},
@@ -149,7 +151,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             item(ui, "Quit", Action::Quit, actions);
         });
         ui.menu_button("Edit", |ui| {
-            ui.set_width(MENU_WIDTH * scale);
+            ui.set_width(1.3 * MENU_WIDTH * scale);
             ui.menu_button("Add a light", |ui| {
                 for light in registry.lights() {
                     let d = light.declaration;
@@ -175,6 +177,11 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                 item(ui, "Duplicate", Action::Duplicate(lab.selection), actions);
                 item(ui, "Remove", Action::Remove(lab.selection), actions);
             });
+            ui.separator();
+            item(ui, "New reflection model…", Action::Author(Ask::New), actions);
+            item(ui, "Duplicate the model as a file…", Action::Author(Ask::Duplicate), actions);
+            item(ui, "Open the model in an editor", Action::Author(Ask::EditShown), actions);
+            item(ui, "Write the shaders out for editing…", Action::Author(Ask::ExportDialog), actions);
         });
         ui.menu_button("View", |ui| {
             ui.set_width(MENU_WIDTH * scale);
@@ -213,7 +220,11 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                 } else {
                     ViewChange::BottomTab(panel.id.to_owned())
                 };
-                let key = if panel.id == "messages" { "F8" } else { "" };
+                let key = match panel.id {
+                    "messages" => "F8",
+                    SHADER_TAB => "F9",
+                    _ => "",
+                };
                 check(ui, panel.title, shown, key, view(change), actions);
             }
             ui.separator();

@@ -18,7 +18,7 @@ use super::{Source, check::ShaderProblem, wgsl};
 use crate::{
     light::LightEntry,
     optics::albedo::NODES,
-    reflection::{Ambient, ModelEntry, parameter},
+    reflection::{Ambient, Family, ModelEntry, parameter},
     shading::ModeEntry,
 };
 
@@ -347,6 +347,70 @@ pub fn compose(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: 
     c.composed
 }
 
+/// What a file of a composed source is for, in the order in which authors look for them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Part {
+    /// The reflection model.
+    Model,
+    /// A file of the author's that another one asks for.
+    Import,
+    /// The shading mode.
+    Mode,
+    /// The light loop.
+    Loop,
+    /// A light type.
+    LightType,
+    /// The vocabulary of the models.
+    Vocabulary,
+    /// The light record.
+    LightRecord,
+    /// What goes into and out of a shading mode.
+    Stages,
+    /// Bindings and entry points.
+    Wrapper,
+}
+
+/// A file of a composed source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// What it is for.
+    pub part: Part,
+    /// Its path, as messages name it.
+    pub path: String,
+    /// Whether its text differs from the built-in one. Own models have none to differ from.
+    pub edited: bool,
+}
+
+/// The files that [`compose`] joins; what is generated is left out.
+#[must_use]
+pub fn files(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[LightEntry]) -> Vec<File> {
+    let known = OPTICS
+        .iter()
+        .chain([&ALBEDO])
+        .map(|s| (Part::Vocabulary, s))
+        .chain(lights.iter().map(|l| (Part::LightType, &l.declaration.wgsl)))
+        .chain([
+            (Part::LightRecord, &LIGHTS),
+            (Part::Stages, &SHADING),
+            (Part::Model, &model.declaration.wgsl),
+            (Part::Loop, &LOOP),
+            (Part::Mode, &mode.declaration.wgsl),
+            (Part::Wrapper, &WRAPPER),
+        ])
+        .collect::<Vec<_>>();
+    let file = |path: &str| {
+        let source = known.iter().find(|(_, source)| source.path == path);
+        let own = model.declaration.family == Family::Own && path == model.declaration.wgsl.path;
+        let differs = |s: &Source| sources.get(path).is_some_and(|text| text != s.text);
+        let edited = !own && source.is_some_and(|(_, s)| differs(s));
+        File { part: source.map_or(Part::Import, |(part, _)| *part), path: path.to_owned(), edited }
+    };
+    let composed = compose(sources, model, mode, lights);
+    let mut all: Vec<_> = composed.map.files().filter(|path| !path.starts_with('(')).map(file).collect();
+    all.sort_by_key(|file| file.part);
+    all
+}
+
 /// The source for evaluating a model alone in a compute pass: directions in, terms out.
 #[must_use]
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
@@ -391,6 +455,35 @@ mod tests {
         let composed = compose(&sources, &registry.models()[0], &registry.modes()[0], registry.lights());
         assert!(composed.text.contains("// edited"));
         assert!(!composed.text.contains("fn illuminate"));
+    }
+
+    #[test]
+    fn every_file_of_a_composed_source_is_listed_with_what_it_is_for() {
+        let registry = Registry::builtin();
+        let mut sources = Sources::default();
+        sources.edit("loop.wgsl", format!("{}// edited\n", LOOP.text));
+        sources.edit("reflection/phong.wgsl", registry.model("phong").expect("there").declaration.wgsl.text);
+        sources.edit("shading/gouraud.wgsl", "#import \"noise.wgsl\"\n");
+        sources.edit("shading/noise.wgsl", "fn noise() {}");
+        let (model, mode) =
+            (registry.model("phong").expect("there"), registry.mode("gouraud").expect("there"));
+        let all = files(&sources, model, mode, registry.lights());
+        let composed = compose(&sources, model, mode, registry.lights());
+        let real = composed.map.files().filter(|path| !path.starts_with('(')).count();
+        assert_eq!(all.len(), real);
+        let of = |part: Part| {
+            all.iter().filter(|f| f.part == part).map(|f| (f.path.as_str(), f.edited)).collect::<Vec<_>>()
+        };
+        assert_eq!(all[0].part, Part::Model);
+        assert_eq!(of(Part::Model), [("reflection/phong.wgsl", false)], "read from disk, but the same");
+        assert_eq!(of(Part::Mode), [("shading/gouraud.wgsl", true)]);
+        assert_eq!(of(Part::Loop), [("loop.wgsl", true)]);
+        assert_eq!(of(Part::Import), [("shading/noise.wgsl", false)]);
+        assert_eq!(of(Part::LightType).len(), registry.lights().len());
+        assert_eq!(of(Part::Vocabulary).len(), OPTICS.len());
+        for part in [Part::LightRecord, Part::Stages, Part::Wrapper] {
+            assert_eq!(of(part).len(), 1, "{part:?}");
+        }
     }
 
     #[test]

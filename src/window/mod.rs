@@ -30,7 +30,7 @@ use bevy::{
         ExitCondition, PresentMode, PrimaryWindow, RequestRedraw, Window, WindowCloseRequested, WindowPlugin,
         WindowResolution,
     },
-    winit::{UpdateMode, WinitSettings},
+    winit::{EventLoopProxyWrapper, UpdateMode, WinitSettings, WinitUserEvent},
 };
 use bevy_egui::{EguiGlobalSettings, EguiInput, EguiPlugin, EguiPreUpdateSet, PrimaryEguiContext, egui};
 use bevy_panorbit_camera::PanOrbitCameraPlugin;
@@ -44,18 +44,21 @@ use crate::{
     panel::{
         PanelPlugin,
         files::{load_settings, run as run_files},
-        state::{Action, Badge, Effect, Lab, LabEffect, Note},
+        state::{Action, Badge, Effect, Lab, LabEffect, Note, Severity},
         theme::Palette,
     },
     registry::Registry,
     scene::spawn::CurrentScene,
+    shader::{live::LiveShaders, status::ShaderStatus},
 };
 
+pub mod authoring;
 mod camera;
 mod capture;
 pub mod files;
 mod gizmos;
 mod pick;
+mod shaders;
 pub mod watching;
 
 /// The size of a new window, points.
@@ -121,6 +124,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     }
     app.insert_resource(CurrentScene(options.scene.clone())).insert_resource(lab);
     app.insert_resource(files::DiskFiles::new(options.file.clone(), options.stamp));
+    shaders::open(app.world_mut(), &options.folders);
     if let Some(path) = options.open {
         app.add_systems(Startup, move |mut effects: MessageWriter<LabEffect>| {
             effects.write(LabEffect(Effect::OpenFile(path.clone())));
@@ -207,6 +211,7 @@ impl Plugin for WindowSystemsPlugin {
             unfocused_mode: UpdateMode::reactive_low_power(SLEEP),
         })
         .init_resource::<Settling>()
+        .init_resource::<authoring::Editors>()
         .init_resource::<FrameClock>()
         .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin, watching::WatchingPlugin))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
@@ -221,6 +226,7 @@ impl Plugin for WindowSystemsPlugin {
             (
                 (
                     watching::collect,
+                    shaders::follow,
                     watching::watch_document,
                     watching::follow_document,
                     carry_out,
@@ -230,6 +236,7 @@ impl Plugin for WindowSystemsPlugin {
                     .chain()
                     .in_set(LabSystems::Load),
                 scene_to_lab.in_set(LabSystems::Upload),
+                shaders::tell.in_set(LabSystems::Upload).after(scene_to_lab),
             ),
         )
         .add_systems(PostUpdate, (fit_viewport, window_title, redraw));
@@ -289,7 +296,13 @@ fn carry_out(
     mut camera: camera::CameraControl,
     watch: Res<watching::FileWatch>,
     mut exit: MessageWriter<AppExit>,
+    editors: Res<authoring::Editors>,
+    proxy: Option<Res<EventLoopProxyWrapper>>,
+    mut commands: Commands,
 ) {
+    for complaint in editors.take() {
+        lab.say(Severity::Error, complaint);
+    }
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
     pending.reverse();
     while let Some(effect) = pending.pop() {
@@ -309,6 +322,20 @@ fn carry_out(
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
             dialog @ (Effect::PickOpen | Effect::PickSave) => lab.wanted_dialog = Some(dialog),
+            dialog @ Effect::PickShaderFolder => lab.wanted_dialog = Some(dialog),
+            Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {
+                if let Some(folder) = authoring::write(&effect, &mut lab, &registry) {
+                    commands.queue(move |world: &mut World| shaders::move_to(world, &folder));
+                }
+            }
+            Effect::OpenInEditor { path, line } => {
+                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
+                let variable = std::env::var(authoring::EDITOR_VARIABLE).ok();
+                editors.open(variable.as_deref(), &path, line, move || {
+                    // The window sleeps; without it there is nobody to tell.
+                    proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
+                });
+            }
             other => {
                 let more = run_files(&mut lab, &registry, other.clone(), &mut *files);
                 // What comes back unchanged is nobody's.
@@ -415,12 +442,14 @@ struct Snapshot {
     messages: Vec<Note>,
     badges: Vec<Badge>,
     question: bool,
+    shaders: ShaderStatus,
 }
 
 /// Asks for another frame while something changes, and for none when nothing does.
 fn redraw(
     lab: Res<Lab>,
     terms: Res<ShownTerms>,
+    live: Res<LiveShaders>,
     cameras: Query<&bevy::transform::components::Transform, With<PictureCamera>>,
     mut settling: ResMut<Settling>,
     mut requests: MessageWriter<RequestRedraw>,
@@ -434,9 +463,14 @@ fn redraw(
         messages: lab.messages.clone(),
         badges: lab.disk.badge.iter().chain(&lab.badges).cloned().collect(),
         question: lab.question.is_some(),
+        shaders: lab.shaders.clone(),
     };
     if settling.last.as_deref() != Some(&now) {
         settling.last = Some(Box::new(now));
+        settling.frames = settling.frames.max(SETTLING_FRAMES);
+    }
+    if live.is_busy() {
+        // Problems are told after a while, and what is not on the picture is tried one in a frame.
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }
     if settling.frames > 0 {

@@ -22,6 +22,7 @@ mod scene_reload;
 mod scene_roundtrip;
 mod schema;
 mod screen;
+mod shader_panel;
 mod study;
 mod support;
 mod tangents;

@@ -4,7 +4,10 @@
 //! `LCM_PANEL_PICTURES=folder` also writes pictures of the window in many states, drawn in software,
 //! to be looked at.
 
-use std::{collections::HashMap, path::PathBuf};
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+};
 
 use bevy_egui::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, TextureId, accesskit, epaint, pos2,
@@ -152,40 +155,43 @@ fn crowd() -> Registry {
 }
 
 /// A window that exists in memory only.
-struct Bench {
-    ctx: egui::Context,
-    lab: Lab,
-    registry: Registry,
-    panels: Panels,
-    dialogs: Dialogs,
-    size: egui::Vec2,
+pub struct Bench {
+    pub ctx: egui::Context,
+    pub lab: Lab,
+    pub registry: Registry,
+    pub panels: Panels,
+    pub dialogs: Dialogs,
+    pub size: egui::Vec2,
     time: f64,
-    tree: Vec<Seen>,
-    effects: Vec<Effect>,
+    pub tree: Vec<Seen>,
+    pub effects: Vec<Effect>,
+    /// What was put on the clipboard last.
+    pub copied: Option<String>,
+    shapes: Vec<egui::Shape>,
     painter: Painter,
 }
 
 /// A widget as a screen reader sees it.
 #[derive(Clone, Debug)]
-struct Seen {
-    role: accesskit::Role,
-    label: String,
-    disabled: bool,
-    rect: Rect,
+pub struct Seen {
+    pub role: accesskit::Role,
+    pub label: String,
+    pub disabled: bool,
+    pub rect: Rect,
 }
 
 impl Bench {
-    fn new(lab: Lab) -> Self {
+    pub fn new(lab: Lab) -> Self {
         Self::with_registry(lab, Registry::builtin())
     }
 
     /// A window on a sphere under the model [`Everything`], among many models.
-    fn with_everything() -> Self {
+    pub fn with_everything() -> Self {
         let scene = Scene { reflection_model: "everything".to_owned(), ..Scene::default() };
         Self::with_registry(Lab::new(scene), crowd())
     }
 
-    fn with_registry(lab: Lab, registry: Registry) -> Self {
+    pub fn with_registry(lab: Lab, registry: Registry) -> Self {
         let ctx = egui::Context::default();
         ctx.enable_accesskit();
         let mut bench = Self {
@@ -198,18 +204,20 @@ impl Bench {
             time: 0.0,
             tree: Vec::new(),
             effects: Vec::new(),
+            copied: None,
+            shapes: Vec::new(),
             painter: Painter::default(),
         };
         bench.settle();
         bench
     }
 
-    fn with_model(model: &str) -> Self {
+    pub fn with_model(model: &str) -> Self {
         Self::new(Lab::new(Scene { reflection_model: model.to_owned(), ..Scene::default() }))
     }
 
     /// Runs one frame with the given events.
-    fn frame(&mut self, events: Vec<Event>) -> Vec<epaint::ClippedPrimitive> {
+    pub fn frame(&mut self, events: Vec<Event>) -> Vec<epaint::ClippedPrimitive> {
         self.time += 1.0 / 30.0;
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size)),
@@ -239,22 +247,28 @@ impl Bench {
                 })
                 .collect();
         }
+        for command in &output.platform_output.commands {
+            if let egui::OutputCommand::CopyText(text) = command {
+                self.copied = Some(text.clone());
+            }
+        }
+        self.shapes = output.shapes.iter().map(|clipped| clipped.shape.clone()).collect();
         self.painter.take(&mut output.textures_delta);
         self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point)
     }
 
-    fn settle(&mut self) {
+    pub fn settle(&mut self) {
         for _ in 0..6 {
             self.frame(Vec::new());
         }
     }
 
     /// The first widget with this label.
-    fn find(&self, label: &str) -> Option<&Seen> {
+    pub fn find(&self, label: &str) -> Option<&Seen> {
         self.tree.iter().find(|s| s.label == label)
     }
 
-    fn field(&self, label: &str) -> Seen {
+    pub fn field(&self, label: &str) -> Seen {
         let text = |s: &&Seen| matches!(s.role, accesskit::Role::TextInput);
         let Some(seen) = self.tree.iter().filter(text).find(|s| s.label == label) else {
             panic!(
@@ -265,7 +279,7 @@ impl Bench {
         seen.clone()
     }
 
-    fn click_at(&mut self, at: Pos2, button: PointerButton) {
+    pub fn click_at(&mut self, at: Pos2, button: PointerButton) {
         let press = |pressed| Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE };
         self.frame(vec![Event::PointerMoved(at)]);
         self.frame(vec![press(true)]);
@@ -273,7 +287,7 @@ impl Bench {
         self.settle();
     }
 
-    fn click(&mut self, label: &str) {
+    pub fn click(&mut self, label: &str) {
         let Some(seen) = self.find(label) else {
             panic!(
                 "nothing is called “{label}”; there are {:?}",
@@ -284,7 +298,7 @@ impl Bench {
         self.click_at(at, PointerButton::Primary);
     }
 
-    fn key(&mut self, key: Key, modifiers: Modifiers) {
+    pub fn key(&mut self, key: Key, modifiers: Modifiers) {
         let event = |pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
         self.frame(vec![Event::ModifiersChanged(modifiers), event(true)]);
         self.frame(vec![event(false), Event::ModifiersChanged(Modifiers::NONE)]);
@@ -292,7 +306,7 @@ impl Bench {
     }
 
     /// Presses a letter as a keyboard does: a key and a text.
-    fn letter(&mut self, key: Key, text: &str) {
+    pub fn letter(&mut self, key: Key, text: &str) {
         let modifiers = Modifiers::NONE;
         let event = Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
         self.frame(vec![event, Event::Text(text.to_owned())]);
@@ -300,12 +314,12 @@ impl Bench {
     }
 
     /// Rests the pointer somewhere until the tooltip is there.
-    fn hover(&mut self, at: Pos2) {
+    pub fn hover(&mut self, at: Pos2) {
         self.frame(vec![Event::PointerMoved(at)]);
         (0..30).for_each(|_| drop(self.frame(Vec::new())));
     }
 
-    fn type_into(&mut self, label: &str, text: &str) {
+    pub fn type_into(&mut self, label: &str, text: &str) {
         let at = self.field(label).rect.center();
         self.click_at(at, PointerButton::Primary);
         self.key(Key::A, Modifiers::COMMAND | Modifiers::CTRL);
@@ -317,14 +331,45 @@ impl Bench {
         self.settle();
     }
 
-    fn apply(&mut self, action: Action) {
+    pub fn apply(&mut self, action: Action) {
         let effects = self.lab.apply(action, &self.registry);
         self.effects.extend(effects);
         self.settle();
     }
 
-    fn says(&self, words: &str) -> bool {
+    pub fn says(&self, words: &str) -> bool {
         self.tree.iter().any(|s| s.label.contains(words))
+    }
+
+    /// What the last frame painted.
+    pub fn shapes(&mut self) -> Vec<egui::Shape> {
+        self.frame(Vec::new());
+        fn flat(shape: egui::Shape, all: &mut Vec<egui::Shape>) {
+            match shape {
+                egui::Shape::Vec(shapes) => shapes.into_iter().for_each(|s| flat(s, all)),
+                shape => all.push(shape),
+            }
+        }
+        let mut all = Vec::new();
+        std::mem::take(&mut self.shapes).into_iter().for_each(|s| flat(s, &mut all));
+        all
+    }
+
+    /// Draws the window in software and writes it to a file, over this colour in the place of the picture.
+    pub fn picture(&mut self, file: &Path, ground: egui::Color32) -> Result<(), Box<dyn std::error::Error>> {
+        // Tooltips wait for the pointer to rest.
+        for _ in 0..30 {
+            self.frame(Vec::new());
+        }
+        let primitives = self.frame(Vec::new());
+        let size = (self.size.x as usize, self.size.y as usize);
+        let picture = self.painter.draw(&primitives, size, ground);
+        let file = std::fs::File::create(file)?;
+        let mut encoder = png::Encoder::new(file, size.0 as u32, size.1 as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.write_header()?.write_image_data(&picture)?;
+        Ok(())
     }
 }
 
@@ -1230,18 +1275,8 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         bench.size = vec2(*width, *height);
         bench.settle();
         setup(&mut bench);
-        // Tooltips wait for the pointer to rest.
-        for _ in 0..30 {
-            bench.frame(Vec::new());
-        }
-        let primitives = bench.frame(Vec::new());
         let surround = panel::theme::Palette::of(&bench.lab.view).surround;
-        let picture = bench.painter.draw(&primitives, (*width as usize, *height as usize), surround);
-        let file = std::fs::File::create(folder.join(format!("{name}.png")))?;
-        let mut encoder = png::Encoder::new(file, *width as u32, *height as u32);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.write_header()?.write_image_data(&picture)?;
+        bench.picture(&folder.join(format!("{name}.png")), surround)?;
     }
     Ok(())
 }

@@ -1,0 +1,400 @@
+//! Models and shaders of one's own: what the window asks before it writes a file, and where the files
+//! are that an editor can open.
+
+use std::path::PathBuf;
+
+use bevy_egui::egui::{
+    self, Align, Button, Id, Key, Layout, RichText, TextEdit, Ui, WidgetInfo, Window, vec2,
+};
+
+use super::{
+    icon,
+    state::{Action, Effect, Lab, Severity},
+    theme::{self, Palette},
+};
+use crate::{reflection::own::source_path, registry::Registry, shader::status::ShaderStatus};
+
+/// Id of the panel that shows the shaders.
+pub const SHADER_TAB: &str = "shader";
+/// The most characters that the id of a model may have.
+const LONGEST_ID: usize = 40;
+
+/// What can be asked about models and shaders of one's own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// Begin a new model: ask what it shall be called.
+    New,
+    /// Begin a copy of the shown model: ask what it shall be called.
+    Duplicate,
+    /// What was typed as the id of the model.
+    Type(String),
+    /// Write the file of the model.
+    Create,
+    /// Do not write it.
+    Cancel,
+    /// Open the file of the shown model in an editor.
+    EditShown,
+    /// Open a file in an editor.
+    Edit {
+        /// The file.
+        path: PathBuf,
+        /// The line to go to, from 1.
+        line: usize,
+    },
+    /// Choose a folder and write the shaders into it.
+    ExportDialog,
+    /// Write the shaders into a folder.
+    Export(PathBuf),
+}
+
+/// A model that is about to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ModelDraft {
+    /// Id of the model that is copied; none for a new one.
+    pub of: Option<String>,
+    /// Its id, as typed.
+    pub id: String,
+}
+
+/// Whether an id is good for a new model.
+///
+/// # Errors
+/// A sentence that says what an id must be, with one that would do.
+pub fn check_id(id: &str, registry: &Registry) -> Result<(), String> {
+    if id.is_empty() {
+        return Err("Type a name, such as my_velvet.".to_owned());
+    }
+    if !is_plain(id) {
+        return Err(match plain(id) {
+            Some(better) => format!(
+                "Only lower-case letters a–z, digits and _, beginning with a letter: {better} would do."
+            ),
+            None => "Only lower-case letters a–z, digits and _, beginning with a letter.".to_owned(),
+        });
+    }
+    if id.len() > LONGEST_ID {
+        return Err(format!("At most {LONGEST_ID} characters; these are {}.", id.len()));
+    }
+    // A file that gives no model is a file too.
+    let broken = registry.broken_model(id).map(|_| source_path(id));
+    let taken = registry.model(id).map(|m| m.declaration.name.to_owned()).or(broken);
+    match taken {
+        Some(by) => Err(format!("{by} has this name already; {} is free.", free_id(id, registry))),
+        None => Ok(()),
+    }
+}
+
+fn is_plain(id: &str) -> bool {
+    let rest = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    id.starts_with(|c: char| c.is_ascii_lowercase()) && id.chars().all(rest)
+}
+
+/// What was typed, as an id: `My Velvet!` becomes `my_velvet`.
+fn plain(text: &str) -> Option<String> {
+    let joined: String = text
+        .to_lowercase()
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
+        .skip_while(|c| !c.is_ascii_lowercase())
+        .collect();
+    let id: String = joined.split('_').filter(|s| !s.is_empty()).collect::<Vec<_>>().join("_");
+    let id: String = id.chars().take(LONGEST_ID).collect();
+    (!id.is_empty()).then_some(id)
+}
+
+/// An id that no model has: the one given, or that with a number.
+fn free_id(id: &str, registry: &Registry) -> String {
+    let taken = |id: &str| registry.model(id).is_some() || registry.broken_model(id).is_some();
+    let numbered = (2..).map(|n| format!("{id}_{n}"));
+    std::iter::once(id.to_owned()).chain(numbered).find(|id| !taken(id)).unwrap_or_default()
+}
+
+/// Where the file of a shader is on disk, or will be, by the path that messages name; none for built-in copies.
+#[must_use]
+pub fn on_disk(status: &ShaderStatus, path: &str) -> Option<PathBuf> {
+    match path.strip_prefix("models/") {
+        Some(own) => Some(status.models.as_ref()?.join(own)),
+        None => Some(status.shaders.as_ref()?.join(path)),
+    }
+}
+
+impl Lab {
+    /// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that
+    /// tells of it, and a model that was asked for is chosen once it is there.
+    pub fn notice_shaders(&mut self, registry: &Registry) {
+        // Without line and column: a problem that moves while one types above it is not a new one.
+        let now: Vec<_> = self
+            .shaders
+            .troubles
+            .iter()
+            .map(|t| (t.problem.file.clone(), t.problem.message.clone()))
+            .collect();
+        if now.iter().any(|trouble| !self.seen_troubles.contains(trouble)) {
+            self.view.bottom_open = true;
+            SHADER_TAB.clone_into(&mut self.view.bottom_tab);
+        }
+        self.seen_troubles = now;
+        if let Some(id) = self.wanted_model.take_if(|id| registry.model(id).is_some()) {
+            let edit = self.edit_model(&id);
+            // An edit asks for no file.
+            let _ = self.apply(Action::Edit(edit), registry);
+        }
+    }
+
+    /// Carries out what is asked about models and shaders of one's own.
+    pub(super) fn author(&mut self, ask: Ask, registry: &Registry) -> Vec<Effect> {
+        match ask {
+            Ask::New => self.draft = Some(ModelDraft { of: None, id: free_id("my_model", registry) }),
+            Ask::Duplicate => {
+                let of = self.model_shown().to_owned();
+                if registry.model(&of).is_none() {
+                    self.say(Severity::Warning, format!("The model “{of}” is not there to be copied."));
+                    return Vec::new();
+                }
+                let id = free_id(&format!("my_{}", of.trim_start_matches("my_")), registry);
+                self.draft = Some(ModelDraft { of: Some(of), id });
+            }
+            Ask::Type(text) => {
+                if let Some(draft) = &mut self.draft {
+                    draft.id = text;
+                }
+            }
+            Ask::Create => return self.create(registry),
+            Ask::Cancel => self.draft = None,
+            Ask::EditShown => return self.edit_shown(registry),
+            Ask::Edit { path, line } => return vec![Effect::OpenInEditor { path, line }],
+            Ask::ExportDialog => return vec![Effect::PickShaderFolder],
+            Ask::Export(folder) => return vec![Effect::ExportShaders(folder)],
+        }
+        Vec::new()
+    }
+
+    fn create(&mut self, registry: &Registry) -> Vec<Effect> {
+        // What is wrong stands beside the field.
+        let Some(draft) = self.draft.take_if(|draft| check_id(&draft.id, registry).is_ok()) else {
+            return Vec::new();
+        };
+        let ModelDraft { of, id } = draft;
+        vec![match of {
+            Some(model) => Effect::DuplicateModel { model, id },
+            // Its file will say what people call it.
+            None => Effect::NewModel { name: id.clone(), id },
+        }]
+    }
+
+    fn edit_shown(&mut self, registry: &Registry) -> Vec<Effect> {
+        let id = self.model_shown();
+        let path = registry.model(id).map_or_else(|| source_path(id), |m| m.declaration.wgsl.path.to_owned());
+        match on_disk(&self.shaders, &path) {
+            Some(file) => vec![Effect::OpenInEditor { path: file, line: self.line_of_trouble(&path) }],
+            None => {
+                self.say(Severity::Info, BUILT_IN);
+                SHADER_TAB.clone_into(&mut self.view.bottom_tab);
+                self.view.bottom_open = true;
+                Vec::new()
+            }
+        }
+    }
+
+    /// The line of the first problem in a file; 1 when there is none.
+    #[must_use]
+    pub fn line_of_trouble(&self, path: &str) -> usize {
+        self.shaders.troubles.iter().find(|t| t.problem.file == path).map_or(1, |t| t.problem.line)
+    }
+}
+
+/// Why a file cannot be opened.
+pub const BUILT_IN: &str = "The shaders are built in, so there is no file to open. Write them out for editing first: \
+     Edit, “Write the shaders out for editing…”. Or copy the model as a file.";
+
+/// The buttons about own models, for the chooser and the panel.
+pub fn buttons(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    let mut actions = Vec::new();
+    let shown = registry.model(lab.model_shown()).map(|m| m.declaration);
+    let name = shown.map_or(lab.model_shown(), |d| d.name);
+    ui.horizontal_wrapped(|ui| {
+        let new = ui.button("New model…").on_hover_text(
+            "Writes a file with a small model that works, to be changed in an editor while the picture follows.",
+        );
+        if new.clicked() {
+            actions.push(Action::Author(Ask::New));
+        }
+        let copy = ui
+            .add_enabled(shown.is_some(), Button::new("Duplicate as a file…"))
+            .on_hover_text(format!("Writes {name} into a file of your own, to be changed in an editor."));
+        if copy.clicked() {
+            actions.push(Action::Author(Ask::Duplicate));
+        }
+        let path = shown.map_or_else(|| source_path(lab.model_shown()), |d| d.wgsl.path.to_owned());
+        let file = on_disk(&lab.shaders, &path);
+        let open = ui
+            .add_enabled(file.is_some(), Button::new("Open in editor"))
+            .on_disabled_hover_text(BUILT_IN)
+            .on_hover_text(file.map_or_else(String::new, |f| f.display().to_string()));
+        if open.clicked() {
+            actions.push(Action::Author(Ask::EditShown));
+        }
+    });
+    actions
+}
+
+/// Asks what a new model shall be called, while there is a draft. Stands in nobody's way.
+pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    let Some(draft) = &lab.draft else {
+        ctx.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
+        return Vec::new();
+    };
+    let mut actions = Vec::new();
+    let scale = theme::scale(&lab.view);
+    let title = match &draft.of {
+        Some(of) => {
+            let name = registry.model(of).map_or(of.as_str(), |m| m.declaration.name);
+            format!("{name} as a file of your own")
+        }
+        None => "A new reflection model".to_owned(),
+    };
+    let mut open = true;
+    Window::new(RichText::new(title).heading())
+        .id(Id::new("model draft"))
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_width(440.0 * scale)
+        .pivot(egui::Align2::CENTER_CENTER)
+        .default_pos(lab.picture_rect.center())
+        .show(ctx, |ui| {
+            ui.set_width(440.0 * scale);
+            actions.extend(ask(ui, lab, registry, draft));
+        });
+    if !open || ctx.input(|i| i.key_pressed(Key::Escape)) {
+        actions.push(Action::Author(Ask::Cancel));
+    }
+    actions
+}
+
+const FOCUSED: &str = "model draft focused";
+
+fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<Action> {
+    let mut actions = Vec::new();
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let checked = check_id(&draft.id, registry);
+    ui.label("Its name in scene files, and that of its file");
+    let mut text = draft.id.clone();
+    let stroke = match &checked {
+        Ok(()) => egui::Stroke::new(1.5, palette.accent),
+        Err(_) => egui::Stroke::new(1.5, palette.error),
+    };
+    let id = Id::new("model draft id");
+    let edit = TextEdit::singleline(&mut text)
+        .id(id)
+        .font(egui::TextStyle::Monospace)
+        .desired_width(f32::INFINITY)
+        .frame(
+            egui::Frame::new()
+                .fill(palette.field)
+                .stroke(stroke)
+                .corner_radius(4.0)
+                .inner_margin(egui::Margin::symmetric((6.0 * scale) as i8, (5.0 * scale) as i8)),
+        )
+        .show(ui);
+    let response = edit.response.response;
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(true, &draft.id, &text, "");
+        info.label = Some("Name of the model".to_owned());
+        info
+    });
+    if !ui.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default(Id::new(FOCUSED)), true)) {
+        response.request_focus();
+        // Typing replaces the proposal.
+        let mut state = edit.state;
+        let all = egui::text::CCursorRange::two(
+            egui::text::CCursor::new(0),
+            egui::text::CCursor::new(draft.id.chars().count()),
+        );
+        state.cursor.set_char_range(Some(all));
+        state.store(ui.ctx(), id);
+    }
+    if response.changed() {
+        actions.push(Action::Author(Ask::Type(text)));
+    }
+    ui.add_space(2.0 * scale);
+    match &checked {
+        Ok(()) => {
+            let path = on_disk(&lab.shaders, &source_path(&draft.id));
+            let path = path.map_or_else(|| source_path(&draft.id), |p| p.display().to_string());
+            ui.add(egui::Label::new(theme::small(ui, format!("Will be written to {path}"))).wrap());
+        }
+        Err(why) => {
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().item_spacing.x = 6.0 * scale;
+                let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0) * scale, egui::Sense::hover());
+                icon::severity(ui.painter(), rect.center(), 5.5 * scale, Severity::Error, &palette);
+                ui.add(egui::Label::new(RichText::new(why).small().color(palette.error)).wrap());
+            });
+        }
+    }
+    let what = "It is chosen as soon as it is there, and listed under “Own files”. The first lines of the file say \
+                what people call it and which knobs it has.";
+    ui.add(egui::Label::new(theme::small(ui, what)).wrap());
+    ui.add_space(12.0 * scale);
+    let enter = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+    let line = vec2(ui.available_width(), 28.0 * scale);
+    ui.allocate_ui_with_layout(line, Layout::right_to_left(Align::Center), |ui| {
+        let mut button = Button::new(theme::strong(ui, "Write the file")).min_size(vec2(80.0, 28.0) * scale);
+        if checked.is_ok() {
+            button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
+        }
+        if ui.add_enabled(checked.is_ok(), button).clicked() || enter {
+            actions.push(Action::Author(Ask::Create));
+        }
+        if ui.add(Button::new("Cancel").min_size(vec2(80.0, 28.0) * scale)).clicked() {
+            actions.push(Action::Author(Ask::Cancel));
+        }
+    });
+    if enter && checked.is_err() {
+        response.request_focus();
+    }
+    actions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_lower_case_and_free_and_the_message_says_one_that_would_do() {
+        let registry = Registry::builtin();
+        for good in ["my_velvet", "x", "ggx2", "a_1_b"] {
+            assert_eq!(check_id(good, &registry), Ok(()), "{good}");
+        }
+        for (bad, word) in [
+            ("", "such as my_velvet"),
+            ("My Velvet", "my_velvet would do"),
+            ("velvet!", "velvet would do"),
+            ("2fast", "fast would do"),
+            ("_x", "x would do"),
+            ("../evil", "evil would do"),
+            ("größe", "gr_e would do"),
+            ("漢字", "beginning with a letter."),
+            ("phong", "Phong has this name already; phong_2 is free"),
+        ] {
+            let said = check_id(bad, &registry).expect_err(bad);
+            assert!(said.contains(word), "{bad}: {said}");
+        }
+        assert!(check_id(&"x".repeat(LONGEST_ID), &registry).is_ok());
+        assert!(check_id(&"x".repeat(LONGEST_ID + 1), &registry).is_err());
+    }
+
+    #[test]
+    fn what_is_proposed_is_an_id() {
+        for text in ["My Velvet", "a--b", "  x  ", "Ö1z9", "__a__", &"Long ".repeat(30)] {
+            let better = plain(text).expect("a letter");
+            assert!(is_plain(&better) && better.len() <= LONGEST_ID, "{text}: {better}");
+        }
+        let mut registry = Registry::builtin();
+        registry.mark_broken("my_velvet", "why".to_owned());
+        let said = check_id("my_velvet", &registry).expect_err("there is a file");
+        assert!(said.contains("models/my_velvet.wgsl has this name already; my_velvet_2 is free"), "{said}");
+    }
+}
