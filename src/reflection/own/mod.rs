@@ -48,8 +48,8 @@ mod surface;
 mod text;
 mod write;
 
-pub use text::MARKER;
 pub use surface::OnCpu;
+pub use text::MARKER;
 pub use write::{NotDuplicated, duplicate, id_of_name, template};
 
 /// The ending of the files.
