@@ -31,6 +31,8 @@ const MODEL_KEYS: &[&str] =
 const PART_KEYS: &[&str] = &["term", "text"];
 /// The longest name of a model, symbol or label, characters.
 pub(super) const LONGEST_NAME: usize = 60;
+/// The most brackets of a declaration.
+const MOST_BRACKETS: usize = 600;
 /// The longest text, characters.
 pub(super) const LONGEST_TEXT: usize = 2000;
 
@@ -56,6 +58,11 @@ pub(super) struct Said {
 /// Everything that is wrong with it.
 pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Vec<Mistake>> {
     let comment = comment(text).map_err(|mistake| vec![mistake])?;
+    // The parser goes as deep as the brackets do.
+    if comment.json.matches(['[', '{']).count() > MOST_BRACKETS {
+        let what = format!("the declaration has more than {MOST_BRACKETS} brackets, which none needs");
+        return Err(vec![(comment.start, what)]);
+    }
     let options = ParseOptions {
         allow_comments: true,
         allow_trailing_commas: true,

@@ -118,7 +118,7 @@ pub fn duplicate(entry: &ModelEntry, sources: &Sources, id: &str) -> Result<Stri
     let source = sources.text(&d.wgsl);
     // Of a model from a file everything but the declaration is copied; that is written anew.
     let body = comment(source).map_or(source, |c| &source[c.end..]).trim_start();
-    let name = format!("{} (copy)", d.name);
+    let name = if id == format!("{}_copy", d.id) { format!("{} (copy)", d.name) } else { humanised(id) };
     // Writing to a String cannot fail; here and below.
     let mut out = format!("/* {MARKER}\n{{\n");
     for (key, value) in
