@@ -79,7 +79,8 @@ impl Places {
             registry.set_shader_folder(shaders);
         }
         if let Some(models) = &folders.models {
-            tell(&own::read_folder(models, &mut registry, true));
+            // The window itself tells of what is wrong.
+            let _ = own::read_folder(models, &mut registry, true);
         }
         Ok(Workshop { registry, folders })
     }

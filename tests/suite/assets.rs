@@ -148,7 +148,12 @@ fn a_model_is_duplicated_to_a_file() {
     // A copy of the copy, under a name.
     let again = run(folder.path(), "models duplicate microfacet_copy other --models models", "");
     assert_eq!(again.out.trim(), "models/other.wgsl", "{}", again.err);
-    assert!(run(folder.path(), "models --models models", "").out.contains("models/other.wgsl"));
+    let table = run(folder.path(), "models --models models", "").out;
+    assert!(table.contains("models/other.wgsl"), "{table}");
+    let named = |id: &str, name: &str| {
+        table.lines().any(|l| l.split_whitespace().next() == Some(id) && l.contains(name))
+    };
+    assert!(named("microfacet_copy", "Microfacet (copy)") && named("other", "Other"), "{table}");
     let unknown = run(folder.path(), "models duplicate fong --models models", "");
     assert!(unknown.status == Some(2) && unknown.err.contains("did you mean \"phong\"?"), "{}", unknown.err);
 }
@@ -176,6 +181,28 @@ fn pictures_of_own_models_come_from_both_renderers() {
     let off = cpu.iter().zip(&gpu).filter(|(a, b)| a.abs_diff(**b) > 2).count();
     assert!(off * 50 < cpu.len(), "{off} of {}", cpu.len());
     assert!(cpu.iter().any(|v| *v > 60));
+}
+
+#[test]
+fn what_the_cpu_does_not_know_is_said_and_the_graphics_card_does_it() {
+    let folder = workplace();
+    put(folder.path(), "table.wgsl", &model("parameter_table[object_row].parameters.base_colour.r * cos_l"));
+    let run = |arguments: &str, input| run(folder.path(), &format!("{arguments} --models models"), input);
+    for (command, input) in [("evaluate table", ANGLES), ("albedo table", "mu\n1\n")] {
+        let said = run(command, input);
+        assert_eq!(said.status, Some(3), "{command}: {}", said.err);
+        let expected = "table cannot be run on the CPU, which interprets own models: ";
+        assert!(said.err.contains(expected) && said.err.contains("with --on gpu"), "{}", said.err);
+        assert_eq!(run(&format!("{command} --on gpu"), input).status, Some(0));
+    }
+    let said = run("render --reflection table --size 8x8 --renderer cpu -o x.png", "");
+    assert!(said.status == Some(3) && said.err.contains("with --renderer gpu"), "{}", said.err);
+    assert!(!folder.path().join("x.png").exists());
+    let drawn = run("render --reflection table --size 8x8 -o x.png", "");
+    assert_eq!(drawn.status, Some(0), "{}", drawn.err);
+    let file = fs::File::open(folder.path().join("x.png")).unwrap();
+    let info = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
+    assert!(info.info().uncompressed_latin1_text.iter().any(|t| t.keyword == "Renderer" && t.text == "GPU"));
 }
 
 #[test]

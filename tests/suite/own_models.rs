@@ -575,6 +575,41 @@ fn the_model_in_the_readme_works_and_keeps_what_it_claims() {
 }
 
 #[test]
+fn no_damage_to_a_file_makes_the_program_panic() {
+    let registry = Registry::builtin();
+    let whole: Vec<char> = own::template("mine", "Mine").chars().collect();
+    let mut random = Random(21);
+    let mut refused = 0;
+    for _ in 0..300 {
+        let mut text = whole.clone();
+        for _ in 0..1 + (random.unit() * 4.0) as usize {
+            let at = (random.unit() * text.len() as f32) as usize;
+            match (random.unit() * 4.0) as u32 {
+                0 => text.truncate(at),
+                1 => drop(text.drain(at..(at + 9).min(text.len()))),
+                2 => text
+                    .insert(at, ['"', '{', '*', '/', 'é', '\u{0}', '-', ']'][(random.unit() * 8.0) as usize]),
+                _ => text.rotate_left(at / 9),
+            }
+        }
+        let text: String = text.into_iter().collect();
+        if let Err(problems) = own::read(&path("mine"), &text, &registry) {
+            refused += 1;
+            for problem in problems {
+                let line = text.lines().nth(problem.line - 1).unwrap_or_default();
+                let ours = problem.file == "models/mine.wgsl";
+                assert!(!ours || problem.source.trim_end() == line.trim_end(), "{problem}\n{text}");
+            }
+        }
+        let _ = own::declare(&path("mine"), &text, &registry);
+    }
+    assert!(refused > 200, "{refused}");
+    for deep in ["[".repeat(100_000), "{\"a\":".repeat(50_000)] {
+        assert!(said(&deep).contains("the declaration has more than 600 brackets"));
+    }
+}
+
+#[test]
 fn a_loop_without_end_is_told_and_not_waited_for() {
     let text = matt("{}").replace(
         "return Terms(",

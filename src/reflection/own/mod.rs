@@ -43,11 +43,13 @@ use crate::{
 
 mod declaration;
 mod intern;
+mod knobs;
 mod surface;
+mod text;
 mod write;
 
-pub use declaration::MARKER;
 pub use surface::OnCpu;
+pub use text::MARKER;
 pub use write::{NotDuplicated, duplicate, id_of_name, template};
 
 /// The ending of the files.
@@ -87,14 +89,14 @@ pub fn id_of(path: &Path) -> Option<&str> {
 /// Whether a word can be the id of a model: lower-case letters, digits and underscores, a letter first.
 #[must_use]
 pub fn is_id(word: &str) -> bool {
-    declaration::identifier(word).is_ok()
+    text::identifier(word).is_ok()
 }
 
 /// Whether a text is that of a model: it declares one, or defines `response`. Other files of the folder hold
 /// functions that models share.
 #[must_use]
 pub fn is_model(text: &str) -> bool {
-    declaration::comment(text).is_ok() || declaration::definition(text, "response").is_some()
+    text::comment(text).is_ok() || text::definition(text, "response").is_some()
 }
 
 /// The WGSL files in a folder, by name; none where there is no folder.
@@ -145,7 +147,7 @@ pub fn text_of(path: &Path) -> Result<String, ShaderProblem> {
     let text = String::from_utf8(bytes).map_err(|e| {
         let good = e.utf8_error().valid_up_to();
         let before = String::from_utf8_lossy(&e.as_bytes()[..good]).into_owned();
-        let (line, column, source) = place(&before, before.len());
+        let (line, column, source) = text::place(&before, before.len());
         failed(line, column, source, "this is not UTF-8 text; save the file as UTF-8".to_owned())
     })?;
     Ok(text.strip_prefix('\u{FEFF}').map_or(text.clone(), str::to_owned))
@@ -156,20 +158,9 @@ fn named(path: &Path) -> String {
     format!("models/{}", path.file_name().unwrap_or_default().to_string_lossy())
 }
 
-/// Line and column of a byte, both from 1, and the line; columns count characters.
-fn place(text: &str, at: usize) -> (usize, usize, &str) {
-    let mut at = at.min(text.len());
-    while !text.is_char_boundary(at) {
-        at -= 1;
-    }
-    let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
-    let line = text[..start].matches('\n').count() + 1;
-    (line, text[start..at].chars().count() + 1, text[start..].lines().next().unwrap_or_default())
-}
-
 /// A problem at a byte of a model's file.
-fn problem(path: &Path, text: &str, (at, message): declaration::Mistake) -> ShaderProblem {
-    let (line, column, source) = place(text, at);
+fn problem(path: &Path, text: &str, (at, message): text::Mistake) -> ShaderProblem {
+    let (line, column, source) = text::place(text, at);
     ShaderProblem { file: named(path), line, column, source: source.to_owned(), message }
 }
 
@@ -181,8 +172,8 @@ fn problem(path: &Path, text: &str, (at, message): declaration::Mistake) -> Shad
 pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel, Vec<ShaderProblem>> {
     let (model, lobe) = declared(path, text, registry)?;
     let problem_at = |at, message: String| vec![problem(path, text, (at, message))];
-    if declaration::definition(text, "response").is_none() {
-        let end = declaration::comment(text).map_or(0, |c| c.end);
+    if text::definition(text, "response").is_none() {
+        let end = text::comment(text).map_or(0, |c| c.end);
         return Err(problem_at(end, format!("the function response is missing; it is {RESPONSE}")));
     }
     let mut sources = registry.sources().clone();
@@ -190,7 +181,7 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel, Ve
     let module = check::validate(&compose_evaluation(&sources, &model.entry)).map_err(|found| {
         // What calls the model is not what is wrong.
         if found.file == crate::shader::compose::EVALUATE.path
-            && let Some(at) = declaration::definition(text, "response")
+            && let Some(at) = text::definition(text, "response")
         {
             return problem_at(at, format!("response must be {RESPONSE}: {}", found.message));
         }
@@ -198,7 +189,7 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel, Ve
     })?;
     if model.entry.declaration.ambient == Ambient::Formula
         && !has_ambient_signature(&module)
-        && let Some(at) = declaration::definition(text, "ambient_response")
+        && let Some(at) = text::definition(text, "ambient_response")
     {
         return Err(problem_at(at, format!("ambient_response must be {AMBIENT_RESPONSE}")));
     }
@@ -209,7 +200,7 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel, Ve
             // What the light loop, a light or a mode calls its own comes after the model, and is told to be there twice.
             let name =
                 found.message.strip_prefix("redefinition of `").and_then(|rest| rest.split('`').next());
-            match name.and_then(|name| Some((name, defined_at(text, name)?))) {
+            match name.and_then(|name| Some((name, text::defined_at(text, name)?))) {
                 Some((name, at)) if found.file != model.entry.declaration.wgsl.path => {
                     problem_at(at, format!("{} defines {name} too; choose another name", found.file))
                 }
@@ -230,19 +221,6 @@ pub fn declare(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel,
     declared(path, text, registry).map(|(model, _)| model)
 }
 
-/// The byte where a text defines something of that name.
-fn defined_at(text: &str, name: &str) -> Option<usize> {
-    let word = |c: char| c.is_alphanumeric() || c == '_';
-    let plain = declaration::without_comments(text);
-    plain.match_indices(name).map(|(at, _)| at).find(|at| {
-        let whole = !plain[..*at].ends_with(word) && !plain[at + name.len()..].starts_with(word);
-        let before = plain[..*at].trim_end();
-        let defines =
-            ["fn", "struct", "const", "var", "alias", "override", ">"].iter().any(|w| before.ends_with(w));
-        whole && defines
-    })
-}
-
 /// What the functions of a model are, for messages.
 const RESPONSE: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms";
 const AMBIENT_RESPONSE: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>";
@@ -257,7 +235,7 @@ fn declared(
     let id = usable_id(path, registry).map_err(|what| vec![wrong((0, what))])?;
     let said = declaration::read(text, id, registry)
         .map_err(|mistakes| mistakes.into_iter().map(wrong).collect::<Vec<_>>())?;
-    let formula = declaration::definition(&text[said.end..], "ambient_response").is_some();
+    let formula = text::definition(&text[said.end..], "ambient_response").is_some();
     let (ambient, stand_in) =
         if formula { (Ambient::Formula, FORMULA_STAND_IN) } else { (Ambient::Albedo, STAND_IN) };
     let declaration = intern::declaration(Declaration {
@@ -296,7 +274,7 @@ fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String>
     let id = id_of(path).ok_or_else(|| {
         format!("the file is called {}, but a model is a file ID.{EXTENSION}", path.display())
     })?;
-    declaration::identifier(id)
+    text::identifier(id)
         .map_err(|rule| format!("the name of the file is the id of the model: {id} {rule}"))?;
     if registry.model(id).is_some() && registry.own_file(id).is_none() {
         return Err(format!("{id} is the id of a built-in model; give the file another name"));

@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use serde_json::{Value as Json, json};
 
 use super::{
-    declaration::{self, MARKER, humanised, identifier, type_name},
+    knobs::type_name,
     source_path,
+    text::{MARKER, comment, humanised, identifier},
 };
 use crate::{
     reflection::{
@@ -116,8 +117,8 @@ pub fn duplicate(entry: &ModelEntry, sources: &Sources, id: &str) -> Result<Stri
     let d = entry.declaration;
     let source = sources.text(&d.wgsl);
     // Of a model from a file everything but the declaration is copied; that is written anew.
-    let body = declaration::comment(source).map_or(source, |c| &source[c.end..]).trim_start();
-    let name = format!("{} (copy)", d.name);
+    let body = comment(source).map_or(source, |c| &source[c.end..]).trim_start();
+    let name = if id == format!("{}_copy", d.id) { format!("{} (copy)", d.name) } else { humanised(id) };
     // Writing to a String cannot fail; here and below.
     let mut out = format!("/* {MARKER}\n{{\n");
     for (key, value) in

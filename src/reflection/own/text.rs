@@ -1,0 +1,154 @@
+//! The text of a model's file: where its declaration is, what it defines, and which names are allowed.
+
+/// The longest id or name of a parameter, characters.
+const LONGEST_ID: usize = 40;
+/// The word behind `/*` that makes a comment the declaration.
+pub const MARKER: &str = "lcm";
+
+/// A mistake: the byte in the file, and what is wrong there.
+pub(super) type Mistake = (usize, String);
+
+/// The comment that declares, within a file.
+pub(super) struct Comment<'a> {
+    /// What stands between the marker and the end.
+    pub json: &'a str,
+    /// The byte where that begins.
+    pub start: usize,
+    /// The byte behind the comment.
+    pub end: usize,
+}
+
+/// The bytes of a comment that begins at a byte with `/*`: up to behind its end. Comments nest, as in WGSL.
+fn block_comment(text: &str, start: usize) -> Option<usize> {
+    let bytes = text.as_bytes();
+    let (mut at, mut depth) = (start, 0);
+    while at + 1 < bytes.len() {
+        match &bytes[at..at + 2] {
+            b"/*" => depth += 1,
+            b"*/" => depth -= 1,
+            _ => {
+                at += 1;
+                continue;
+            }
+        }
+        at += 2;
+        if depth == 0 {
+            return Some(at);
+        }
+    }
+    None
+}
+
+/// Finds the declaration: the first thing in the file but for space and other comments.
+pub(super) fn comment(text: &str) -> Result<Comment<'_>, Mistake> {
+    let mut at = 0;
+    loop {
+        at = text.len() - text[at..].trim_start().len();
+        let rest = &text[at..];
+        if rest.starts_with("//") {
+            at += rest.find('\n').unwrap_or(rest.len());
+            continue;
+        }
+        if !rest.starts_with("/*") {
+            let what = format!(
+                "the declaration is missing; a model begins with a comment /* {MARKER} {{ \"name\": …, \"parameters\": […] }} */"
+            );
+            return Err((at.min(text.len()), what));
+        }
+        let Some(end) = block_comment(text, at) else {
+            return Err((at, "the comment is not closed; write */ behind it".to_owned()));
+        };
+        let inside = &text[at + 2..end - 2];
+        let word = inside.trim_start();
+        if let Some(json) =
+            word.strip_prefix(MARKER).filter(|j| !j.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
+        {
+            return Ok(Comment { json, start: end - 2 - json.len(), end });
+        }
+        at = end;
+    }
+}
+
+/// The text without its comments: spaces in their place.
+pub(super) fn without_comments(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        let end = if rest.starts_with("//") {
+            at + rest.find('\n').unwrap_or(rest.len())
+        } else if rest.starts_with("/*") {
+            block_comment(text, at).unwrap_or(text.len())
+        } else {
+            let length = rest.chars().next().map_or(1, char::len_utf8);
+            out.push_str(&rest[..length]);
+            at += length;
+            continue;
+        };
+        out.extend(text[at..end].bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }));
+        at = end;
+    }
+    out
+}
+
+/// The byte of the name of a function in a WGSL text, if the text defines it.
+pub(super) fn definition(text: &str, name: &str) -> Option<usize> {
+    let plain = without_comments(text);
+    let word = |c: char| c.is_alphanumeric() || c == '_';
+    plain.match_indices("fn").find_map(|(at, _)| {
+        let before = plain[..at].chars().next_back().is_none_or(|c| !word(c));
+        let behind = &plain[at + 2..];
+        let found = behind.trim_start();
+        let rest = found.strip_prefix(name)?;
+        let whole = before && found.len() < behind.len() && !rest.starts_with(word);
+        whole.then(|| plain.len() - found.len())
+    })
+}
+
+/// Whether an id or the name of a parameter can be used: what is wrong with it if not.
+pub(super) fn identifier(id: &str) -> Result<(), String> {
+    let legal = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    let starts = id.starts_with(|c: char| c.is_ascii_lowercase());
+    if !starts || !id.chars().all(legal) || id.len() > LONGEST_ID {
+        return Err(format!(
+            "must be lower-case letters, digits and underscores, begin with a letter and have at most {LONGEST_ID} characters"
+        ));
+    }
+    Ok(())
+}
+
+/// Whether WGSL allows a name: it has many reserved words.
+pub(super) fn allowed_in_wgsl(name: &str) -> bool {
+    naga::front::wgsl::parse_str(&format!("struct S {{ {name}: f32 }}")).is_ok()
+}
+
+/// An id as people read it: `charlie_sheen` is Charlie sheen.
+pub(super) fn humanised(id: &str) -> String {
+    let spaced = id.replace('_', " ");
+    let mut letters = spaced.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Line and column of a byte, both from 1, and the line; columns count characters.
+pub(super) fn place(text: &str, at: usize) -> (usize, usize, &str) {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
+    let line = text[..start].matches('\n').count() + 1;
+    (line, text[start..at].chars().count() + 1, text[start..].lines().next().unwrap_or_default())
+}
+
+/// The byte where a text defines something of that name.
+pub(super) fn defined_at(text: &str, name: &str) -> Option<usize> {
+    let word = |c: char| c.is_alphanumeric() || c == '_';
+    let plain = without_comments(text);
+    plain.match_indices(name).map(|(at, _)| at).find(|at| {
+        let whole = !plain[..*at].ends_with(word) && !plain[at + name.len()..].starts_with(word);
+        let before = plain[..*at].trim_end();
+        let defines =
+            ["fn", "struct", "const", "var", "alias", "override", ">"].iter().any(|w| before.ends_with(w));
+        whole && defines
+    })
+}
