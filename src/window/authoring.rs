@@ -196,7 +196,9 @@ fn told(exported: &Exported, folder: &Path) -> String {
 /// [`io::ErrorKind::AlreadyExists`] when there is such a file, which is left alone.
 pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder)?;
+    // A file in the place of the folder must not look as if the file itself were there.
+    fs::create_dir_all(folder)
+        .map_err(|e| io::Error::other(format!("the folder {} could not be made: {e}", folder.display())))?;
     // The name begins with a dot, so that whoever watches the folder knows it for what it is.
     let mut builder = tempfile::Builder::new();
     builder.prefix(".lcm-").suffix(".tmp");
