@@ -8,8 +8,13 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use lights_camera_models::{
     optics::{Frame, colour::Encoding},
-    reflection::parameter::Values,
+    reflection::parameter::{Values, words},
     registry::Registry,
+    shader::{
+        check::validate,
+        compose::{Sources, compose_evaluation},
+        interpret::Program,
+    },
 };
 
 /// Directions, uniform over the hemisphere, that neither repeat soon nor fall into order: prediction of
@@ -43,5 +48,40 @@ fn models(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, models);
+/// The same by the model's WGSL, interpreted.
+fn interpreted(c: &mut Criterion) {
+    let frame = Frame::from_normal(Vec3::new(0.1, 0.2, 0.9).normalize());
+    let pairs = pairs(&frame);
+    let registry = Registry::builtin();
+    let mut group = c.benchmark_group("evaluations, interpreted WGSL");
+    group.sample_size(20).throughput(Throughput::Elements(pairs.len() as u64));
+    for id in ["phong", "disney", "microfacet"] {
+        let model = registry.model(id).expect("built in");
+        let values = Values::default();
+        let module = validate(&compose_evaluation(&Sources::default(), model)).expect("valid WGSL");
+        let program = Program::with_table(&module, "response", "parameter_table").expect("supported");
+        let row: Vec<_> = model
+            .row(&values, Encoding::Srgb, false)
+            .chunks_exact(4)
+            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+            .collect();
+        let mut arguments = vec![0; 6];
+        arguments.extend([frame.n, frame.t, frame.b].iter().flat_map(|v| v.to_array().map(f32::to_bits)));
+        arguments.extend(words(model.parameters, &values, Encoding::Srgb));
+        let mut terms = [0; 9];
+        group.bench_function(id, |b| {
+            b.iter(|| {
+                for (l, v) in &pairs {
+                    arguments[..3].copy_from_slice(&l.to_array().map(f32::to_bits));
+                    arguments[3..6].copy_from_slice(&v.to_array().map(f32::to_bits));
+                    program.run_with(&row, black_box(&arguments), &mut terms).expect("it ends");
+                    black_box(&terms);
+                }
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, models, interpreted);
 criterion_main!(benches);

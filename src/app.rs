@@ -16,10 +16,11 @@ use crate::{
     optics::TermSelection,
     reflection::{
         material::MaterialApp as _,
-        swap::{self, ComposedShaders, ParameterTables, ShapeMeshes},
+        swap::{self, ParameterTables, ShapeMeshes},
     },
     registry::{Registry, register_builtin},
     scene::spawn::{CurrentScene, SceneEntities, absorb, reconcile},
+    shader::live::LiveShadersPlugin,
 };
 
 /// The schedule of everything that the lab does in a frame; runs after Bevy's `Update`. A schedule of
@@ -61,7 +62,6 @@ impl Plugin for ScenePlugin {
         app.world_mut().resource_mut::<MainScheduleOrder>().insert_after(Update, LabFrame);
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()
-            .init_resource::<ComposedShaders>()
             .init_resource::<ShapeMeshes>()
             .init_resource::<ParameterTables>()
             .init_resource::<ShownTerms>()
@@ -94,7 +94,8 @@ impl Plugin for ScenePlugin {
                     swap::swap.in_set(LabSystems::Swap),
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
-            );
+            )
+            .add_plugins(LiveShadersPlugin);
     }
 }
 

@@ -11,7 +11,6 @@
 
 use std::{
     collections::{BTreeSet, HashMap},
-    io,
     path::{Path, PathBuf},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
@@ -21,11 +20,15 @@ use std::{
     time::{Duration, Instant},
 };
 
-use notify::{ErrorKind, Event, EventKind, RecursiveMode, event::ModifyKind};
+use notify::{Event, EventKind, RecursiveMode, event::ModifyKind};
 
-use self::look::{Found, Place, Print, is_temporary};
+use self::{
+    look::{Found, Place, Print, is_temporary},
+    system::{is_absent, is_reading, reason},
+};
 
 mod look;
+mod system;
 #[cfg(test)]
 mod tests;
 
@@ -64,6 +67,8 @@ enum Order {
     Add(PathBuf, Kind, Sender<()>),
     /// Watch this no longer; answer when it is done.
     Forget(PathBuf, Sender<()>),
+    /// Report this file once so much time has passed.
+    Remind(PathBuf, Duration),
     /// The system says something.
     Heard(notify::Result<Event>),
     Stop,
@@ -110,6 +115,7 @@ impl Watcher {
             watched: BTreeSet::new(),
             refused: false,
             waiting: Vec::new(),
+            reminders: Vec::new(),
             aftershock: None,
             next_poll: None,
             told: told.clone(),
@@ -140,6 +146,12 @@ impl Watcher {
         self.order(|done| Order::Forget(path.to_owned(), done));
     }
 
+    /// Reports a file after a while, whether it changes or not: for who wants to look again.
+    pub fn report_later(&self, file: &Path, after: Duration) {
+        // An error: the thread is gone.
+        let _ = self.orders.send(Order::Remind(file.to_owned(), after));
+    }
+
     /// Files that may have changed since the last call, each once, once they have been quiet for
     /// [`QUIET`], or after [`PATIENCE`], the oldest change first. Files that were deleted or renamed are
     /// among them; temporary files and backups of editors in watched folders are not. Paths begin as the
@@ -150,8 +162,8 @@ impl Watcher {
         changed.into_iter().map(|(_, file)| file).collect()
     }
 
-    /// How long until something that changed just now is quiet, if there is anything. The thread calls
-    /// `wake` then.
+    /// How long until something that changed just now is quiet, or is to be reported, if there is
+    /// anything. The thread calls `wake` then.
     pub fn pending(&self) -> Option<Duration> {
         lock(&self.told).next.map(|at| at.saturating_duration_since(Instant::now()))
     }
@@ -181,28 +193,6 @@ impl Drop for Watcher {
 /// A thread that panicked leaves nothing half done here.
 fn lock(told: &Mutex<Told>) -> MutexGuard<'_, Told> {
     told.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Whether news are only about reading.
-fn is_reading(kind: EventKind) -> bool {
-    use notify::event::{AccessKind, AccessMode};
-    matches!(kind, EventKind::Access(access) if access != AccessKind::Close(AccessMode::Write))
-}
-
-/// Why the system does not watch, and what helps.
-fn reason(error: &notify::Error) -> String {
-    /// "Too many open files", which is what Linux says of its limit of inotify instances.
-    const EMFILE: i32 = 24;
-    match &error.kind {
-        ErrorKind::MaxFilesWatch => {
-            "its limit of watched folders is reached (fs.inotify.max_user_watches)".to_owned()
-        }
-        ErrorKind::Io(e) if cfg!(target_os = "linux") && e.raw_os_error() == Some(EMFILE) => {
-            "its limit of watchers is reached (fs.inotify.max_user_instances)".to_owned()
-        }
-        ErrorKind::Io(e) => e.to_string(),
-        _ => error.to_string(),
-    }
 }
 
 /// Something that is watched.
@@ -256,6 +246,8 @@ struct Worker {
     refused: bool,
     /// What changed, the oldest change first.
     waiting: Vec<Change>,
+    /// What is to be reported anyway, and when.
+    reminders: Vec<(Instant, PathBuf)>,
     aftershock: Option<Instant>,
     next_poll: Option<Instant>,
     told: Arc<Mutex<Told>>,
@@ -265,8 +257,7 @@ struct Worker {
 impl Worker {
     fn run(&mut self, orders: &Receiver<Order>) {
         loop {
-            let next = self.waiting.iter().map(Change::due).min();
-            let at = [next, self.aftershock, self.next_poll].into_iter().flatten().min();
+            let at = [self.next_report(), self.aftershock, self.next_poll].into_iter().flatten().min();
             let order = match at {
                 None => orders.recv().map_err(|_| RecvTimeoutError::Disconnected),
                 Some(at) => orders.recv_timeout(at.saturating_duration_since(Instant::now())),
@@ -290,6 +281,7 @@ impl Worker {
                         done.push(ready);
                     }
                     Order::Heard(Ok(event)) => look |= self.hear(&event),
+                    Order::Remind(file, after) => self.reminders.push((Instant::now() + after, file)),
                     // News were lost.
                     Order::Heard(Err(_)) => look = true,
                     Order::Stop => return,
@@ -318,6 +310,7 @@ impl Worker {
         let roots = &self.roots;
         let held = |file: &Path| roots.iter().any(|r| r.holds(file));
         self.waiting.retain(|c| held(&c.path));
+        self.reminders.retain(|(_, file)| held(file));
         lock(&self.told).changed.retain(|(_, file)| held(file));
     }
 
@@ -462,6 +455,10 @@ impl Worker {
         }
     }
 
+    fn next_report(&self) -> Option<Instant> {
+        self.waiting.iter().map(Change::due).chain(self.reminders.iter().map(|r| r.0)).min()
+    }
+
     /// Tells of what is quiet by now.
     fn report(&mut self) {
         let now = Instant::now();
@@ -469,8 +466,10 @@ impl Worker {
         self.waiting = waiting;
         let mut due: Vec<Change> = due;
         due.retain(|change| self.take_note(&change.path));
+        let reminders = self.reminders.extract_if(.., |(at, _)| *at <= now);
+        due.extend(reminders.map(|(at, path)| Change { path, first: at, last: at }));
         let mut told = lock(&self.told);
-        told.next = self.waiting.iter().map(Change::due).min();
+        told.next = self.next_report();
         let before = told.changed.len();
         for Change { path, first, .. } in due {
             if told.changed.iter().all(|(_, known)| *known != path) {
@@ -497,14 +496,5 @@ impl Worker {
             tell |= print.is_some() || before.is_some();
         }
         tell
-    }
-}
-
-/// Whether a folder could not be watched because it is no longer there.
-fn is_absent(error: &notify::Error) -> bool {
-    match &error.kind {
-        ErrorKind::PathNotFound => true,
-        ErrorKind::Io(e) => matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory),
-        _ => false,
     }
 }

@@ -8,9 +8,7 @@
         { "term": "diffuse", "text": "I_d = (1 − w) C_b (N·L)" },
         { "term": "specular", "text": "I_s = w π D C_f/(4 (N·V) (1 + Λ(L) + Λ(V))), D = (2 + 1/r) sin^{1/r} θ_h/(2π)" },
     ],
-    // The sheen alone reflects up to 1.03 of the light where it is soft and seen from the side: the fit of the
-    // masking is not exact. See `lcm models check charlie_sheen`.
-    "laws": ["reciprocal", "non-negative"],
+    "laws": ["reciprocal", "energy conserving", "non-negative"],
     "parameters": [
         "base_colour",
         {

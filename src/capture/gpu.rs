@@ -37,7 +37,7 @@ use crate::{
     observer::camera::picture_camera,
     optics::TermSelection,
     scene::{Scene, spawn::CurrentScene},
-    shader::check::ShaderProblem,
+    shader::{check::ShaderProblem, live::LiveShaders},
 };
 
 /// Why the GPU renderer could not draw.
@@ -297,7 +297,8 @@ impl GpuRenderer {
                 return Err(GpuError::Shader(error.to_string()));
             }
         }
-        Ok(cache.waiting_pipelines().next().is_some())
+        let trying = self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying);
+        Ok(trying || cache.waiting_pipelines().next().is_some())
     }
 
     /// The bytes of the picture as last drawn, rows without padding.

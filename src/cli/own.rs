@@ -74,6 +74,10 @@ fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
 
 /// `lcm models check ID`.
 pub(super) fn check(id: &str, options: Options, registry: &Registry) -> Outcome {
+    if registry.broken_model(id).is_some() {
+        // What is wrong with it is told already.
+        return Err(Failure::Invalid(format!("{id} was not checked: its file has a mistake")));
+    }
     let model = find(registry, id)?;
     valid(registry, model)?;
     let mut evaluator = Evaluator::new(registry.sources(), model)?;

@@ -51,6 +51,8 @@ pub struct ViewOptions {
     pub stamp: Option<Stamp>,
     /// A file that the window must open itself, since there is something to ask first.
     pub open: Option<PathBuf>,
+    /// Whether the defaults are used when the file comes to lack parts.
+    pub use_defaults: bool,
     /// The size of the window in pixels; else 1280×720 points.
     pub size: Option<[u32; 2]>,
     /// Close the window after so many frames.
@@ -78,6 +80,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         file: None,
         stamp: None,
         open: None,
+        use_defaults: options.defaults() == Defaults::Use,
         size: size.map(|s| [s.width, s.height]),
         exit_after,
         capture,

@@ -75,6 +75,9 @@ impl Places {
     pub(super) fn open_for_window(&self) -> Result<Workshop, Failure> {
         let folders = self.folders()?;
         let mut registry = Registry::builtin();
+        if let Some(shaders) = &folders.shaders {
+            registry.set_shader_folder(shaders);
+        }
         if let Some(models) = &folders.models {
             tell(&own::read_folder(models, &mut registry, true));
         }

@@ -3,10 +3,13 @@
 use std::path::Path;
 
 use super::{
-    settings,
+    reload, settings,
     state::{Effect, Lab, MissingPart, Question, Severity},
 };
-use crate::{registry::Registry, scene::Scene};
+use crate::{
+    registry::Registry,
+    scene::{Scene, load::Stamp},
+};
 
 /// The boundary to reading and writing scene files: what the window needs, and nothing of how it is
 /// done.
@@ -16,6 +19,26 @@ pub trait Files: Send + Sync + 'static {
     /// Writes a scene file, all or nothing. Without `overwrite`, a file that changed on disk since it
     /// was opened or saved is left alone.
     fn save(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
+    /// Reads a scene file if its content is another one than when it was opened or saved.
+    fn look(&mut self, path: &Path, registry: &Registry) -> Looked;
+    /// From now on this is what saving may replace: a content, or that there is no file.
+    fn expect(&mut self, path: &Path, version: Option<Stamp>);
+}
+
+/// What became of looking at a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Looked {
+    /// It is as it was last seen.
+    Same,
+    /// There is no such file.
+    Gone,
+    /// Its content is another one.
+    Changed {
+        /// Tells this content from others.
+        version: Stamp,
+        /// What is in it.
+        content: Opened,
+    },
 }
 
 /// What became of opening a file.
@@ -86,6 +109,11 @@ pub fn run(lab: &mut Lab, registry: &Registry, effect: Effect, files: &mut dyn F
                 Vec::new()
             }
         },
+        Effect::LookAtFile { discard } => reload::look(lab, registry, discard, files),
+        Effect::ExpectFile { path, version } => {
+            files.expect(&path, Some(version));
+            Vec::new()
+        }
         Effect::SaveSettings => {
             save_settings(lab);
             Vec::new()

@@ -41,6 +41,7 @@ pub mod maths;
 pub mod messages;
 pub mod picture;
 pub mod question;
+pub mod reload;
 pub mod settings;
 pub mod shader;
 pub mod state;

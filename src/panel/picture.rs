@@ -144,7 +144,7 @@ fn plate(
 fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, scale: f32) {
     let palette = Palette::here(ui);
     let mut y = top;
-    for (i, badge) in lab.badges.iter().enumerate() {
+    for (i, badge) in lab.disk.badge.iter().chain(&lab.badges).enumerate() {
         let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
         let painter = ui.painter_at(rect);
         let left = 18.0 * scale;

@@ -88,5 +88,18 @@ fn words(lab: &Lab, question: &Question) -> Words {
             Vec::new(),
             vec![("Cancel", Answer::Cancel), ("Read again", Answer::Reload), ("Replace", Answer::Overwrite)],
         ),
+        Question::NewerOnDisk { path, .. } => (
+            "Read the file again?",
+            format!(
+                "{} was changed by another program, and there are changes here that are not saved. Read it again and lose your changes, or keep them? Kept, they replace the file when you save.",
+                path.display()
+            ),
+            Vec::new(),
+            vec![
+                ("Keep mine", Answer::Keep),
+                ("Read again", Answer::Reload),
+                ("Decide when saving", Answer::Cancel),
+            ],
+        ),
     }
 }

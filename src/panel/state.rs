@@ -15,6 +15,7 @@ use super::{
     PanelInfo,
     author::{Ask, ModelDraft},
     limits,
+    reload::OnDisk,
     settings::Settings,
 };
 use crate::{
@@ -22,7 +23,7 @@ use crate::{
     optics::TermSelection,
     reflection::parameter::Value,
     registry::Registry,
-    scene::{Display, Light, MAX_OBJECTS, Object, Observer, Scene, SceneSize},
+    scene::{Display, Light, MAX_OBJECTS, Object, Observer, Scene, SceneSize, load::Stamp},
     shader::status::ShaderStatus,
 };
 
@@ -68,6 +69,8 @@ pub struct Lab {
     pub status: Status,
     /// What the picture must say about itself, fed by the app.
     pub badges: Vec<Badge>,
+    /// What is known of the document's file on disk.
+    pub disk: OnDisk,
     /// Where shaders are edited and what is wrong with them, fed by the app.
     pub shaders: ShaderStatus,
     /// The model of one's own that is about to be written.
@@ -91,7 +94,7 @@ pub struct Lab {
     /// The part whose name is being typed in the tree.
     pub renaming: Option<Selection>,
     /// The document as it is in the file.
-    saved: Scene,
+    pub(super) saved: Scene,
     /// What waits for the document to be saved first.
     after_save: Option<Action>,
     /// A dialog that something other than the panels wants opened: what waited for the document to be
@@ -99,8 +102,8 @@ pub struct Lab {
     pub wanted_dialog: Option<Effect>,
     /// Whether the next file that is opened may replace unsaved changes: the user was asked.
     may_discard: bool,
-    /// Whether the file lacks parts that the document got as defaults.
-    incomplete: bool,
+    /// The names of the parts that the file lacks and that the document got as defaults.
+    pub(super) defaulted: Vec<String>,
     /// Slots of [`Self::model_slots`] in the order of use, latest last.
     slot_use: Vec<String>,
     /// The problems of the shaders in the frame before, by file and message.
@@ -280,6 +283,15 @@ pub enum Question {
         /// The file.
         path: PathBuf,
     },
+    /// The file of the document changed on disk, and so did the document.
+    NewerOnDisk {
+        /// The file.
+        path: PathBuf,
+        /// The scene in it.
+        scene: Box<Scene>,
+        /// The state of the file.
+        version: Stamp,
+    },
 }
 
 /// A part that a scene file lacks, and its default.
@@ -306,6 +318,8 @@ pub enum Answer {
     Overwrite,
     /// Take what is on disk.
     Reload,
+    /// Keep what is on screen; saving replaces what is on disk now.
+    Keep,
 }
 
 /// What a user can do. Panels return these.
@@ -504,6 +518,22 @@ pub enum Effect {
     },
     /// The document is another one: forget what belonged to the one before.
     DocumentChanged,
+    /// Look whether the document's file changed on disk; see [`reload::look`](super::reload::look).
+    LookAtFile {
+        /// Whether to lose unsaved changes for it: the user was asked.
+        discard: bool,
+    },
+    /// The same after a moment, since a file may be in the middle of being written.
+    LookAgain(PathBuf),
+    /// The user knows of this state of a file: saving may replace it.
+    ExpectFile {
+        /// The file.
+        path: PathBuf,
+        /// Its state.
+        version: Stamp,
+    },
+    /// Write to standard error, for those who watch it.
+    Complain(String),
     /// End the program.
     Quit,
     /// Put the camera where the observer is.
@@ -568,6 +598,7 @@ impl Lab {
             model_slots: Vec::new(),
             status: Status::default(),
             badges: Vec::new(),
+            disk: OnDisk::default(),
             shaders: ShaderStatus::default(),
             draft: None,
             wanted_model: None,
@@ -581,7 +612,7 @@ impl Lab {
             after_save: None,
             wanted_dialog: None,
             may_discard: false,
-            incomplete: false,
+            defaulted: Vec::new(),
             slot_use: Vec::new(),
             seen_troubles: Vec::new(),
         };
@@ -593,7 +624,7 @@ impl Lab {
     /// Whether the document differs from its file.
     #[must_use]
     pub fn is_dirty(&self) -> bool {
-        self.incomplete || self.scene != self.saved
+        !self.defaulted.is_empty() || self.disk.gone || self.scene != self.saved
     }
 
     /// What the window calls the document: the name of the scene, else the name of the file.
@@ -695,7 +726,8 @@ impl Lab {
         self.remember_file(&path);
         self.path = Some(path);
         self.saved = self.scene.clone();
-        self.incomplete = false;
+        self.defaulted.clear();
+        self.disk_settled();
         let mut effects = vec![Effect::SaveSettings];
         if let Some(action) = self.after_save.take() {
             effects.extend(self.apply(action, registry));
@@ -744,7 +776,13 @@ impl Lab {
                 self.recent_files.clear();
                 return vec![Effect::SaveSettings];
             }
-            Action::Answer(answer) => return self.answer(answer, registry),
+            Action::Answer(answer) => {
+                let mut effects = self.answer(answer, registry);
+                if self.question.is_none() && std::mem::take(&mut self.disk.deferred) {
+                    effects.push(Effect::LookAtFile { discard: false });
+                }
+                return effects;
+            }
             Action::Select(selection) => self.select(selection),
             Action::SelectNext => self.step_selection(1),
             Action::SelectPrevious => self.step_selection(-1),
@@ -877,7 +915,8 @@ impl Lab {
         self.renaming = None;
         self.after_save = None;
         self.may_discard = false;
-        self.incomplete = false;
+        self.defaulted.clear();
+        self.disk_settled();
         self.view.terms = TermSelection::All;
         self.select_first();
         self.use_slot(&self.scene.reflection_model.clone());
@@ -897,10 +936,10 @@ impl Lab {
                 self.after_save = Some(*then);
                 self.apply(Action::Save, registry)
             }
-            (Question::MissingParts { path, scene, .. }, Answer::UseDefaults) => {
+            (Question::MissingParts { path, scene, parts }, Answer::UseDefaults) => {
                 let effects = self.opened(path, *scene);
                 // Until it is saved, the file differs from what is on screen.
-                self.incomplete = true;
+                self.defaulted = parts.into_iter().map(|p| p.name).collect();
                 effects
             }
             (Question::MissingParts { path, parts, .. }, _) => {
@@ -918,6 +957,17 @@ impl Lab {
             (Question::ChangedOnDisk { path }, Answer::Reload) => {
                 self.not_saved();
                 vec![Effect::OpenFile(path)]
+            }
+            (Question::NewerOnDisk { path, scene, version }, Answer::Keep) => {
+                // What is on disk is known now: saving replaces it.
+                self.saved = *scene;
+                self.disk_settled();
+                vec![Effect::ExpectFile { path, version }]
+            }
+            (Question::NewerOnDisk { .. }, Answer::Reload) => vec![Effect::LookAtFile { discard: true }],
+            (Question::NewerOnDisk { path, .. }, _) => {
+                self.disk_undecided(&path);
+                Vec::new()
             }
             _ => {
                 self.not_saved();
@@ -1327,7 +1377,7 @@ impl Lab {
 
     /// Gives a model one of the keys 1–9: the one that it has, a free one, or that of the model that
     /// was not used for longest. The others keep theirs, so that fingers can learn them.
-    fn use_slot(&mut self, id: &str) {
+    pub(super) fn use_slot(&mut self, id: &str) {
         self.slot_use.retain(|m| m != id);
         self.slot_use.push(id.to_owned());
         if self.model_slots.iter().any(|m| m == id) {

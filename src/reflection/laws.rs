@@ -242,7 +242,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { sets: 60, pairs: 1000 }
+        Self { sets: 200, pairs: 2000 }
     }
 }
 
@@ -292,7 +292,7 @@ pub fn examine<E>(
             0 => Values::default(),
             1 => least(model),
             2 => most(model),
-            3..15 => random.corner(model),
+            3..40 if set % 2 == 1 => random.corner(model),
             _ => random.values(model),
         };
         compare(&values, effort.pairs, &mut random, &mut findings, &mut ask)?;

@@ -28,6 +28,7 @@ use bevy::{
 };
 
 use super::{ReflectionModel, own::OwnFile};
+use crate::shader::trial::MARK;
 
 /// The tangent of the vertex. Three numbers, not Bevy's four: the bitangent is always `n × t`.
 pub const TANGENT: MeshVertexAttribute =
@@ -131,6 +132,8 @@ impl<M: Clone + 'static> Material for ModelMaterial<M> {
             attributes.push(FACE_CENTRE.at_shader_location(5));
             descriptor.vertex.shader_defs.push("FACES".into());
         }
+        // One pipeline so marked is the example with which edited shaders are tried.
+        descriptor.vertex.shader_defs.push(MARK.into());
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
         descriptor.vertex.shader = key.bind_group_data.shader.clone();
         descriptor.vertex.entry_point = Some("vertex".into());
@@ -138,6 +141,7 @@ impl<M: Clone + 'static> Material for ModelMaterial<M> {
             if key.bind_group_data.faces {
                 fragment.shader_defs.push("FACES".into());
             }
+            fragment.shader_defs.push(MARK.into());
             fragment.shader = key.bind_group_data.shader;
             fragment.entry_point = Some("fragment".into());
         }

@@ -481,6 +481,12 @@ impl ModelEntry {
         Self { declaration, parameters, preset, lobe, instantiate, on_cpu, kept: Arc::default() }
     }
 
+    /// A number that another reading of the same file changes.
+    #[must_use]
+    pub(crate) fn version(&self) -> usize {
+        Arc::as_ptr(&self.kept) as usize
+    }
+
     /// Why the CPU cannot run the model, if it cannot: it interprets the WGSL of models from files, and does not
     /// know all of it. The graphics card runs them all the same. That a function does not come to an end shows
     /// only when it is run.

@@ -283,6 +283,25 @@ pub fn pack(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Ve
     block
 }
 
+/// The parameters of one object as words without padding, as a
+/// [`Program`](crate::shader::interpret::Program) takes the WGSL struct `Parameters` for an argument.
+#[must_use]
+pub fn words(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Vec<u32> {
+    if parameters.is_empty() {
+        // The unused field.
+        return vec![0];
+    }
+    let mut words = Vec::new();
+    for p in parameters {
+        match p.wgsl_type() {
+            "vec3<f32>" => words.extend(values.colour(p, encoding).to_array().map(f32::to_bits)),
+            "u32" => words.push(values.choice(p)),
+            _ => words.push(values.number(p).to_bits()),
+        }
+    }
+    words
+}
+
 /// A type whose fields are declared parameters; written by [`parameters!`](crate::parameters).
 pub trait ParameterSet: Sized + Send + Sync + 'static {
     /// The declarations, in the order of the fields.

@@ -11,7 +11,6 @@ use bevy::{
     ecs::prelude::*,
     mesh::{Indices, Mesh, Mesh3d, MeshTag, PrimitiveTopology},
     render::storage::ShaderBuffer,
-    shader::Shader,
 };
 use rayon::prelude::*;
 
@@ -24,7 +23,7 @@ use crate::{
         MAX_OBJECTS, Scene,
         spawn::{CurrentScene, LitObject, SceneEntities},
     },
-    shader::compose::compose,
+    shader::live::LiveShaders,
     shading::Stage,
     shape::PolygonMesh,
 };
@@ -36,7 +35,8 @@ use crate::{
 /// tables are made anew, and every object takes its material again.
 #[derive(Default, Resource)]
 pub struct ParameterTables {
-    tables: HashMap<&'static str, Table>,
+    /// By model, and by its declaration, from which the layout follows.
+    tables: HashMap<(&'static str, usize), Table>,
     rows: usize,
 }
 
@@ -67,7 +67,9 @@ impl ParameterTables {
         parameters: &[u8],
         buffers: &mut Assets<ShaderBuffer>,
     ) -> Handle<ShaderBuffer> {
-        let table = self.tables.entry(model.declaration.id).or_insert_with(|| {
+        let declaration = std::ptr::from_ref(model.declaration) as usize;
+        self.tables.retain(|(id, known), _| *id != model.declaration.id || *known == declaration);
+        let table = self.tables.entry((model.declaration.id, declaration)).or_insert_with(|| {
             let bytes = vec![0; parameters.len() * self.rows];
             let buffer = buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()));
             Table { bytes, buffer, changed: true }
@@ -89,33 +91,6 @@ impl ParameterTables {
                 buffer.data = Some(table.bytes.clone());
             }
         }
-    }
-}
-
-/// The composed shaders by model and mode, made when first needed.
-#[derive(Default, Resource)]
-pub struct ComposedShaders {
-    /// By model, mode, and the number of light types that were known.
-    handles: HashMap<(&'static str, &'static str, usize), Handle<Shader>>,
-}
-
-impl ComposedShaders {
-    /// The shader of a model and a mode.
-    fn get(
-        &mut self,
-        model: &super::ModelEntry,
-        mode: &crate::shading::ModeEntry,
-        registry: &Registry,
-        shaders: &mut Assets<Shader>,
-    ) -> Handle<Shader> {
-        let key = (model.declaration.id, mode.declaration.id, registry.lights().len());
-        self.handles
-            .entry(key)
-            .or_insert_with(|| {
-                let composed = compose(registry.sources(), model, mode, registry.lights());
-                shaders.add(Shader::from_wgsl(composed.text, format!("composed/{}/{}.wgsl", key.0, key.1)))
-            })
-            .clone()
     }
 }
 
@@ -191,6 +166,22 @@ pub struct Drawn {
     mode: String,
     encoding: Encoding,
     everywhere: bool,
+    /// What was known of the model: a file that is read again makes another.
+    version: usize,
+}
+
+impl Drawn {
+    /// Id of the reflection model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// Id of the shading mode.
+    #[must_use]
+    pub fn mode(&self) -> &str {
+        &self.mode
+    }
 }
 
 /// Whether some light of a scene shines from everywhere alike, so that albedos are asked for.
@@ -214,6 +205,8 @@ pub fn swap(world: &mut World) {
         let mut pending = Vec::new();
         let mut query = world.query::<(Ref<LitObject>, Option<&Drawn>)>();
         let scene = &world.resource::<CurrentScene>().0;
+        let registry = world.resource_ref::<Registry>();
+        let scene_changed = scene_changed || registry.is_changed();
         // Asked only where something changed: most frames change nothing.
         let everywhere = LazyCell::new(|| shines_from_everywhere(scene, world.resource::<Registry>()));
         // More objects than a table has rows are no legal scene; what is beyond is not drawn.
@@ -224,6 +217,7 @@ pub fn swap(world: &mut World) {
                 mode: scene.mode_of(&object.0).to_owned(),
                 encoding: scene.display.encoding,
                 everywhere: *everywhere,
+                version: registry.model(scene.model_of(&object.0)).map_or(0, super::ModelEntry::version),
             };
             if all || object.is_changed() || drawn.is_none() || (scene_changed && drawn != Some(&now())) {
                 pending.push((row, entity, object.0.clone(), now()));
@@ -264,8 +258,8 @@ pub fn swap(world: &mut World) {
                 })
                 .clone()
         });
-        let shader = world.resource_scope(|world, mut composed: Mut<ComposedShaders>| {
-            composed.get(model, mode, &registry, &mut world.resource_mut::<Assets<Shader>>())
+        let shader = world.resource_scope(|world, mut shaders: Mut<LiveShaders>| {
+            shaders.get(world, model, mode, &registry)
         });
         let faces = mode.declaration.stage == Stage::Polygon;
         let table = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {

@@ -96,6 +96,14 @@ pub struct Loaded {
 /// # Errors
 /// [`LoadError`]; its text names the file as `path` does.
 pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
+    from_bytes(&bytes(path)?, &path.display().to_string(), registry, defaults)
+}
+
+/// Reads the content of a scene file, whatever it is.
+///
+/// # Errors
+/// [`LoadError`] when it is a folder, too large, or cannot be read.
+pub fn bytes(path: &FilePath) -> Result<Vec<u8>, LoadError> {
     let name = path.display().to_string();
     let error = |e| LoadError::from_io(path, &name, e);
     let metadata = fs::metadata(path).map_err(error)?;
@@ -106,8 +114,7 @@ pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<
         return Err(LoadError::TooLarge { name });
     }
     let file = fs::File::open(path).map_err(error)?;
-    let bytes = limited(file, &name, error)?;
-    from_bytes(&bytes, &name, registry, defaults)
+    limited(file, &name, error)
 }
 
 /// Reads a scene from a stream, for example [standard input](STDIN).

@@ -8,7 +8,7 @@ use naga::{
     valid::{Capabilities, ValidationFlags, Validator},
 };
 
-use super::compose::Composed;
+use super::{compose::Composed, pitfall};
 
 /// What is wrong with a shader, located in the author's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,17 +44,25 @@ pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     let module = wgsl::parse_str(&composed.text).map_err(|error| {
         locate(composed, place(composed, error.labels().map(|l| l.0)), error.message().to_owned())
     })?;
-    Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).map_err(|error| {
-        // The outermost message only says that some function is invalid; the innermost says why.
-        let mut message = error.as_inner().to_string();
-        let mut source = std::error::Error::source(error.as_inner());
-        while let Some(inner) = source {
-            message = format!("{message}: {inner}");
-            source = inner.source();
-        }
-        locate(composed, place(composed, error.spans().map(|s| s.0)), message)
-    })?;
-    Ok(module)
+    Validator::new(ValidationFlags::all(), Capabilities::all())
+        .validate(&module)
+        .map_err(|e| locate(composed, place(composed, e.spans().map(|s| s.0)), reason(e.as_inner())))?;
+    match pitfall::find(&module) {
+        Some((span, message)) => Err(locate(composed, place(composed, [span].into_iter()), message)),
+        None => Ok(module),
+    }
+}
+
+/// What the validator says in full: the outermost message only says that some function is invalid, the
+/// innermost says why.
+pub(super) fn reason(error: &dyn std::error::Error) -> String {
+    let mut message = error.to_string();
+    let mut source = error.source();
+    while let Some(inner) = source {
+        message = format!("{message}: {inner}");
+        source = inner.source();
+    }
+    message
 }
 
 /// Line and column of the first span that is one: naga may list some that point nowhere.
@@ -65,7 +73,12 @@ fn place(composed: &Composed, spans: impl Iterator<Item = naga::Span>) -> Option
     })
 }
 
-fn locate(composed: &Composed, place: Option<(usize, usize)>, message: String) -> Box<ShaderProblem> {
+/// A problem at a line and column of the composed text, told in terms of the author's file.
+pub(super) fn locate(
+    composed: &Composed,
+    place: Option<(usize, usize)>,
+    message: String,
+) -> Box<ShaderProblem> {
     let (line, column) = place.unwrap_or((1, 1));
     let (file, file_line) = composed.map.locate(line).unwrap_or(("(composed)", line));
     let source = composed.text.lines().nth(line.saturating_sub(1)).unwrap_or_default();

@@ -1,10 +1,14 @@
-//! Shader sources: text in, text out; composing, checking.
+//! Shader sources: text in, text out; composing, checking, trying, and exchanging them while they are on the
+//! picture.
 
 pub mod check;
 pub mod compose;
 pub mod interpret;
+pub mod live;
+pub mod pitfall;
 pub mod report;
 pub mod status;
+pub mod trial;
 pub mod whole;
 
 /// The WGSL source of one file under `assets/shaders/`, with the copy that is built in.

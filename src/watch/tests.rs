@@ -1,6 +1,9 @@
 //! What editors do, with real files.
+#![allow(clippy::unwrap_used)]
 
-use std::{fs, fs::File, io::Write as _, process::Command, sync::mpsc::RecvTimeoutError};
+use std::{fs, fs::File, io, io::Write as _, process::Command, sync::mpsc::RecvTimeoutError};
+
+use notify::ErrorKind;
 
 use super::*;
 
@@ -348,6 +351,24 @@ fn a_folder_that_is_replaced_at_once_is_watched_still() {
         bench.write("deep/a.wgsl", &format!("changed {n}"));
         bench.expect(&["deep/a.wgsl"]);
     }
+}
+
+#[test]
+fn a_file_is_reported_later_when_that_is_asked_for() {
+    let bench = Bench::file();
+    let after = Duration::from_millis(80);
+    let begin = Instant::now();
+    // Nor does it matter whether there is such a file.
+    for name in ["room.json", "none.json"] {
+        bench.watcher.report_later(&bench.path(name), after);
+    }
+    let mut news = bench.news();
+    assert!(begin.elapsed() >= after);
+    while news.len() < 2 {
+        news.extend(bench.news());
+    }
+    assert_eq!(news, ["room.json", "none.json"]);
+    bench.expect_silence();
 }
 
 #[test]

@@ -1,60 +1,54 @@
 //! Scene files on disk, for the panels.
 
-use std::path::{Path, PathBuf};
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
 
 use bevy::ecs::resource::Resource;
 
 use crate::{
     panel::{
-        files::{Files, Opened, Saved},
+        files::{Files, Looked, Opened, Saved},
         state::MissingPart,
     },
     registry::Registry,
     scene::{
         Scene,
         error::LoadError,
-        load::{self, Defaults, Stamp},
+        load::{self, Defaults, Loaded, Stamp},
         save::{self, Expected, SaveError},
     },
 };
 
 /// Reads and writes scene files, and remembers in which state it saw the last one.
 #[derive(Debug, Resource)]
-pub(super) struct DiskFiles {
+pub struct DiskFiles {
     seen: Option<(PathBuf, Stamp)>,
     /// A file that was read, but is not yet the document: there may be something to ask first.
     read: Option<(PathBuf, Stamp)>,
 }
 
 impl DiskFiles {
-    pub(super) fn new(file: Option<PathBuf>, stamp: Option<Stamp>) -> Self {
+    /// With a file that was read already, and its state then.
+    #[must_use]
+    pub fn new(file: Option<PathBuf>, stamp: Option<Stamp>) -> Self {
         Self { seen: file.zip(stamp), read: None }
     }
 
     /// Another document is open: what was read of its file is what counts from now on.
-    pub(super) fn document_changed(&mut self, path: Option<&Path>) {
+    pub fn document_changed(&mut self, path: Option<&Path>) {
         self.seen = self.read.take().filter(|read| Some(read.0.as_path()) == path);
     }
 }
 
 impl Files for DiskFiles {
     fn open(&mut self, path: &Path, registry: &Registry) -> Opened {
-        match load::file(path, registry, Defaults::Ask) {
-            Ok(loaded) => {
-                self.read = Some((path.to_owned(), loaded.stamp));
-                if loaded.missing.is_empty() {
-                    return Opened::Scene(Box::new(loaded.scene));
-                }
-                let parts = loaded
-                    .missing
-                    .iter()
-                    .map(|m| MissingPart { name: m.path.to_string(), default: m.default.clone() })
-                    .collect();
-                Opened::Incomplete { scene: Box::new(loaded.scene), parts }
-            }
-            Err(LoadError::Empty { .. }) => Opened::Empty,
-            Err(error) => Opened::Failed(error.to_string().lines().map(str::to_owned).collect()),
+        let read = load::file(path, registry, Defaults::Ask);
+        if let Ok(loaded) = &read {
+            self.read = Some((path.to_owned(), loaded.stamp));
         }
+        opened(read)
     }
 
     fn save(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved {
@@ -73,5 +67,45 @@ impl Files for DiskFiles {
             }
             Err(error) => Saved::Failed(error.to_string()),
         }
+    }
+
+    fn look(&mut self, path: &Path, registry: &Registry) -> Looked {
+        match fs::metadata(path) {
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Looked::Gone,
+            // Pipes and devices are read once.
+            Ok(m) if !m.is_file() && !m.is_dir() => return Looked::Same,
+            _ => {}
+        }
+        let bytes = match load::bytes(path) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                let version = Stamp::of(error.to_string().as_bytes());
+                return Looked::Changed { version, content: opened(Err(error)) };
+            }
+        };
+        let version = Stamp::of(&bytes);
+        if self.seen.as_ref().is_some_and(|(seen, stamp)| seen == path && *stamp == version) {
+            return Looked::Same;
+        }
+        let name = path.display().to_string();
+        let content = opened(load::from_bytes(&bytes, &name, registry, Defaults::Ask));
+        Looked::Changed { version, content }
+    }
+
+    fn expect(&mut self, path: &Path, version: Option<Stamp>) {
+        self.seen = version.map(|version| (path.to_owned(), version));
+    }
+}
+
+/// What reading a file means to the panels.
+fn opened(read: Result<Loaded, LoadError>) -> Opened {
+    match read {
+        Ok(Loaded { scene, missing, .. }) if missing.is_empty() => Opened::Scene(Box::new(scene)),
+        Ok(Loaded { scene, missing, .. }) => {
+            let part = |m: load::Missing| MissingPart { name: m.path.to_string(), default: m.default };
+            Opened::Incomplete { scene: Box::new(scene), parts: missing.into_iter().map(part).collect() }
+        }
+        Err(LoadError::Empty { .. }) => Opened::Empty,
+        Err(error) => Opened::Failed(error.to_string().lines().map(str::to_owned).collect()),
     }
 }

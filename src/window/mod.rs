@@ -44,7 +44,7 @@ use crate::{
     panel::{
         PanelPlugin,
         files::{load_settings, run as run_files},
-        state::{Action, Effect, Lab, LabEffect, Severity},
+        state::{Action, Badge, Effect, Lab, LabEffect, Note, Severity},
         theme::Palette,
     },
     registry::Registry,
@@ -55,9 +55,10 @@ use crate::{
 pub mod authoring;
 mod camera;
 mod capture;
-mod files;
+pub mod files;
 mod gizmos;
 mod pick;
+pub mod watching;
 
 /// The size of a new window, points.
 const SIZE: UVec2 = UVec2::new(1280, 720);
@@ -115,6 +116,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     app.insert_resource(options.registry.clone());
     let mut lab = Lab::new(options.scene.clone());
     lab.path.clone_from(&options.file);
+    lab.disk.use_defaults = options.use_defaults;
     load_settings(&mut lab);
     if let Some(registry) = app.world().get_resource::<Registry>() {
         lab.fill_model_slots(registry);
@@ -209,7 +211,7 @@ impl Plugin for WindowSystemsPlugin {
         .init_resource::<Settling>()
         .init_resource::<authoring::Editors>()
         .init_resource::<FrameClock>()
-        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin))
+        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin, watching::WatchingPlugin))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
         .add_systems(Last, measure_frame)
         .add_systems(PreUpdate, close_requested)
@@ -220,7 +222,16 @@ impl Plugin for WindowSystemsPlugin {
         .add_systems(
             LabFrame,
             (
-                (carry_out, pick::pick, lab_to_scene).chain().in_set(LabSystems::Load),
+                (
+                    watching::collect,
+                    watching::watch_document,
+                    watching::follow_document,
+                    carry_out,
+                    pick::pick,
+                    lab_to_scene,
+                )
+                    .chain()
+                    .in_set(LabSystems::Load),
                 scene_to_lab.in_set(LabSystems::Upload),
             ),
         )
@@ -279,6 +290,7 @@ fn carry_out(
     registry: Res<Registry>,
     mut files: ResMut<files::DiskFiles>,
     mut camera: camera::CameraControl,
+    watch: Res<watching::FileWatch>,
     mut exit: MessageWriter<AppExit>,
     editors: Res<authoring::Editors>,
     proxy: Option<Res<EventLoopProxyWrapper>>,
@@ -301,6 +313,8 @@ fn carry_out(
             Effect::Quit => {
                 exit.write(AppExit::Success);
             }
+            Effect::LookAgain(path) => watch.0.report_later(&path, watching::GRACE),
+            Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
             dialog @ (Effect::PickOpen | Effect::PickSave) => lab.wanted_dialog = Some(dialog),
@@ -429,7 +443,9 @@ struct Snapshot {
     rect: [f32; 4],
     camera: Option<bevy::transform::components::Transform>,
     terms: ShownTerms,
-    messages: usize,
+    messages: Vec<Note>,
+    badges: Vec<Badge>,
+    question: bool,
     shaders: ShaderStatus,
 }
 
@@ -447,7 +463,9 @@ fn redraw(
         rect: [rect.min.x, rect.min.y, rect.max.x, rect.max.y],
         camera: cameras.iter().next().copied(),
         terms: *terms,
-        messages: lab.messages.len() + usize::from(lab.question.is_some()),
+        messages: lab.messages.clone(),
+        badges: lab.disk.badge.iter().chain(&lab.badges).cloned().collect(),
+        question: lab.question.is_some(),
         shaders: lab.shaders.clone(),
     };
     if settling.last.as_deref() != Some(&now) {

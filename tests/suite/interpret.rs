@@ -5,7 +5,7 @@ use lights_camera_models::{
     optics::{Frame, Terms, colour::Encoding},
     reflection::{
         Ambient, ModelEntry,
-        parameter::{Values, layout, pack},
+        parameter::{self, Values},
     },
     registry::Registry,
     shader::{
@@ -36,20 +36,6 @@ fn words(bytes: &[u8]) -> Vec<u32> {
     bytes.chunks_exact(4).map(|b| u32::from_le_bytes(b.try_into().expect("four bytes"))).collect()
 }
 
-/// The parameters without padding.
-fn parameters(model: &ModelEntry, values: &Values) -> Vec<u32> {
-    let block = words(&pack(model.parameters, values, Encoding::Srgb));
-    let of = |(_, kind, at): (&str, &str, usize)| {
-        let count = if kind == "vec3<f32>" { 3 } else { 1 };
-        block[at / 4..][..count].to_vec()
-    };
-    let mut words: Vec<_> = layout(model.parameters).into_iter().flat_map(of).collect();
-    if words.is_empty() {
-        words.push(0);
-    }
-    words
-}
-
 fn put(to: &mut Vec<u32>, v: Vec3) {
     to.extend(v.to_array().map(f32::to_bits));
 }
@@ -71,7 +57,7 @@ impl Twin {
     fn new(model: &ModelEntry, values: &Values, edited: Option<(&str, &str)>) -> Self {
         let program = program(model, "response", edited);
         let row = words(&model.row(values, Encoding::Srgb, false));
-        Self { program, row, parameters: parameters(model, values) }
+        Self { program, row, parameters: parameter::words(model.parameters, values, Encoding::Srgb) }
     }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
@@ -180,7 +166,7 @@ fn light_from_everywhere_is_answered_by_formula_and_by_the_curve_in_the_row() {
                 let mut arguments = Vec::new();
                 put(&mut arguments, v);
                 put_frame(&mut arguments, &Frame::LOCAL);
-                arguments.extend(parameters(model, &values));
+                arguments.extend(parameter::words(model.parameters, &values, Encoding::Srgb));
                 let mut results = [0; 3];
                 program.run_with(&row, &arguments, &mut results).expect("it ends");
                 let wgsl = Vec3::from_array(results.map(f32::from_bits));

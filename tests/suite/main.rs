@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 mod albedo;
+mod assets;
 mod command_line;
 mod extension;
 mod golden;
@@ -9,17 +10,22 @@ mod gpu_parity;
 mod hot_swap;
 mod interpret;
 mod laws;
+mod own_models;
 mod panels;
 mod pictures;
 mod readme;
 mod reference_renderer;
+mod reload;
 mod saving;
 mod scene_errors;
+mod scene_reload;
 mod scene_roundtrip;
 mod schema;
+mod screen;
 mod shader_panel;
 mod study;
 mod support;
 mod tangents;
 mod window;
+mod window_reload;
 mod witness;

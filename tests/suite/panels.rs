@@ -31,7 +31,7 @@ use lights_camera_models::{
         preset,
     },
     registry::{Register, Registry},
-    scene::{Display, Light, Object, Scene},
+    scene::{Display, Light, Object, Scene, load::Stamp},
     shader::Source,
 };
 
@@ -660,6 +660,39 @@ fn missing_parts_are_named_and_defaults_used_on_yes_only() {
     bench.click("Use the defaults");
     assert_eq!(bench.lab.scene.shading_model, "phong");
     assert_eq!(bench.lab.path, Some(PathBuf::from("c.json")));
+}
+
+#[test]
+fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
+    let ask = || {
+        let mut bench = Bench::new(Lab::default());
+        bench.lab.path = Some(PathBuf::from("room.json"));
+        bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+        let scene = Box::new(Scene { shading_model: "phong".to_owned(), ..Scene::default() });
+        let version = Stamp::of(b"another content");
+        bench.lab.ask(Question::NewerOnDisk { path: PathBuf::from("room.json"), scene, version });
+        bench.settle();
+        bench.effects.clear();
+        assert!(bench.says("room.json was changed by another program"));
+        (bench, version)
+    };
+    let keep = |version| [Effect::ExpectFile { path: PathBuf::from("room.json"), version }];
+    let (mut bench, version) = ask();
+    bench.click("Keep mine");
+    assert_eq!(bench.effects, keep(version));
+    // The first answer, which loses nothing, has the keyboard.
+    let (mut bench, version) = ask();
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(bench.effects, keep(version));
+    let (mut bench, _) = ask();
+    bench.click("Read again");
+    assert_eq!(bench.effects, [Effect::LookAtFile { discard: true }]);
+    // To leave the question is to decide later, and the picture says that there is something to decide.
+    let (mut bench, _) = ask();
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(bench.effects.is_empty() && bench.lab.question.is_none());
+    assert_eq!(bench.lab.scene.shading_model, "flat");
+    assert!(bench.lab.disk.badge.as_ref().is_some_and(|b| b.text.contains("room.json changed on disk")));
 }
 
 #[test]

@@ -116,6 +116,10 @@ pub fn lcm_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Run {
     let mut child = Command::new(env!("CARGO_BIN_EXE_lcm"))
         .args(arguments)
         .current_dir(folder)
+        // What cargo sets, and what the user of this machine keeps, would be found.
+        .env_remove("CARGO_MANIFEST_DIR")
+        .env_remove("BEVY_ASSET_ROOT")
+        .env("LCM_DATA_DIR", root().join("no-such-folder"))
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -2,91 +2,11 @@
 
 #![cfg(target_os = "linux")]
 
-use std::{
-    io::{BufRead as _, BufReader},
-    path::Path,
-    process::{Child, Command, Output, Stdio},
-};
+use std::path::Path;
 
-/// A virtual screen of its own, gone when dropped.
-struct Screen {
-    server: Child,
-    display: String,
-}
+use crate::screen::{Picture, Screen, lcm};
 
-impl Screen {
-    fn new(width: u32, height: u32) -> Self {
-        // The server picks a free number and writes it to its standard output.
-        let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", &format!("{width}x{height}x24"), "-nolisten", "tcp"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("Xvfb is installed; scripts/test installs it");
-        let mut line = String::new();
-        let output = server.stdout.take().expect("piped");
-        BufReader::new(output).read_line(&mut line).expect("Xvfb says its number");
-        Self { server, display: format!(":{}", line.trim()) }
-    }
-
-    fn lcm(&self, arguments: &[&str], config: &Path) -> Output {
-        lcm(arguments, config).env("DISPLAY", &self.display).output().expect("lcm runs")
-    }
-}
-
-impl Drop for Screen {
-    fn drop(&mut self) {
-        let _ = self.server.kill();
-        let _ = self.server.wait();
-    }
-}
-
-fn lcm(arguments: &[&str], config: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lcm"));
-    command
-        .args(arguments)
-        .env("LCM_CONFIG_DIR", config)
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        .env_remove("DISPLAY")
-        .stdin(Stdio::null());
-    command
-}
-
-/// A captured window: width, height, RGB.
-struct Capture {
-    width: u32,
-    height: u32,
-    pixels: Vec<u8>,
-}
-
-impl Capture {
-    fn read(path: &Path) -> Self {
-        let decoder =
-            png::Decoder::new(BufReader::new(std::fs::File::open(path).expect("the capture exists")));
-        let mut reader = decoder.read_info().expect("a PNG file");
-        let mut pixels = vec![0; reader.output_buffer_size().expect("not huge")];
-        let info = reader.next_frame(&mut pixels).expect("a whole picture");
-        assert_eq!(info.color_type, png::ColorType::Rgb);
-        Self { width: info.width, height: info.height, pixels }
-    }
-
-    fn at(&self, x: u32, y: u32) -> [u8; 3] {
-        let i = ((y * self.width + x) * 3) as usize;
-        [self.pixels[i], self.pixels[i + 1], self.pixels[i + 2]]
-    }
-
-    /// How many different colours there are in a part of the window.
-    fn colours(&self, x: std::ops::Range<u32>, y: std::ops::Range<u32>) -> usize {
-        let mut seen: Vec<_> =
-            y.flat_map(|y| x.clone().map(move |x| (x, y))).map(|(x, y)| self.at(x, y)).collect();
-        seen.sort_unstable();
-        seen.dedup();
-        seen.len()
-    }
-}
-
-fn capture(size: Option<(u32, u32)>, scene: &str) -> Capture {
+fn capture(size: Option<(u32, u32)>, scene: &str) -> Picture {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("window.png");
     let (width, height) = size.unwrap_or((1280, 720));
@@ -100,7 +20,7 @@ fn capture(size: Option<(u32, u32)>, scene: &str) -> Capture {
     }
     let output = screen.lcm(&arguments, folder.path());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let capture = Capture::read(&file);
+    let capture = Picture::read(&file);
     assert_eq!((capture.width, capture.height), (width, height));
     capture
 }

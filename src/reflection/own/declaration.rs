@@ -321,7 +321,7 @@ impl Reader<'_> {
             equation: self.equation(&fields),
             laws: self.laws(&fields),
             anisotropic: self.truth(&fields, "anisotropic"),
-            parameters: self.parameters(&fields, name),
+            parameters: self.parameters(&fields),
             lobe: self.lobe(&fields),
             end,
         })
@@ -511,7 +511,7 @@ impl Reader<'_> {
         self.word(value, "lobe", "the model whose lobe is compensated", &known)
     }
 
-    fn parameters(&mut self, fields: &Fields, model: &str) -> &'static [Parameter] {
+    fn parameters(&mut self, fields: &Fields) -> &'static [Parameter] {
         let mut parameters: Vec<Parameter> = Vec::new();
         let list = match fields.get("parameters") {
             None => return intern::parameters(parameters),
@@ -526,7 +526,7 @@ impl Reader<'_> {
             let path = format!("parameters[{i}]");
             let parameter = match element {
                 Ast::StringLit(name) => self.shared(element, &path, &name.value),
-                _ => self.parameter(element, path.clone(), model),
+                _ => self.parameter(element, path.clone()),
             };
             let Some(parameter) = parameter else { continue };
             if parameters.iter().any(|p| p.name == parameter.name) {
@@ -576,7 +576,7 @@ impl Reader<'_> {
         None
     }
 
-    fn parameter(&mut self, value: &Ast, path: String, model: &str) -> Option<Parameter> {
+    fn parameter(&mut self, value: &Ast, path: String) -> Option<Parameter> {
         let fields = self.fields(value, path, PARAMETER_KEYS, "a parameter")?;
         let Some(named) = fields.get("name") else {
             self.lacking(
@@ -624,7 +624,7 @@ impl Reader<'_> {
             }),
             help: given(self, "help", LONGEST_TEXT)
                 .or(shared.map(|s| s.help))
-                .unwrap_or_else(|| intern::text(&format!("The {label} of {model}."))),
+                .unwrap_or_else(|| intern::text(&format!("The {label}."))),
             kind: kind?,
         };
         (self.mistakes.len() == before).then_some(parameter)

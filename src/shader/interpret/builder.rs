@@ -40,6 +40,8 @@ pub(super) struct Builder {
     known: HashMap<(Operation, [Operand; 3]), u16>,
     /// What was put into `known`, in this order.
     log: Vec<(Operation, [Operand; 3])>,
+    /// Registers that are read by number.
+    pub(super) wanted: Vec<u16>,
     work: usize,
     depth: usize,
 }
@@ -148,14 +150,34 @@ impl Builder {
         for (register, word) in registers.iter_mut().zip(words).take(operation.arity()) {
             *register = self.register(word)?;
         }
-        let [a, b, c] = registers;
         let d = self.allocate(1, false)?;
-        self.push(Instruction { operation, d, a, b, c })?;
+        self.push(Instruction::new(operation, d, registers))?;
         if settled {
             self.known.insert((operation, words), d);
             self.log.push((operation, words));
         }
         Ok(Operand::Register(d))
+    }
+
+    /// The product of two vectors of three words, in one instruction if each stands in a row.
+    pub(super) fn dot(&mut self, a: &[Operand], b: &[Operand]) -> Result<Option<Operand>> {
+        if a.len() != 3 || b.len() != 3 || a.iter().chain(b).all(|w| matches!(w, Operand::Constant(_))) {
+            return Ok(None);
+        }
+        let (Some(first), Some(second)) = (self.row_of(a)?, self.row_of(b)?) else { return Ok(None) };
+        let settled = a.iter().chain(b).all(|w| self.settled(*w));
+        let key =
+            (Operation::Dot, [Operand::Register(first), Operand::Register(second), Operand::Constant(0)]);
+        if settled && let Some(&register) = self.known.get(&key) {
+            return Ok(Some(Operand::Register(register)));
+        }
+        let d = self.allocate(1, false)?;
+        self.push(Instruction::new(Operation::Dot, d, [first, second, 0]))?;
+        if settled {
+            self.known.insert(key, d);
+            self.log.push(key);
+        }
+        Ok(Some(Operand::Register(d)))
     }
 
     /// Puts a value into a variable.
@@ -164,25 +186,25 @@ impl Builder {
         if a == register {
             return Ok(());
         }
-        self.push(Instruction { operation: Operation::Copy, d: register, a, b: 0, c: 0 })
+        self.push(Instruction::new(Operation::Copy, register, [a, 0, 0]))
     }
 
     /// The word at a place that is known when the program runs.
     pub(super) fn load_at(&mut self, base: usize, offset: u16) -> Result<Operand> {
         let d = self.allocate(1, false)?;
         let b = base as u16;
-        self.push(Instruction { operation: Operation::LoadAt, d, a: offset, b, c: 0 })?;
+        self.push(Instruction::new(Operation::LoadAt, d, [offset, b, 0]))?;
         Ok(Operand::Register(d))
     }
 
     /// Puts a value at a place that is known when the program runs.
     pub(super) fn store_at(&mut self, base: usize, offset: u16, value: Operand) -> Result<()> {
         let a = self.register(value)?;
-        self.push(Instruction { operation: Operation::StoreAt, d: base as u16, a, b: offset, c: 0 })
+        self.push(Instruction::new(Operation::StoreAt, base as u16, [a, offset, 0]))
     }
 
-    /// The first of the registers in a row that hold these values.
-    pub(super) fn in_a_row(&mut self, values: &[Operand]) -> Result<u16> {
+    /// The first of the registers in a row that hold these values already, or may since they are constants.
+    fn row_of(&mut self, values: &[Operand]) -> Result<Option<u16>> {
         let constants: Option<Vec<u32>> = values
             .iter()
             .map(|v| match v {
@@ -191,13 +213,22 @@ impl Builder {
             })
             .collect();
         if let Some(constants) = constants {
-            return self.block_of(constants);
+            return self.block_of(constants).map(Some);
         }
         if let Some(Operand::Register(first)) = values.first() {
             let follows = |(i, v): (usize, &Operand)| matches!(v, Operand::Register(r) if usize::from(*r) == usize::from(*first) + i);
             if values.iter().enumerate().all(follows) {
-                return Ok(*first);
+                return Ok(Some(*first));
             }
+        }
+        Ok(None)
+    }
+
+    /// The first of the registers in a row that hold these values, for instructions that find them there by number.
+    pub(super) fn in_a_row(&mut self, values: &[Operand]) -> Result<u16> {
+        if let Some(base) = self.row_of(values)? {
+            self.wanted.extend((0..values.len()).map(|i| base + i as u16));
+            return Ok(base);
         }
         let base = self.variable(values.len())?;
         for (i, value) in values.iter().enumerate() {
@@ -225,7 +256,7 @@ impl Builder {
 
     /// Writes a jump whose target is said later, by [`land`](Self::land).
     pub(super) fn jump(&mut self, operation: Operation, a: u16, d: u16) -> Result<usize> {
-        self.push(Instruction { operation, d, a, b: 0, c: 0 })?;
+        self.push(Instruction::new(operation, d, [a, 0, 0]))?;
         Ok(self.code.len() - 1)
     }
 

@@ -89,7 +89,11 @@ impl<'m> Lowering<'m> {
                 self.math(fun, kind, &arg_type, &arguments)?
             }
             Expression::As { expr, kind, convert } => self.cast(frame, expr, kind, convert)?,
-            Expression::ArrayLength(_) => Rc::new([Operand::Constant(1)]),
+            Expression::ArrayLength(pointer) => {
+                // Only the table is a buffer that can be reached.
+                self.place(frame, pointer)?;
+                Rc::new([Operand::Constant(1)])
+            }
             Expression::CallResult(_) => return unsupported("it uses the result of a call before the call"),
             Expression::ImageSample { .. } => return unsupported("it samples a texture"),
             Expression::ImageLoad { .. } | Expression::ImageQuery { .. } => {
@@ -281,6 +285,9 @@ impl<'m> Lowering<'m> {
 
     /// The sum of products of the words of two values.
     pub(super) fn dot(&mut self, a: &[Operand], b: &[Operand], float: bool) -> Result<Operand> {
+        if float && let Some(sum) = self.builder.dot(a, b)? {
+            return Ok(sum);
+        }
         let mut sum = None;
         for (x, y) in pairs(a, b) {
             sum = Some(match (sum, float) {

@@ -95,12 +95,19 @@ fn arity<Types, F: Pure<Types>>(_: F) -> usize {
 }
 
 macro_rules! operations {
-    ($($name:ident = $function:expr;)*) => {
+    (
+        { $($name:ident = $function:expr;)* }
+        // Of the following the second name does three times what the first does.
+        { $($single:ident $triple:ident = $part:expr;)* }
+    ) => {
         /// What an instruction does. Pure operations put a function of registers `a`, `b`, `c` into `d`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u8)]
         pub(super) enum Operation {
             $($name,)*
+            $($triple,)*
+            /// Multiplies three words from `a` on by three from `b` on, and puts the sum into `d`.
+            Dot,
             /// Goes on at the target.
             Jump,
             /// Goes on at the target unless `a` is true.
@@ -130,6 +137,14 @@ macro_rules! operations {
                 }
             }
 
+            /// The operation that does the same to three words.
+            pub(super) fn triple(self) -> Option<Self> {
+                match self {
+                    $(Self::$single => Some(Self::$triple),)*
+                    _ => None,
+                }
+            }
+
             /// The value of a pure operation; of others 0.
             pub(super) fn evaluate(self, words: [u32; 3]) -> u32 {
                 let word = |i: usize| f32::from_bits(words[i]);
@@ -154,6 +169,16 @@ macro_rules! operations {
                         let value = Pure::apply($function, |k| registers[usize::from([i.a, i.b, i.c][k])]);
                         registers[d] = value;
                     })*
+                    $(Operation::$triple => for k in 0..3 {
+                        let value = Pure::apply($part, |n| registers[usize::from(i.word(n, k))]);
+                        registers[usize::from(i.d.wrapping_add(k))] = value;
+                    })*
+                    Operation::Dot => {
+                        let product = |k: u16| {
+                            registers[usize::from(i.a.wrapping_add(k))] * registers[usize::from(i.b.wrapping_add(k))]
+                        };
+                        registers[d] = product(0) + product(1) + product(2);
+                    }
                     Operation::Jump => at = i.target(),
                     Operation::JumpUnless => {
                         if !bool::read(registers[a]) {
@@ -203,6 +228,7 @@ macro_rules! operations {
 }
 
 operations! {
+{
     Copy = |a: u32| a;
     // The offset of an element: indices beyond the end count as the last, as on the graphics card.
     Index = |i: u32, last: u32, stride: u32| i.min(last).wrapping_mul(stride);
@@ -257,7 +283,7 @@ operations! {
     SignF = |a: f32| if a > 0.0 { 1.0f32 } else if a < 0.0 { -1.0 } else { 0.0 };
     MinF = f32::min;
     MaxF = f32::max;
-    ClampF = |a: f32, low: f32, high: f32| a.max(low).min(high);
+    ClampF = clamp;
     Ceil = f32::ceil;
     Floor = f32::floor;
     Round = f32::round_ties_even;
@@ -319,10 +345,28 @@ operations! {
         (offset, count) => u32::MAX >> (32 - count) << offset,
     };
 }
+{
+    Copy Copy3 = |a: u32| a;
+    Select Select3 = |condition: bool, a: u32, b: u32| if condition { a } else { b };
+    AddF AddF3 = |a: f32, b: f32| a + b;
+    SubF SubF3 = |a: f32, b: f32| a - b;
+    MulF MulF3 = |a: f32, b: f32| a * b;
+    DivF DivF3 = |a: f32, b: f32| a / b;
+    MulAddF MulAddF3 = |a: f32, b: f32, c: f32| a * b + c;
+    Mix Mix3 = |a: f32, b: f32, t: f32| a * (1.0 - t) + b * t;
+    MaxF MaxF3 = f32::max;
+    ClampF ClampF3 = clamp;
+}
+}
+
+/// A number within bounds; the upper one where they are the wrong way round, and what is no number is the lower one.
+fn clamp(a: f32, low: f32, high: f32) -> f32 {
+    a.max(low).min(high)
+}
 
 /// Hermite's cubic between two edges.
 fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
-    let t = ((x - low) / (high - low)).max(0.0).min(1.0);
+    let t = clamp((x - low) / (high - low), 0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
@@ -352,6 +396,8 @@ fn field(offset: u32, count: u32) -> (u32, u32) {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Instruction {
     pub(super) operation: Operation,
+    /// Of operations on three words: bits 0 to 2 say whether `a`, `b`, `c` go on from word to word.
+    pub(super) strides: u8,
     pub(super) d: u16,
     pub(super) a: u16,
     pub(super) b: u16,
@@ -359,6 +405,16 @@ pub(super) struct Instruction {
 }
 
 impl Instruction {
+    pub(super) fn new(operation: Operation, d: u16, [a, b, c]: [u16; 3]) -> Self {
+        Self { operation, strides: 0, d, a, b, c }
+    }
+
+    /// Operand n of word k of an operation on three words.
+    #[inline(always)]
+    pub(super) fn word(&self, n: usize, k: u16) -> u16 {
+        [self.a, self.b, self.c][n].wrapping_add(k * u16::from(self.strides >> n & 1))
+    }
+
     /// Where a jump goes.
     #[inline(always)]
     pub(super) fn target(self) -> usize {
@@ -382,21 +438,27 @@ impl Instruction {
         )
     }
 
-    /// The registers that it reads by number.
-    pub(super) fn reads(&self) -> impl Iterator<Item = u16> + use<> {
+    /// The registers that it reads, as far as their numbers are known.
+    pub(super) fn reads(self) -> impl Iterator<Item = u16> {
         use Operation as O;
-        let (words, count) = match self.operation {
-            O::Jump | O::Repeat => ([0; 3], 0),
-            O::JumpUnless | O::RepeatUnless | O::LoadAt => ([self.a, 0, 0], 1),
-            O::JumpIfEqual | O::JumpUnlessLess | O::JumpUnlessLessEqual => ([self.a, self.d, 0], 2),
-            O::StoreAt => ([self.a, self.b, 0], 2),
-            pure => ([self.a, self.b, self.c], pure.arity()),
+        let (words, count, length) = match self.operation {
+            O::Jump | O::Repeat => ([0; 3], 0, 1),
+            O::JumpUnless | O::RepeatUnless | O::LoadAt => ([self.a, 0, 0], 1, 1),
+            O::JumpIfEqual | O::JumpUnlessLess | O::JumpUnlessLessEqual => ([self.a, self.d, 0], 2, 1),
+            O::StoreAt => ([self.a, self.b, 0], 2, 1),
+            O::Dot => ([self.a, self.b, 0], 2, 3),
+            single => ([self.a, self.b, self.c], single.arity(), 1),
         };
-        words.into_iter().take(count)
+        words.into_iter().take(count).flat_map(move |word| (0..length).map(move |k| word.wrapping_add(k)))
     }
 
-    /// The register that it writes, if that is known by number.
+    /// The register that it writes, if it has one, and its number is known.
     pub(super) fn writes(self) -> Option<u16> {
         (!self.jumps() && self.operation != Operation::StoreAt).then_some(self.d)
+    }
+
+    /// Whether it reads or writes registers whose numbers are not known.
+    pub(super) fn wanders(self) -> bool {
+        matches!(self.operation, Operation::LoadAt | Operation::StoreAt)
     }
 }

@@ -22,7 +22,11 @@ mod instruction;
 mod loads;
 mod lower;
 mod maths;
+mod optimise;
+#[cfg(test)]
+mod random;
 mod shape;
+mod statement;
 #[cfg(test)]
 mod tests;
 
@@ -128,10 +132,10 @@ impl Program {
             lowering.row = Some((handle, base));
         }
         let results = lowering.call(handle, arguments)?;
-        let results =
+        let results: Box<[_]> =
             results.iter().map(|word| lowering.builder.register(*word)).collect::<Result<_, _>>()?;
         Ok(Self {
-            code: lowering.builder.code.into(),
+            code: optimise::shortened(&mut lowering.builder, &results).into(),
             constants: lowering.builder.constants.into(),
             initial: lowering.initial.into(),
             argument_words,

@@ -89,6 +89,10 @@ pub(super) fn member(module: &Module, inner: &TypeInner, index: usize, layout: L
 
 /// How many words a value has.
 pub(super) fn words(module: &Module, inner: &TypeInner) -> Result<usize> {
+    // With padding a value takes at most a few times its words.
+    if inner.size(module.to_ctx()) as usize > 16 * LARGEST {
+        return Err(too_large());
+    }
     let of = |ty: Handle<Type>| words(module, &module.types[ty].inner);
     let count = match *inner {
         TypeInner::Scalar(scalar) | TypeInner::ValuePointer { size: None, scalar, .. } => {

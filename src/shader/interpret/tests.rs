@@ -15,12 +15,18 @@ fn module(text: &str) -> Module {
     module
 }
 
+/// Whether a text is valid WGSL.
+pub(super) fn valid(text: &str) -> bool {
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
+    wgsl::parse_str(text).is_ok_and(|module| validator.validate(&module).is_ok())
+}
+
 /// The program of `fn f`.
 fn program(text: &str) -> Program {
     Program::new(&module(text), "f").unwrap_or_else(|e| panic!("{e}: {text}"))
 }
 
-fn run(text: &str, arguments: &[u32]) -> Vec<u32> {
+pub(super) fn run(text: &str, arguments: &[u32]) -> Vec<u32> {
     let program = program(text);
     assert_eq!(program.argument_words(), arguments.len(), "{text}");
     let mut results = vec![0; program.result_words()];
@@ -79,6 +85,12 @@ fn arithmetic_of_floats() {
     of_floats("ceil(a) + 10.0 * floor(b) + 100.0 * trunc(-a)", [2.25, -2.25], &[3.0 - 30.0 - 200.0]);
     of_floats("vec4(round(a), round(b), fract(a), fract(-b))", [2.5, 3.5], &[2.0, 4.0, 0.5, 0.5]);
     of_floats("vec3(step(a, b), step(b, a), step(a, a))", [1.0, 2.0], &[1.0, 0.0, 1.0]);
+    // Bounds the wrong way round, and an edge of no width.
+    of_floats(
+        "vec3(clamp(a, b, 1.5), smoothstep(a, a, a), smoothstep(a, a, b))",
+        [1.0, 2.0],
+        &[1.5, 0.0, 1.0],
+    );
     of_floats("vec2(mix(a, b, 0.25), smoothstep(a, b, 2.5))", [2.0, 4.0], &[2.5, 0.15625]);
     of_floats("vec2(ldexp(a, 3), ldexp(b, -2))", [1.5, 6.0], &[12.0, 1.5]);
     of_floats(
@@ -190,6 +202,14 @@ fn whole_numbers_wrap_and_never_trap() {
     of_words("a >> b", [0x8000_0000, 31], 1);
     of_words("a - b", [0, 1], u32::MAX);
     of_words("min(a, b) + max(a, b) + abs(a)", [u32::MAX, 2], 0);
+    // Words that would be numbers of no value.
+    for word in [0x7f80_0001, 0xffff_ffff, 0x7fc0_1234] {
+        of_words("select(b, a, a > 0u)", [word, 1], word);
+        assert_eq!(
+            run("var<private> p: u32; fn f(a: u32) -> u32 { p = a; let q = p; p = 1; return q; }", &[word]),
+            [word]
+        );
+    }
     of_words("select(0u, 1u, a < b)", [0x8000_0000, 1], 0);
     of_ints("select(0, 1, a < b)", [least, 1], 1);
 }
@@ -281,6 +301,17 @@ fn values_last_while_variables_change() {
     assert_eq!(counted(text, 1), 3 + 10 + 400);
     let text = "var x = n; for (var i = 0; i < 3; i++) { let y = x; x = x * 2; sum += y; }";
     assert_eq!(counted(text, 1), 7);
+    // Read before a loop, and used in it alone, before the variable changes there.
+    let text = "var x = n; let y = x; for (var i = 0; i < 3; i++) { sum += y * 2; x += 1; }";
+    assert_eq!(counted(text, 1), 6);
+    // Put into a variable on every turn that changes there.
+    let text = "var x = 0; let y = n * 3; var i = 0; loop { x = y; sum += x; x += 1; sum += x; continuing { i++; break if i >= 3; } }";
+    assert_eq!(counted(text, 2), 39);
+    assert_eq!(counted(&text.replace("loop {", "loop { sum += 1;"), 2), 42);
+    // Words that are next to each other, one of them in a branch.
+    let text = "fn f(v: vec3<i32>) -> vec3<i32> { var w: vec3<i32>; if v.x > 0 { w.x = v.x; } w.y = v.y; w.z = v.z; return w; }";
+    assert_eq!(ints(text, &[-1, 2, 3]), [0, 2, 3]);
+    assert_eq!(ints(text, &[1, 2, 3]), [1, 2, 3]);
     // Through a function that gives back what it was given, and by a pointer.
     let text = "fn same(x: i32) -> i32 { return x; }
         fn f(n: i32) -> i32 { var x = n; let y = same(x); x = 7; return 10 * y + x; }";
@@ -484,6 +515,13 @@ fn functions_that_grow_beyond_all_bounds_are_refused() {
     }
     text += "fn f(x: f32) -> f32 { return g1999(x); }";
     assert!(Program::new(&module(&text), "f").expect_err("too deep").what.contains("nested too deeply"));
+    // Types that grow without any call.
+    let mut text = "struct S0 { a: f32, b: f32 }\n".to_owned();
+    for i in 1..25 {
+        text += &format!("struct S{i} {{ a: S{0}, b: S{0} }}\n", i - 1);
+    }
+    text += "fn f() -> f32 { var x: S24; return x.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a; }";
+    assert!(Program::new(&module(&text), "f").expect_err("too large").what.contains("too large"));
 }
 
 #[test]

@@ -1,0 +1,247 @@
+//! The document's file changed on disk: what becomes of the document.
+//!
+//! Whoever edits the file elsewhere sees the scene follow. What was changed in the window is never
+//! replaced without a question, and a file that cannot be used replaces nothing.
+
+use std::path::{Path, PathBuf};
+
+use super::{
+    files::{Files, Looked, Opened},
+    state::{Badge, Effect, Lab, MissingPart, Note, Question, Selection, Severity},
+};
+use crate::{
+    registry::Registry,
+    scene::{Scene, load::Stamp},
+};
+
+/// A state of a file on disk: its content, or that there is no file.
+type Version = Option<Stamp>;
+
+/// What is known of the document's file on disk beyond the document itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OnDisk {
+    /// What the picture must say about it.
+    pub badge: Option<Badge>,
+    /// The document may take the defaults of any part that its file lacks.
+    pub use_defaults: bool,
+    /// Whether the file was deleted, so that only the window has the document.
+    pub(super) gone: bool,
+    /// News came while a question was open.
+    pub(super) deferred: bool,
+    /// A version that cannot be used, but that may be in the middle of being written.
+    suspect: Option<Version>,
+    /// The version that cannot be used of which the user was told.
+    told: Option<Version>,
+    /// The version about which the user was asked.
+    asked: Option<Version>,
+    /// The messages about the file, which give way to newer ones.
+    notes: Vec<Note>,
+}
+
+/// Looks whether the document's file is another one than was last seen, and does what follows.
+/// `discard` takes what is on disk even if it costs unsaved changes: the user was asked.
+///
+/// A file that cannot be used is looked at again after a moment before anything is said: many editors
+/// write in steps.
+#[must_use]
+pub fn look(lab: &mut Lab, registry: &Registry, discard: bool, files: &mut dyn Files) -> Vec<Effect> {
+    let Some(path) = lab.path.clone() else { return Vec::new() };
+    if lab.question.is_some() {
+        // One question after the other.
+        lab.disk.deferred = true;
+        return Vec::new();
+    }
+    let name = path.display();
+    match files.look(&path, registry) {
+        Looked::Same => {
+            lab.disk.suspect = None;
+            // A message that it was read again stays until it is dismissed.
+            if lab.disk.badge.is_some() {
+                lab.disk_settled();
+            }
+            Vec::new()
+        }
+        Looked::Gone => doubt(lab, files, path, None, Vec::new()),
+        Looked::Changed { version, content } => match content {
+            Opened::Scene(scene) => take(lab, files, path, version, (*scene, Vec::new()), discard),
+            Opened::Incomplete { scene, parts } if lab.may_default(&parts) => {
+                let names = parts.into_iter().map(|p| p.name).collect();
+                take(lab, files, path, version, (*scene, names), discard)
+            }
+            Opened::Incomplete { parts, .. } => {
+                let lacks = |p: MissingPart| {
+                    format!("{name}: {} is missing (the default would be {})", p.name, p.default)
+                };
+                let problems = parts.into_iter().map(lacks).collect();
+                doubt(lab, files, path, Some(version), problems)
+            }
+            Opened::Empty => {
+                let problems = vec![format!("{name} is empty.")];
+                doubt(lab, files, path, Some(version), problems)
+            }
+            Opened::Failed(problems) => doubt(lab, files, path, Some(version), problems),
+        },
+    }
+}
+
+/// There is another legal scene in the file, with defaults for the parts that are named.
+fn take(
+    lab: &mut Lab,
+    files: &mut dyn Files,
+    path: PathBuf,
+    version: Stamp,
+    (scene, defaulted): (Scene, Vec<String>),
+    discard: bool,
+) -> Vec<Effect> {
+    let edited = lab.scene != lab.saved && lab.scene != scene;
+    if edited && !discard && scene != lab.saved {
+        if lab.disk.asked != Some(Some(version)) {
+            lab.disk_settled();
+            lab.disk.asked = Some(Some(version));
+            lab.ask(Question::NewerOnDisk { path, scene: Box::new(scene), version });
+        }
+        return Vec::new();
+    }
+    files.expect(&path, Some(version));
+    lab.disk_settled();
+    if edited && !discard {
+        // Only the layout of the file is another: what is in it is what the changes began with.
+        return Vec::new();
+    }
+    let news = lab.scene != scene;
+    lab.reloaded(scene, defaulted);
+    if news {
+        lab.say_of_disk(Severity::Info, format!("{} was read again: it changed on disk.", path.display()));
+    }
+    Vec::new()
+}
+
+/// The file cannot be used: after a moment of grace, says so.
+fn doubt(
+    lab: &mut Lab,
+    files: &mut dyn Files,
+    path: PathBuf,
+    version: Version,
+    problems: Vec<String>,
+) -> Vec<Effect> {
+    if lab.disk.told == Some(version) {
+        lab.disk.suspect = None;
+        return Vec::new();
+    }
+    if lab.disk.suspect != Some(version) {
+        lab.disk.suspect = Some(version);
+        return vec![Effect::LookAgain(path)];
+    }
+    lab.disk_settled();
+    lab.disk.told = Some(version);
+    if version.is_none() {
+        // Saving writes the file anew, if there is still none.
+        files.expect(&path, None);
+        lab.disk.gone = true;
+        let text =
+            format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.display());
+        lab.disk.badge = Some(Badge {
+            severity: Severity::Warning,
+            text: format!("{} was deleted: showing its last version", file_name(&path)),
+            help: text.clone(),
+        });
+        lab.say_of_disk(Severity::Warning, text);
+        return Vec::new();
+    }
+    lab.disk.badge = Some(Badge {
+        severity: Severity::Error,
+        text: format!("{} has errors: showing the last good version", file_name(&path)),
+        help: problems.join("\n"),
+    });
+    // The latest stands on top: the first problem.
+    for problem in problems.iter().rev() {
+        lab.say_of_disk(Severity::Error, problem.clone());
+    }
+    vec![Effect::Complain(problems.join("\n"))]
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+impl Lab {
+    /// The document's file is as it should be, or is the user's concern: what was said of it is over.
+    pub(super) fn disk_settled(&mut self) {
+        let notes = std::mem::take(&mut self.disk.notes);
+        self.messages.retain(|m| !notes.contains(m));
+        self.disk = OnDisk {
+            use_defaults: self.disk.use_defaults,
+            deferred: self.disk.deferred,
+            ..OnDisk::default()
+        };
+    }
+
+    /// The user leaves it open whether the file on disk or the document counts.
+    pub(super) fn disk_undecided(&mut self, path: &Path) {
+        self.disk.badge = Some(Badge {
+            severity: Severity::Warning,
+            text: format!("{} changed on disk: showing yours", file_name(path)),
+            help: format!(
+                "{} was changed by another program, and there are changes here that are not saved. Saving asks which \
+                 of both to keep.",
+                path.display()
+            ),
+        });
+    }
+
+    /// Says something about the file that gives way when there is something newer to say.
+    fn say_of_disk(&mut self, severity: Severity, text: String) {
+        self.disk.notes.push(Note { severity, text: text.clone() });
+        self.say(severity, text);
+    }
+
+    /// Whether the user agreed to the defaults of all these parts.
+    fn may_default(&self, parts: &[MissingPart]) -> bool {
+        self.disk.use_defaults || parts.iter().all(|p| self.defaulted.contains(&p.name))
+    }
+
+    /// The scene in the document's file becomes the document. Camera and terms stay as they are, and so
+    /// does the selection where it still means something.
+    fn reloaded(&mut self, scene: Scene, defaulted: Vec<String>) {
+        let selection = follow(&self.scene, &scene, self.selection);
+        if selection != self.selection {
+            self.renaming = None;
+        }
+        self.selection = selection;
+        self.saved = scene.clone();
+        self.defaulted = defaulted;
+        if self.scene.reflection_model != scene.reflection_model {
+            self.use_slot(&scene.reflection_model);
+        }
+        self.scene = scene;
+    }
+}
+
+/// Where a selected part is in another version of the scene: the same part at another place in its
+/// list, else what is at its place now, else the nearest there is.
+fn follow(old: &Scene, new: &Scene, selection: Selection) -> Selection {
+    match selection {
+        Selection::Light(i) => {
+            let place = place_in(&old.lights, &new.lights, i, |l| l.name.as_deref());
+            place.map_or(Selection::Room, Selection::Light)
+        }
+        Selection::Object(i) => {
+            let place = place_in(&old.objects, &new.objects, i, |o| o.name.as_deref());
+            place.map_or(Selection::Room, Selection::Object)
+        }
+        other => other,
+    }
+}
+
+fn place_in<T: PartialEq>(old: &[T], new: &[T], at: usize, name: fn(&T) -> Option<&str>) -> Option<usize> {
+    let last = new.len().checked_sub(1)?;
+    let Some(part) = old.get(at) else { return Some(at.min(last)) };
+    if new.get(at) == Some(part) {
+        return Some(at);
+    }
+    let named = |p: &T| name(part).is_some() && name(p) == name(part);
+    if new.get(at).is_some_and(named) {
+        return Some(at);
+    }
+    new.iter().position(|p| p == part).or_else(|| new.iter().position(named)).or(Some(at.min(last)))
+}

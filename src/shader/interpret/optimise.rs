@@ -1,0 +1,250 @@
+//! Fewer instructions that do the same.
+//!
+//! Registers that are no variables are written by one instruction, which makes it easy to see what may be left
+//! out or joined: what nobody reads, copies of what was just calculated, a product that is only added to
+//! something, a comparison that only decides a jump, three instructions that do the same to three words.
+
+use super::{
+    builder::Builder,
+    instruction::{Instruction, Operation as O},
+};
+
+/// How far back the origin of a value is looked for.
+const REACH: usize = 64;
+
+struct Optimiser<'b> {
+    builder: &'b Builder,
+    /// `None` where an instruction was left out.
+    code: Vec<Option<Instruction>>,
+    /// Where jumps lead.
+    targets: Vec<bool>,
+    /// How often each register is read.
+    reads: Vec<u32>,
+}
+
+/// The code of a builder, shorter; `results` are read in the end.
+pub(super) fn shortened(builder: &mut Builder, results: &[u16]) -> Vec<Instruction> {
+    let code = std::mem::take(&mut builder.code);
+    let mut targets = vec![false; code.len() + 1];
+    let mut reads = vec![0; super::REGISTERS];
+    for instruction in &code {
+        if instruction.jumps() {
+            targets[instruction.target()] = true;
+        }
+        for register in instruction.reads() {
+            reads[usize::from(register)] += 1;
+        }
+    }
+    for register in results.iter().chain(&builder.wanted) {
+        reads[usize::from(*register)] += 1;
+    }
+    let code = code.into_iter().map(Some).collect();
+    let mut optimiser = Optimiser { builder, code, targets, reads };
+    optimiser.drop_unread();
+    optimiser.join_products();
+    optimiser.join_copies();
+    optimiser.join_comparisons();
+    let code = optimiser.compact();
+    let targets = targets_of(&code);
+    triples(code, &targets)
+}
+
+fn targets_of(code: &[Instruction]) -> Vec<bool> {
+    let mut targets = vec![false; code.len() + 1];
+    for instruction in code.iter().filter(|i| i.jumps()) {
+        targets[instruction.target()] = true;
+    }
+    targets
+}
+
+impl Optimiser<'_> {
+    /// Whether a register is written by one instruction, and read by one.
+    fn passing(&self, register: u16) -> bool {
+        !self.builder.is_mutable(register)
+            && usize::from(register) < self.builder.registers()
+            && self.reads[usize::from(register)] == 1
+    }
+
+    fn remove(&mut self, at: usize) {
+        if let Some(instruction) = self.code[at].take() {
+            for register in instruction.reads() {
+                self.reads[usize::from(register)] -= 1;
+            }
+        }
+    }
+
+    fn drop_unread(&mut self) {
+        for at in (0..self.code.len()).rev() {
+            let Some(instruction) = self.code[at] else { continue };
+            if let Some(d) = instruction.writes()
+                && !self.builder.is_mutable(d)
+                && self.reads[usize::from(d)] == 0
+            {
+                self.remove(at);
+            }
+        }
+    }
+
+    /// The instruction before another that writes a register, with no jump into or out of what lies between, if what
+    /// lies between passes a test.
+    fn origin(&self, register: u16, at: usize, passes: impl Fn(Instruction) -> bool) -> Option<usize> {
+        if self.targets[at] {
+            return None;
+        }
+        for before in (at.saturating_sub(REACH)..at).rev() {
+            if let Some(instruction) = self.code[before] {
+                if instruction.jumps() {
+                    return None;
+                }
+                if instruction.writes() == Some(register) {
+                    return Some(before);
+                }
+                if !passes(instruction) {
+                    return None;
+                }
+            }
+            if self.targets[before] {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// `d = x + t` where `t = p q` is read nowhere else becomes `d = p q + x`.
+    fn join_products(&mut self) {
+        for at in 0..self.code.len() {
+            let Some(sum) = self.code[at] else { continue };
+            if sum.operation != O::AddF {
+                continue;
+            }
+            for (product, other) in [(sum.a, sum.b), (sum.b, sum.a)] {
+                let Some(origin) = self.origin_of_product(product, at) else { continue };
+                let Some(factors) = self.code[origin] else { continue };
+                let joined = Instruction::new(O::MulAddF, sum.d, [factors.a, factors.b, other]);
+                self.code[at] = Some(joined);
+                self.code[origin] = None;
+                break;
+            }
+        }
+    }
+
+    /// Where a product was calculated that is read once, if its factors have not changed since.
+    fn origin_of_product(&self, register: u16, at: usize) -> Option<usize> {
+        if !self.passing(register) {
+            return None;
+        }
+        let origin = self.origin(register, at, |_| true)?;
+        let product = self.code[origin].filter(|i| i.operation == O::MulF)?;
+        let steady = |factor: u16| !self.builder.is_mutable(factor);
+        (steady(product.a) && steady(product.b)).then_some(origin)
+    }
+
+    /// A value that is only copied into a variable is written there at once.
+    fn join_copies(&mut self) {
+        for at in 0..self.code.len() {
+            let Some(copy) = self.code[at] else { continue };
+            if copy.operation != O::Copy || !self.passing(copy.a) {
+                continue;
+            }
+            let untouched = |i: Instruction| {
+                !i.wanders() && i.writes() != Some(copy.d) && i.reads().all(|register| register != copy.d)
+            };
+            let Some(origin) = self.origin(copy.a, at, untouched) else { continue };
+            if let Some(instruction) = &mut self.code[origin] {
+                instruction.d = copy.d;
+                self.reads[usize::from(copy.a)] = 0;
+                self.code[at] = None;
+            }
+        }
+    }
+
+    /// A comparison that only decides the jump after it becomes part of that.
+    fn join_comparisons(&mut self) {
+        for at in 1..self.code.len() {
+            let (Some(test), Some(jump)) = (self.code[at - 1], self.code[at]) else { continue };
+            let operation = match test.operation {
+                O::LessF => O::JumpUnlessLess,
+                O::LessEqualF => O::JumpUnlessLessEqual,
+                _ => continue,
+            };
+            if jump.operation != O::JumpUnless
+                || jump.a != test.d
+                || !self.passing(test.d)
+                || self.targets[at]
+            {
+                continue;
+            }
+            let mut joined = Instruction::new(operation, test.b, [test.a, 0, 0]);
+            joined.aim(jump.target());
+            self.code[at] = Some(joined);
+            self.code[at - 1] = None;
+        }
+    }
+
+    /// What is left, without jumps to what comes next anyway.
+    fn compact(mut self) -> Vec<Instruction> {
+        for at in (0..self.code.len()).rev() {
+            if let Some(jump) = self.code[at]
+                && jump.operation == O::Jump
+                && jump.target() > at
+                && self.code[at + 1..jump.target()].iter().all(Option::is_none)
+            {
+                self.code[at] = None;
+            }
+        }
+        let mut places = Vec::with_capacity(self.code.len() + 1);
+        let mut count = 0;
+        for instruction in &self.code {
+            places.push(count);
+            count += usize::from(instruction.is_some());
+        }
+        places.push(count);
+        let moved = |mut instruction: Instruction| {
+            if instruction.jumps() {
+                instruction.aim(places[instruction.target()]);
+            }
+            instruction
+        };
+        self.code.into_iter().flatten().map(moved).collect()
+    }
+}
+
+/// One instruction for three that do the same to three words.
+fn triples(code: Vec<Instruction>, targets: &[bool]) -> Vec<Instruction> {
+    let mut joined: Vec<Instruction> = Vec::with_capacity(code.len());
+    let mut places = Vec::with_capacity(code.len() + 1);
+    let mut at = 0;
+    while at < code.len() {
+        places.push(joined.len());
+        let triple = code.get(at..at + 3).filter(|_| !targets[at + 1] && !targets[at + 2]).and_then(triple);
+        if triple.is_some() {
+            places.extend([joined.len(); 2]);
+            at += 2;
+        }
+        joined.push(triple.unwrap_or(code[at]));
+        at += 1;
+    }
+    places.push(joined.len());
+    for instruction in joined.iter_mut().filter(|i| i.jumps()) {
+        instruction.aim(places[instruction.target()]);
+    }
+    joined
+}
+
+/// The instruction that does what these three do, one after the other.
+fn triple(three: &[Instruction]) -> Option<Instruction> {
+    let [first, rest @ ..] = three else { return None };
+    let operation = first.operation.triple()?;
+    let mut strides = 0;
+    for (n, start) in [first.a, first.b, first.c].into_iter().enumerate().take(first.operation.arity()) {
+        let goes_on = (1u16..).zip(rest).all(|(k, i)| [i.a, i.b, i.c][n] == start.wrapping_add(k));
+        let stays = rest.iter().all(|i| [i.a, i.b, i.c][n] == start);
+        if !goes_on && !stays {
+            return None;
+        }
+        strides |= u8::from(goes_on) << n;
+    }
+    let same =
+        (1u16..).zip(rest).all(|(k, i)| i.operation == first.operation && i.d == first.d.wrapping_add(k));
+    same.then_some(Instruction { operation, strides, ..*first })
+}

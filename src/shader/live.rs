@@ -1,0 +1,678 @@
+//! The shaders on the picture: composed when first needed, exchanged when a file they are made of changes, and
+//! kept when the change cannot be drawn with.
+//!
+//! Each model in each shading mode has one shader, and each of those goes its own way: what a change of a shared
+//! file breaks for one model does not disturb the others. A shader is exchanged only after it was tried
+//! ([`trial`](super::trial)). Its asset stays the same, so cameras, materials and objects know nothing of it.
+
+use std::{
+    collections::{BTreeMap, BTreeSet, HashMap},
+    fs, io,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use bevy::{
+    app::{App, Plugin},
+    asset::{Assets, Handle},
+    ecs::prelude::*,
+    render::{
+        error_handler::{ErrorType, RenderError, RenderErrorHandler, RenderErrorPolicy},
+        renderer::{RenderAdapter, RenderDevice},
+    },
+    shader::{Shader, ValidateShader},
+};
+
+use super::{
+    check::ShaderProblem,
+    compose::{Composed, Sources, WRAPPER, compose, compose_evaluation},
+    status::{Reloaded, ShaderStatus, Trouble},
+    trial::{Bench, COMPOSED, Tools, TrialPlugin, Verdict},
+};
+use crate::{
+    app::{LabFrame, LabSystems},
+    assets::{Folders, built_in_sources},
+    reflection::{ModelEntry, own, swap::Drawn},
+    registry::Registry,
+    shading::{ModeEntry, Stage},
+};
+
+/// A broken file is not complained of so soon after it changed: many editors empty a file before they write it.
+pub const GRACE: Duration = Duration::from_millis(150);
+/// A failure of the renderer so soon after an exchange is blamed on it.
+const PROBATION: Duration = Duration::from_secs(5);
+/// No shader is longer, bytes.
+const LONGEST: u64 = 1 << 20;
+
+/// Exchanges shaders while they are on the picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LiveShadersPlugin;
+
+impl Plugin for LiveShadersPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(TrialPlugin)
+            .init_resource::<LiveShaders>()
+            .insert_resource(RenderErrorHandler(take_back))
+            .add_systems(LabFrame, exchange.in_set(LabSystems::Swap).before(crate::reflection::swap::swap));
+    }
+}
+
+/// What tells shaders apart: model, mode, the number of light types that were known, and the declaration of the
+/// model, from which the layout of its row follows.
+type Key = (&'static str, &'static str, usize, usize);
+
+fn key(model: &ModelEntry, mode: &ModeEntry, registry: &Registry) -> Key {
+    let declaration = std::ptr::from_ref(model.declaration) as usize;
+    (model.declaration.id, mode.declaration.id, registry.lights().len(), declaration)
+}
+
+/// One shader.
+struct Live {
+    handle: Handle<Shader>,
+    /// What is drawn with.
+    shown: Composed,
+    /// What was drawn with before, and until when: the renderer may still refuse what came after.
+    before: Option<(Composed, Instant)>,
+    /// What was tried last and refused, and why.
+    refused: Option<Refused>,
+    /// A file it is made of changed.
+    due: bool,
+}
+
+struct Refused {
+    composed: Composed,
+    problem: Box<ShaderProblem>,
+    at: Instant,
+}
+
+/// The shaders by model and mode, and the texts that they are made of.
+#[derive(Default, Resource)]
+pub struct LiveShaders {
+    /// The texts of the files as they are.
+    current: Sources,
+    /// The text of each file as it last came through.
+    good: Sources,
+    shaders: HashMap<Key, Live>,
+    /// Files that cannot be read and own models with mistakes, and since when.
+    unusable: BTreeMap<String, (Vec<ShaderProblem>, Instant)>,
+    /// Changed files that no shader is made of: whether they are right is tried on the side.
+    unused: BTreeSet<String>,
+    /// What is wrong with those.
+    unused_problems: BTreeMap<String, (Box<ShaderProblem>, Instant)>,
+    folders: Folders,
+    /// Whether there are texts to begin with.
+    started: bool,
+    /// The file that changed last, and when that became known.
+    change: Option<(String, Instant)>,
+    last: Option<Reloaded>,
+    status: ShaderStatus,
+    /// Whether the status has to be made anew.
+    stale_status: bool,
+}
+
+impl LiveShaders {
+    /// Begins with these texts instead of the built-in ones, from these folders.
+    pub fn start(&mut self, sources: Sources, folders: Folders) {
+        self.current = sources;
+        self.folders = folders;
+        self.started = true;
+        self.shaders.values_mut().for_each(|live| live.due = true);
+        self.stale_status = true;
+    }
+
+    /// Where the shaders come from and what is wrong with them.
+    #[must_use]
+    pub fn status(&self) -> &ShaderStatus {
+        &self.status
+    }
+
+    /// The texts of the files as they are.
+    #[must_use]
+    pub fn sources(&self) -> &Sources {
+        &self.current
+    }
+
+    /// Whether something is still to be tried or told, so that frames must go on.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.stale_status || self.is_trying()
+    }
+
+    /// Whether something is still to be tried, so that the next picture may be another one.
+    #[must_use]
+    pub fn is_trying(&self) -> bool {
+        !self.unused.is_empty() || self.shaders.values().any(|live| live.due)
+    }
+
+    /// Whether what is drawn with is what the files say, all of it.
+    #[must_use]
+    pub fn is_up_to_date(&self) -> bool {
+        !self.is_trying()
+            && self.shaders.values().all(|live| live.refused.is_none())
+            && self.unusable.is_empty()
+    }
+
+    /// The problems that are too young to be told.
+    fn fresh_problems(&self) -> impl Iterator<Item = Instant> {
+        let refused = self.shaders.values().filter_map(|live| live.refused.as_ref().map(|r| r.at));
+        let unusable = self.unusable.values().map(|(_, at)| *at);
+        let unused = self.unused_problems.values().map(|(_, at)| *at);
+        refused.chain(unusable).chain(unused).filter(|at| at.elapsed() < GRACE)
+    }
+
+    /// The path by which a file on disk is known, if it is one of ours.
+    #[must_use]
+    pub fn path_of(&self, file: &Path) -> Option<String> {
+        if file.extension().is_none_or(|e| e != "wgsl") {
+            return None;
+        }
+        let below = |folder: &Option<PathBuf>, prefix: &str| {
+            let rest = file.strip_prefix(folder.as_ref()?).ok()?;
+            let parts: Option<Vec<_>> = rest.iter().map(|p| p.to_str()).collect();
+            Some(format!("{prefix}{}", parts?.join("/")))
+        };
+        below(&self.folders.models, "models/").or_else(|| below(&self.folders.shaders, ""))
+    }
+
+    /// The file on disk behind a path.
+    #[must_use]
+    pub fn file_of(&self, path: &str) -> Option<PathBuf> {
+        if path.starts_with('(') {
+            return None;
+        }
+        match path.strip_prefix("models/") {
+            Some(name) => Some(self.folders.models.as_ref()?.join(name)),
+            None => Some(self.folders.shaders.as_ref()?.join(path)),
+        }
+    }
+
+    /// Reads a file that may have changed. Files that are none of ours are passed over; own models go into the
+    /// registry.
+    pub fn look_at(&mut self, file: &Path, registry: &mut Registry) {
+        let Some(path) = self.path_of(file) else { return };
+        let model = path.starts_with("models/") && !path["models/".len()..].contains('/');
+        match read(file) {
+            Ok(text) if model && own::is_model(&text) => self.look_at_model(file, &path, &text, registry),
+            Ok(text) => self.change(&path, &text, registry),
+            Err(problem) => {
+                let own = own::id_of(file).is_some_and(|id| model && registry.own_file(id).is_some());
+                if own || built_in(registry, &path).is_some() || self.current.get(&path).is_some() {
+                    self.cannot_use(&path, vec![problem.at(&path)]);
+                }
+            }
+        }
+    }
+
+    /// Reads an own model. One with a mistake leaves what is known of it as it was.
+    fn look_at_model(&mut self, file: &Path, path: &str, text: &str, registry: &mut Registry) {
+        let known = own::id_of(file).filter(|id| registry.own_file(id).is_some());
+        if known.is_some() && self.current.get(path) == Some(text) {
+            self.stale_status |= self.unusable.remove(path).is_some();
+            return;
+        }
+        match own::read(file, text, registry) {
+            Ok(model) => {
+                registry.put_own_model(model);
+                self.change(path, text, registry);
+            }
+            Err(problems) => {
+                // A new file whose declaration is right can be chosen, and is drawn as a stand-in.
+                if known.is_none()
+                    && let Ok(model) = own::declare(file, text, registry)
+                {
+                    registry.put_stand_in(model);
+                }
+                self.cannot_use(path, problems);
+            }
+        }
+    }
+
+    fn cannot_use(&mut self, path: &str, problems: Vec<ShaderProblem>) {
+        if self.unusable.get(path).is_none_or(|(known, _)| *known != problems) {
+            self.unusable.insert(path.to_owned(), (problems, Instant::now()));
+            self.stale_status = true;
+        }
+    }
+
+    /// A file has another text. Nothing happens when it is the one that is known.
+    fn change(&mut self, path: &str, text: &str, registry: &mut Registry) {
+        self.stale_status |= self.unusable.remove(path).is_some();
+        let built_in = built_in(registry, path);
+        let known = self.current.get(path).or(built_in);
+        if known == Some(text) {
+            return;
+        }
+        match built_in {
+            Some(original) if original == text => self.current.forget(path),
+            _ => self.current.edit(path, text),
+        }
+        registry.sources_mut().copy_from(&self.current, path);
+        self.read_again(path, registry);
+        self.change = Some((path.to_owned(), Instant::now()));
+        let mut used = false;
+        for live in self.shaders.values_mut() {
+            let candidate = live.refused.as_ref().is_some_and(|r| r.composed.depends_on(path));
+            if candidate || live.shown.depends_on(path) {
+                live.due = true;
+                used = true;
+            }
+        }
+        if used {
+            self.unused_problems.remove(path);
+        } else {
+            self.unused.insert(path.to_owned());
+        }
+    }
+
+    /// Reads the own models again that import a file: the CPU runs them from what was read.
+    fn read_again(&mut self, path: &str, registry: &mut Registry) {
+        let imports = |model: &ModelEntry| compose_evaluation(&self.current, model).imports.contains(path);
+        let importing: Vec<_> = registry
+            .own_models()
+            .filter(|(model, _)| imports(model))
+            .filter_map(|(model, file)| {
+                let text = self.current.get(model.declaration.wgsl.path)?;
+                Some((model.declaration.wgsl.path, file.to_owned(), text.to_owned()))
+            })
+            .collect();
+        for (own_path, file, text) in importing {
+            match own::read(&file, &text, registry) {
+                Ok(model) => {
+                    registry.put_own_model(model);
+                    self.stale_status |= self.unusable.remove(own_path).is_some();
+                }
+                Err(problems) => self.cannot_use(own_path, problems),
+            }
+        }
+    }
+
+    /// The shader of a model and a mode.
+    pub(crate) fn get(
+        &mut self,
+        world: &mut World,
+        model: &ModelEntry,
+        mode: &ModeEntry,
+        registry: &Registry,
+    ) -> Handle<Shader> {
+        let key = key(model, mode, registry);
+        if let Some(live) = self.shaders.get(&key) {
+            return live.handle.clone();
+        }
+        if !self.started {
+            self.started = true;
+            self.current = registry.sources().clone();
+        }
+        let wanted = compose(&self.current, model, mode, registry.lights());
+        let mut refused = None;
+        let mut due = false;
+        let mut shown = None;
+        if self.is_built_in(&wanted) {
+            shown = Some(wanted);
+        } else {
+            match try_out(world, &wanted, mode) {
+                Verdict::Good => {
+                    self.note_good(&wanted);
+                    shown = Some(wanted);
+                }
+                Verdict::Bad(problem) => {
+                    refused = Some(Refused { composed: wanted, problem, at: Instant::now() })
+                }
+                Verdict::NotYet => due = true,
+            }
+        }
+        let shown = shown.unwrap_or_else(|| {
+            let last_good = compose(&self.good, model, mode, registry.lights());
+            let usable = self.is_built_in(&last_good) || try_out(world, &last_good, mode) == Verdict::Good;
+            if usable { last_good } else { compose(&Sources::default(), model, mode, registry.lights()) }
+        });
+        let asset = self.asset(&shown, key);
+        let handle = world.resource_mut::<Assets<Shader>>().add(asset);
+        self.stale_status = true;
+        self.shaders.insert(key, Live { handle: handle.clone(), shown, before: None, refused, due });
+        handle
+    }
+
+    /// Whether a composed source holds nothing but what was built in, which tests have tried.
+    fn is_built_in(&self, composed: &Composed) -> bool {
+        let edited = |path: &str| self.current.get(path).is_some() || self.good.get(path).is_some();
+        !composed.map.files().any(edited) && composed.problem.is_none()
+    }
+
+    fn asset(&self, composed: &Composed, key: Key) -> Shader {
+        let mut shader =
+            Shader::from_wgsl(composed.text.clone(), format!("{COMPOSED}{}/{}.wgsl", key.0, key.1));
+        if !self.is_built_in(composed) {
+            // What users write may read outside of arrays.
+            shader.validate_shader = ValidateShader::Enabled;
+        }
+        shader
+    }
+
+    fn note_good(&mut self, composed: &Composed) {
+        let Self { good, current, .. } = self;
+        composed.map.files().for_each(|path| good.copy_from(current, path));
+    }
+
+    /// Tries what is due: first what is on the picture, all of it; then, one in a frame, what is not.
+    fn work(&mut self, world: &mut World, registry: &Registry, visible: &Visible) {
+        let mut due: Vec<Key> = self.shaders.iter().filter(|(_, live)| live.due).map(|(k, _)| *k).collect();
+        due.sort_unstable();
+        let (on_picture, off_picture): (Vec<_>, Vec<_>) = due.into_iter().partition(|k| visible.has(k));
+        let rest = if on_picture.is_empty() { 1 } else { 0 };
+        for key in on_picture.into_iter().chain(off_picture.into_iter().take(rest)) {
+            self.refresh(world, registry, key);
+        }
+        if rest == 1
+            && let Some(path) = self.unused.pop_first()
+        {
+            self.try_unused(world, registry, visible, &path);
+        }
+    }
+
+    /// Exchanges a shader for what its files say now, if that can be drawn with.
+    fn refresh(&mut self, world: &mut World, registry: &Registry, key: Key) {
+        let entries = registry.model(key.0).zip(registry.mode(key.1));
+        let Some((model, mode)) = entries.filter(|(model, mode)| self::key(model, mode, registry) == key)
+        else {
+            // An older declaration, which nothing is drawn with any more.
+            if let Some(live) = self.shaders.get_mut(&key) {
+                live.due = false;
+            }
+            return;
+        };
+        let wanted = compose(&self.current, model, mode, registry.lights());
+        let shown_already = self.shaders.get(&key).is_some_and(|live| live.shown == wanted);
+        let verdict = if shown_already || self.is_built_in(&wanted) {
+            Verdict::Good
+        } else {
+            try_out(world, &wanted, mode)
+        };
+        if verdict == Verdict::Good {
+            self.note_good(&wanted);
+        }
+        let asset = self.asset(&wanted, key);
+        let Some(live) = self.shaders.get_mut(&key) else { return };
+        live.due = verdict == Verdict::NotYet;
+        match verdict {
+            Verdict::Good if shown_already => live.refused = None,
+            Verdict::Good => {
+                let id = live.handle.id();
+                // The asset is there as long as its handle.
+                let _ = world.resource_mut::<Assets<Shader>>().insert(id, asset);
+                live.before = Some((std::mem::replace(&mut live.shown, wanted), Instant::now()));
+                live.refused = None;
+                if let Some((file, since)) = &self.change {
+                    let milliseconds = since.elapsed().as_secs_f32() * 1e3;
+                    self.last = Some(Reloaded { file: file.clone(), milliseconds });
+                }
+            }
+            Verdict::Bad(problem) => {
+                let problem = self.blamed(problem, &wanted);
+                let Some(live) = self.shaders.get_mut(&key) else { return };
+                // The same problem again keeps its age.
+                let at = live
+                    .refused
+                    .as_ref()
+                    .filter(|r| r.problem == problem)
+                    .map_or_else(Instant::now, |r| r.at);
+                live.refused = Some(Refused { composed: wanted, problem, at });
+            }
+            Verdict::NotYet => {}
+        }
+        self.stale_status = true;
+    }
+
+    /// Names the file that was edited where a problem shows in another one: behind a file that ends in the middle
+    /// of something, or where something is used that is not there any more.
+    fn blamed(&self, mut problem: Box<ShaderProblem>, composed: &Composed) -> Box<ShaderProblem> {
+        if self.current.get(&problem.file).is_some() {
+            return problem;
+        }
+        let changed = self.change.as_ref().map(|(file, _)| file.as_str());
+        let edited = |path: &&str| self.current.get(path).is_some();
+        let Some(cause) =
+            changed.filter(|c| composed.depends_on(c)).or_else(|| composed.map.files().find(edited))
+        else {
+            return problem;
+        };
+        let text = self.current.get(cause).unwrap_or_default();
+        let generated = problem.file.starts_with('(');
+        if !generated && !ends_too_early(text) {
+            problem.message.push_str(&format!("; this began with the change of {cause}"));
+            return problem;
+        }
+        let last = text.trim_end().lines().last().unwrap_or_default();
+        Box::new(ShaderProblem {
+            file: cause.to_owned(),
+            line: text.trim_end().lines().count().max(1),
+            column: last.chars().count().max(1),
+            source: last.to_owned(),
+            message: match text.trim().is_empty() {
+                true => format!("the file is empty; {}", problem.message),
+                false => format!("behind the end of the file: {}", problem.message),
+            },
+        })
+    }
+
+    /// Tries a file that nothing on the picture is made of, with a model or mode that it belongs to.
+    fn try_unused(&mut self, world: &mut World, registry: &Registry, visible: &Visible, path: &str) {
+        let modes = registry.modes();
+        let models = registry.models();
+        let mode = modes.iter().find(|m| m.declaration.wgsl.path == path);
+        let model = models.iter().find(|m| m.declaration.wgsl.path == path);
+        if mode.is_none() && model.is_none() {
+            return;
+        }
+        let shown_mode = || modes.iter().find(|m| visible.0.iter().any(|(_, id)| id == m.declaration.id));
+        let Some((model, mode)) = model.or(models.first()).zip(mode.or_else(shown_mode).or(modes.first()))
+        else {
+            return;
+        };
+        let composed = compose(&self.current, model, mode, registry.lights());
+        match try_out(world, &composed, mode) {
+            Verdict::Good => {
+                self.unused_problems.remove(path);
+                self.note_good(&composed);
+            }
+            Verdict::Bad(problem) => {
+                let problem = self.blamed(problem, &composed);
+                self.unused_problems.insert(path.to_owned(), (problem, Instant::now()));
+            }
+            Verdict::NotYet => {
+                self.unused.insert(path.to_owned());
+            }
+        }
+        self.stale_status = true;
+    }
+
+    /// Writes down what people are told.
+    fn tell(&mut self, registry: &Registry, visible: &Visible) {
+        let mut troubles: Vec<Trouble> = Vec::new();
+        let mut add = |problem: &ShaderProblem, stale: Option<&str>| {
+            let i = troubles.iter().position(|t| t.problem == *problem).unwrap_or_else(|| {
+                let path = self.file_of(&problem.file);
+                troubles.push(Trouble { problem: problem.clone(), path, stale: Vec::new() });
+                troubles.len() - 1
+            });
+            if let Some(name) = stale
+                && !troubles[i].stale.iter().any(|n| n == name)
+            {
+                troubles[i].stale.push(name.to_owned());
+            }
+        };
+        let name = |key: &Key| registry.model(key.0).map_or(key.0, |m| m.declaration.name);
+        let old = |at: &Instant| at.elapsed() >= GRACE;
+        let mut keys: Vec<_> = self.shaders.keys().collect();
+        keys.sort_unstable();
+        for (path, (problems, _)) in self.unusable.iter().filter(|(_, (_, at))| old(at)) {
+            for problem in problems {
+                add(problem, None);
+                for key in keys.iter().filter(|k| visible.has(k) && self.shaders[**k].shown.depends_on(path))
+                {
+                    add(problem, Some(name(key)));
+                }
+            }
+        }
+        for key in keys {
+            if let Some(refused) = self.shaders[key].refused.as_ref().filter(|r| old(&r.at)) {
+                add(&refused.problem, visible.has(key).then(|| name(key)));
+            }
+        }
+        for (problem, _) in self.unused_problems.values().filter(|(_, at)| old(at)) {
+            add(problem, None);
+        }
+        let Folders { shaders, models } = self.folders.clone();
+        let status = ShaderStatus { shaders, models, troubles, last: self.last.clone() };
+        if self.status != status {
+            self.status = status;
+        }
+    }
+}
+
+/// The models and modes on the picture.
+struct Visible(Vec<(String, String)>);
+
+impl Visible {
+    fn of(world: &mut World) -> Self {
+        let mut query = world.query::<&Drawn>();
+        let mut pairs: Vec<_> =
+            query.iter(world).map(|d| (d.model().to_owned(), d.mode().to_owned())).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        Self(pairs)
+    }
+
+    fn has(&self, key: &Key) -> bool {
+        self.0.iter().any(|(model, mode)| model == key.0 && mode == key.1)
+    }
+}
+
+/// Exchanges the shaders whose files changed.
+fn exchange(world: &mut World) {
+    if !world.resource::<LiveShaders>().is_busy() {
+        return;
+    }
+    let registry = world.resource::<Registry>().clone();
+    let visible = Visible::of(world);
+    world.resource_scope(|world, mut live: Mut<LiveShaders>| {
+        live.work(world, &registry, &visible);
+        // Problems that are too young now are told later.
+        let young = live.fresh_problems().next().is_some();
+        live.stale_status = young;
+        live.tell(&registry, &visible);
+    });
+}
+
+fn try_out(world: &mut World, composed: &Composed, mode: &ModeEntry) -> Verdict {
+    let (Some(device), Some(adapter)) =
+        (world.get_resource::<RenderDevice>().cloned(), world.get_resource::<RenderAdapter>().cloned())
+    else {
+        return Verdict::NotYet;
+    };
+    world.resource_scope(|world, mut bench: Mut<Bench>| {
+        let tools = Tools { device: &device, adapter: &adapter, shaders: world.resource::<Assets<Shader>>() };
+        bench.try_out(composed, mode.declaration.stage == Stage::Polygon, tools)
+    })
+}
+
+/// The renderer failed all the same: goes back to what was drawn with before. Where nothing was exchanged, the
+/// cause is another, and the program ends as Bevy has it.
+fn take_back(error: &RenderError, main: &mut World, render: &mut World) -> RenderErrorPolicy {
+    let usual = RenderErrorHandler::default().0;
+    if !matches!(error.ty, ErrorType::Validation | ErrorType::Internal) {
+        return usual(error, main, render);
+    }
+    let what = error.description.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+    let mut taken_back = false;
+    main.resource_scope(|main, mut live: Mut<LiveShaders>| {
+        let live = &mut *live;
+        let file = live.change.as_ref().map_or_else(|| WRAPPER.path.to_owned(), |(file, _)| file.clone());
+        let mut shaders = main.resource_mut::<Assets<Shader>>();
+        for (key, entry) in &mut live.shaders {
+            let Some((before, _)) = entry.before.take_if(|(_, at)| at.elapsed() < PROBATION) else {
+                continue;
+            };
+            let refused = std::mem::replace(&mut entry.shown, before);
+            let path = format!("{COMPOSED}{}/{}.wgsl", key.0, key.1);
+            let _ = shaders.insert(entry.handle.id(), Shader::from_wgsl(entry.shown.text.clone(), path));
+            let problem = Box::new(ShaderProblem {
+                file: file.clone(),
+                line: 1,
+                column: 1,
+                source: String::new(),
+                message: format!("the graphics driver failed while drawing with it: {what}"),
+            });
+            entry.refused = Some(Refused { composed: refused, problem, at: Instant::now() });
+            taken_back = true;
+        }
+        live.stale_status |= taken_back;
+    });
+    if taken_back { RenderErrorPolicy::Ignore } else { usual(error, main, render) }
+}
+
+/// The built-in text of a path.
+fn built_in(registry: &Registry, path: &str) -> Option<&'static str> {
+    built_in_sources(registry).into_iter().find(|s| s.path == path).map(|s| s.text)
+}
+
+/// Whether a text ends in the middle of a function, or is empty.
+fn ends_too_early(text: &str) -> bool {
+    let end = text.trim_end().len();
+    match naga::front::wgsl::parse_str(text) {
+        Ok(_) => end == 0,
+        Err(error) => error.labels().any(|(span, _)| span.to_range().is_some_and(|range| range.start >= end)),
+    }
+}
+
+/// Why a file has no text.
+struct Unreadable {
+    line: usize,
+    column: usize,
+    source: String,
+    message: String,
+}
+
+impl Unreadable {
+    fn new(message: impl Into<String>) -> Self {
+        Self { line: 1, column: 1, source: String::new(), message: message.into() }
+    }
+
+    fn at(&self, path: &str) -> ShaderProblem {
+        ShaderProblem {
+            file: path.to_owned(),
+            line: self.line,
+            column: self.column,
+            source: self.source.clone(),
+            message: self.message.clone(),
+        }
+    }
+}
+
+/// The text of a shader file.
+fn read(file: &Path) -> Result<String, Unreadable> {
+    let bytes = fs::metadata(file).and_then(|facts| {
+        if facts.len() > LONGEST {
+            return Err(io::Error::other(format!("it is longer than {} KiB", LONGEST >> 10)));
+        }
+        fs::read(file)
+    });
+    let bytes = bytes.map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => {
+            Unreadable::new("the file is gone; it is read again as soon as one of that name is there")
+        }
+        _ => Unreadable::new(format!("the file cannot be read: {error}")),
+    })?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let bytes = error.as_bytes();
+        let line_start = bytes[..at].iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
+        let line_end = bytes[at..].iter().position(|b| *b == b'\n').map_or(bytes.len(), |i| at + i);
+        Unreadable {
+            line: bytes[..at].iter().filter(|b| **b == b'\n').count() + 1,
+            column: String::from_utf8_lossy(&bytes[line_start..at]).chars().count() + 1,
+            source: String::from_utf8_lossy(&bytes[line_start..line_end]).into_owned(),
+            message: format!("the byte 0x{:02x} is not UTF-8; save the file in that encoding", bytes[at]),
+        }
+    })?;
+    Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned))
+}

@@ -1,0 +1,38 @@
+//! What the operating system's news and refusals mean.
+
+use std::io;
+
+use notify::{
+    ErrorKind, EventKind,
+    event::{AccessKind, AccessMode},
+};
+
+/// Whether news are only about reading.
+pub(super) fn is_reading(kind: EventKind) -> bool {
+    matches!(kind, EventKind::Access(access) if access != AccessKind::Close(AccessMode::Write))
+}
+
+/// Why the system does not watch, and what helps.
+pub(super) fn reason(error: &notify::Error) -> String {
+    /// "Too many open files", which is what Linux says of its limit of inotify instances.
+    const EMFILE: i32 = 24;
+    match &error.kind {
+        ErrorKind::MaxFilesWatch => {
+            "its limit of watched folders is reached (fs.inotify.max_user_watches)".to_owned()
+        }
+        ErrorKind::Io(e) if cfg!(target_os = "linux") && e.raw_os_error() == Some(EMFILE) => {
+            "its limit of watchers is reached (fs.inotify.max_user_instances)".to_owned()
+        }
+        ErrorKind::Io(e) => e.to_string(),
+        _ => error.to_string(),
+    }
+}
+
+/// Whether a folder could not be watched because it is no longer there.
+pub(super) fn is_absent(error: &notify::Error) -> bool {
+    match &error.kind {
+        ErrorKind::PathNotFound => true,
+        ErrorKind::Io(e) => matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory),
+        _ => false,
+    }
+}

@@ -1,0 +1,108 @@
+//! What changes on disk reaches the window, which sleeps meanwhile.
+
+use std::{
+    fs,
+    io::{self, Write as _},
+    path::{Path, PathBuf},
+    time::Duration,
+};
+
+use bevy::{
+    app::{App, Plugin},
+    ecs::prelude::*,
+    winit::{EventLoopProxyWrapper, WinitUserEvent},
+};
+
+use crate::{
+    panel::state::{Effect, Lab, LabEffect, Severity},
+    watch::Watcher,
+};
+
+/// How long a file that cannot be used may be in the middle of being written.
+pub(super) const GRACE: Duration = Duration::from_millis(150);
+
+/// The watcher of the window: one for everything. It wakes the window.
+#[derive(Debug, Resource)]
+pub struct FileWatch(pub Watcher);
+
+/// Files that may have changed on disk, the oldest change first, named as they are watched.
+#[derive(Clone, Debug, PartialEq, Eq, Message)]
+pub struct FilesChanged(pub Vec<PathBuf>);
+
+/// Adds [`FileWatch`] and [`FilesChanged`]; the systems are the window's, since they need an order.
+pub(super) struct WatchingPlugin;
+
+impl Plugin for WatchingPlugin {
+    fn build(&self, app: &mut App) {
+        let proxy = app.world().get_resource::<EventLoopProxyWrapper>().map(|proxy| (**proxy).clone());
+        let wake = move || {
+            if let Some(proxy) = &proxy {
+                // An error: the window is closed.
+                let _ = proxy.send_event(WinitUserEvent::WakeUp);
+            }
+        };
+        app.add_message::<FilesChanged>().insert_resource(FileWatch(Watcher::new(wake)));
+    }
+}
+
+/// Asks the watcher what changed.
+pub(super) fn collect(
+    watch: Res<FileWatch>,
+    mut changed: MessageWriter<FilesChanged>,
+    mut lab: ResMut<Lab>,
+    mut complaint: Local<Option<String>>,
+) {
+    let files = watch.0.changed();
+    if !files.is_empty() {
+        changed.write(FilesChanged(files));
+    }
+    let now = watch.0.complaint();
+    if *complaint != now {
+        if let Some(text) = &now {
+            lab.say(Severity::Warning, text.clone());
+        }
+        *complaint = now;
+    }
+}
+
+/// Watches the file of the document, whichever that is.
+pub(super) fn watch_document(
+    mut watch: ResMut<FileWatch>,
+    lab: Res<Lab>,
+    mut watched: Local<Option<PathBuf>>,
+) {
+    if *watched == lab.path {
+        return;
+    }
+    if let Some(old) = watched.take() {
+        watch.0.forget(&old);
+    }
+    watched.clone_from(&lab.path);
+    if let Some(path) = watched.as_deref().filter(|path| !is_stream(path)) {
+        watch.0.watch_file(path);
+        // It may have changed between being read and being watched.
+        watch.0.report_later(path, Duration::ZERO);
+    }
+}
+
+/// Whether a path leads to something that can be read only once, such as a pipe.
+fn is_stream(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir())
+}
+
+/// When the document's file changed, it is looked at.
+pub(super) fn follow_document(
+    mut changed: MessageReader<FilesChanged>,
+    lab: Res<Lab>,
+    mut effects: MessageWriter<LabEffect>,
+) {
+    let concerned = |files: &FilesChanged| lab.path.as_ref().is_some_and(|path| files.0.contains(path));
+    if changed.read().filter(|files| concerned(files)).count() > 0 {
+        effects.write(LabEffect(Effect::LookAtFile { discard: false }));
+    }
+}
+
+/// Writes to standard error. That nobody reads it is no reason to panic.
+pub(super) fn complain(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}

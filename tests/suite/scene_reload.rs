@@ -1,0 +1,589 @@
+//! The file of the open scene changes on disk: what becomes of the document, with real files and
+//! without a window.
+
+use std::{fs, path::PathBuf};
+
+use bevy::ecs::{entity::Entity, schedule::Schedule, world::World};
+use lights_camera_models::{
+    optics::TermSelection,
+    panel::{
+        files::{self, Files as _, Looked},
+        state::{Action, Answer, Edit, Effect, Lab, ObjectField, Question, Selection, Severity, ViewChange},
+    },
+    registry::Registry,
+    scene::{
+        Object, Scene,
+        load::{self, Defaults},
+        save,
+        spawn::{CurrentScene, SceneEntities, reconcile},
+    },
+    window::files::DiskFiles,
+};
+
+/// A document that was read from a file, and what the window does with it.
+struct Desk {
+    lab: Lab,
+    files: DiskFiles,
+    registry: Registry,
+    /// What is left to the window: all but what is done with files.
+    left: Vec<Effect>,
+    folder: tempfile::TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        Self::with(&text(&three()))
+    }
+
+    fn with(text: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("room.json");
+        fs::write(&path, text).unwrap();
+        let registry = Registry::builtin();
+        let loaded = load::file(&path, &registry, Defaults::Use).unwrap();
+        let mut lab = Lab::new(loaded.scene);
+        lab.path = Some(path.clone());
+        let files = DiskFiles::new(Some(path), Some(loaded.stamp));
+        Self { lab, files, registry, left: Vec::new(), folder }
+    }
+
+    fn path(&self) -> PathBuf {
+        self.folder.path().join("room.json")
+    }
+
+    fn write(&self, text: &str) {
+        fs::write(self.path(), text).unwrap();
+    }
+
+    fn on_disk(&self) -> String {
+        fs::read_to_string(self.path()).unwrap()
+    }
+
+    /// Carries effects out as the window does.
+    fn carry_out(&mut self, effects: Vec<Effect>) {
+        for effect in effects {
+            if effect == Effect::DocumentChanged {
+                self.files.document_changed(self.lab.path.as_deref());
+            }
+            let more = files::run(&mut self.lab, &self.registry, effect.clone(), &mut self.files);
+            if more == [effect.clone()] {
+                self.left.push(effect);
+            } else {
+                self.carry_out(more);
+            }
+        }
+    }
+
+    fn act(&mut self, action: Action) {
+        let effects = self.lab.apply(action, &self.registry);
+        self.carry_out(effects);
+    }
+
+    /// The watcher reports the file. Returns whether it is to be looked at again after a moment.
+    fn report(&mut self) -> bool {
+        self.carry_out(vec![Effect::LookAtFile { discard: false }]);
+        let before = self.left.len();
+        let again = Effect::LookAgain(self.path());
+        self.left.retain(|e| *e != again);
+        self.left.len() < before
+    }
+
+    /// The file is written, and a long time passes.
+    fn edited(&mut self, text: &str) {
+        self.write(text);
+        if self.report() {
+            assert!(!self.report(), "it is looked at again once");
+        }
+    }
+
+    fn said(&self, words: &str) -> usize {
+        self.lab.messages.iter().filter(|m| m.text.contains(words)).count()
+    }
+
+    fn badge(&self) -> &str {
+        self.lab.disk.badge.as_ref().map_or("", |b| &b.text)
+    }
+
+    fn complaints(&self) -> Vec<&str> {
+        let text = |e: &'_ Effect| matches!(e, Effect::Complain(_));
+        self.left
+            .iter()
+            .filter(|e| text(e))
+            .map(|e| match e {
+                Effect::Complain(text) => text.as_str(),
+                _ => "",
+            })
+            .collect()
+    }
+
+    /// An unsaved change in the window.
+    fn change(&mut self) {
+        self.act(Action::Edit(Edit::Object(1, ObjectField::Size(0.5))));
+        assert!(self.lab.is_dirty());
+    }
+}
+
+/// Three objects in a row, the last with a name.
+fn three() -> Scene {
+    let at = |x: f32| Object { position: glam::Vec3::new(x, 5.0, 5.0), size: 1.0, ..Object::default() };
+    let named = Object { name: Some("last".to_owned()), ..at(7.0) };
+    Scene { objects: vec![at(3.0), at(5.0), named], ..Scene::default() }
+}
+
+fn text(scene: &Scene) -> String {
+    save::to_json(scene, None, &Registry::builtin())
+}
+
+/// The scene with another size of one object.
+fn grown(object: usize, size: f32) -> Scene {
+    let mut scene = three();
+    scene.objects[object].size = size;
+    scene
+}
+
+#[test]
+fn an_edit_elsewhere_becomes_the_document_and_the_view_stays() {
+    let mut desk = Desk::new();
+    desk.act(Action::Select(Selection::Object(2)));
+    desk.act(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
+    desk.left.clear();
+    desk.write(&text(&grown(0, 2.0)));
+    assert!(!desk.report(), "nothing to wait for");
+    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    assert!(!desk.lab.is_dirty());
+    assert_eq!(desk.lab.selection, Selection::Object(2));
+    assert_eq!(desk.lab.view.terms, TermSelection::Diffuse);
+    // Neither back to the observer nor to another document.
+    assert!(desk.left.is_empty(), "{:?}", desk.left);
+    assert_eq!(desk.said("room.json was read again"), 1);
+    assert_eq!(desk.lab.messages[0].severity, Severity::Info);
+    // Many editors touch the file once more; that changes nothing.
+    assert!(!desk.report());
+    assert_eq!(desk.said("room.json was read again"), 1);
+    // Another version: the message is not piled up.
+    desk.edited(&text(&grown(0, 3.0)));
+    assert_eq!(desk.lab.scene, grown(0, 3.0));
+    assert_eq!(desk.lab.messages.len(), 1);
+    // The next save has nothing to ask.
+    desk.change();
+    desk.act(Action::Save);
+    assert_eq!(desk.lab.question, None);
+    assert!(!desk.lab.is_dirty());
+    assert_eq!(
+        load::from_text(&desk.on_disk(), "", &desk.registry, Defaults::Refuse).unwrap().scene.objects[1].size,
+        0.5
+    );
+}
+
+#[test]
+fn opening_a_file_by_hand_does_go_back_to_the_observer() {
+    // What the test above must not find.
+    let mut desk = Desk::new();
+    desk.act(Action::Reload);
+    assert!(desk.left.contains(&Effect::DocumentChanged));
+}
+
+#[test]
+fn the_same_content_changes_nothing() {
+    let mut desk = Desk::new();
+    let before = format!("{:?}", desk.lab);
+    desk.edited(&text(&three()));
+    assert_eq!(format!("{:?}", desk.lab), before);
+    assert!(desk.left.is_empty());
+}
+
+#[test]
+fn our_own_save_is_no_change_on_disk() {
+    let mut desk = Desk::new();
+    desk.change();
+    desk.act(Action::Save);
+    desk.left.clear();
+    let before = format!("{:?}", desk.lab);
+    assert!(!desk.report());
+    assert_eq!(format!("{:?}", desk.lab), before);
+    assert!(desk.left.is_empty());
+    // Nor is saving to another file and going on there.
+    let other = desk.folder.path().join("other.json");
+    desk.act(Action::SaveAs(other.clone()));
+    desk.left.clear();
+    let looked = desk.files.look(&other, &desk.registry);
+    assert_eq!(looked, Looked::Same);
+    // The same bytes from someone else's hand are the same; others are not.
+    fs::write(&other, text(&three())).unwrap();
+    assert!(matches!(desk.files.look(&other, &desk.registry), Looked::Changed { .. }));
+}
+
+#[test]
+fn objects_that_did_not_change_keep_their_entities() {
+    let mut desk = Desk::new();
+    let mut world = World::new();
+    let mut schedule = Schedule::default();
+    schedule.add_systems(reconcile);
+    world.insert_resource(Registry::builtin());
+    world.init_resource::<SceneEntities>();
+    let mut entities = |scene: &Scene| -> (Vec<Entity>, Vec<Entity>) {
+        world.insert_resource(CurrentScene(scene.clone()));
+        schedule.run(&mut world);
+        let entities = world.resource::<SceneEntities>();
+        (entities.objects.clone(), entities.lights.clone())
+    };
+    let before = entities(&desk.lab.scene);
+    let mut scene = grown(1, 2.5);
+    scene.objects.push(Object { position: glam::Vec3::splat(2.0), size: 1.0, ..Object::default() });
+    desk.edited(&text(&scene));
+    let after = entities(&desk.lab.scene);
+    assert_eq!(after.0[..3], before.0[..]);
+    assert_eq!(after.0.len(), 4);
+    assert_eq!(after.1, before.1);
+    assert!(!before.0.contains(&after.0[3]));
+}
+
+#[test]
+fn the_selection_follows_what_it_points_at() {
+    let select = |at: usize, scene: &Scene| {
+        let mut desk = Desk::new();
+        desk.act(Action::Select(Selection::Object(at)));
+        desk.edited(&text(scene));
+        assert_eq!(desk.lab.scene, *scene);
+        desk.lab.selection
+    };
+    // The first was removed: what was third is second now.
+    let mut fewer = three();
+    fewer.objects.remove(0);
+    assert_eq!(select(2, &fewer), Selection::Object(1));
+    // Also when it changed, by its name.
+    fewer.objects[1].size = 0.3;
+    assert_eq!(select(2, &fewer), Selection::Object(1));
+    // One that is edited in its place is still the same one.
+    assert_eq!(select(1, &grown(1, 0.3)), Selection::Object(1));
+    // What is gone gives way to what is there.
+    let mut one = three();
+    one.objects.truncate(1);
+    assert_eq!(select(1, &one), Selection::Object(0));
+    assert_eq!(select(0, &one), Selection::Object(0));
+}
+
+#[test]
+fn an_empty_or_half_written_file_is_given_a_moment() {
+    let whole = text(&grown(0, 2.0));
+    for half in ["", &whole[..whole.len() / 2]] {
+        let mut desk = Desk::new();
+        desk.write(half);
+        assert!(desk.report(), "looks again");
+        assert!(desk.lab.messages.is_empty() && desk.badge().is_empty() && desk.left.is_empty());
+        assert_eq!(desk.lab.scene, three());
+        desk.write(&whole);
+        assert!(!desk.report());
+        assert_eq!(desk.lab.scene, grown(0, 2.0));
+        assert_eq!(desk.badge(), "");
+        assert!(desk.complaints().is_empty());
+    }
+    // As long as it goes on being written, there is nothing to say.
+    let mut desk = Desk::new();
+    for end in 1..20 {
+        desk.write(&whole[..end]);
+        assert!(desk.report());
+    }
+    assert!(desk.lab.messages.is_empty());
+    assert!(!desk.report(), "now it rests");
+    assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
+}
+
+#[test]
+fn a_broken_file_leaves_the_scene_and_says_where() {
+    let mut desk = Desk::new();
+    let broken = |k_d: &str| {
+        text(&three()).replace("\"size\": 1", &format!("\"size\": 1, \"material\": {{ \"k_d\": {k_d} }}"))
+    };
+    desk.edited(&broken("7"));
+    assert_eq!(desk.lab.scene, three());
+    assert!(!desk.lab.is_dirty(), "nothing was changed here");
+    assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
+    let name = desk.path().display().to_string();
+    // Each of the three objects has the problem, with its line and column.
+    let places: Vec<_> =
+        desk.lab.messages.iter().filter_map(|m| m.text.strip_prefix(&format!("{name}:"))).collect();
+    assert_eq!(places.len(), 3, "{:?}", desk.lab.messages);
+    for place in &places {
+        let mut numbers = place.split(':');
+        assert!(numbers.next().unwrap().parse::<u32>().is_ok_and(|line| line > 1), "{place}");
+        assert!(numbers.next().unwrap().parse::<u32>().is_ok_and(|column| column > 1), "{place}");
+        assert!(place.contains("k_d is 7"), "{place}");
+    }
+    assert!(desk.lab.view.bottom_open);
+    assert!(desk.lab.disk.badge.as_ref().unwrap().help.contains("k_d is 7"), "the tooltip tells it all");
+    assert_eq!(desk.complaints().len(), 1, "once on standard error");
+    assert_eq!(desk.complaints()[0].lines().count(), 3);
+    // The same version again says nothing more.
+    desk.lab.messages.clear();
+    assert!(!desk.report());
+    assert!(desk.lab.messages.is_empty());
+    assert_eq!(desk.complaints().len(), 1);
+    // Another one replaces what was said.
+    desk.edited(&broken("8"));
+    desk.edited(&broken("9"));
+    assert_eq!((desk.said("k_d is 8"), desk.said("k_d is 9")), (0, 3));
+    assert_eq!(desk.lab.messages.len(), 3);
+    assert_eq!(desk.complaints().len(), 3);
+    // A good one takes it all away, also when it is the one that is shown.
+    desk.edited(&text(&three()));
+    assert_eq!(desk.badge(), "");
+    assert!(desk.lab.messages.is_empty());
+    desk.edited(&broken("7"));
+    desk.edited(&text(&grown(0, 2.0)));
+    assert_eq!(desk.badge(), "");
+    assert_eq!(desk.lab.messages.len(), 1);
+    assert_eq!(desk.said("was read again"), 1);
+}
+
+#[test]
+fn saving_over_a_broken_file_asks() {
+    let mut desk = Desk::new();
+    desk.edited("{ broken");
+    desk.change();
+    desk.act(Action::Save);
+    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    assert_eq!(desk.on_disk(), "{ broken");
+    desk.act(Action::Answer(Answer::Overwrite));
+    assert_eq!(desk.badge(), "", "what was saved is good");
+    assert!(desk.lab.messages.is_empty());
+    assert!(!desk.report());
+}
+
+#[test]
+fn missing_parts_are_not_taken_unasked() {
+    let lacking = |scene: &Scene, part: &str| {
+        let text = text(scene);
+        text.lines().filter(|l| !l.contains(part)).collect::<Vec<_>>().join("\n")
+    };
+    let mut desk = Desk::new();
+    desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
+    assert_eq!(desk.lab.scene, three());
+    assert_eq!(desk.lab.question, None, "who types elsewhere is not stopped by a question");
+    assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
+    assert_eq!(desk.said("shading_model is missing"), 1);
+    // Who agreed to a default has agreed.
+    let mut desk = Desk::new();
+    desk.write(&lacking(&three(), "shading_model"));
+    desk.act(Action::Reload);
+    desk.act(Action::Answer(Answer::UseDefaults));
+    assert!(desk.lab.is_dirty(), "the file lacks what the document has");
+    desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
+    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    assert!(desk.lab.is_dirty());
+    // But to that one only.
+    let two = lacking(&grown(0, 3.0), "shading_model");
+    let two: Vec<_> = two.lines().filter(|l| !l.contains("reflection_model")).collect();
+    desk.edited(&two.join("\n"));
+    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    // Once the part is there, nothing is missing.
+    desk.edited(&text(&grown(0, 4.0)));
+    assert_eq!(desk.lab.scene, grown(0, 4.0));
+    assert!(!desk.lab.is_dirty());
+    // `--use-defaults` agrees to all.
+    let mut desk = Desk::new();
+    desk.lab.disk.use_defaults = true;
+    desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
+    assert_eq!(desk.lab.scene, grown(0, 2.0));
+}
+
+#[test]
+fn a_deleted_file_leaves_the_scene_which_is_unsaved_then() {
+    let mut desk = Desk::new();
+    fs::remove_file(desk.path()).unwrap();
+    assert!(desk.report(), "some editors delete the file and write it anew");
+    assert_eq!(desk.badge(), "");
+    assert!(!desk.report());
+    assert_eq!(desk.badge(), "room.json was deleted: showing its last version");
+    assert_eq!(desk.said("no longer there"), 1);
+    assert_eq!(desk.lab.scene, three());
+    desk.act(Action::Quit);
+    assert!(matches!(desk.lab.question, Some(Question::Unsaved { .. })), "nobody else has the scene");
+    desk.act(Action::Answer(Answer::Cancel));
+    // It comes back.
+    desk.edited(&text(&three()));
+    assert_eq!(desk.badge(), "");
+    assert!(!desk.lab.is_dirty() && desk.lab.messages.is_empty());
+    // And comes back as another one.
+    fs::remove_file(desk.path()).unwrap();
+    assert!(desk.report() && !desk.report());
+    desk.edited(&text(&grown(0, 2.0)));
+    assert_eq!((desk.badge(), desk.lab.is_dirty()), ("", false));
+    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    // Saving writes it anew, without a question.
+    fs::remove_file(desk.path()).unwrap();
+    assert!(desk.report() && !desk.report());
+    desk.act(Action::Save);
+    assert_eq!(desk.lab.question, None);
+    assert_eq!(desk.on_disk(), text(&grown(0, 2.0)));
+    assert_eq!((desk.badge(), desk.lab.is_dirty()), ("", false));
+    assert!(!desk.report());
+}
+
+#[test]
+fn saving_a_deleted_file_does_not_overwrite_what_came_in_its_place() {
+    let mut desk = Desk::new();
+    fs::remove_file(desk.path()).unwrap();
+    assert!(desk.report() && !desk.report());
+    let other = text(&grown(0, 2.0));
+    desk.write(&other);
+    // Before the watcher says so.
+    desk.act(Action::Save);
+    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    assert_eq!(desk.on_disk(), other);
+}
+
+/// With unsaved changes, the file changes too.
+fn conflict() -> Desk {
+    let mut desk = Desk::new();
+    desk.change();
+    desk.edited(&text(&grown(0, 2.0)));
+    let Some(Question::NewerOnDisk { scene, .. }) = &desk.lab.question else {
+        panic!("{:?}", desk.lab.question)
+    };
+    assert_eq!(**scene, grown(0, 2.0));
+    assert_eq!(desk.lab.scene, grown(1, 0.5), "nothing is lost without a question");
+    desk
+}
+
+#[test]
+fn unsaved_changes_are_kept_when_the_user_says_so_and_saving_replaces_the_file() {
+    let mut desk = conflict();
+    desk.act(Action::Answer(Answer::Keep));
+    assert_eq!(desk.lab.scene, grown(1, 0.5));
+    assert!(desk.lab.is_dirty());
+    assert!(!desk.report());
+    assert_eq!(desk.lab.question, None, "asked once about a version");
+    assert_eq!(desk.badge(), "");
+    // Yet another version is another question.
+    desk.edited(&text(&grown(0, 3.0)));
+    assert!(matches!(desk.lab.question, Some(Question::NewerOnDisk { .. })));
+    desk.act(Action::Answer(Answer::Keep));
+    desk.act(Action::Save);
+    assert_eq!(desk.lab.question, None, "saving was what was meant");
+    assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
+    assert!(!desk.lab.is_dirty());
+}
+
+#[test]
+fn who_kept_a_version_and_undoes_all_is_still_unsaved() {
+    let mut desk = conflict();
+    desk.act(Action::Answer(Answer::Keep));
+    desk.act(Action::Edit(Edit::Object(1, ObjectField::Size(1.0))));
+    assert_eq!(desk.lab.scene, three());
+    assert!(desk.lab.is_dirty(), "the file holds something else");
+}
+
+#[test]
+fn unsaved_changes_are_lost_only_on_yes() {
+    let mut desk = conflict();
+    desk.act(Action::Answer(Answer::Reload));
+    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    assert!(!desk.lab.is_dirty());
+    assert_eq!(desk.lab.question, None);
+    assert!(!desk.left.contains(&Effect::DocumentChanged), "the camera stays");
+    desk.change();
+    desk.act(Action::Save);
+    assert_eq!(desk.lab.question, None);
+}
+
+#[test]
+fn reading_again_takes_what_is_on_disk_by_then() {
+    let mut desk = conflict();
+    desk.write("{ broken");
+    desk.act(Action::Answer(Answer::Reload));
+    assert_eq!(desk.left.pop(), Some(Effect::LookAgain(desk.path())));
+    assert!(!desk.report());
+    assert_eq!(desk.lab.scene, grown(1, 0.5), "a broken file costs nothing");
+    assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
+    let mut desk = conflict();
+    desk.write(&text(&grown(0, 4.0)));
+    desk.act(Action::Answer(Answer::Reload));
+    assert_eq!(desk.lab.scene, grown(0, 4.0));
+}
+
+#[test]
+fn who_decides_later_is_asked_when_saving() {
+    let mut desk = conflict();
+    desk.act(Action::Answer(Answer::Cancel));
+    assert_eq!(desk.badge(), "room.json changed on disk: showing yours");
+    assert_eq!(desk.lab.scene, grown(1, 0.5));
+    assert!(!desk.report());
+    assert_eq!(desk.lab.question, None, "not asked again about the same version");
+    desk.act(Action::Save);
+    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    assert_eq!(desk.on_disk(), text(&grown(0, 2.0)), "not overwritten");
+    desk.act(Action::Answer(Answer::Overwrite));
+    assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
+    assert_eq!(desk.badge(), "");
+    // The version that was there before comes back: there is nothing left to decide.
+    let mut desk = conflict();
+    desk.act(Action::Answer(Answer::Cancel));
+    desk.edited(&text(&three()));
+    assert_eq!((desk.badge(), &desk.lab.question), ("", &None));
+    assert_eq!(desk.lab.scene, grown(1, 0.5));
+}
+
+#[test]
+fn where_both_did_the_same_or_only_the_layout_changed_there_is_nothing_to_ask() {
+    let mut desk = Desk::new();
+    desk.change();
+    desk.edited(&text(&grown(1, 0.5)));
+    assert_eq!(desk.lab.question, None);
+    assert!(!desk.lab.is_dirty(), "the file holds what is shown");
+    let mut desk = Desk::new();
+    desk.change();
+    desk.edited(&text(&three()).replace("  ", "\t"));
+    assert_eq!(desk.lab.question, None);
+    assert_eq!(desk.lab.scene, grown(1, 0.5));
+    assert!(desk.lab.is_dirty());
+    desk.act(Action::Save);
+    assert_eq!(desk.lab.question, None);
+}
+
+#[test]
+fn news_wait_for_the_answer_to_an_open_question() {
+    let mut desk = Desk::new();
+    desk.change();
+    desk.act(Action::Quit);
+    desk.edited(&text(&grown(0, 2.0)));
+    assert!(matches!(desk.lab.question, Some(Question::Unsaved { .. })), "the question stays");
+    desk.act(Action::Answer(Answer::Cancel));
+    assert!(matches!(desk.lab.question, Some(Question::NewerOnDisk { .. })), "then comes the next");
+    desk.act(Action::Answer(Answer::Keep));
+    assert_eq!(desk.lab.question, None);
+    // Saving finds the change by itself, and one question is enough.
+    let mut desk = Desk::new();
+    desk.change();
+    desk.act(Action::Quit);
+    desk.edited(&text(&grown(0, 2.0)));
+    desk.act(Action::Answer(Answer::Save));
+    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    desk.act(Action::Answer(Answer::Overwrite));
+    assert_eq!(desk.lab.question, None);
+    assert!(desk.left.contains(&Effect::Quit));
+    assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
+}
+
+#[test]
+fn a_document_without_a_file_has_nothing_to_follow() {
+    let mut desk = Desk::new();
+    desk.act(Action::New);
+    desk.left.clear();
+    let before = format!("{:?}", desk.lab);
+    desk.edited(&text(&grown(0, 2.0)));
+    assert_eq!(format!("{:?}", desk.lab), before);
+    assert!(desk.left.is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn what_can_be_read_only_once_is_not_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
+    assert!(made.success());
+    let mut files = DiskFiles::new(Some(pipe.clone()), None);
+    // Reading would wait for ever.
+    assert_eq!(files.look(&pipe, &Registry::builtin()), Looked::Same);
+}

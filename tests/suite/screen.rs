@@ -1,0 +1,219 @@
+//! A virtual screen: programs that open windows run on it, and what they show can be looked at while
+//! they run.
+
+#![cfg(target_os = "linux")]
+
+use std::{
+    fs,
+    io::{BufRead as _, BufReader},
+    ops::Range,
+    path::{Path, PathBuf},
+    process::{Child, Command, Output, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// A virtual screen of its own, gone when dropped.
+pub struct Screen {
+    server: Child,
+    display: String,
+    /// Where the server keeps what it shows, for all to read.
+    memory: tempfile::TempDir,
+}
+
+impl Screen {
+    pub fn new(width: u32, height: u32) -> Self {
+        let memory = tempfile::tempdir().expect("a folder");
+        // The server picks a free number and writes it to its standard output.
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", &format!("{width}x{height}x24"), "-nolisten", "tcp"])
+            .arg("-fbdir")
+            .arg(memory.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Xvfb is installed; scripts/test installs it");
+        let mut line = String::new();
+        let output = server.stdout.take().expect("piped");
+        BufReader::new(output).read_line(&mut line).expect("Xvfb says its number");
+        Self { server, display: format!(":{}", line.trim()), memory }
+    }
+
+    /// Runs the program until it ends.
+    pub fn lcm(&self, arguments: &[&str], config: &Path) -> Output {
+        lcm(arguments, config).env("DISPLAY", &self.display).output().expect("lcm runs")
+    }
+
+    /// Starts the program, and leaves it running until the result is dropped.
+    pub fn start(&self, arguments: &[&str]) -> Running<'_> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let said = folder.path().join("said");
+        let file = fs::File::create(&said).expect("writable");
+        let program = lcm(arguments, folder.path())
+            .env("DISPLAY", &self.display)
+            .stderr(file)
+            .spawn()
+            .expect("lcm starts");
+        Running { screen: self, program, said, _folder: folder }
+    }
+
+    /// What is on the screen now.
+    pub fn look(&self) -> Picture {
+        let bytes =
+            fs::read(self.memory.path().join("Xvfb_screen0")).expect("the server keeps its picture there");
+        Picture::from_xwd(&bytes)
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+/// The program, with a folder for its settings, and without any display.
+pub fn lcm(arguments: &[&str], config: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lcm"));
+    command
+        .args(arguments)
+        .env("LCM_CONFIG_DIR", config)
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .env_remove("DISPLAY")
+        .stdin(Stdio::null());
+    command
+}
+
+/// A program with a window that is open; killed when dropped.
+pub struct Running<'a> {
+    screen: &'a Screen,
+    program: Child,
+    said: PathBuf,
+    _folder: tempfile::TempDir,
+}
+
+impl Running<'_> {
+    /// Software Vulkan on a busy machine takes its time.
+    const DEADLINE: Duration = Duration::from_secs(60);
+
+    /// What the program wrote to standard error so far.
+    pub fn said(&self) -> String {
+        fs::read_to_string(&self.said).expect("readable")
+    }
+
+    /// Waits until the screen shows what is asked for.
+    pub fn until(&mut self, what: &str, shows: impl Fn(&Picture) -> bool) -> Picture {
+        let begin = Instant::now();
+        loop {
+            let picture = self.screen.look();
+            if shows(&picture) {
+                return picture;
+            }
+            let ended = self.program.try_wait().expect("the state of a child is known");
+            if ended.is_some() || begin.elapsed() > Self::DEADLINE {
+                let file = std::env::temp_dir().join("lcm_screen.png");
+                picture.write(&file);
+                panic!("never showed {what}; {}; ended: {ended:?}; said: {}", file.display(), self.said());
+            }
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Waits until the screen has not changed for a moment.
+    pub fn rest(&mut self) -> Picture {
+        let begin = Instant::now();
+        let mut last = self.screen.look();
+        let mut since = Instant::now();
+        while since.elapsed() < Duration::from_millis(400) {
+            assert!(begin.elapsed() < Self::DEADLINE, "the screen never rests");
+            thread::sleep(Duration::from_millis(20));
+            let now = self.screen.look();
+            if now.pixels != last.pixels {
+                (last, since) = (now, Instant::now());
+            }
+        }
+        last
+    }
+
+    /// Processor time that the program has used, in ticks of the clock (usually of 10 ms).
+    pub fn ticks(&self) -> u64 {
+        let stat = fs::read_to_string(format!("/proc/{}/stat", self.program.id())).expect("it runs");
+        // The name in parentheses may hold anything; user and system time are the 14th and 15th field.
+        let fields = stat.rsplit(')').next().unwrap_or_default();
+        fields.split_whitespace().skip(11).take(2).map(|t| t.parse::<u64>().expect("a number")).sum()
+    }
+}
+
+impl Drop for Running<'_> {
+    fn drop(&mut self) {
+        let _ = self.program.kill();
+        let _ = self.program.wait();
+    }
+}
+
+/// A picture of a window or a screen: width, height, RGB.
+pub struct Picture {
+    pub width: u32,
+    pub height: u32,
+    pub pixels: Vec<u8>,
+}
+
+impl Picture {
+    /// A PNG file.
+    pub fn read(path: &Path) -> Self {
+        let decoder = png::Decoder::new(BufReader::new(fs::File::open(path).expect("the capture exists")));
+        let mut reader = decoder.read_info().expect("a PNG file");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("not huge")];
+        let info = reader.next_frame(&mut pixels).expect("a whole picture");
+        assert_eq!(info.color_type, png::ColorType::Rgb);
+        Self { width: info.width, height: info.height, pixels }
+    }
+
+    /// The memory of an X server as `XWDFile.h` describes it: a header of 32-bit numbers, the most
+    /// significant byte first; a table of colours; the pixels.
+    fn from_xwd(bytes: &[u8]) -> Self {
+        let number = |i: usize| {
+            let field: [u8; 4] = bytes[4 * i..4 * i + 4].try_into().expect("four bytes");
+            u32::from_be_bytes(field) as usize
+        };
+        let (header, version, width, height) = (number(0), number(1), number(4), number(5));
+        let (bits, stride, colours) = (number(11), number(12), number(19));
+        assert_eq!((version, number(7), bits), (7, 0, 32), "version, byte order and bits of a pixel");
+        let begin = header + 12 * colours;
+        let row = |y: usize| &bytes[begin + y * stride..][..4 * width];
+        let pixels =
+            (0..height).flat_map(|y| row(y).chunks_exact(4).flat_map(|p| [p[2], p[1], p[0]])).collect();
+        Self { width: width as u32, height: height as u32, pixels }
+    }
+
+    pub fn write(&self, path: &Path) {
+        let file = fs::File::create(path).expect("writable");
+        let mut encoder = png::Encoder::new(file, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().expect("writable");
+        writer.write_image_data(&self.pixels).expect("writable");
+    }
+
+    pub fn at(&self, x: u32, y: u32) -> [u8; 3] {
+        let i = ((y * self.width + x) * 3) as usize;
+        [self.pixels[i], self.pixels[i + 1], self.pixels[i + 2]]
+    }
+
+    fn part(&self, x: Range<u32>, y: Range<u32>) -> impl Iterator<Item = [u8; 3]> + '_ {
+        y.flat_map(move |y| x.clone().map(move |x| (x, y))).map(|(x, y)| self.at(x, y))
+    }
+
+    /// How many different colours there are in a part.
+    pub fn colours(&self, x: Range<u32>, y: Range<u32>) -> usize {
+        let mut seen: Vec<_> = self.part(x, y).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        seen.len()
+    }
+
+    /// How many pixels of a part are as asked.
+    pub fn count(&self, x: Range<u32>, y: Range<u32>, is: impl Fn([u8; 3]) -> bool) -> usize {
+        self.part(x, y).filter(|p| is(*p)).count()
+    }
+}

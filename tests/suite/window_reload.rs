@@ -1,0 +1,100 @@
+//! The open window follows the file of its scene, by itself and without any input.
+
+#![cfg(target_os = "linux")]
+
+use std::{
+    fs,
+    io::Write as _,
+    path::Path,
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::screen::{Picture, Screen};
+
+/// A sphere of a colour in the middle of the picture.
+fn scene(colour: [u8; 3]) -> String {
+    format!(
+        r#"{{
+  "scene_size": {{ "height": 10, "width": 10, "depth": 10 }},
+  "reflection_model": "lambert",
+  "shading_model": "phong",
+  "lights": [{{ "type": "point", "position": [7.5, 8, 9], "intensity": 60 }}],
+  "observer": {{ "position": [5, 5, 9.5], "direction": [0, 0, -1], "field_of_view": 45 }},
+  "objects": [
+    {{ "type": "sphere", "position": [5, 5, 5], "size": 2, "material": {{ "base_colour": {colour:?} }} }}
+  ]
+}}"#
+    )
+}
+
+/// Whether the picture shows a sphere that is all in one channel.
+fn shows(channel: usize) -> impl Fn(&Picture) -> bool {
+    move |picture| {
+        let lit = |p: [u8; 3]| p[channel] > 100 && (0..3).all(|c| c == channel || p[c] < 40);
+        picture.count(220..920, 80..560, lit) > 5000
+    }
+}
+
+/// Whether there is a badge with the colour of errors at the upper left of the picture.
+fn error_badge(picture: &Picture) -> bool {
+    picture.count(210..700, 40..90, |p| p == [0xff, 0x8a, 0x7a]) > 100
+}
+
+/// Saves as many editors do: another file takes the place of the old one.
+fn save_by_renaming(file: &Path, text: &str) {
+    let new = file.with_extension("json.new");
+    fs::write(&new, text).expect("writable");
+    fs::rename(&new, file).expect("renamed");
+}
+
+/// Saves as the others do: the file is emptied, then written.
+fn save_in_place(file: &Path, text: &str) {
+    let mut file = fs::File::create(file).expect("writable");
+    thread::sleep(Duration::from_millis(60));
+    file.write_all(text.as_bytes()).expect("writable");
+}
+
+#[test]
+fn an_open_window_shows_what_is_edited_elsewhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("room.json");
+    fs::write(&file, scene([255, 0, 0])).expect("writable");
+    let screen = Screen::new(1280, 720);
+    let mut window = screen.start(&["view", &file.to_string_lossy(), "--size", "1280x720"]);
+    window.until("a red sphere", shows(0));
+
+    save_by_renaming(&file, &scene([0, 255, 0]));
+    let picture = window.until("a green sphere", shows(1));
+    assert!(!shows(0)(&picture));
+
+    save_in_place(&file, &scene([0, 0, 255]));
+    window.until("a blue sphere", shows(2));
+    let picture = window.rest();
+    assert!(shows(2)(&picture) && !error_badge(&picture));
+    assert_eq!(window.said(), "", "an empty file for a moment is no error");
+
+    // A window that rests uses no processor at all.
+    let begin = Instant::now();
+    loop {
+        let before = window.ticks();
+        thread::sleep(Duration::from_secs(1));
+        if window.ticks() == before {
+            break;
+        }
+        assert!(begin.elapsed() < Duration::from_secs(15), "the window never rests");
+    }
+
+    let broken = scene([255, 0, 0]).replace("\"size\": 2", "\"size\": -2");
+    save_by_renaming(&file, &broken);
+    let picture = window.until("a badge", error_badge);
+    assert!(shows(2)(&picture), "the last good version stays");
+    let line = format!("{}:", file.display());
+    let said = window.said();
+    assert!(said.starts_with(&line) && said.contains("size is -2"), "{said}");
+    assert_eq!(said.lines().count(), 1, "{said}");
+
+    save_in_place(&file, &scene([255, 0, 0]));
+    let picture = window.until("a red sphere again", |p| shows(0)(p) && !error_badge(p));
+    assert!(!shows(2)(&picture));
+}
