@@ -317,11 +317,12 @@ fn carry_out(
             Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
-            dialog @ (Effect::PickOpen | Effect::PickSave) => lab.wanted_dialog = Some(dialog),
-            dialog @ Effect::PickShaderFolder => lab.wanted_dialog = Some(dialog),
+            dialog @ (Effect::PickOpen | Effect::PickSave | Effect::PickShaderFolder) => {
+                lab.wanted_dialog = Some(dialog);
+            }
             Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {
                 if let Some(folder) = authoring::write(&effect, &mut lab, &registry) {
-                    commands.queue(move |world: &mut World| read_from(world, &folder));
+                    commands.queue(move |world: &mut World| authoring::read_from(world, &folder));
                 }
             }
             Effect::OpenInEditor { path, line } => {
@@ -338,14 +339,6 @@ fn carry_out(
                 pending.extend(more.into_iter().rev().filter(|e| *e != other));
             }
         }
-    }
-}
-
-/// From now on shaders and own models are those of a folder.
-fn read_from(world: &mut World, folder: &std::path::Path) {
-    if let Some(mut registry) = world.get_resource_mut::<Registry>() {
-        registry.set_shader_folder(&folder.join("shaders"));
-        registry.set_own_folder(&folder.join("models"));
     }
 }
 
