@@ -100,6 +100,8 @@ pub struct LiveShaders {
     /// What is wrong with those.
     unused_problems: BTreeMap<String, (Box<ShaderProblem>, Instant)>,
     folders: Folders,
+    /// Whether own models came or changed since that was asked last.
+    models_changed: bool,
     /// Whether there are texts to begin with.
     started: bool,
     /// The file that changed last, and when that became known.
@@ -130,6 +132,11 @@ impl LiveShaders {
     #[must_use]
     pub fn sources(&self) -> &Sources {
         &self.current
+    }
+
+    /// Whether own models came or changed since this was asked last.
+    pub fn take_news_of_models(&mut self) -> bool {
+        std::mem::take(&mut self.models_changed)
     }
 
     /// Whether something is still to be tried or told, so that frames must go on.
@@ -213,6 +220,7 @@ impl LiveShaders {
         match own::read(file, text, registry) {
             Ok(model) => {
                 registry.put_own_model(model);
+                self.models_changed = true;
                 self.change(path, text, registry);
             }
             Err(problems) => {
@@ -221,6 +229,7 @@ impl LiveShaders {
                     && let Ok(model) = own::declare(file, text, registry)
                 {
                     registry.put_stand_in(model);
+                    self.models_changed = true;
                 }
                 self.cannot_use(path, problems);
             }
@@ -279,6 +288,7 @@ impl LiveShaders {
             match own::read(&file, &text, registry) {
                 Ok(model) => {
                     registry.put_own_model(model);
+                    self.models_changed = true;
                     self.stale_status |= self.unusable.remove(own_path).is_some();
                 }
                 Err(problems) => self.cannot_use(own_path, problems),

@@ -9,6 +9,16 @@ use super::check::ShaderProblem;
 /// has one.
 #[must_use]
 pub fn annotated(problem: &ShaderProblem, file: &str) -> String {
+    rendered(problem, file, &Renderer::plain())
+}
+
+/// The same in the colours of a terminal.
+#[must_use]
+pub fn coloured(problem: &ShaderProblem, file: &str) -> String {
+    rendered(problem, file, &Renderer::styled())
+}
+
+fn rendered(problem: &ShaderProblem, file: &str, renderer: &Renderer) -> String {
     let mut characters = problem.source.char_indices().skip(problem.column.saturating_sub(1));
     let end = problem.source.len();
     let start = characters.next().map_or(end, |(at, _)| at);
@@ -17,7 +27,7 @@ pub fn annotated(problem: &ShaderProblem, file: &str) -> String {
         .line_start(problem.line)
         .path(file)
         .annotation(AnnotationKind::Primary.span(start..next));
-    Renderer::plain().render(&[Level::ERROR.primary_title(&problem.message).element(snippet)])
+    renderer.render(&[Level::ERROR.primary_title(&problem.message).element(snippet)])
 }
 
 #[cfg(test)]
@@ -41,6 +51,7 @@ mod tests {
         let source = lines.iter().find(|l| l.contains("α = βx;")).expect("shows the line");
         let caret = lines.iter().find(|l| l.contains('^')).expect("has a caret");
         assert_eq!(at(caret, '^'), at(source, 'β'), "{text}");
+        assert!(!text.contains('\u{1b}') && coloured(&problem, "a").contains('\u{1b}'));
         // Beyond the line, and in an empty one.
         problem.column = 99;
         assert!(annotated(&problem, "a").contains("there is no"));

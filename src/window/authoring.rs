@@ -13,7 +13,6 @@ use std::{
 
 use bevy::ecs::prelude::*;
 
-use super::watching::FileWatch;
 use crate::{
     assets::{self, Exported, Folders},
     panel::{
@@ -22,7 +21,6 @@ use crate::{
     },
     reflection::own,
     registry::Registry,
-    shader::live::LiveShaders,
 };
 
 /// The environment variable that names the editor: a command, split at spaces. `{file}` and `{line}` stand
@@ -113,7 +111,7 @@ fn start(command: Option<(String, Vec<String>)>, file: &Path) -> Result<(), Stri
 }
 
 /// Carries out an effect that writes a file of one's own: says what became of it, and wishes for a new model to be
-/// chosen. Returns the folder from which shaders are to be read from now on, if there is a new one.
+/// chosen. Returns the folder whose shaders are to be read from now on, if there is a new one.
 pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<PathBuf> {
     match effect {
         Effect::NewModel { id, name } => new_file(lab, registry, id, None, &own::template(id, name)),
@@ -132,31 +130,13 @@ pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<Path
         Effect::ExportShaders(folder) => match assets::export(folder, registry) {
             Ok(exported) => {
                 lab.say(Severity::Info, told(&exported, folder));
-                return Some(folder.join("shaders"));
+                return Some(folder.clone());
             }
             Err(why) => lab.say(Severity::Error, format!("The shaders were not written out: {why}.")),
         },
         _ => {}
     }
     None
-}
-
-/// From now on the shaders are those of a folder, and what is saved there is taken over. Own models stay where they
-/// are.
-pub(super) fn read_from(world: &mut World, shaders: &Path) {
-    let Some(mut registry) = world.get_resource_mut::<Registry>() else { return };
-    let problems = assets::read_shaders(shaders, &mut registry).err().unwrap_or_default();
-    let models = registry.own_folder().map(Path::to_owned);
-    let sources = registry.sources().clone();
-    if let Some(mut live) = world.get_resource_mut::<LiveShaders>() {
-        live.start(sources, Folders { shaders: Some(shaders.to_owned()), models });
-    }
-    if let Some(mut watch) = world.get_resource_mut::<FileWatch>() {
-        watch.0.watch_folder(shaders);
-    }
-    if let Some(mut lab) = world.get_resource_mut::<Lab>() {
-        problems.into_iter().for_each(|(_, problem)| lab.say(Severity::Error, problem.to_string()));
-    }
 }
 
 /// Where own models are: where they are read from, else where they would be looked for.

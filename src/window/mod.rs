@@ -49,7 +49,7 @@ use crate::{
     },
     registry::Registry,
     scene::spawn::CurrentScene,
-    shader::status::ShaderStatus,
+    shader::{live::LiveShaders, status::ShaderStatus},
 };
 
 pub mod authoring;
@@ -58,6 +58,7 @@ mod capture;
 pub mod files;
 mod gizmos;
 mod pick;
+mod shaders;
 pub mod watching;
 
 /// The size of a new window, points.
@@ -123,6 +124,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     }
     app.insert_resource(CurrentScene(options.scene.clone())).insert_resource(lab);
     app.insert_resource(files::DiskFiles::new(options.file.clone(), options.stamp));
+    shaders::open(app.world_mut(), &options.folders);
     if let Some(path) = options.open {
         app.add_systems(Startup, move |mut effects: MessageWriter<LabEffect>| {
             effects.write(LabEffect(Effect::OpenFile(path.clone())));
@@ -224,6 +226,7 @@ impl Plugin for WindowSystemsPlugin {
             (
                 (
                     watching::collect,
+                    shaders::follow,
                     watching::watch_document,
                     watching::follow_document,
                     carry_out,
@@ -233,6 +236,7 @@ impl Plugin for WindowSystemsPlugin {
                     .chain()
                     .in_set(LabSystems::Load),
                 scene_to_lab.in_set(LabSystems::Upload),
+                shaders::tell.in_set(LabSystems::Upload).after(scene_to_lab),
             ),
         )
         .add_systems(PostUpdate, (fit_viewport, window_title, redraw));
@@ -322,7 +326,7 @@ fn carry_out(
             }
             Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {
                 if let Some(folder) = authoring::write(&effect, &mut lab, &registry) {
-                    commands.queue(move |world: &mut World| authoring::read_from(world, &folder));
+                    commands.queue(move |world: &mut World| shaders::move_to(world, &folder));
                 }
             }
             Effect::OpenInEditor { path, line } => {
@@ -446,6 +450,7 @@ struct Snapshot {
 fn redraw(
     lab: Res<Lab>,
     terms: Res<ShownTerms>,
+    live: Res<LiveShaders>,
     cameras: Query<&bevy::transform::components::Transform, With<PictureCamera>>,
     mut settling: ResMut<Settling>,
     mut requests: MessageWriter<RequestRedraw>,
@@ -463,6 +468,10 @@ fn redraw(
     };
     if settling.last.as_deref() != Some(&now) {
         settling.last = Some(Box::new(now));
+        settling.frames = settling.frames.max(SETTLING_FRAMES);
+    }
+    if live.is_busy() {
+        // Problems are told after a while, and what is not on the picture is tried one in a frame.
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }
     if settling.frames > 0 {

@@ -1,8 +1,16 @@
 //! Shaders are exchanged while they are on the picture, and whatever is done to their files, the picture stays.
 
-use std::{fs, path::PathBuf, thread, time::Duration};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    thread,
+    time::Duration,
+};
+
+use bevy::prelude::Mut;
 
 use lights_camera_models::{
+    assets::{Folders, built_in_sources},
     capture::gpu::{GpuRenderer, Output},
     optics::colour::BACKGROUND,
     reflection::parameter::Value,
@@ -10,7 +18,7 @@ use lights_camera_models::{
     scene::Scene,
     shader::{
         compose::Sources,
-        live::{GRACE, LiveShaders, built_in_sources},
+        live::{GRACE, LiveShaders},
         status::{ShaderStatus, Trouble},
     },
     watch::Watcher,
@@ -39,7 +47,7 @@ pub fn phong_scene(mode: &str) -> Scene {
 
 /// The built-in text of a shader file.
 pub fn original(path: &str) -> &'static str {
-    built_in_sources(&Registry::builtin()).find(|s| s.path == path).expect("built in").text
+    built_in_sources(&Registry::builtin()).into_iter().find(|s| s.path == path).expect("built in").text
 }
 
 impl Lab {
@@ -63,7 +71,8 @@ impl Lab {
         let mut renderer =
             GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed");
         let world = renderer.app().world_mut();
-        world.resource_mut::<LiveShaders>().start(sources, Some(folder.path().to_owned()), None);
+        let folders = Folders { shaders: Some(folder.path().to_owned()), models: None };
+        world.resource_mut::<LiveShaders>().start(sources, folders);
         renderer.set_scene(scene);
         renderer.settle().expect("the GPU draws");
         Self { renderer, folder }
@@ -73,15 +82,21 @@ impl Lab {
         self.folder.path().join(path)
     }
 
-    pub fn live(&mut self) -> bevy::prelude::Mut<'_, LiveShaders> {
+    pub fn live(&mut self) -> Mut<'_, LiveShaders> {
         self.renderer.app().world_mut().resource_mut::<LiveShaders>()
     }
 
     /// A file changed on disk.
     pub fn look_at(&mut self, path: &str) {
         let file = self.file(path);
-        let registry = self.renderer.app().world().resource::<Registry>().clone();
-        self.live().look_at(&file, &registry);
+        self.look_at_file(&file);
+    }
+
+    pub fn look_at_file(&mut self, file: &Path) {
+        let world = self.renderer.app().world_mut();
+        world.resource_scope(|world, mut live: Mut<LiveShaders>| {
+            live.look_at(file, &mut world.resource_mut::<Registry>());
+        });
     }
 
     pub fn save(&mut self, path: &str, text: impl AsRef<[u8]>) {
@@ -529,10 +544,7 @@ fn follow(lab: &mut Lab, watcher: &Watcher, expect_change: bool) -> Vec<Vec<u8>>
     for _ in 0..400 {
         let changed = watcher.changed();
         quiet = if changed.is_empty() && watcher.pending().is_none() { quiet + 1 } else { 0 };
-        let registry = lab.renderer.app().world().resource::<Registry>().clone();
-        for file in changed {
-            lab.live().look_at(&file, &registry);
-        }
+        changed.iter().for_each(|file| lab.look_at_file(file));
         let frame = lab.frame();
         if frames.last() != Some(&frame) {
             frames.push(frame);
@@ -550,7 +562,7 @@ fn saving_as_editors_do_goes_from_one_picture_to_the_next_and_shows_nothing_betw
     let mut lab = Lab::new(phong_scene("phong"));
     let mut watcher = Watcher::new(|| {});
     let folder = lab.file("").canonicalize().expect("there");
-    lab.live().start(Sources::default(), Some(folder.clone()), None);
+    lab.live().start(Sources::default(), Folders { shaders: Some(folder.clone()), models: None });
     watcher.watch_folder(&folder);
     let file = folder.join("reflection/phong.wgsl");
     let text =

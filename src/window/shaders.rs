@@ -1,0 +1,112 @@
+//! The shaders and own models of the window: read when it opens, read again when their files change, and what is
+//! wrong with them told.
+
+use std::{
+    io::{self, IsTerminal as _},
+    path::Path,
+};
+
+use bevy::ecs::prelude::*;
+
+use super::watching::{FileWatch, FilesChanged, complain};
+use crate::{
+    assets::{self, Folders},
+    panel::state::Lab,
+    reflection::own,
+    registry::Registry,
+    shader::{
+        live::LiveShaders,
+        report::{annotated, coloured},
+        status::Trouble,
+    },
+};
+
+/// Reads the shaders of the folders and watches them. Own models are in the registry already; shaders that cannot
+/// be drawn with are replaced by the built-in ones and told of.
+pub(super) fn open(world: &mut World, folders: &Folders) {
+    let mut registry = world.resource_mut::<Registry>();
+    let unreadable = match &folders.shaders {
+        Some(folder) => assets::read_shaders(folder, &mut registry).err().unwrap_or_default(),
+        None => Vec::new(),
+    };
+    let sources = registry.sources().clone();
+    // What is wrong with these is found when they are looked at.
+    let broken: Vec<_> = folders
+        .models
+        .iter()
+        .flat_map(|folder| own::files_in(folder).unwrap_or_default())
+        .chain(unreadable.into_iter().map(|(path, _)| path))
+        .collect();
+    world.resource_mut::<LiveShaders>().start(sources, folders.clone());
+    look_at(world, &broken);
+    let mut watch = world.resource_mut::<FileWatch>();
+    for folder in [&folders.shaders, &folders.models].into_iter().flatten() {
+        watch.0.watch_folder(folder);
+    }
+}
+
+/// Reads shaders and models from another folder from now on.
+pub(super) fn move_to(world: &mut World, folder: &Path) {
+    match Folders::find(Some(folder), None) {
+        Ok(folders) => {
+            {
+                let mut registry = world.resource_mut::<Registry>();
+                if let Some(models) = &folders.models {
+                    // What is wrong with them is told when they are looked at.
+                    let _ = own::read_folder(models, &mut registry, true);
+                }
+            }
+            open(world, &folders);
+        }
+        Err(why) => {
+            world.resource_mut::<Lab>().say(crate::panel::state::Severity::Error, why.to_string());
+        }
+    }
+}
+
+/// Looks at the files that changed.
+pub(super) fn follow(world: &mut World, mut last: Local<bevy::ecs::message::MessageCursor<FilesChanged>>) {
+    let changed: Vec<_> = {
+        let messages = world.resource::<Messages<FilesChanged>>();
+        last.read(messages).flat_map(|files| files.0.clone()).collect()
+    };
+    look_at(world, &changed);
+}
+
+fn look_at(world: &mut World, files: &[std::path::PathBuf]) {
+    if files.is_empty() {
+        return;
+    }
+    world.resource_scope(|world, mut live: Mut<LiveShaders>| {
+        let mut registry = world.resource_mut::<Registry>();
+        for file in files {
+            live.look_at(file, registry.bypass_change_detection());
+        }
+        if live.take_news_of_models() {
+            registry.set_changed();
+        }
+    });
+}
+
+/// Tells the panels and standard error of the state of the shaders.
+pub(super) fn tell(live: Res<LiveShaders>, mut lab: ResMut<Lab>) {
+    let status = live.status();
+    if lab.shaders == *status {
+        return;
+    }
+    let known =
+        |troubles: &[Trouble], trouble: &Trouble| troubles.iter().any(|t| t.problem == trouble.problem);
+    for trouble in status.troubles.iter().filter(|t| !known(&lab.shaders.troubles, t)) {
+        let file =
+            trouble.path.as_ref().map_or_else(|| trouble.problem.file.clone(), |p| p.display().to_string());
+        let report = if io::stderr().is_terminal() { coloured } else { annotated };
+        complain(&report(&trouble.problem, &file));
+        if !trouble.stale.is_empty() {
+            complain(&format!("The picture shows the last good version of {}.", trouble.stale.join(", ")));
+        }
+    }
+    if !lab.shaders.troubles.is_empty() && status.troubles.is_empty() {
+        complain("All shaders are up to date again.");
+    }
+    lab.shaders = status.clone();
+}
