@@ -276,9 +276,6 @@ pub fn about(ui: &mut Ui, model: &ModelEntry) {
         let text = if holds { format!("✓ {law}") } else { format!("✗ not {law}") };
         ui.label(RichText::new(text).small().color(if holds { palette.text } else { palette.weak }));
     }
-    if own {
-        ui.label(theme::small(ui, d.wgsl.path));
-    }
     if !d.source.is_empty() {
         ui.label(theme::small(ui, d.source));
     }

@@ -234,6 +234,9 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
                 actions.push(set(ObjectField::Material(p.name, v)));
             }
         }
+        if model.parameters.is_empty() {
+            ui.label(theme::small(ui, "This model has no knobs."));
+        }
         readouts(ui, lab, model, object);
         let unused: Vec<_> = registry
             .material_parameters()

@@ -111,7 +111,7 @@ fn start(command: Option<(String, Vec<String>)>, file: &Path) -> Result<(), Stri
 }
 
 /// Carries out an effect that writes a file of one's own: says what became of it, and wishes for a new model to be
-/// chosen. Returns the folder whose shaders and models are to be read from now on, if there is a new one.
+/// chosen. Returns the folder whose shaders are to be read from now on, if there is a new one.
 pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<PathBuf> {
     match effect {
         Effect::NewModel { id, name } => new_file(lab, registry, id, None, &own::template(id, name)),
@@ -196,7 +196,9 @@ fn told(exported: &Exported, folder: &Path) -> String {
 /// [`io::ErrorKind::AlreadyExists`] when there is such a file, which is left alone.
 pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder)?;
+    // A file in the place of the folder must not look as if the file itself were there.
+    fs::create_dir_all(folder)
+        .map_err(|e| io::Error::other(format!("the folder {} could not be made: {e}", folder.display())))?;
     // The name begins with a dot, so that whoever watches the folder knows it for what it is.
     let mut builder = tempfile::Builder::new();
     builder.prefix(".lcm-").suffix(".tmp");

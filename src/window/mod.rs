@@ -321,8 +321,9 @@ fn carry_out(
             Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
-            dialog @ (Effect::PickOpen | Effect::PickSave) => lab.wanted_dialog = Some(dialog),
-            dialog @ Effect::PickShaderFolder => lab.wanted_dialog = Some(dialog),
+            dialog @ (Effect::PickOpen | Effect::PickSave | Effect::PickShaderFolder) => {
+                lab.wanted_dialog = Some(dialog);
+            }
             Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {
                 if let Some(folder) = authoring::write(&effect, &mut lab, &registry) {
                     commands.queue(move |world: &mut World| shaders::move_to(world, &folder));

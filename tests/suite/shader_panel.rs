@@ -607,6 +607,7 @@ fn a_model_without_equation_source_and_laws_is_shown_as_it_is() {
     let mut bench = bare();
     assert!(bench.says("Bare"));
     assert!(!bench.says("Terms: all"), "no equation, no terms to choose from");
+    assert!(bench.says("This model has no knobs."));
     bench.key(Key::R, Modifiers::NONE);
     bench.frame(vec![Event::Text("bare".to_owned())]);
     bench.settle();
