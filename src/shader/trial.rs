@@ -463,8 +463,18 @@ fn build(
     });
     let errors = [block_on(validation.pop()), block_on(internal.pop())];
     match errors.into_iter().flatten().next() {
-        Some(error) => Err(reason(&error)),
+        Some(error) => Err(deepest(&error)),
         None => Ok(()),
+    }
+}
+
+/// The last two links of a chain of errors: what does not fit, and why.
+fn deepest(error: &dyn std::error::Error) -> String {
+    let links: Vec<_> =
+        std::iter::successors(error.source(), |e| e.source()).map(ToString::to_string).collect();
+    match &links[..] {
+        [] => error.to_string(),
+        links => links[links.len().saturating_sub(2)..].join(": "),
     }
 }
 
@@ -481,18 +491,22 @@ fn explain(composed: &Composed, complaint: &str) -> (Option<(usize, usize)>, Str
         (!digits.is_empty()).then_some(digits)
     };
     let message = complaint.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
-    let binding = number("binding: ").and_then(|n| line_of(&format!("@binding({n})")));
+    let binding = number("binding: ").map(|n| {
+        let message = format!(
+            "@binding({n}) is not there: the renderer provides 0, the parameters, and 1, the lights ({message})"
+        );
+        (line_of(&format!("@binding({n})")), message)
+    });
     let location = || {
-        let n = number("location[").or_else(|| number("@location("))?;
-        line_of(&format!("@location({n})"))
+        let n = number("ocation[").or_else(|| number("@location("))?;
+        let message =
+            format!("@location({n}) is not the same in the vertex and the fragment stage ({message})");
+        Some((line_of(&format!("@location({n})")), message))
     };
-    let stage = || {
-        let stage = if complaint.contains("FRAGMENT") || complaint.contains("fragment") {
-            "@fragment"
-        } else {
-            "@vertex"
-        };
-        line_of(stage)
+    let entry = || {
+        let name = complaint.split("entry point '").nth(1)?.split('\'').next()?;
+        let message = format!("the function `{name}` with @{name} is missing: the renderer begins there");
+        Some((line_of(&format!("@{name}")), message))
     };
     let wrapper = || {
         let lines = 1..=composed.text.lines().count();
@@ -501,8 +515,10 @@ fn explain(composed: &Composed, complaint: &str) -> (Option<(usize, usize)>, Str
             .find(|l| composed.map.locate(*l).is_some_and(|(f, _)| f == super::compose::WRAPPER.path))
             .map(|l| (l, 1))
     };
-    let place = binding.or_else(location).or_else(stage).or_else(wrapper);
-    (place, format!("the graphics driver refuses it: {message}"))
+    binding
+        .or_else(location)
+        .or_else(entry)
+        .unwrap_or_else(|| (wrapper(), format!("the graphics driver refuses it: {message}")))
 }
 
 /// The problem of a text on which the composer itself fails.

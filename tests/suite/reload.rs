@@ -221,8 +221,8 @@ const BREAKAGES: &[Breakage] = &[
         name: "missing entry function",
         file: "wrapper.wgsl",
         change: |t| replaced(t, "fn fragment(", "fn fragmentation("),
-        said: "fragment",
-        line: "",
+        said: "the function `fragment` with @fragment is missing",
+        line: "@fragment",
     },
     Breakage {
         name: "wrong signature",
@@ -239,7 +239,7 @@ const BREAKAGES: &[Breakage] = &[
                 .expect("UTF-8");
             replaced(&t, "@fragment\nstruct", "struct")
         },
-        said: "the graphics driver refuses it",
+        said: "@location(9) is not the same in the vertex and the fragment stage",
         line: "@location(9)",
     },
     Breakage {
@@ -251,7 +251,7 @@ const BREAKAGES: &[Breakage] = &[
             );
             replaced(&t, "* illumination.exposure;", "* illumination.exposure * more[0];")
         },
-        said: "the graphics driver refuses it",
+        said: "@binding(7) is not there",
         line: "@binding(7)",
     },
     Breakage {
