@@ -3,7 +3,7 @@
 
 use std::{
     io::{self, IsTerminal as _},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use bevy::ecs::prelude::*;
@@ -11,7 +11,7 @@ use bevy::ecs::prelude::*;
 use super::watching::{FileWatch, FilesChanged, complain};
 use crate::{
     assets::{self, Folders},
-    panel::state::Lab,
+    panel::state::{Lab, Severity},
     reflection::own,
     registry::Registry,
     shader::{
@@ -45,23 +45,24 @@ pub(super) fn open(world: &mut World, folders: &Folders) {
     }
 }
 
-/// Reads shaders and models from another folder from now on.
+/// Reads shaders from another folder from now on, and own models too unless there are some where they were read
+/// from.
 pub(super) fn move_to(world: &mut World, folder: &Path) {
-    match Folders::find(Some(folder), None) {
-        Ok(folders) => {
-            {
-                let mut registry = world.resource_mut::<Registry>();
-                if let Some(models) = &folders.models {
-                    // What is wrong with them is told when they are looked at.
-                    let _ = own::read_folder(models, &mut registry, true);
-                }
+    let mut folders = match Folders::find(Some(folder), None) {
+        Ok(folders) => folders,
+        Err(why) => return world.resource_mut::<Lab>().say(Severity::Error, why.to_string()),
+    };
+    let mut registry = world.resource_mut::<Registry>();
+    match registry.own_folder().filter(|folder| folder.is_dir()) {
+        Some(known) => folders.models = Some(known.to_owned()),
+        None => {
+            if let Some(models) = &folders.models {
+                // What is wrong with them is told when they are looked at.
+                let _ = own::read_folder(models, &mut registry, true);
             }
-            open(world, &folders);
-        }
-        Err(why) => {
-            world.resource_mut::<Lab>().say(crate::panel::state::Severity::Error, why.to_string());
         }
     }
+    open(world, &folders);
 }
 
 /// Looks at the files that changed.
@@ -73,7 +74,7 @@ pub(super) fn follow(world: &mut World, mut last: Local<bevy::ecs::message::Mess
     look_at(world, &changed);
 }
 
-fn look_at(world: &mut World, files: &[std::path::PathBuf]) {
+fn look_at(world: &mut World, files: &[PathBuf]) {
     if files.is_empty() {
         return;
     }

@@ -10,6 +10,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use lights_camera_models::{assets::export, registry::Registry};
+
 use crate::screen::{Picture, Screen};
 
 /// A sphere of a colour in the middle of the picture.
@@ -43,7 +45,7 @@ fn error_badge(picture: &Picture) -> bool {
 
 /// Saves as many editors do: another file takes the place of the old one.
 fn save_by_renaming(file: &Path, text: &str) {
-    let new = file.with_extension("json.new");
+    let new = file.with_extension("new");
     fs::write(&new, text).expect("writable");
     fs::rename(&new, file).expect("renamed");
 }
@@ -97,4 +99,88 @@ fn an_open_window_shows_what_is_edited_elsewhere() {
     save_in_place(&file, &scene([255, 0, 0]));
     let picture = window.until("a red sphere again", |p| shows(0)(p) && !error_badge(p));
     assert!(!shows(2)(&picture));
+}
+
+/// An own model that shows the light on its surface in one colour.
+fn own_model(colour: &str, more: &str) -> String {
+    format!(
+        "/* lcm
+{{
+    \"name\": \"Tinted\",
+    \"parameters\": [{more}]
+}}
+*/
+fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{
+    return Terms(vec3(0.0), {colour} * max(dot(frame.n, l), 0.0), vec3(0.0));
+}}
+"
+    )
+}
+
+/// Whether something in the colour of errors stands on the picture: the badge and the frame of stale shaders.
+fn stale(picture: &Picture) -> bool {
+    picture.count(210..920, 40..560, |p| p == [0xff, 0x8a, 0x7a]) > 1000
+}
+
+#[test]
+fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let assets = folder.path().join("assets");
+    export(&assets, &Registry::builtin()).expect("written");
+    let model = assets.join("models/tinted.wgsl");
+    fs::write(&model, own_model("vec3(1.0, 0.0, 0.0)", "")).expect("writable");
+    let room = folder.path().join("room.json");
+    fs::write(&room, scene([255, 255, 255]).replace("\"lambert\"", "\"tinted\"")).expect("writable");
+    let screen = Screen::new(1280, 720);
+    let mut window = screen.start(&[
+        "view",
+        &room.to_string_lossy(),
+        "--size",
+        "1280x720",
+        "--assets",
+        &assets.to_string_lossy(),
+    ]);
+    window.until("a red sphere", shows(0));
+
+    // The text alone, then a parameter too, which turns the layout of the rows.
+    save_by_renaming(&model, &own_model("vec3(0.0, 1.0, 0.0)", ""));
+    window.until("a green sphere", shows(1));
+    let knob = r#"{ "name": "tint", "type": "colour", "default": [0, 0, 255] }, "base_colour""#;
+    save_in_place(&model, &own_model("m.tint", knob));
+    window.until("a blue sphere", shows(2));
+    assert_eq!(window.said(), "");
+
+    // Five mistakes; each leaves the blue sphere and says where it is.
+    for (mistake, line) in [
+        (own_model("m.tint", knob).replace("dot(frame.n, l)", "dot(frame.n l)"), "8:"),
+        (own_model("m.tnt", knob), "8:"),
+        (own_model("m.tint", knob).replace("\"default\": [0, 0, 255]", "\"default\": [0, 0]"), "4:"),
+        (own_model("1u", knob), "8:"),
+        (own_model("m.tint", knob).replace("fn response", "fn answer"), ""),
+    ] {
+        save_by_renaming(&model, &mistake);
+        let picture = window.until("a badge", stale);
+        assert!(shows(2)(&picture), "the last good version stays");
+        let place = format!("{}:{line}", model.display());
+        let said = window.said();
+        assert!(said.contains(&place) && said.contains("^"), "{said}");
+        assert!(!said.contains("panicked"), "{said}");
+        save_in_place(&model, &own_model("m.tint", knob));
+        let picture = window.until("no badge", |p| !stale(p));
+        assert!(shows(2)(&picture));
+    }
+
+    // A file that all shaders share, broken for all; then the light loop takes the green away.
+    let file = assets.join("shaders/loop.wgsl");
+    let text = fs::read_to_string(&file).expect("there");
+    save_in_place(&file, &text.replace("fn illuminate(", "fn illuminate(("));
+    assert!(shows(2)(&window.until("a badge", stale)));
+    save_by_renaming(&file, &text.replace("return colour;", "return colour.zyx;"));
+    let picture = window.until("a red sphere", shows(0));
+    assert!(!stale(&picture) || !stale(&window.until("no badge", |p| !stale(p))));
+    // A file that is gone is missed, and the picture stays.
+    fs::remove_file(&model).expect("removed");
+    assert!(shows(0)(&window.until("a badge", stale)));
+    fs::write(&model, own_model("vec3(0.0, 1.0, 0.0)", "")).expect("writable");
+    window.until("a green sphere", |p| shows(1)(p) && !stale(p));
 }
