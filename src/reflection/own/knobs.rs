@@ -96,15 +96,14 @@ impl Reader<'_> {
         let label = given(self, "label", LONGEST_NAME)
             .or(shared.map(|s| s.label))
             .unwrap_or_else(|| intern::text(&name.replace('_', " ")));
+        let usual_unit = if matches!(kind, Some(ParameterKind::Colour { .. })) { "sRGB" } else { "" };
         let parameter = Parameter {
             name,
             symbol: given(self, "symbol", LONGEST_NAME)
                 .or(shared.map(|s| s.symbol))
                 .unwrap_or_else(|| intern::text(&symbol_of(name))),
             label,
-            unit: given(self, "unit", LONGEST_NAME).or(shared.map(|s| s.unit)).unwrap_or_else(|| {
-                if matches!(kind, Some(ParameterKind::Colour { .. })) { "sRGB" } else { "" }
-            }),
+            unit: given(self, "unit", LONGEST_NAME).or(shared.map(|s| s.unit)).unwrap_or(usual_unit),
             help: given(self, "help", LONGEST_TEXT)
                 .or(shared.map(|s| s.help))
                 .unwrap_or_else(|| intern::text(&format!("The {label}."))),
