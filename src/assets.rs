@@ -10,7 +10,7 @@ use thiserror::Error;
 use crate::{
     reflection::own,
     registry::Registry,
-    shader::{Source, check::ShaderProblem, compose},
+    shader::{Source, check::ShaderProblem, compose, file},
 };
 
 /// The environment variable that names another folder for the user's data.
@@ -173,7 +173,7 @@ pub fn read_shaders(folder: &Path, registry: &mut Registry) -> Result<(), Vec<(P
     for path in files {
         let Ok(name) = path.strip_prefix(folder) else { continue };
         let name = name.components().map(|c| c.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/");
-        match own::text_of(&path) {
+        match file::read(&path, &name) {
             Ok(text) => {
                 // A checkout may have other line ends than the program was built with.
                 let same = |s: &Source| s.path == name && s.text.lines().eq(text.lines());
@@ -183,7 +183,7 @@ pub fn read_shaders(folder: &Path, registry: &mut Registry) -> Result<(), Vec<(P
                     registry.sources_mut().edit(name, text);
                 }
             }
-            Err(problem) => problems.push((path, ShaderProblem { file: name, ..problem })),
+            Err(problem) => problems.push((path, problem)),
         }
     }
     if problems.is_empty() { Ok(()) } else { Err(problems) }

@@ -318,7 +318,9 @@ fn head<R>(ui: &mut Ui, caption: &Caption, reserved: f32, right: impl FnOnce(&mu
         };
         let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
         let room = (ui.available_width() - reserved * scale).max(symbol_column + 40.0 * scale);
-        let galley = theme::elided(ui, caption.label, TextStyle::Body, colour, room - symbol_column);
+        // A parameter without a symbol of its own has its name for one, and need not say it twice.
+        let word = if caption.symbol == caption.label { "" } else { caption.label };
+        let galley = theme::elided(ui, word, TextStyle::Body, colour, room - symbol_column);
         let size = vec2(symbol_column + galley.size().x, height);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         if marked {

@@ -7,7 +7,6 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashMap},
-    fs, io,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -32,7 +31,7 @@ use super::{
 use crate::{
     app::{LabFrame, LabSystems},
     assets::{Folders, built_in_sources},
-    reflection::{ModelEntry, own, swap::Drawn},
+    reflection::{Ambient, ModelEntry, own, swap::Drawn},
     registry::Registry,
     shading::{ModeEntry, Stage},
 };
@@ -41,8 +40,6 @@ use crate::{
 pub const GRACE: Duration = Duration::from_millis(150);
 /// A failure of the renderer so soon after an exchange is blamed on it.
 const PROBATION: Duration = Duration::from_secs(5);
-/// No shader is longer, bytes.
-const LONGEST: u64 = 1 << 20;
 
 /// Exchanges shaders while they are on the picture.
 #[derive(Clone, Copy, Debug, Default)]
@@ -198,13 +195,13 @@ impl LiveShaders {
     pub fn look_at(&mut self, file: &Path, registry: &mut Registry) {
         let Some(path) = self.path_of(file) else { return };
         let model = path.starts_with("models/") && !path["models/".len()..].contains('/');
-        match read(file) {
+        match super::file::read(file, &path) {
             Ok(text) if model && own::is_model(&text) => self.look_at_model(file, &path, &text, registry),
             Ok(text) => self.change(&path, &text, registry),
             Err(problem) => {
                 let own = own::id_of(file).is_some_and(|id| model && registry.own_file(id).is_some());
                 if own || built_in(registry, &path).is_some() || self.current.get(&path).is_some() {
-                    self.cannot_use(&path, vec![problem.at(&path)]);
+                    self.cannot_use(&path, vec![problem]);
                 }
             }
         }
@@ -273,25 +270,32 @@ impl LiveShaders {
         }
     }
 
-    /// Reads the own models again that import a file: the CPU runs them from what was read.
+    /// Reads the own models again that a file is part of: the CPU runs them from what was read. Those that only
+    /// share its functions need it if their answer to light from everywhere is calculated, and they were drawn.
     fn read_again(&mut self, path: &str, registry: &mut Registry) {
-        let imports = |model: &ModelEntry| compose_evaluation(&self.current, model).imports.contains(path);
-        let importing: Vec<_> = registry
-            .own_models()
-            .filter(|(model, _)| imports(model))
-            .filter_map(|(model, file)| {
-                let text = self.current.get(model.declaration.wgsl.path)?;
-                Some((model.declaration.wgsl.path, file.to_owned(), text.to_owned()))
-            })
-            .collect();
-        for (own_path, file, text) in importing {
+        let drawn = |model: &ModelEntry| self.shaders.keys().any(|key| key.0 == model.declaration.id);
+        let mut concerned = Vec::new();
+        for (model, file) in registry.own_models() {
+            let composed = compose_evaluation(&self.current, model);
+            let imports = composed.imports.contains(path);
+            let shares =
+                model.declaration.ambient == Ambient::Albedo && composed.depends_on(path) && drawn(model);
+            let own_path = model.declaration.wgsl.path;
+            if let Some(text) = self.current.get(own_path).filter(|_| own_path != path && (imports || shares))
+            {
+                concerned.push((own_path, file.to_owned(), text.to_owned(), imports));
+            }
+        }
+        for (own_path, file, text, imports) in concerned {
             match own::read(&file, &text, registry) {
                 Ok(model) => {
                     registry.put_own_model(model);
                     self.models_changed = true;
                     self.stale_status |= self.unusable.remove(own_path).is_some();
                 }
-                Err(problems) => self.cannot_use(own_path, problems),
+                Err(problems) if imports => self.cannot_use(own_path, problems),
+                // What is wrong with a shared file is told when it is tried.
+                Err(_) => {}
             }
         }
     }
@@ -637,57 +641,4 @@ fn ends_too_early(text: &str) -> bool {
         Ok(_) => end == 0,
         Err(error) => error.labels().any(|(span, _)| span.to_range().is_some_and(|range| range.start >= end)),
     }
-}
-
-/// Why a file has no text.
-struct Unreadable {
-    line: usize,
-    column: usize,
-    source: String,
-    message: String,
-}
-
-impl Unreadable {
-    fn new(message: impl Into<String>) -> Self {
-        Self { line: 1, column: 1, source: String::new(), message: message.into() }
-    }
-
-    fn at(&self, path: &str) -> ShaderProblem {
-        ShaderProblem {
-            file: path.to_owned(),
-            line: self.line,
-            column: self.column,
-            source: self.source.clone(),
-            message: self.message.clone(),
-        }
-    }
-}
-
-/// The text of a shader file.
-fn read(file: &Path) -> Result<String, Unreadable> {
-    let bytes = fs::metadata(file).and_then(|facts| {
-        if facts.len() > LONGEST {
-            return Err(io::Error::other(format!("it is longer than {} KiB", LONGEST >> 10)));
-        }
-        fs::read(file)
-    });
-    let bytes = bytes.map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => {
-            Unreadable::new("the file is gone; it is read again as soon as one of that name is there")
-        }
-        _ => Unreadable::new(format!("the file cannot be read: {error}")),
-    })?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        let bytes = error.as_bytes();
-        let line_start = bytes[..at].iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
-        let line_end = bytes[at..].iter().position(|b| *b == b'\n').map_or(bytes.len(), |i| at + i);
-        Unreadable {
-            line: bytes[..at].iter().filter(|b| **b == b'\n').count() + 1,
-            column: String::from_utf8_lossy(&bytes[line_start..at]).chars().count() + 1,
-            source: String::from_utf8_lossy(&bytes[line_start..line_end]).into_owned(),
-            message: format!("the byte 0x{:02x} is not UTF-8; save the file in that encoding", bytes[at]),
-        }
-    })?;
-    Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned))
 }

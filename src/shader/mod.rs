@@ -3,6 +3,7 @@
 
 pub mod check;
 pub mod compose;
+pub mod file;
 pub mod interpret;
 pub mod live;
 pub mod pitfall;

@@ -292,7 +292,7 @@ const BREAKAGES: &[Breakage] = &[
         name: "invalid UTF-8",
         file: "reflection/phong.wgsl",
         change: |t| [t.as_bytes(), b"\n// caf\xe9\n"].concat(),
-        said: "the byte 0xe9 is not UTF-8",
+        said: "not UTF-8 text from the byte 0xe9",
         line: "// caf",
     },
     Breakage {

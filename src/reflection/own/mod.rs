@@ -36,6 +36,7 @@ use crate::{
         Source,
         check::{self, ShaderProblem},
         compose::{compose, compose_evaluation},
+        file,
         whole::validate_drawing,
     },
     shading::Stage,
@@ -54,8 +55,6 @@ pub use write::{NotDuplicated, duplicate, id_of_name, template};
 
 /// The ending of the files.
 pub const EXTENSION: &str = "wgsl";
-/// The largest file that is read, bytes.
-pub const MAX_BYTES: u64 = 1 << 20;
 
 /// What every own model's material is made of: they share one type of material, since their shaders, not
 /// their types, tell them apart.
@@ -119,38 +118,6 @@ pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     }
     files.sort();
     Ok(files)
-}
-
-/// The text of a file, without a byte order mark.
-///
-/// # Errors
-/// When it cannot be read, is too large or is not UTF-8.
-pub fn text_of(path: &Path) -> Result<String, ShaderProblem> {
-    let failed = |line, column, source: &str, message: String| ShaderProblem {
-        file: named(path),
-        line,
-        column,
-        source: source.to_owned(),
-        message,
-    };
-    let unreadable = |e: &io::Error| failed(1, 1, "", format!("the file could not be read: {e}"));
-    let size = fs::metadata(path).map_err(|e| unreadable(&e))?.len();
-    if size > MAX_BYTES {
-        return Err(failed(
-            1,
-            1,
-            "",
-            format!("the file is larger than {} MiB, which no shader is", MAX_BYTES >> 20),
-        ));
-    }
-    let bytes = fs::read(path).map_err(|e| unreadable(&e))?;
-    let text = String::from_utf8(bytes).map_err(|e| {
-        let good = e.utf8_error().valid_up_to();
-        let before = String::from_utf8_lossy(&e.as_bytes()[..good]).into_owned();
-        let (line, column, source) = text::place(&before, before.len());
-        failed(line, column, source, "this is not UTF-8 text; save the file as UTF-8".to_owned())
-    })?;
-    Ok(text.strip_prefix('\u{FEFF}').map_or(text.clone(), str::to_owned))
 }
 
 /// How messages call a file before its name is known to be good.
@@ -338,7 +305,7 @@ pub fn read_folder(folder: &Path, registry: &mut Registry, stand_in: bool) -> Ve
     let mut problems = Vec::new();
     let mut models = Vec::new();
     for path in paths {
-        match text_of(&path) {
+        match file::read(&path, &named(&path)) {
             Ok(text) if is_model(&text) => models.push((path, text)),
             // What models share is known by name before the first of them is read.
             Ok(text) => registry.sources_mut().edit(named(&path), text),
