@@ -38,6 +38,8 @@ use crate::{
 
 /// A broken file is not complained of so soon after it changed: many editors empty a file before they write it.
 pub const GRACE: Duration = Duration::from_millis(150);
+/// So long a frame may try shaders before it is drawn: with many on the picture, the window goes on answering.
+const SLICE: Duration = Duration::from_millis(50);
 /// A failure of the renderer so soon after an exchange is blamed on it.
 const PROBATION: Duration = Duration::from_secs(5);
 
@@ -372,18 +374,26 @@ impl LiveShaders {
         composed.map.files().for_each(|path| good.copy_from(current, path));
     }
 
-    /// Tries what is due: first what is on the picture, all of it; then, one in a frame, what is not.
+    /// Tries what is due, for as long as a frame may take: first what is on the picture; then, one in a frame, what
+    /// is not.
     fn work(&mut self, world: &mut World, registry: &Registry, visible: &Visible) {
+        let begin = Instant::now();
         let mut due: Vec<Key> = self.shaders.iter().filter(|(_, live)| live.due).map(|(k, _)| *k).collect();
         due.sort_unstable();
         let (on_picture, off_picture): (Vec<_>, Vec<_>) = due.into_iter().partition(|k| visible.has(k));
-        let rest = if on_picture.is_empty() { 1 } else { 0 };
-        for key in on_picture.into_iter().chain(off_picture.into_iter().take(rest)) {
-            self.refresh(world, registry, key);
+        if !on_picture.is_empty() {
+            for key in on_picture {
+                self.refresh(world, registry, key);
+                if begin.elapsed() > SLICE {
+                    break;
+                }
+            }
+            return;
         }
-        if rest == 1
-            && let Some(path) = self.unused.pop_first()
-        {
+        if let Some(key) = off_picture.first() {
+            self.refresh(world, registry, *key);
+        }
+        if let Some(path) = self.unused.pop_first() {
             self.try_unused(world, registry, visible, &path);
         }
     }
