@@ -65,9 +65,10 @@ fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
         _ => Failure::Write(format!("{} could not be written: {e}", path.display())),
     })?;
     print(&format!("{}\n", path.display()))?;
+    let flags = places.flags();
     options.tell(format_args!(
-        "Edit this file; scenes name the model \"{id}\". lcm render --reflection {id} shows it, \
-         lcm models check {id} tests the laws that it claims."
+        "Edit this file; scenes name the model \"{id}\". `lcm render --reflection {id}{flags}` shows it, \
+         `lcm models check {id}{flags}` tests the laws that it claims."
     ));
     Ok(())
 }
@@ -115,6 +116,19 @@ struct Claim {
     kept: bool,
 }
 
+impl Claim {
+    /// What is said of it. Where some values are no numbers nothing is kept, but what is broken is broken.
+    fn verdict(&self, finite: bool) -> &'static str {
+        match (self.claimed, self.kept) {
+            (_, true) if !finite => "cannot be judged: some values are no numbers",
+            (true, true) => "claimed and kept",
+            (true, false) => "claimed and BROKEN",
+            (false, true) => "not claimed and not found broken: claim it?",
+            (false, false) => "not claimed and broken",
+        }
+    }
+}
+
 fn claims(model: &ModelEntry, findings: &Findings) -> impl Iterator<Item = Claim> + use<> {
     let kept = findings.kept().list();
     let claimed = model.declaration.laws.list();
@@ -134,12 +148,7 @@ fn report(model: &ModelEntry, findings: &Findings) -> String {
         ("smallest value", &findings.smallest),
     ];
     for (claim, (what, extreme)) in claims(model, findings).zip(evidence) {
-        let verdict = match (claim.claimed, claim.kept) {
-            (true, true) => "claimed and kept",
-            (true, false) => "claimed and BROKEN",
-            (false, true) => "not claimed and not found broken: claim it?",
-            (false, false) => "not claimed and broken",
-        };
+        let verdict = claim.verdict(findings.not_finite == 0);
         // Writing to a String cannot fail; here and below.
         let _ = writeln!(text, "{}: {verdict}", claim.law);
         let _ = writeln!(text, "  {what}: {}{}", number(extreme.size), place(model, extreme.case.as_ref()));
@@ -183,4 +192,23 @@ fn place(model: &ModelEntry, case: Option<&Case>) -> String {
 fn settings(model: &ModelEntry, values: &Values) -> String {
     let set: Vec<_> = model.parameters.iter().map(|p| format!("{}={}", p.name, values.get(p))).collect();
     if set.is_empty() { String::new() } else { format!("\n  {}", set.join(" ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_law_is_said_to_be_kept_where_values_are_no_numbers() {
+        let registry = Registry::builtin();
+        let lambert = registry.model("lambert").expect("built in");
+        let mut findings = Findings { responses: 4, ..Findings::default() };
+        assert_eq!(report(lambert, &findings).matches("claimed and kept").count(), 3);
+        findings.not_finite = 1;
+        findings.albedo.size = 2.0;
+        let text = report(lambert, &findings);
+        assert!(!text.contains("kept"), "{text}");
+        assert_eq!(text.matches("cannot be judged: some values are no numbers").count(), 2, "{text}");
+        assert!(text.contains("energy conserving: claimed and BROKEN"), "{text}");
+    }
 }

@@ -1,7 +1,7 @@
 //! `lcm render`: scenes to PNG files.
 
 use std::{
-    collections::HashMap,
+    collections::{BTreeSet, HashMap},
     fs,
     path::{Path, PathBuf},
     str::FromStr,
@@ -12,7 +12,7 @@ use clap::{Args, ValueEnum};
 use super::{
     Failure, Options, Outcome, progress,
     scenes::Source,
-    workshop::{drawable, invalid, not_on_cpu},
+    workshop::{drawable, invalid, not_followed_on_cpu, not_on_cpu},
 };
 use crate::{
     capture::{
@@ -155,6 +155,15 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     }
     let bar = progress(scenes.len() as u64, options);
     let mut painter = Painter::new(arguments.renderer)?;
+    let by_cpu = scenes.iter().filter(|scene| !painter.takes_gpu(scene, registry));
+    let passed: BTreeSet<_> = by_cpu.flat_map(|scene| not_followed_on_cpu(registry, scene)).collect();
+    if !passed.is_empty() {
+        let passed: Vec<_> = passed.iter().map(String::as_str).collect();
+        options.tell(format_args!(
+            "the CPU renderer does not follow the edited {}; --renderer gpu does",
+            check::listed(&passed, "and")
+        ));
+    }
     for ((scene, source), file) in scenes.iter().zip(&sources).zip(&files) {
         bar.set_message(source.name());
         let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
@@ -202,9 +211,14 @@ impl Painter {
         Ok(Self { renderer, gpu, last: None })
     }
 
+    /// Whether the graphics card draws a scene.
+    fn takes_gpu(&self, scene: &Scene, registry: &Registry) -> bool {
+        self.gpu || self.renderer == Renderer::Auto && cpu_can_draw(scene, registry).is_err()
+    }
+
     /// Makes one picture.
     fn draw(&mut self, job: &Job, registry: &Registry) -> Outcome {
-        let gpu = self.gpu || self.renderer == Renderer::Auto && cpu_can_draw(job.scene, registry).is_err();
+        let gpu = self.takes_gpu(job.scene, registry);
         let rgb8 = if gpu { self.on_gpu(job, registry)? } else { on_cpu(job, registry)? };
         let renderer = if gpu { "GPU" } else { "CPU" };
         let facts = [

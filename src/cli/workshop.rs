@@ -8,12 +8,12 @@ use super::{Failure, Outcome, complain};
 use crate::{
     assets::{self, Folders},
     capture::gpu::GpuError,
-    reflection::{ModelEntry, own},
+    reflection::{Family, ModelEntry, own},
     registry::Registry,
     scene::Scene,
     shader::{
         check::{self, ShaderProblem},
-        compose::{compose, compose_evaluation},
+        compose::{Part, compose, compose_evaluation, files},
         report::annotated,
         whole::validate_drawing,
     },
@@ -31,6 +31,16 @@ pub(super) struct Places {
     models: Option<PathBuf>,
 }
 
+/// A word as a shell takes it.
+fn pasted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/:._-+,@".contains(c) || cfg!(windows) && c == '\\';
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
 /// What is known, and where it was read from.
 pub(super) struct Workshop {
     pub registry: Registry,
@@ -38,6 +48,16 @@ pub(super) struct Workshop {
 }
 
 impl Places {
+    /// The folders as the command line named them, to be repeated in another: each with a space before it.
+    pub(super) fn flags(&self) -> String {
+        [("--assets", &self.assets), ("--models", &self.models)]
+            .into_iter()
+            .filter_map(|(flag, folder)| {
+                Some(format!(" {flag} {}", pasted(&folder.as_ref()?.to_string_lossy())))
+            })
+            .collect()
+    }
+
     /// The folders.
     pub(super) fn folders(&self) -> Result<Folders, Failure> {
         Folders::find(self.assets.as_deref(), self.models.as_deref())
@@ -157,4 +177,50 @@ pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
         validate_drawing(&composed, faces).map_err(|problem| invalid(registry, &problem))?;
     }
     Ok(())
+}
+
+/// The edited shaders that a scene is drawn with on the graphics card and not on the CPU. There everything is Rust
+/// but own models, with what they import and the functions that they share.
+pub(super) fn not_followed_on_cpu(registry: &Registry, scene: &Scene) -> BTreeSet<String> {
+    if registry.sources().edited().all(|path| path.starts_with("models/")) {
+        return BTreeSet::new();
+    }
+    let pairs: BTreeSet<_> = scene.objects.iter().map(|o| (scene.model_of(o), scene.mode_of(o))).collect();
+    let known = pairs.into_iter().filter_map(|(m, n)| Some((registry.model(m)?, registry.mode(n)?)));
+    known
+        .flat_map(|(model, mode)| {
+            let own = model.declaration.family == Family::Own;
+            files(registry.sources(), model, mode, registry.lights())
+                .into_iter()
+                .filter(move |file| file.edited && !(own && file.part == Part::Vocabulary))
+                .map(|file| file.path)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_are_repeated_so_that_a_shell_takes_them() {
+        let flags = |assets: Option<&str>, models: Option<&str>| {
+            Places { assets: assets.map(PathBuf::from), models: models.map(PathBuf::from) }.flags()
+        };
+        assert_eq!(flags(None, None), "");
+        assert_eq!(flags(Some("assets"), None), " --assets assets");
+        assert_eq!(flags(Some("../a b"), Some("Mira's")), r" --assets '../a b' --models 'Mira'\''s'");
+    }
+
+    #[test]
+    fn the_cpu_follows_no_edited_shader_of_what_is_built_in() {
+        let mut registry = Registry::builtin();
+        let scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+        assert!(not_followed_on_cpu(&registry, &scene).is_empty());
+        for path in ["models/mine.wgsl", "reflection/lambert.wgsl", "reflection/phong.wgsl", "loop.wgsl"] {
+            registry.sources_mut().edit(path, "// mine");
+        }
+        let found = not_followed_on_cpu(&registry, &scene);
+        assert_eq!(found.into_iter().collect::<Vec<_>>(), ["loop.wgsl", "reflection/phong.wgsl"]);
+    }
 }

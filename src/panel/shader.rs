@@ -83,6 +83,7 @@ impl Panel for Shader {
 /// What people call a file of a composition, and what it is for.
 #[must_use]
 pub fn words(part: Part, path: &str) -> (String, &'static str) {
+    let word = path.rsplit('/').next().and_then(|name| name.split('.').next()).unwrap_or(path);
     let (name, help) = match part {
         Part::Model => (
             "the model",
@@ -98,7 +99,8 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
             "Asks every light what arrives at the point, hands that to the model, and adds up the answers.",
         ),
         Part::LightType => {
-            ("a light type", "From where, and how strongly, the light of this type arrives at a point.")
+            let help = "From where, and how strongly, the light of this type arrives at a point.";
+            return (format!("the light type: {word}"), help);
         }
         Part::LightRecord => (
             "the light record",
@@ -109,7 +111,6 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
             "What goes into a shading mode and what comes out of it: the vertex, and what is interpolated for the pixel.",
         ),
         Part::Vocabulary => {
-            let word = path.rsplit('/').next().and_then(|name| name.split('.').next()).unwrap_or(path);
             let help = "Functions that models are written in: terms and frames, Fresnel reflectance, distributions, masking. \
                         Their twins in Rust have the same names.";
             return (format!("vocabulary: {word}"), help);

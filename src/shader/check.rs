@@ -13,7 +13,7 @@ use super::{compose::Composed, pitfall};
 /// What is wrong with a shader, located in the author's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShaderProblem {
-    /// Path below `assets/shaders/`.
+    /// Path below the folder of the shaders; of own models, `models/` and the name of the file.
     pub file: String,
     /// Line in that file, from 1.
     pub line: usize,

@@ -670,19 +670,29 @@ impl LiveShaders {
     /// Writes down what people are told.
     fn tell(&mut self, registry: &Registry, visible: &Visible) {
         let mut troubles: Vec<Trouble> = Vec::new();
-        let mut add = |problem: &ShaderProblem, stale: Option<&str>| {
+        let mut add = |problem: &ShaderProblem, stale: Option<String>| {
             let i = troubles.iter().position(|t| t.problem == *problem).unwrap_or_else(|| {
                 let path = self.file_of(&problem.file);
                 troubles.push(Trouble { problem: problem.clone(), path, stale: Vec::new() });
                 troubles.len() - 1
             });
             if let Some(name) = stale
-                && !troubles[i].stale.iter().any(|n| n == name)
+                && !troubles[i].stale.contains(&name)
             {
-                troubles[i].stale.push(name.to_owned());
+                troubles[i].stale.push(name);
             }
         };
-        let name = |key: &Key| registry.model(key.0).map_or(key.0, |m| m.declaration.name);
+        let name = |key: &Key| match registry.model(key.0) {
+            // A file that was never right.
+            Some(m)
+                if registry.own_file(key.0).is_some()
+                    && self.current.get(m.declaration.wgsl.path).is_none() =>
+            {
+                format!("{} (a grey stand-in)", m.declaration.name)
+            }
+            Some(model) => model.declaration.name.to_owned(),
+            None => key.0.to_owned(),
+        };
         let old = |at: &Instant| at.elapsed() >= GRACE;
         let mut keys: Vec<_> = self.shaders.keys().collect();
         keys.sort_unstable();

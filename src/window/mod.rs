@@ -187,15 +187,15 @@ fn add_with_display<M>(app: &mut App, plugins: impl Plugins<M>) -> Result<(), Fa
 
 fn log_plugin(options: &ViewOptions) -> LogPlugin {
     let (level, filter) = if options.verbose {
-        (Level::INFO, "wgpu=error,naga=warn")
+        (Level::INFO, "wgpu=error,naga=warn,notify=error")
     } else if options.quiet {
-        (Level::ERROR, "wgpu=error,naga=error")
+        (Level::ERROR, "wgpu=error,naga=off,notify=error")
     } else {
-        // That the renderer is a program on the CPU stands in the status line; the rest of what is
-        // silenced here is no news to a user.
+        // That the renderer is a program on the CPU stands in the status line, and what is wrong with a
+        // shader is told in terms of its file; the rest of what is silenced here is no news to a user.
         (
             Level::WARN,
-            "wgpu=error,naga=error,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",
+            "wgpu=error,naga=off,notify=error,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",
         )
     };
     LogPlugin { level, filter: filter.to_owned(), ..LogPlugin::default() }

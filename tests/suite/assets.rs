@@ -53,7 +53,7 @@ fn a_new_model_is_written_listed_evaluated_and_checked() {
     let at = folder.path();
     let made = run(at, "models new velvet_rim --models made/here", "");
     assert_eq!((made.status, made.out.trim()), (Some(0), "made/here/velvet_rim.wgsl"));
-    assert!(made.err.contains("lcm models check velvet_rim"), "{}", made.err);
+    assert!(made.err.contains("`lcm models check velvet_rim --models made/here`"), "{}", made.err);
     let again = run(at, "models new velvet_rim --models made/here", "");
     assert_eq!(again.status, Some(4));
     assert!(again.err.contains("velvet_rim.wgsl is there already; it was left alone"), "{}", again.err);
@@ -115,6 +115,7 @@ fn a_broken_claim_is_found_with_numbers_and_a_kept_one_that_nobody_makes_too() {
     let holes = run(folder.path(), "models check holes --models models", "");
     assert_eq!(holes.status, Some(1));
     assert!(holes.out.contains("finite: NOT everywhere"), "{}", holes.out);
+    assert!(!holes.out.contains("claimed and kept") && !holes.out.contains("claim it?"), "{}", holes.out);
     let phong = run(folder.path(), "models check phong", "");
     assert_eq!(phong.status, Some(0));
     assert!(phong.out.contains("reciprocal: not claimed and broken"), "{}", phong.out);
@@ -299,6 +300,13 @@ fn shaders_are_exported_edited_and_used() {
     let edited = value("evaluate lambert --on gpu --assets mine");
     let number = |text: &str| text.lines().nth(1).unwrap().split(',').nth(4).unwrap().parse::<f32>().unwrap();
     assert!((number(&edited) / number(&original) - 0.5).abs() < 1e-6, "{edited}");
+    // The CPU renderer is Rust; that it does not follow is said where it matters.
+    let said = |arguments: &str| run(at, &format!("render --size 8x8 --assets mine {arguments}"), "").err;
+    let told = "the CPU renderer does not follow the edited reflection/lambert.wgsl; --renderer gpu does";
+    assert!(said("--renderer cpu --reflection lambert").contains(told));
+    assert!(!said("--renderer cpu --reflection phong").contains("follow"));
+    assert!(!said("--renderer gpu --reflection lambert").contains("follow"));
+    assert_eq!(said("--renderer cpu --reflection lambert --quiet"), "");
     // What was edited is left alone, and what is missing comes back.
     fs::remove_file(at.join("mine/shaders/loop.wgsl")).unwrap();
     let again = run(at, "assets export mine", "");

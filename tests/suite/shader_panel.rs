@@ -284,7 +284,7 @@ fn every_file_of_the_picture_is_listed_and_can_be_opened() {
         ("the model", "reflection/lambert.wgsl"),
         ("the shading mode", "shading/gouraud.wgsl"),
         ("the light loop", "loop.wgsl"),
-        ("a light type", "light/spot.wgsl"),
+        ("the light type: spot", "light/spot.wgsl"),
         ("vocabulary: terms", "terms.wgsl"),
         ("the wrapper", "wrapper.wgsl"),
     ] {
