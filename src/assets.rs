@@ -1,7 +1,8 @@
 //! Where shaders and own models are read from, and copies of them to edit.
 
 use std::{
-    env, fs, io,
+    env, fs,
+    io::{self, Write as _},
     path::{Path, PathBuf},
 };
 
@@ -242,16 +243,31 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
     Ok(exported)
 }
 
-/// Writes a file that is not there, with the folders that lead to it.
+/// Writes a file that does not exist yet, all or nothing; makes its folder where there is none.
 ///
 /// # Errors
-/// When it is there, or could not be written.
+/// [`io::ErrorKind::AlreadyExists`] when there is such a file, which is left alone.
 pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder)?;
-    }
-    let mut file = fs::File::create_new(path)?;
-    io::Write::write_all(&mut file, text.as_bytes())
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // A file in the place of the folder must not look as if the file itself were there.
+    fs::create_dir_all(folder)
+        .map_err(|e| io::Error::other(format!("the folder {} could not be made: {e}", folder.display())))?;
+    // The name begins with a dot, so that whoever watches the folder knows it for what it is.
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".lcm-").suffix(".tmp");
+    #[cfg(unix)]
+    let mode = {
+        use std::os::unix::fs::PermissionsExt as _;
+        // As any program makes a new file; the umask of the user takes away from it.
+        fs::Permissions::from_mode(0o666)
+    };
+    #[cfg(unix)]
+    builder.permissions(mode);
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(text.as_bytes())?;
+    file.as_file().sync_all()?;
+    file.persist_noclobber(path).map_err(|e| e.error)?;
+    Ok(())
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use bevy::render::{
     renderer::{RenderDevice, RenderQueue},
     settings::RenderResources,
 };
+use bevy::tasks::block_on;
 use glam::{DVec3, Vec3};
 
 use super::gpu::{GpuError, device, read_back, vector};
@@ -20,6 +21,7 @@ use crate::{
     shader::{
         check,
         compose::{Sources, compose_evaluation},
+        trial::refused,
     },
 };
 
@@ -103,9 +105,12 @@ impl Evaluator {
         check::validate(&composed).map_err(GpuError::Invalid)?;
         let RenderResources(device, queue, ..) = device()?;
         let row = row(&device, model, &Values::default(), Encoding::Srgb);
+        // What users write may ask for what is not bound here.
+        let scope = device.wgpu_device().push_error_scope(wgpu::ErrorFilter::Validation);
+        let text = composed.text.clone();
         let module = device.create_and_validate_shader_module(ShaderModuleDescriptor {
             label: Some("evaluate"),
-            source: ShaderSource::Wgsl(composed.text.into()),
+            source: ShaderSource::Wgsl(text.into()),
         });
         let entry = |binding, read_only| BindGroupLayoutEntry {
             binding,
@@ -132,6 +137,9 @@ impl Evaluator {
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
+        if let Some(error) = block_on(scope.pop()) {
+            return Err(GpuError::Invalid(refused(&composed, &error)));
+        }
         Ok(Self { model: model.clone(), device, queue, layout, pipeline, row })
     }
 

@@ -266,6 +266,12 @@ impl GpuRenderer {
         }
     }
 
+    /// What keeps the picture from being what the shader files say, if anything does.
+    #[must_use]
+    pub fn shader_problem(&self) -> Option<ShaderProblem> {
+        self.app.world().get_resource::<LiveShaders>()?.refused().cloned()
+    }
+
     /// Draws frames until nothing is waiting to be loaded or compiled.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ use clap::{Args, ValueEnum};
 use super::{
     Failure, Options, Outcome, progress,
     scenes::Source,
-    workshop::{drawable, not_on_cpu},
+    workshop::{drawable, invalid, not_on_cpu},
 };
 use crate::{
     capture::{
@@ -240,6 +240,9 @@ impl Painter {
         renderer.set_scene(job.scene.clone());
         renderer.set_terms(job.terms);
         renderer.settle().map_err(failed)?;
+        if let Some(problem) = renderer.shader_problem() {
+            return Err(invalid(registry, &problem));
+        }
         renderer.read_rgb8().map_err(failed)
     }
 }

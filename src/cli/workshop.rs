@@ -95,8 +95,15 @@ fn tell(problems: &[(PathBuf, ShaderProblem)]) {
 
 /// Problems one below the other.
 pub(super) fn all_annotated(problems: &[(PathBuf, ShaderProblem)]) -> String {
-    let each: Vec<_> =
-        problems.iter().map(|(path, problem)| annotated(problem, &path.display().to_string())).collect();
+    let mut each: Vec<_> = problems
+        .iter()
+        .map(|(path, problem)| {
+            // A model may be wrong because of a file that it shares with others.
+            let own = path.ends_with(problem.file.rsplit('/').next().unwrap_or_default());
+            annotated(problem, &if own { path.display().to_string() } else { problem.file.clone() })
+        })
+        .collect();
+    each.dedup();
     each.join("\n")
 }
 
@@ -133,7 +140,7 @@ pub(super) fn valid(registry: &Registry, model: &ModelEntry) -> Outcome {
 }
 
 /// That a shader is not valid.
-fn invalid(registry: &Registry, problem: &ShaderProblem) -> Failure {
+pub(super) fn invalid(registry: &Registry, problem: &ShaderProblem) -> Failure {
     Failure::Invalid(annotated(problem, &on_disk(registry, &problem.file)))
 }
 

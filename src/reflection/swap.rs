@@ -36,7 +36,7 @@ use crate::{
 #[derive(Default, Resource)]
 pub struct ParameterTables {
     /// By model, and by its declaration, from which the layout follows.
-    tables: HashMap<(&'static str, usize), Table>,
+    tables: HashMap<(&'static str, [usize; 2]), Table>,
     rows: usize,
 }
 
@@ -67,7 +67,8 @@ impl ParameterTables {
         parameters: &[u8],
         buffers: &mut Assets<ShaderBuffer>,
     ) -> Handle<ShaderBuffer> {
-        let declaration = std::ptr::from_ref(model.declaration) as usize;
+        let declaration =
+            [std::ptr::from_ref(model.declaration) as usize, model.parameters.as_ptr() as usize];
         self.tables.retain(|(id, known), _| *id != model.declaration.id || *known == declaration);
         let table = self.tables.entry((model.declaration.id, declaration)).or_insert_with(|| {
             let bytes = vec![0; parameters.len() * self.rows];

@@ -1,6 +1,10 @@
 //! Reading shader files, and saying where one is no text.
 
-use std::{fs, io, path::Path};
+use std::{
+    fs,
+    io::{self, Read as _},
+    path::Path,
+};
 
 use super::check::ShaderProblem;
 
@@ -25,11 +29,16 @@ pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
         }
         _ => failed(format!("the file could not be read: {error}")),
     };
-    let size = fs::metadata(file).map_err(unreadable)?.len();
-    if size > MAX_BYTES {
+    // Reading a pipe would wait for ever.
+    if !fs::metadata(file).map_err(unreadable)?.is_file() {
+        return Err(failed("this is no file that can be read".to_owned()));
+    }
+    let mut bytes = Vec::new();
+    fs::File::open(file).and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
+    if bytes.len() as u64 > MAX_BYTES {
         return Err(failed(format!("the file is larger than {} MiB, which no shader is", MAX_BYTES >> 20)));
     }
-    let text = String::from_utf8(fs::read(file).map_err(unreadable)?).map_err(|error| {
+    let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let bytes = error.as_bytes();
         let start = bytes[..at].iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
@@ -72,6 +81,6 @@ mod tests {
         assert!(gone.message.contains("the file is gone"), "{gone}");
         let folder = tempfile::tempdir().expect("a folder");
         let is_folder = read(folder.path(), "a.wgsl").expect_err("is a folder");
-        assert!(is_folder.message.contains("could not be read"), "{is_folder}");
+        assert!(is_folder.message.contains("no file"), "{is_folder}");
     }
 }

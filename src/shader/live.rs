@@ -6,7 +6,7 @@
 //! ([`trial`](super::trial)). Its asset stays the same, so cameras, materials and objects know nothing of it.
 
 use std::{
-    collections::{BTreeMap, BTreeSet, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap, HashSet},
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -31,8 +31,13 @@ use super::{
 use crate::{
     app::{LabFrame, LabSystems},
     assets::{Folders, built_in_sources},
-    reflection::{Ambient, ModelEntry, own, swap::Drawn},
+    reflection::{
+        Ambient, ModelEntry,
+        own::{self, OwnModel},
+        swap::Drawn,
+    },
     registry::Registry,
+    scene::spawn::CurrentScene,
     shading::{ModeEntry, Stage},
 };
 
@@ -40,6 +45,8 @@ use crate::{
 pub const GRACE: Duration = Duration::from_millis(150);
 /// So long a frame may try shaders before it is drawn: with many on the picture, the window goes on answering.
 const SLICE: Duration = Duration::from_millis(50);
+/// How the paths of own models begin.
+const MODELS: &str = "models/";
 /// A failure of the renderer so soon after an exchange is blamed on it.
 const PROBATION: Duration = Duration::from_secs(5);
 
@@ -57,12 +64,16 @@ impl Plugin for LiveShadersPlugin {
 }
 
 /// What tells shaders apart: model, mode, the number of light types that were known, and the declaration of the
-/// model, from which the layout of its row follows.
-type Key = (&'static str, &'static str, usize, usize);
+/// model with its parameters, from which the layout of its row follows.
+type Key = (&'static str, &'static str, usize, [usize; 2]);
 
 fn key(model: &ModelEntry, mode: &ModeEntry, registry: &Registry) -> Key {
-    let declaration = std::ptr::from_ref(model.declaration) as usize;
-    (model.declaration.id, mode.declaration.id, registry.lights().len(), declaration)
+    (model.declaration.id, mode.declaration.id, registry.lights().len(), layout_of(model))
+}
+
+/// What tells the layouts of rows of one model apart: equal declarations are one, as are equal parameters.
+fn layout_of(model: &ModelEntry) -> [usize; 2] {
+    [std::ptr::from_ref(model.declaration) as usize, model.parameters.as_ptr() as usize]
 }
 
 /// One shader.
@@ -92,6 +103,12 @@ pub struct LiveShaders {
     /// The text of each file as it last came through.
     good: Sources,
     shaders: HashMap<Key, Live>,
+    /// The files of own models and their texts, whatever these are worth.
+    own: BTreeMap<String, (PathBuf, String)>,
+    /// Own models that were read and are still to be tried.
+    arriving: Vec<OwnModel>,
+    /// The composed texts that were tried with success in this frame.
+    approved: HashSet<String>,
     /// Files that cannot be read and own models with mistakes, and since when.
     unusable: BTreeMap<String, (Vec<ShaderProblem>, Instant)>,
     /// Changed files that no shader is made of: whether they are right is tried on the side.
@@ -99,8 +116,6 @@ pub struct LiveShaders {
     /// What is wrong with those.
     unused_problems: BTreeMap<String, (Box<ShaderProblem>, Instant)>,
     folders: Folders,
-    /// Whether own models came or changed since that was asked last.
-    models_changed: bool,
     /// Whether there are texts to begin with.
     started: bool,
     /// The file that changed last, and when that became known.
@@ -133,11 +148,6 @@ impl LiveShaders {
         &self.current
     }
 
-    /// Whether own models came or changed since this was asked last.
-    pub fn take_news_of_models(&mut self) -> bool {
-        std::mem::take(&mut self.models_changed)
-    }
-
     /// Whether something is still to be tried or told, so that frames must go on.
     #[must_use]
     pub fn is_busy(&self) -> bool {
@@ -147,7 +157,13 @@ impl LiveShaders {
     /// Whether something is still to be tried, so that the next picture may be another one.
     #[must_use]
     pub fn is_trying(&self) -> bool {
-        !self.unused.is_empty() || self.shaders.values().any(|live| live.due)
+        !self.unused.is_empty() || !self.arriving.is_empty() || self.shaders.values().any(|live| live.due)
+    }
+
+    /// The first problem that keeps a shader from being what its files say.
+    #[must_use]
+    pub fn refused(&self) -> Option<&ShaderProblem> {
+        self.shaders.values().find_map(|live| live.refused.as_ref().map(|refused| &*refused.problem))
     }
 
     /// Whether what is drawn with is what the files say, all of it.
@@ -177,7 +193,8 @@ impl LiveShaders {
             let parts: Option<Vec<_>> = rest.iter().map(|p| p.to_str()).collect();
             Some(format!("{prefix}{}", parts?.join("/")))
         };
-        below(&self.folders.models, "models/").or_else(|| below(&self.folders.shaders, ""))
+        let shader = || below(&self.folders.shaders, "").filter(|path| !path.starts_with(MODELS));
+        below(&self.folders.models, MODELS).or_else(shader)
     }
 
     /// The file on disk behind a path.
@@ -186,52 +203,170 @@ impl LiveShaders {
         if path.starts_with('(') {
             return None;
         }
-        match path.strip_prefix("models/") {
+        match path.strip_prefix(MODELS) {
             Some(name) => Some(self.folders.models.as_ref()?.join(name)),
             None => Some(self.folders.shaders.as_ref()?.join(path)),
         }
     }
 
     /// Reads a file that may have changed. Files that are none of ours are passed over; own models go into the
-    /// registry.
+    /// registry once they were tried.
     pub fn look_at(&mut self, file: &Path, registry: &mut Registry) {
         let Some(path) = self.path_of(file) else { return };
-        let model = path.starts_with("models/") && !path["models/".len()..].contains('/');
+        let id =
+            own::id_of(file).filter(|_| path.strip_prefix(MODELS).is_some_and(|name| !name.contains('/')));
         match super::file::read(file, &path) {
-            Ok(text) if model && own::is_model(&text) => self.look_at_model(file, &path, &text, registry),
-            Ok(text) => self.change(&path, &text, registry),
+            Ok(text) if id.is_some() && own::is_model(&text) => {
+                let known = self.own.insert(path.clone(), (file.to_owned(), text.clone()));
+                let first = known.is_none_or(|(_, known)| known != text) || self.unusable.contains_key(&path);
+                let in_use = self.current.get(&path) == Some(&text);
+                let registered = id.is_some_and(|id| registry.own_file(id).is_some());
+                if first && !(in_use && registered && !self.unusable.contains_key(&path)) {
+                    self.read_model(&path, registry);
+                }
+            }
+            Ok(text) => {
+                self.own.remove(&path);
+                self.change(&path, &text, registry);
+            }
             Err(problem) => {
-                let own = own::id_of(file).is_some_and(|id| model && registry.own_file(id).is_some());
-                if own || built_in(registry, &path).is_some() || self.current.get(&path).is_some() {
+                self.own.remove(&path);
+                let registered = id.is_some_and(|id| registry.own_file(id).is_some());
+                if registered || built_in(registry, &path).is_some() || self.current.get(&path).is_some() {
                     self.cannot_use(&path, vec![problem]);
+                } else {
+                    // Nothing was made of it, so nothing is missed.
+                    self.stale_status |= self.unusable.remove(&path).is_some();
                 }
             }
         }
     }
 
-    /// Reads an own model. One with a mistake leaves what is known of it as it was.
-    fn look_at_model(&mut self, file: &Path, path: &str, text: &str, registry: &mut Registry) {
-        let known = own::id_of(file).filter(|id| registry.own_file(id).is_some());
-        if known.is_some() && self.current.get(path) == Some(text) {
-            self.stale_status |= self.unusable.remove(path).is_some();
-            return;
+    /// Reads an own model anew. One with a mistake leaves what is known of it as it was.
+    fn read_model(&mut self, path: &str, registry: &mut Registry) {
+        let Some((file, text)) = self.own.get(path).cloned() else { return };
+        self.arriving.retain(|model| model.path != file);
+        let mut read = own::read(&file, &text, registry);
+        if let Err(problems) = &read
+            && problems.iter().any(|p| !p.file.starts_with(MODELS))
+        {
+            // The mistake is in a file that all models share, and is told there.
+            let mut lenient = registry.clone();
+            *lenient.sources_mut() = self.lenient();
+            read = own::read(&file, &text, &lenient);
         }
-        match own::read(file, text, registry) {
+        match read {
             Ok(model) => {
-                registry.put_own_model(model);
-                self.models_changed = true;
-                self.change(path, text, registry);
+                self.change = Some((path.to_owned(), Instant::now()));
+                self.arriving.push(model);
             }
-            Err(problems) => {
-                // A new file whose declaration is right can be chosen, and is drawn as a stand-in.
-                if known.is_none()
-                    && let Ok(model) = own::declare(file, text, registry)
-                {
-                    registry.put_stand_in(model);
-                    self.models_changed = true;
+            Err(problems) => self.refuse_model(path, problems, registry),
+        }
+    }
+
+    /// An own model has mistakes. A new one whose declaration is right can be chosen all the same, and is drawn as
+    /// a stand-in.
+    fn refuse_model(&mut self, path: &str, problems: Vec<ShaderProblem>, registry: &mut Registry) {
+        if let Some((file, text)) = self.own.get(path)
+            && own::id_of(file).is_some_and(|id| registry.own_file(id).is_none())
+            && let Ok(model) = own::declare(file, text, registry)
+        {
+            registry.put_stand_in(model);
+        }
+        self.cannot_use(path, problems);
+    }
+
+    /// The texts as they are, but of the files that all models share as they last came through.
+    fn lenient(&self) -> Sources {
+        let mut sources = self.current.clone();
+        for path in self.current.edited().filter(|path| !path.starts_with(MODELS)) {
+            sources.copy_from(&self.good, path);
+        }
+        sources
+    }
+
+    /// Tries the own models that were read, and makes those known that can be drawn with: parameters, text and
+    /// shader are exchanged together or not at all.
+    fn adopt(&mut self, world: &mut World, visible: &Visible) {
+        for model in std::mem::take(&mut self.arriving) {
+            let registry = world.resource::<Registry>().clone();
+            let path = model.entry.declaration.wgsl.path;
+            let modes: Vec<_> =
+                registry.modes().iter().filter(|m| visible.shows(model.entry.declaration.id, m)).collect();
+            let modes = if modes.is_empty() { registry.modes().iter().take(1).collect() } else { modes };
+            let mut current = self.current.clone();
+            current.edit(path, model.text.clone());
+            let mut lenient = self.lenient();
+            lenient.edit(path, model.text.clone());
+            let verdict = modes.into_iter().map(|mode| {
+                let wanted = compose(&current, &model.entry, mode, registry.lights());
+                match self.try_out(world, &wanted, mode) {
+                    Verdict::Bad(_) => {
+                        let wanted = compose(&lenient, &model.entry, mode, registry.lights());
+                        self.try_out(world, &wanted, mode)
+                    }
+                    verdict => verdict,
                 }
-                self.cannot_use(path, problems);
+            });
+            match verdict
+                .collect::<Vec<_>>()
+                .into_iter()
+                .find(|v| *v != Verdict::Good)
+                .unwrap_or(Verdict::Good)
+            {
+                Verdict::Good => {
+                    self.current = current;
+                    self.stale_status |= self.unusable.remove(path).is_some();
+                    self.mark_due(path);
+                    world.resource_mut::<Registry>().put_own_model(model);
+                }
+                Verdict::Bad(problem) => {
+                    let problem = self.blamed(problem, &Composed::default());
+                    let mut registry = world.resource_mut::<Registry>();
+                    self.refuse_model(path, vec![*problem], &mut registry);
+                }
+                Verdict::NotYet => self.arriving.push(model),
             }
+        }
+    }
+
+    /// Tries a composed source, once.
+    fn try_out(&mut self, world: &mut World, composed: &Composed, mode: &ModeEntry) -> Verdict {
+        if composed.problem.is_none() && self.approved.contains(&composed.text) {
+            return Verdict::Good;
+        }
+        let verdict = try_out(world, composed, mode);
+        if verdict == Verdict::Good {
+            self.approved.insert(composed.text.clone());
+        }
+        verdict
+    }
+
+    /// Lets go of files that are gone and that nothing is made of.
+    fn forget_gone(&mut self, world: &mut World, visible: &Visible) {
+        let gone: Vec<_> = self
+            .unusable
+            .keys()
+            .filter(|path| self.file_of(path).is_some_and(|file| !file.exists()))
+            .filter(|path| !self.shaders.iter().any(|(k, l)| visible.has(k) && l.shown.depends_on(path)))
+            .cloned()
+            .collect();
+        for path in gone {
+            let id = own::id_of(Path::new(&path)).filter(|_| path.starts_with(MODELS)).unwrap_or_default();
+            let scene = world.get_resource::<CurrentScene>();
+            if scene.is_some_and(|scene| {
+                scene.0.reflection_model == id || scene.0.objects.iter().any(|o| scene.0.model_of(o) == id)
+            }) {
+                continue;
+            }
+            let mut registry = world.resource_mut::<Registry>();
+            if built_in(&registry, &path).is_some() {
+                continue;
+            }
+            registry.remove_model(id);
+            registry.sources_mut().forget(&path);
+            self.current.forget(&path);
+            self.unusable.remove(&path);
         }
     }
 
@@ -257,6 +392,15 @@ impl LiveShaders {
         registry.sources_mut().copy_from(&self.current, path);
         self.read_again(path, registry);
         self.change = Some((path.to_owned(), Instant::now()));
+        if self.mark_due(path) {
+            self.unused_problems.remove(path);
+        } else {
+            self.unused.insert(path.to_owned());
+        }
+    }
+
+    /// The shaders that a file is part of are to be tried; whether there is one.
+    fn mark_due(&mut self, path: &str) -> bool {
         let mut used = false;
         for live in self.shaders.values_mut() {
             let candidate = live.refused.as_ref().is_some_and(|r| r.composed.depends_on(path));
@@ -265,41 +409,28 @@ impl LiveShaders {
                 used = true;
             }
         }
-        if used {
-            self.unused_problems.remove(path);
-        } else {
-            self.unused.insert(path.to_owned());
-        }
+        used
     }
 
-    /// Reads the own models again that a file is part of: the CPU runs them from what was read. Those that only
-    /// share its functions need it if their answer to light from everywhere is calculated, and they were drawn.
+    /// Reads the own models again that a change of another file may mend or change. Those that only share its
+    /// functions need it if the CPU calculates their answer to light from everywhere, and they were drawn.
     fn read_again(&mut self, path: &str, registry: &mut Registry) {
-        let drawn = |model: &ModelEntry| self.shaders.keys().any(|key| key.0 == model.declaration.id);
-        let mut concerned = Vec::new();
-        for (model, file) in registry.own_models() {
+        let concerned = |own_path: &str| {
+            let Some(model) = registry.models().iter().find(|m| m.declaration.wgsl.path == own_path) else {
+                return false;
+            };
             let composed = compose_evaluation(&self.current, model);
-            let imports = composed.imports.contains(path);
-            let shares =
-                model.declaration.ambient == Ambient::Albedo && composed.depends_on(path) && drawn(model);
-            let own_path = model.declaration.wgsl.path;
-            if let Some(text) = self.current.get(own_path).filter(|_| own_path != path && (imports || shares))
-            {
-                concerned.push((own_path, file.to_owned(), text.to_owned(), imports));
-            }
-        }
-        for (own_path, file, text, imports) in concerned {
-            match own::read(&file, &text, registry) {
-                Ok(model) => {
-                    registry.put_own_model(model);
-                    self.models_changed = true;
-                    self.stale_status |= self.unusable.remove(own_path).is_some();
-                }
-                Err(problems) if imports => self.cannot_use(own_path, problems),
-                // What is wrong with a shared file is told when it is tried.
-                Err(_) => {}
-            }
-        }
+            let drawn = || self.shaders.keys().any(|key| key.0 == model.declaration.id);
+            composed.imports.contains(path)
+                || (model.declaration.ambient == Ambient::Albedo && composed.depends_on(path) && drawn())
+        };
+        let again: Vec<_> = self
+            .own
+            .keys()
+            .filter(|own| *own != path && (self.unusable.contains_key(*own) || concerned(own)))
+            .cloned()
+            .collect();
+        again.iter().for_each(|own| self.read_model(own, registry));
     }
 
     /// The shader of a model and a mode.
@@ -330,7 +461,7 @@ impl LiveShaders {
         if self.is_built_in(&wanted) {
             shown = Some(wanted);
         } else {
-            match try_out(world, &wanted, mode) {
+            match self.try_out(world, &wanted, mode) {
                 Verdict::Good => {
                     self.note_good(&wanted);
                     shown = Some(wanted);
@@ -341,16 +472,33 @@ impl LiveShaders {
                 Verdict::NotYet => due = true,
             }
         }
-        let shown = shown.unwrap_or_else(|| {
-            let last_good = compose(&self.good, model, mode, registry.lights());
-            let usable = self.is_built_in(&last_good) || try_out(world, &last_good, mode) == Verdict::Good;
-            if usable { last_good } else { compose(&Sources::default(), model, mode, registry.lights()) }
-        });
+        let shown = match shown {
+            Some(shown) => shown,
+            None => self.last_good(world, model, mode, registry),
+        };
         let asset = self.asset(&shown, key);
         let handle = world.resource_mut::<Assets<Shader>>().add(asset);
         self.stale_status = true;
         self.shaders.insert(key, Live { handle: handle.clone(), shown, before: None, refused, due });
         handle
+    }
+
+    /// The latest that can be drawn with: the file of the model with the others as they last came through, else all
+    /// as they last came through, else what is built in.
+    fn last_good(
+        &mut self,
+        world: &mut World,
+        model: &ModelEntry,
+        mode: &ModeEntry,
+        registry: &Registry,
+    ) -> Composed {
+        for sources in [self.lenient(), self.good.clone()] {
+            let composed = compose(&sources, model, mode, registry.lights());
+            if self.is_built_in(&composed) || self.try_out(world, &composed, mode) == Verdict::Good {
+                return composed;
+            }
+        }
+        compose(&Sources::default(), model, mode, registry.lights())
     }
 
     /// Whether a composed source holds nothing but what was built in, which tests have tried.
@@ -378,6 +526,8 @@ impl LiveShaders {
     /// is not.
     fn work(&mut self, world: &mut World, registry: &Registry, visible: &Visible) {
         let begin = Instant::now();
+        // Shaders of older declarations: nothing is drawn with them any more.
+        self.shaders.retain(|key, _| registry.model(key.0).is_none_or(|model| layout_of(model) == key.3));
         let mut due: Vec<Key> = self.shaders.iter().filter(|(_, live)| live.due).map(|(k, _)| *k).collect();
         due.sort_unstable();
         let (on_picture, off_picture): (Vec<_>, Vec<_>) = due.into_iter().partition(|k| visible.has(k));
@@ -414,7 +564,7 @@ impl LiveShaders {
         let verdict = if shown_already || self.is_built_in(&wanted) {
             Verdict::Good
         } else {
-            try_out(world, &wanted, mode)
+            self.try_out(world, &wanted, mode)
         };
         if verdict == Verdict::Good {
             self.note_good(&wanted);
@@ -458,13 +608,16 @@ impl LiveShaders {
             return problem;
         }
         let changed = self.change.as_ref().map(|(file, _)| file.as_str());
-        let edited = |path: &&str| self.current.get(path).is_some();
-        let Some(cause) =
-            changed.filter(|c| composed.depends_on(c)).or_else(|| composed.map.files().find(edited))
+        let text = |path: &str| self.current.get(path).or_else(|| Some(&*self.own.get(path)?.1));
+        let edited = || composed.map.files().filter(|path| text(path).is_some());
+        let unfinished = || edited().find(|path| text(path).is_some_and(ends_too_early));
+        let Some(cause) = unfinished()
+            .or_else(|| changed.filter(|path| composed.depends_on(path)))
+            .or_else(|| edited().next())
         else {
             return problem;
         };
-        let text = self.current.get(cause).unwrap_or_default();
+        let text = text(cause).unwrap_or_default();
         let generated = problem.file.starts_with('(');
         if !generated && !ends_too_early(text) {
             problem.message.push_str(&format!("; this began with the change of {cause}"));
@@ -498,7 +651,7 @@ impl LiveShaders {
             return;
         };
         let composed = compose(&self.current, model, mode, registry.lights());
-        match try_out(world, &composed, mode) {
+        match self.try_out(world, &composed, mode) {
             Verdict::Good => {
                 self.unused_problems.remove(path);
                 self.note_good(&composed);
@@ -571,6 +724,10 @@ impl Visible {
         Self(pairs)
     }
 
+    fn shows(&self, model: &str, mode: &ModeEntry) -> bool {
+        self.0.iter().any(|(m, s)| m == model && s == mode.declaration.id)
+    }
+
     fn has(&self, key: &Key) -> bool {
         self.0.iter().any(|(model, mode)| model == key.0 && mode == key.1)
     }
@@ -581,10 +738,18 @@ fn exchange(world: &mut World) {
     if !world.resource::<LiveShaders>().is_busy() {
         return;
     }
-    let registry = world.resource::<Registry>().clone();
     let visible = Visible::of(world);
     world.resource_scope(|world, mut live: Mut<LiveShaders>| {
+        live.approved.clear();
+        live.adopt(world, &visible);
+        let registry = world.resource::<Registry>().clone();
         live.work(world, &registry, &visible);
+        if live.shaders.iter().any(|(key, shader)| shader.due && visible.has(key)) {
+            // What is wrong is told when all of it is known.
+            live.stale_status = true;
+            return;
+        }
+        live.forget_gone(world, &visible);
         // Problems that are too young now are told later.
         let young = live.fresh_problems().next().is_some();
         live.stale_status = young;

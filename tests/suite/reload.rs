@@ -71,7 +71,9 @@ impl Lab {
         let mut renderer =
             GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed");
         let world = renderer.app().world_mut();
-        let folders = Folders { shaders: Some(folder.path().to_owned()), models: None };
+        fs::create_dir(folder.path().join("own")).expect("writable");
+        let folders =
+            Folders { shaders: Some(folder.path().to_owned()), models: Some(folder.path().join("own")) };
         world.resource_mut::<LiveShaders>().start(sources, folders);
         renderer.set_scene(scene);
         renderer.settle().expect("the GPU draws");
@@ -228,8 +230,8 @@ const BREAKAGES: &[Breakage] = &[
         name: "wrong signature",
         file: "reflection/phong.wgsl",
         change: |t| replaced(t, "fn response(l: vec3<f32>, v", "fn response(l: vec2<f32>, v"),
-        said: "",
-        line: "",
+        said: "inconsistent type passed as argument #2 to `dot`",
+        line: "dot(frame.n, l)",
     },
     Breakage {
         name: "mismatch between the stages",
@@ -719,12 +721,151 @@ fn random_edits_never_lose_the_picture_or_the_program() {
             refused += 1;
             assert!(shown == good, "a refused change shows\n{}", context());
         }
-        // A picture that is lost is black all over; pipelines that failed are told here.
-        assert!(shown.iter().any(|b| *b != 0), "the picture is gone\n{}", context());
+        // A frame that is lost is black all over, background included; pipelines that failed are told here.
+        assert!(shown.chunks_exact(3).any(|p| p == BACKGROUND), "the frame is gone\n{}", context());
         lab.renderer.settle().unwrap_or_else(|e| panic!("{e}\n{}", context()));
         lab.save(file, original(file));
         assert!(lab.frame() == good, "the good text does not bring the picture back\n{}", context());
     }
     println!("{refused} changes refused, {accepted} accepted");
     assert!(refused > rounds / 3 && accepted > 0, "{refused} refused, {accepted} accepted");
+}
+
+/// An own model; `tint` is its colour, and `knobs` what it declares beside the base colour.
+fn own_model(tint: &str, knobs: &str) -> String {
+    format!(
+        "/* lcm
+{{ \"name\": \"Tinted\", \"parameters\": [\"base_colour\"{knobs}] }}
+*/
+#import \"help.wgsl\"
+fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{
+    return Terms(vec3(0.0), helped({tint}) * max(dot(frame.n, l), 0.0), vec3(0.0));
+}}
+fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {{
+    return helped({tint});
+}}
+"
+    )
+}
+
+const HELP: &str = "fn helped(c: vec3<f32>) -> vec3<f32> {\n    return c;\n}\n";
+const GREEN: &str = "vec3(0.0, 1.0, 0.0)";
+const RED: &str = "vec3(1.0, 0.0, 0.0)";
+
+/// A lab whose scene is drawn with an own model.
+fn own_lab() -> Lab {
+    let mut lab = Lab::new(phong_scene("phong"));
+    lab.save("own/help.wgsl", HELP);
+    lab.save("own/tinted.wgsl", own_model(GREEN, ""));
+    lab.settled();
+    assert_eq!(lab.troubles(), []);
+    let mut scene = phong_scene("phong");
+    scene.reflection_model = "tinted".to_owned();
+    lab.renderer.set_scene(scene);
+    lab
+}
+
+/// Whether the brightest pixel is pure in one channel.
+fn is_all(picture: &[u8], channel: usize) -> bool {
+    let lit = picture.chunks_exact(3).filter(|p| *p != BACKGROUND);
+    lit.max_by_key(|p| p[channel])
+        .is_some_and(|p| p[channel] > 60 && (0..3).all(|c| c == channel || p[c] == 0))
+}
+
+#[test]
+fn an_own_model_is_exchanged_with_its_declaration_or_not_at_all() {
+    let mut lab = own_lab();
+    let green = lab.settled();
+    assert!(is_all(&green, 1));
+    // The text alone is on the next picture.
+    lab.save("own/tinted.wgsl", own_model(RED, ""));
+    let red = lab.frame();
+    assert!(is_all(&red, 0));
+    // So is another layout of the parameters, before and behind what was there.
+    let knob = r#", { "name": "tint2", "type": "colour", "default": [0, 255, 0] }"#;
+    lab.save("own/tinted.wgsl", own_model("m.tint2", knob));
+    assert!(lab.frame() == green);
+    let before = own_model("m.tint3", knob).replace(
+        "[\"base_colour\"",
+        r#"["k_d", { "name": "tint3", "type": "colour", "default": [255, 0, 0] }, "base_colour""#,
+    );
+    // What the driver refuses leaves text, parameters and picture.
+    let binding = "@group(2) @binding(7) var<uniform> more: vec4<f32>;\n";
+    let refused = before
+        .replace("fn response", &format!("{binding}fn response"))
+        .replace("(m.tint3)", "(m.tint3 * more.xyz)");
+    lab.save("own/tinted.wgsl", &refused);
+    for _ in 0..3 {
+        assert!(lab.frame() == green, "a refused declaration shows");
+    }
+    assert!(lab.settled() == green);
+    let troubles = lab.troubles();
+    assert_eq!(troubles.len(), 1, "{troubles:?}");
+    assert!(troubles[0].problem.message.contains("@binding(7) is not there"), "{troubles:?}");
+    assert_eq!(
+        (troubles[0].problem.file.as_str(), &troubles[0].stale[..]),
+        ("models/tinted.wgsl", &["Tinted".to_owned()][..])
+    );
+    // The good version, under another name too.
+    lab.save("own/tinted.wgsl", before.replace("Tinted", "Tainted"));
+    assert!(lab.frame() == red);
+    lab.settled();
+    assert_eq!(lab.troubles(), []);
+}
+
+#[test]
+fn an_own_model_follows_the_files_that_it_shares() {
+    let mut lab = own_lab();
+    let green = lab.settled();
+    // A broken helper leaves the picture; the model that changes meanwhile is shown as soon as it is mended.
+    lab.save("own/help.wgsl", "fn helped(");
+    assert!(lab.settled() == green);
+    assert!(!lab.troubles().is_empty());
+    lab.save("own/tinted.wgsl", own_model(RED, ""));
+    assert!(lab.settled() == green);
+    lab.save("own/help.wgsl", HELP);
+    let red = lab.settled();
+    assert!(is_all(&red, 0), "the newest text of the model is shown");
+    assert_eq!(lab.troubles(), []);
+    // The same where the broken file is one that all models share.
+    lab.save("terms.wgsl", format!("{}fn bad(", original("terms.wgsl")));
+    assert!(lab.settled() == red);
+    lab.save("own/tinted.wgsl", own_model(GREEN, ""));
+    lab.settled();
+    assert!(lab.troubles().iter().all(|t| t.problem.file == "terms.wgsl"), "{:?}", lab.troubles());
+    lab.save("terms.wgsl", original("terms.wgsl"));
+    assert!(lab.settled() == green);
+    assert_eq!(lab.troubles(), []);
+    // A helper that arrives later than the model that asks for it.
+    lab.save("own/tinted.wgsl", own_model(RED, "").replace("help.wgsl", "late.wgsl"));
+    assert!(lab.settled() == green);
+    assert!(lab.troubles()[0].problem.message.contains("there is no file `models/late.wgsl`"));
+    lab.save("own/late.wgsl", HELP);
+    assert!(lab.settled() == red);
+    assert_eq!(lab.troubles(), []);
+}
+
+#[test]
+fn files_that_are_gone_and_were_nothing_are_not_missed() {
+    let mut lab = own_lab();
+    let green = lab.settled();
+    for name in ["phong.wgsl", "Bad-Name.wgsl", "unused.wgsl"] {
+        lab.save(&format!("own/{name}"), own_model(RED, "").replace("Tinted", "Other"));
+        lab.settled();
+        assert_eq!(lab.troubles().len(), usize::from(name != "unused.wgsl"), "{name}: {:?}", lab.troubles());
+        fs::remove_file(lab.file(&format!("own/{name}"))).expect("removed");
+        lab.look_at(&format!("own/{name}"));
+        lab.settled();
+        assert_eq!(lab.troubles(), [], "{name}");
+    }
+    let registry = lab.renderer.app().world().resource::<Registry>().clone();
+    assert!(registry.model("unused").is_none(), "a model whose file is gone cannot be chosen");
+    // The twin: one that is on the picture is missed, and stays.
+    fs::remove_file(lab.file("own/tinted.wgsl")).expect("removed");
+    lab.look_at("own/tinted.wgsl");
+    assert!(lab.settled() == green);
+    assert_eq!(lab.troubles().len(), 1);
+    lab.save("own/tinted.wgsl", own_model(RED, ""));
+    assert!(is_all(&lab.settled(), 0));
+    assert_eq!(lab.troubles(), []);
 }
