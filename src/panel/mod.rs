@@ -31,6 +31,7 @@ use theme::Palette;
 pub mod author;
 pub mod chooser;
 pub mod files;
+pub mod follow;
 pub mod help;
 pub mod icon;
 pub mod inspector;

@@ -209,6 +209,7 @@ impl Lab {
         }
         self.selection = selection;
         self.saved = scene.clone();
+        self.aside.clear();
         self.defaulted = defaulted;
         if self.scene.reflection_model != scene.reflection_model {
             self.use_slot(&scene.reflection_model);

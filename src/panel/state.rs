@@ -14,6 +14,7 @@ use glam::{Quat, Vec3};
 use super::{
     PanelInfo,
     author::{Ask, ModelDraft},
+    follow::Aside,
     limits,
     reload::OnDisk,
     settings::Settings,
@@ -108,6 +109,8 @@ pub struct Lab {
     slot_use: Vec<String>,
     /// The problems of the shaders in the frame before, by file and message.
     pub(super) seen_troubles: Vec<(String, String)>,
+    /// What the document had and no model takes at present.
+    pub(super) aside: Aside,
 }
 
 /// A message to the user.
@@ -615,6 +618,7 @@ impl Lab {
             defaulted: Vec::new(),
             slot_use: Vec::new(),
             seen_troubles: Vec::new(),
+            aside: Aside::default(),
         };
         lab.select_first();
         lab.use_slot(&lab.scene.reflection_model.clone());
@@ -912,6 +916,7 @@ impl Lab {
         self.saved = scene.clone();
         self.scene = scene;
         self.path = path;
+        self.aside.clear();
         self.renaming = None;
         self.after_save = None;
         self.may_discard = false;
@@ -1072,6 +1077,7 @@ impl Lab {
                 copy.position = self.free_place(copy.position);
                 copy.name = copy.name.map(|n| self.free_name(&n));
                 self.change(|scene| scene.objects.insert(i + 1, copy));
+                self.aside.object_copied(i);
                 self.select(Selection::Object(i + 1));
             }
             _ => self.say(Severity::Info, "Select a light or an object to duplicate it."),
@@ -1099,6 +1105,7 @@ impl Lab {
             }
             Selection::Object(i) if i < self.scene.objects.len() => {
                 self.change(|scene| drop(scene.objects.remove(i)));
+                self.aside.object_removed(i);
                 self.selection = Selection::Object(i.min(self.scene.objects.len() - 1));
                 self.renaming = None;
             }

@@ -227,6 +227,7 @@ impl Plugin for WindowSystemsPlugin {
                 (
                     watching::collect,
                     shaders::follow,
+                    shaders::follow_parameters,
                     watching::watch_document,
                     watching::follow_document,
                     carry_out,

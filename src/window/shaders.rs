@@ -11,7 +11,10 @@ use bevy::ecs::prelude::*;
 use super::watching::{FileWatch, FilesChanged, complain};
 use crate::{
     assets::{self, Folders},
-    panel::state::{Lab, Severity},
+    panel::{
+        follow::follow_registry,
+        state::{Lab, Severity},
+    },
     reflection::own,
     registry::Registry,
     shader::{
@@ -72,6 +75,13 @@ pub(super) fn follow(world: &mut World, mut last: Local<bevy::ecs::message::Mess
         last.read(messages).flat_map(|files| files.0.clone()).collect()
     };
     look_at(world, &changed);
+}
+
+/// The models are others: what none of them takes leaves the document until one does.
+pub(super) fn follow_parameters(registry: Res<Registry>, lab: ResMut<Lab>) {
+    if registry.is_changed() {
+        follow_registry(lab, &registry);
+    }
 }
 
 fn look_at(world: &mut World, files: &[PathBuf]) {

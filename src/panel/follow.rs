@@ -1,0 +1,487 @@
+//! Models of one's own are read again while the window is open: what becomes of the values of the document that
+//! no model takes any more.
+//!
+//! They are put aside, so that the document can be saved, and come back when a model takes them again.
+
+use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
+
+use super::state::{Lab, Selection, Severity};
+use crate::{
+    reflection::parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
+    registry::Registry,
+};
+
+/// An object by its index, and the name of a parameter.
+type Place = (usize, Cow<'static, str>);
+
+/// A value that was put aside.
+#[derive(Clone, Debug, PartialEq)]
+struct Kept {
+    /// What the user wants.
+    wanted: Value,
+    /// What the document has in its place, if anything.
+    instead: Option<Value>,
+}
+
+/// The values of the document that no model takes, and that come back when one does.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Aside(BTreeMap<Place, Kept>);
+
+impl Aside {
+    /// How many values are put aside.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether nothing is put aside.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Another document is open.
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// An object was copied to the next place in the list.
+    pub(super) fn object_copied(&mut self, from: usize) {
+        let old = std::mem::take(&mut self.0);
+        for ((object, name), kept) in old {
+            if object == from {
+                self.0.insert((from, name.clone()), kept.clone());
+            }
+            let object = if object >= from { object + 1 } else { object };
+            self.0.insert((object, name), kept);
+        }
+    }
+
+    /// An object was removed from the list.
+    pub(super) fn object_removed(&mut self, at: usize) {
+        let old = std::mem::take(&mut self.0);
+        let left = old.into_iter().filter(|((object, _), _)| *object != at);
+        self.0 = left.map(|((i, name), kept)| ((if i > at { i - 1 } else { i }, name), kept)).collect();
+    }
+}
+
+/// A value of the document that becomes another one.
+struct Change {
+    place: Place,
+    /// What the user wants.
+    wanted: Value,
+    /// What the document gets.
+    to: Option<Value>,
+    /// Of the parameter that the value is for, if there is one.
+    declared: Option<&'static Parameter>,
+}
+
+/// The models may be others than before: puts aside what none of them takes, replaces numbers that are out of
+/// range by the nearest that is not, gives back what is taken again, and says so. What the user changed
+/// meanwhile stays. `lab` is borrowed mutably only when something changes.
+pub fn follow_registry(mut lab: impl DerefMut<Target = Lab>, registry: &Registry) {
+    let (changes, aside) = plan(&lab, registry);
+    if aside != lab.aside {
+        lab.aside = aside;
+    }
+    if changes.is_empty() {
+        return;
+    }
+    let news = told(&lab, registry, &changes);
+    let lab = &mut *lab;
+    for Change { place: (i, name), to, .. } in changes {
+        let Some(object) = lab.scene.objects.get_mut(i) else { continue };
+        match to {
+            Some(value) => object.material.set(name, value),
+            None => drop(object.material.0.remove(&name)),
+        }
+    }
+    for text in news {
+        lab.say(Severity::Info, text);
+    }
+}
+
+/// What must change in the document, and what is put aside then.
+fn plan(lab: &Lab, registry: &Registry) -> (Vec<Change>, Aside) {
+    let mut changes = Vec::new();
+    let mut aside = Aside::default();
+    let mut place_value = |i: usize, name: &Cow<'static, str>, wanted: &Value, from: Option<&Value>| {
+        let Some(object) = lab.scene.objects.get(i) else { return };
+        let declarations = declarations(registry, lab.scene.model_of(object), name);
+        let to = legal(&declarations, wanted);
+        if to.as_ref() != Some(wanted) {
+            let kept = Kept { wanted: wanted.clone(), instead: to.clone() };
+            aside.0.insert((i, name.clone()), kept);
+        }
+        if to.as_ref() != from {
+            let declared = declarations.iter().find(|p| to.as_ref().is_some_and(|v| p.allows(v)));
+            let declared = declared.or(declarations.first()).copied();
+            changes.push(Change { place: (i, name.clone()), wanted: wanted.clone(), to, declared });
+        }
+    };
+    for (i, object) in lab.scene.objects.iter().enumerate() {
+        for (name, value) in &object.material.0 {
+            let kept = lab.aside.0.get(&(i, name.clone()));
+            let kept = kept.filter(|kept| kept.instead.as_ref() == Some(value));
+            place_value(i, name, kept.map_or(value, |kept| &kept.wanted), Some(value));
+        }
+    }
+    for ((i, name), kept) in &lab.aside.0 {
+        let object = lab.scene.objects.get(*i);
+        if kept.instead.is_none() && object.is_some_and(|o| !o.material.0.contains_key(name)) {
+            place_value(*i, name, &kept.wanted, None);
+        }
+    }
+    (changes, aside)
+}
+
+/// The declarations of a parameter that a value of an object of that model is held against.
+fn declarations(registry: &Registry, model: &str, name: &str) -> Vec<&'static Parameter> {
+    match registry.model(model).and_then(|m| m.parameter(name)) {
+        Some(own) => vec![own],
+        None => registry.models().iter().filter_map(|m| m.parameter(name)).collect(),
+    }
+}
+
+/// The value itself if one of the declarations allows it, else the nearest one that is allowed.
+fn legal(declarations: &[&Parameter], value: &Value) -> Option<Value> {
+    if declarations.iter().any(|p| p.allows(value)) {
+        return Some(value.clone());
+    }
+    let nearest = declarations.iter().filter_map(|p| nearest(p, value));
+    nearest.min_by(|a, b| distance(a, value).total_cmp(&distance(b, value)))
+}
+
+/// The nearest value that a parameter allows; where there is no nearest one, since it must be greater than 0, the
+/// default. None for a value of another type.
+fn nearest(parameter: &Parameter, value: &Value) -> Option<Value> {
+    let nearest = match (&parameter.kind, value) {
+        (ParameterKind::Number { min, default, .. }, Value::Number(v)) if *min == ABOVE_ZERO && v < min => {
+            Value::Number(*default)
+        }
+        (ParameterKind::Number { min, max, .. }, Value::Number(v)) => Value::Number(v.max(*min).min(*max)),
+        (ParameterKind::Integer { min, max, .. }, Value::Integer(v)) => {
+            let v = *v.max(min);
+            Value::Integer(max.map_or(v, |max| v.min(max)))
+        }
+        (ParameterKind::Triple { min, max, .. }, Value::Triple(v)) => {
+            Value::Triple(v.map(|c| c.max(*min).min(*max)))
+        }
+        _ => return None,
+    };
+    parameter.allows(&nearest).then_some(nearest)
+}
+
+/// How far a value is from another one of its type.
+fn distance(a: &Value, b: &Value) -> f64 {
+    match (a, b) {
+        (Value::Number(a), Value::Number(b)) => f64::from((a - b).abs()),
+        (Value::Integer(a), Value::Integer(b)) => a.abs_diff(*b) as f64,
+        (Value::Triple(a), Value::Triple(b)) => a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())).sum(),
+        _ => f64::INFINITY,
+    }
+}
+
+/// The messages: one for each kind of change of a parameter, however many objects it is about.
+fn told(lab: &Lab, registry: &Registry, changes: &[Change]) -> Vec<String> {
+    let mut groups: BTreeMap<(String, String), (usize, &Change)> = BTreeMap::new();
+    for change in changes {
+        groups.entry(change.several()).or_insert((0, change)).0 += 1;
+    }
+    let one = |change: &Change| change.single(&lab.name_of(Selection::Object(change.place.0), registry));
+    groups
+        .into_iter()
+        .map(|((before, after), (count, first))| match count {
+            1 => one(first),
+            _ => format!("{before} {count} objects{after}"),
+        })
+        .collect()
+}
+
+impl Change {
+    /// What is said when it is about one object.
+    fn single(&self, object: &str) -> String {
+        let Self { place: (_, name), wanted, to, .. } = self;
+        match to {
+            Some(value) if value == wanted => format!("{name} is {value} at {object} again."),
+            Some(value) => {
+                format!("{name} is {value} at {object} instead of {wanted}, {} now.", self.reason(value))
+            }
+            None => {
+                let (why, until) = self.why_gone("when it is allowed again");
+                format!("{name} {why}; its value {wanted} at {object} is put aside and comes back {until}.")
+            }
+        }
+    }
+
+    /// What is said before and after the number of objects when it is about several.
+    fn several(&self) -> (String, String) {
+        let Self { place: (_, name), wanted, to, .. } = self;
+        match to {
+            Some(value) if value == wanted => (format!("{name} is as it was again at"), ".".to_owned()),
+            Some(value @ Value::Triple(_)) => {
+                (format!("{name} is brought into its range at"), format!(", {} now.", self.reason(value)))
+            }
+            Some(value) => (format!("{name} is {value} at"), format!(", {} now.", self.reason(value))),
+            None => {
+                let (why, until) = self.why_gone("when they are allowed again");
+                (format!("{name} {why}; its values at"), format!(" are put aside and come back {until}."))
+            }
+        }
+    }
+
+    /// Why the document has this value instead of the one that is wanted.
+    fn reason(&self, value: &Value) -> String {
+        let Some(p) = self.declared else { return String::new() };
+        let (most, least) = match (&p.kind, value, &self.wanted) {
+            (ParameterKind::Number { min, max, .. }, Value::Number(v), Value::Number(wanted)) => {
+                (v == max && wanted > v, v == min && wanted < v)
+            }
+            (ParameterKind::Integer { min, max, .. }, Value::Integer(v), Value::Integer(wanted)) => {
+                (Some(*v) == *max && wanted > v, v == min && wanted < v)
+            }
+            (ParameterKind::Triple { min, max, .. }, ..) => {
+                return format!("since each must be between {min} and {max}");
+            }
+            _ => (false, false),
+        };
+        match (most, least) {
+            (true, _) => "the most that is allowed".to_owned(),
+            (_, true) => "the least that is allowed".to_owned(),
+            _ => format!("since it must be {}", p.rule()),
+        }
+    }
+
+    /// Why the document has no value any more, and when it has it again.
+    fn why_gone(&self, allowed: &'static str) -> (String, &'static str) {
+        match self.declared {
+            None => ("is no parameter of any model any more".to_owned(), "with the name"),
+            Some(p) if discriminant(&p.default_value()) == discriminant(&self.wanted) => {
+                (format!("must be {} now", p.rule()), allowed)
+            }
+            Some(_) => ("has another type now".to_owned(), "with the type"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::{
+        reflection::own,
+        scene::{Object, check, load, save},
+    };
+
+    /// Lambert's law with these parameters, of which it uses none.
+    fn put(registry: &mut Registry, parameters: &str) {
+        let text = format!(
+            "/* lcm {{ \"parameters\": [{parameters}] }} */\nfn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, \
+             m: Parameters) -> Terms {{\n    return Terms(vec3(0.0), vec3(max(dot(frame.n, l), 0.0)), vec3(0.0));\n}}\n"
+        );
+        let model = own::read(Path::new("models/mine.wgsl"), &text, registry)
+            .unwrap_or_else(|problems| panic!("{parameters}: {problems:?}"));
+        registry.put_own_model(model);
+    }
+
+    fn number(name: &str, min: f32, max: f32) -> String {
+        format!("{{ \"name\": \"{name}\", \"min\": {min}, \"max\": {max}, \"default\": {max} }}")
+    }
+
+    /// A document of one sphere of the model with one value.
+    fn begin(declaration: &str, name: &'static str, value: Value) -> (Lab, Registry) {
+        let mut registry = Registry::builtin();
+        put(&mut registry, declaration);
+        let mut lab = Lab::default();
+        lab.scene.reflection_model = "mine".to_owned();
+        lab.scene.objects[0].material.set(name, value);
+        lab.scene.objects[0].material.set("k_s", Value::Number(0.25));
+        lab.saved = lab.scene.clone();
+        follow(&mut lab, &registry, &[]);
+        assert!(!lab.is_dirty());
+        (lab, registry)
+    }
+
+    /// Follows, compares what is said, and looks whether the document can be saved.
+    fn follow(lab: &mut Lab, registry: &Registry, said: &[&str]) {
+        lab.messages.clear();
+        follow_registry(&mut *lab, registry);
+        let texts: Vec<_> = lab.messages.iter().map(|m| m.text.as_str()).collect();
+        assert_eq!(texts, said);
+        assert!(check::scene(&lab.scene, registry).is_empty());
+        let text = save::to_json(&lab.scene, None, registry);
+        let read = load::from_bytes(text.as_bytes(), "a.json", registry, load::Defaults::Ask)
+            .unwrap_or_else(|e| panic!("{e}\n{text}"));
+        assert_eq!(read.scene.objects, lab.scene.objects);
+        assert_eq!(lab.scene.objects[0].material.0.get("k_s"), Some(&Value::Number(0.25)));
+        // A second look finds nothing to do.
+        let before = (lab.scene.clone(), lab.aside.clone(), lab.messages.clone());
+        follow_registry(&mut *lab, registry);
+        assert_eq!(before, (lab.scene.clone(), lab.aside.clone(), lab.messages.clone()));
+    }
+
+    fn value<'a>(lab: &'a Lab, name: &str) -> Option<&'a Value> {
+        lab.scene.objects[0].material.0.get(name)
+    }
+
+    #[test]
+    fn a_value_whose_name_is_gone_comes_back_with_the_name() {
+        let (mut lab, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
+        put(&mut registry, &number("sheen_of_mine", 0.0, 1.0));
+        follow(
+            &mut lab,
+            &registry,
+            &[
+                "gloss is no parameter of any model any more; its value 0.75 at Sphere 1 is put aside and comes back \
+               with the name.",
+            ],
+        );
+        assert_eq!((value(&lab, "gloss"), lab.aside.len()), (None, 1));
+        put(&mut registry, &number("gloss", 0.0, 1.0));
+        follow(&mut lab, &registry, &["gloss is 0.75 at Sphere 1 again."]);
+        assert!(lab.aside.is_empty() && !lab.is_dirty());
+    }
+
+    #[test]
+    fn a_number_out_of_range_is_the_nearest_that_is_not_until_it_is_allowed_again() {
+        let (mut lab, mut registry) = begin(&number("polish", 0.0, 200.0), "polish", Value::Number(150.0));
+        put(&mut registry, &number("polish", 0.0, 100.0));
+        let most = "polish is 100 at Sphere 1 instead of 150, the most that is allowed now.";
+        follow(&mut lab, &registry, &[most]);
+        put(&mut registry, &number("polish", 160.0, 200.0));
+        let least = "polish is 160 at Sphere 1 instead of 150, the least that is allowed now.";
+        follow(&mut lab, &registry, &[least]);
+        put(&mut registry, &number("polish", 0.0, 200.0));
+        follow(&mut lab, &registry, &["polish is 150 at Sphere 1 again."]);
+        assert!(lab.aside.is_empty() && !lab.is_dirty());
+    }
+
+    #[test]
+    fn whole_numbers_and_three_numbers_follow_too() {
+        let integer = |max| {
+            format!(
+                "{{ \"name\": \"steps\", \"type\": \"integer\", \"min\": 1, \"max\": {max}, \"default\": 2 }}"
+            )
+        };
+        let (mut lab, mut registry) = begin(&integer(9), "steps", Value::Integer(7));
+        put(&mut registry, &integer(5));
+        follow(&mut lab, &registry, &["steps is 5 at Sphere 1 instead of 7, the most that is allowed now."]);
+        put(&mut registry, "{ \"name\": \"steps\", \"type\": \"colour\", \"default\": [1, 2, 3] }");
+        follow(
+            &mut lab,
+            &registry,
+            &[
+                "steps has another type now; its value 7 at Sphere 1 is put aside and comes back with the type.",
+            ],
+        );
+        put(&mut registry, &integer(9));
+        follow(&mut lab, &registry, &["steps is 7 at Sphere 1 again."]);
+        assert!(!lab.is_dirty());
+        let triple = |max| {
+            format!(
+                "{{ \"name\": \"index\", \"type\": \"triple\", \"min\": 0, \"max\": {max}, \"default\": 1 }}"
+            )
+        };
+        let (mut lab, mut registry) = begin(&triple(4), "index", Value::Triple([1.0, 2.0, 3.0]));
+        put(&mut registry, &triple(2));
+        follow(
+            &mut lab,
+            &registry,
+            &["index is 1,2,2 at Sphere 1 instead of 1,2,3, since each must be between 0 and 2 now."],
+        );
+    }
+
+    #[test]
+    fn where_a_number_must_be_greater_than_zero_the_default_stands_in() {
+        let (mut lab, mut registry) = begin(&number("polish", 0.0, 9.0), "polish", Value::Number(0.0));
+        put(&mut registry, "{ \"name\": \"polish\", \"above\": 0, \"max\": 9, \"default\": 3 }");
+        follow(
+            &mut lab,
+            &registry,
+            &["polish is 3 at Sphere 1 instead of 0, since it must be greater than 0 and at most 9 now."],
+        );
+    }
+
+    #[test]
+    fn what_the_user_changed_meanwhile_stays() {
+        let (mut lab, mut registry) = begin(&number("polish", 0.0, 200.0), "polish", Value::Number(150.0));
+        put(&mut registry, &number("polish", 0.0, 100.0));
+        follow_registry(&mut lab, &registry);
+        lab.scene.objects[0].material.set("polish", Value::Number(60.0));
+        put(&mut registry, &number("polish", 0.0, 200.0));
+        follow(&mut lab, &registry, &[]);
+        assert_eq!(value(&lab, "polish"), Some(&Value::Number(60.0)));
+        assert!(lab.aside.is_empty());
+    }
+
+    #[test]
+    fn a_value_of_another_type_or_a_choice_that_is_gone_waits_until_it_fits_again() {
+        let (mut lab, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
+        put(&mut registry, "{ \"name\": \"gloss\", \"type\": \"choice\", \"choices\": [\"low\", \"high\"] }");
+        follow(
+            &mut lab,
+            &registry,
+            &[
+                "gloss has another type now; its value 0.75 at Sphere 1 is put aside and comes back with the type.",
+            ],
+        );
+        assert_eq!(value(&lab, "gloss"), None);
+        // A choice of the user replaces what was put aside.
+        lab.scene.objects[0].material.set("gloss", Value::Choice("high".into()));
+        put(&mut registry, "{ \"name\": \"gloss\", \"type\": \"choice\", \"choices\": [\"low\", \"full\"] }");
+        follow(
+            &mut lab,
+            &registry,
+            &[
+                "gloss must be one of \"low\", \"full\" now; its value high at Sphere 1 is put aside and comes back \
+               when it is allowed again.",
+            ],
+        );
+        put(
+            &mut registry,
+            "{ \"name\": \"gloss\", \"type\": \"choice\", \"choices\": [\"high\", \"full\"] }",
+        );
+        follow(&mut lab, &registry, &["gloss is high at Sphere 1 again."]);
+    }
+
+    #[test]
+    fn several_objects_are_counted_and_keep_what_is_theirs_when_the_list_changes() {
+        let (mut lab, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
+        for v in [0.25, 0.5] {
+            let mut object = Object { reflection_model: Some("mine".to_owned()), ..Object::default() };
+            object.material.set("gloss", Value::Number(v));
+            lab.scene.objects.push(object);
+        }
+        put(&mut registry, "");
+        follow(
+            &mut lab,
+            &registry,
+            &[
+                "gloss is no parameter of any model any more; its values at 3 objects are put aside and come back \
+               with the name.",
+            ],
+        );
+        let part = Selection::Object(1);
+        let _ = lab.apply(super::super::state::Action::Duplicate(part), &registry);
+        let _ = lab.apply(super::super::state::Action::Remove(part), &registry);
+        put(&mut registry, &number("gloss", 0.0, 1.0));
+        follow(&mut lab, &registry, &["gloss is as it was again at 3 objects."]);
+        let values: Vec<_> = lab.scene.objects.iter().map(|o| o.material.0.get("gloss").cloned()).collect();
+        assert_eq!(values, [0.75, 0.25, 0.5].map(|v| Some(Value::Number(v))));
+    }
+
+    #[test]
+    fn another_document_gets_nothing_of_what_was_put_aside() {
+        let (mut lab, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
+        put(&mut registry, "");
+        follow_registry(&mut lab, &registry);
+        let mut other = lab.scene.clone();
+        other.name = Some("Other".to_owned());
+        let _ = lab.opened("other.json".into(), other);
+        assert!(lab.aside.is_empty());
+        put(&mut registry, &number("gloss", 0.0, 1.0));
+        follow(&mut lab, &registry, &[]);
+        assert_eq!(value(&lab, "gloss"), None);
+    }
+}
