@@ -35,7 +35,7 @@ use instruction::{Instruction, Registers, execute};
 use lower::{Lowering, Value, unsupported};
 
 /// How many instructions of loops a run may have, a few milliseconds.
-pub const STEPS: usize = 1 << 16;
+pub const STEPS: usize = 1 << 17;
 
 /// What a function uses that cannot be run on the CPU.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
