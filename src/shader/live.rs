@@ -44,7 +44,7 @@ use crate::{
 /// A broken file is not complained of so soon after it changed: many editors empty a file before they write it.
 pub const GRACE: Duration = Duration::from_millis(150);
 /// So long a frame may try shaders before it is drawn: with many on the picture, the window goes on answering.
-const SLICE: Duration = Duration::from_millis(50);
+const SLICE: Duration = Duration::from_millis(200);
 /// How the paths of own models begin.
 const MODELS: &str = "models/";
 /// A failure of the renderer so soon after an exchange is blamed on it.
