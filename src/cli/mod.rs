@@ -28,6 +28,7 @@ mod own;
 mod render;
 mod scenes;
 mod study;
+mod trial;
 mod view;
 mod workshop;
 
@@ -128,6 +129,9 @@ enum Command {
     Albedo(evaluate::Arguments),
     /// Print the JSON Schema of scene files
     Schema,
+    /// Try shaders for a window
+    #[command(hide = true, name = crate::shader::trial::process::COMMAND)]
+    TryShaders,
 }
 
 /// Why a command did not do what it was asked.
@@ -220,6 +224,7 @@ fn run(cli: Cli) -> Outcome {
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &places.open()?.registry),
         Some(Command::Study(arguments)) => study::run(&arguments, options, &Registry::builtin()),
         Some(Command::Albedo(arguments)) => albedo::run(&arguments, &places.open()?.registry),
+        Some(Command::TryShaders) => trial::run(),
         Some(Command::Schema) => print(&crate::scene::schema::text(&places.open()?.registry)),
     }
 }

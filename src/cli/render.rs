@@ -7,6 +7,7 @@ use std::{
     str::FromStr,
 };
 
+use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
@@ -23,6 +24,10 @@ use crate::{
     reference,
     registry::Registry,
     scene::{Scene, check, error::quoted},
+    shader::trial::{
+        Bench,
+        process::{Budget, TrialProcess},
+    },
 };
 
 /// Where pictures go when nothing else is said (CA `RENDERS_DIR`).
@@ -245,6 +250,7 @@ impl Painter {
                 let samples = if job.samples == 4 { 4 } else { 1 };
                 let renderer =
                     GpuRenderer::extended(job.width, job.height, samples, gpu::Output::Display, |app| {
+                        try_apart(app, registry);
                         app.insert_resource(registry.clone());
                     })
                     .map_err(failed)?;
@@ -258,6 +264,16 @@ impl Painter {
             return Err(invalid(registry, &problem));
         }
         renderer.read_rgb8().map_err(failed)
+    }
+}
+
+/// Has shaders that a user wrote tried in another process, for a driver may not survive them.
+fn try_apart(app: &mut App, registry: &Registry) {
+    if registry.sources().edited().next().is_some()
+        && let Some(program) = super::trial::program()
+        && let Some(mut bench) = app.world_mut().get_resource_mut::<Bench>()
+    {
+        bench.try_in(TrialProcess::new(program, Budget::default(), || {}));
     }
 }
 

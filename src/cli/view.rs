@@ -63,6 +63,9 @@ pub struct ViewOptions {
     pub registry: Registry,
     /// Where shaders and own models are read from. The shaders are not read yet.
     pub folders: Folders,
+    /// The program that tries shaders when it is called with
+    /// [`COMMAND`](crate::shader::trial::process::COMMAND); without it the window itself does.
+    pub trial_program: Option<PathBuf>,
     /// Log more.
     pub verbose: bool,
     /// Log errors only.
@@ -86,6 +89,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         capture,
         registry: registry.clone(),
         folders: workshop.folders.clone(),
+        trial_program: super::trial::program(),
         verbose,
         quiet,
     };

@@ -24,16 +24,18 @@ use bevy::{
 
 use super::{
     check::ShaderProblem,
-    compose::{Composed, Sources, WRAPPER, compose, compose_evaluation},
+    compose::{Composed, Sources, WRAPPER, compose, compose_evaluation, without_comments},
     status::{Reloaded, ShaderStatus, Trouble},
     trial::{Bench, COMPOSED, Tools, TrialPlugin, Verdict},
 };
 use crate::{
     app::{LabFrame, LabSystems},
     assets::{Folders, built_in_sources},
+    optics::colour::Encoding,
     reflection::{
         Ambient, ModelEntry,
         own::{self, OwnModel},
+        parameter::Values,
         swap::Drawn,
     },
     registry::Registry,
@@ -107,6 +109,8 @@ pub struct LiveShaders {
     own: BTreeMap<String, (PathBuf, String)>,
     /// Own models that were read and are still to be tried.
     arriving: Vec<OwnModel>,
+    /// An object waits for a shader that is tried for the first time.
+    awaited: bool,
     /// The composed texts that were tried with success in this frame.
     approved: HashSet<String>,
     /// Files that cannot be read and own models with mistakes, and since when.
@@ -157,7 +161,10 @@ impl LiveShaders {
     /// Whether something is still to be tried, so that the next picture may be another one.
     #[must_use]
     pub fn is_trying(&self) -> bool {
-        !self.unused.is_empty() || !self.arriving.is_empty() || self.shaders.values().any(|live| live.due)
+        self.awaited
+            || !self.unused.is_empty()
+            || !self.arriving.is_empty()
+            || self.shaders.values().any(|live| live.due)
     }
 
     /// The first problem that keeps a shader from being what its files say.
@@ -300,10 +307,10 @@ impl LiveShaders {
             lenient.edit(path, model.text.clone());
             let verdict = modes.into_iter().map(|mode| {
                 let wanted = compose(&current, &model.entry, mode, registry.lights());
-                match self.try_out(world, &wanted, mode) {
+                match self.try_out(world, &wanted, &model.entry, mode) {
                     Verdict::Bad(_) => {
                         let wanted = compose(&lenient, &model.entry, mode, registry.lights());
-                        self.try_out(world, &wanted, mode)
+                        self.try_out(world, &wanted, &model.entry, mode)
                     }
                     verdict => verdict,
                 }
@@ -331,11 +338,17 @@ impl LiveShaders {
     }
 
     /// Tries a composed source, once.
-    fn try_out(&mut self, world: &mut World, composed: &Composed, mode: &ModeEntry) -> Verdict {
+    fn try_out(
+        &mut self,
+        world: &mut World,
+        composed: &Composed,
+        model: &ModelEntry,
+        mode: &ModeEntry,
+    ) -> Verdict {
         if composed.problem.is_none() && self.approved.contains(&composed.text) {
             return Verdict::Good;
         }
-        let verdict = try_out(world, composed, mode);
+        let verdict = try_out(world, composed, model, mode);
         if verdict == Verdict::Good {
             self.approved.insert(composed.text.clone());
         }
@@ -433,17 +446,17 @@ impl LiveShaders {
         again.iter().for_each(|own| self.read_model(own, registry));
     }
 
-    /// The shader of a model and a mode.
+    /// The shader of a model and a mode; none yet while another process tries it.
     pub(crate) fn get(
         &mut self,
         world: &mut World,
         model: &ModelEntry,
         mode: &ModeEntry,
         registry: &Registry,
-    ) -> Handle<Shader> {
+    ) -> Option<Handle<Shader>> {
         let key = key(model, mode, registry);
         if let Some(live) = self.shaders.get(&key) {
-            return live.handle.clone();
+            return Some(live.handle.clone());
         }
         if !self.started {
             self.started = true;
@@ -461,7 +474,7 @@ impl LiveShaders {
         if self.is_built_in(&wanted) {
             shown = Some(wanted);
         } else {
-            match self.try_out(world, &wanted, mode) {
+            match self.try_out(world, &wanted, model, mode) {
                 Verdict::Good => {
                     self.note_good(&wanted);
                     shown = Some(wanted);
@@ -469,36 +482,48 @@ impl LiveShaders {
                 Verdict::Bad(problem) => {
                     refused = Some(Refused { composed: wanted, problem, at: Instant::now() })
                 }
+                Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
+                    self.awaited = true;
+                    return None;
+                }
                 Verdict::NotYet => due = true,
             }
         }
         let shown = match shown {
             Some(shown) => shown,
-            None => self.last_good(world, model, mode, registry),
+            None => self.last_good(world, model, mode, registry)?,
         };
         let asset = self.asset(&shown, key);
         let handle = world.resource_mut::<Assets<Shader>>().add(asset);
         self.stale_status = true;
         self.shaders.insert(key, Live { handle: handle.clone(), shown, before: None, refused, due });
-        handle
+        Some(handle)
     }
 
     /// The latest that can be drawn with: the file of the model with the others as they last came through, else all
-    /// as they last came through, else what is built in.
+    /// as they last came through, else what is built in. None yet while another process tries one of them.
     fn last_good(
         &mut self,
         world: &mut World,
         model: &ModelEntry,
         mode: &ModeEntry,
         registry: &Registry,
-    ) -> Composed {
+    ) -> Option<Composed> {
         for sources in [self.lenient(), self.good.clone()] {
             let composed = compose(&sources, model, mode, registry.lights());
-            if self.is_built_in(&composed) || self.try_out(world, &composed, mode) == Verdict::Good {
-                return composed;
+            if self.is_built_in(&composed) {
+                return Some(composed);
+            }
+            match self.try_out(world, &composed, model, mode) {
+                Verdict::Good => return Some(composed),
+                Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
+                    self.awaited = true;
+                    return None;
+                }
+                Verdict::Bad(_) | Verdict::NotYet => {}
             }
         }
-        compose(&Sources::default(), model, mode, registry.lights())
+        Some(compose(&Sources::default(), model, mode, registry.lights()))
     }
 
     /// Whether a composed source holds nothing but what was built in, which tests have tried.
@@ -508,8 +533,8 @@ impl LiveShaders {
     }
 
     fn asset(&self, composed: &Composed, key: Key) -> Shader {
-        let mut shader =
-            Shader::from_wgsl(composed.text.clone(), format!("{COMPOSED}{}/{}.wgsl", key.0, key.1));
+        let text = without_comments(&composed.text);
+        let mut shader = Shader::from_wgsl(text, format!("{COMPOSED}{}/{}.wgsl", key.0, key.1));
         if !self.is_built_in(composed) {
             // What users write may read outside of arrays.
             shader.validate_shader = ValidateShader::Enabled;
@@ -564,7 +589,7 @@ impl LiveShaders {
         let verdict = if shown_already || self.is_built_in(&wanted) {
             Verdict::Good
         } else {
-            self.try_out(world, &wanted, mode)
+            self.try_out(world, &wanted, model, mode)
         };
         if verdict == Verdict::Good {
             self.note_good(&wanted);
@@ -651,7 +676,7 @@ impl LiveShaders {
             return;
         };
         let composed = compose(&self.current, model, mode, registry.lights());
-        match self.try_out(world, &composed, mode) {
+        match self.try_out(world, &composed, model, mode) {
             Verdict::Good => {
                 self.unused_problems.remove(path);
                 self.note_good(&composed);
@@ -751,6 +776,8 @@ fn exchange(world: &mut World) {
     let visible = Visible::of(world);
     world.resource_scope(|world, mut live: Mut<LiveShaders>| {
         live.approved.clear();
+        live.awaited = false;
+        world.resource::<Bench>().begin_frame();
         live.adopt(world, &visible);
         let registry = world.resource::<Registry>().clone();
         live.work(world, &registry, &visible);
@@ -767,7 +794,7 @@ fn exchange(world: &mut World) {
     });
 }
 
-fn try_out(world: &mut World, composed: &Composed, mode: &ModeEntry) -> Verdict {
+fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, mode: &ModeEntry) -> Verdict {
     let (Some(device), Some(adapter)) =
         (world.get_resource::<RenderDevice>().cloned(), world.get_resource::<RenderAdapter>().cloned())
     else {
@@ -775,7 +802,8 @@ fn try_out(world: &mut World, composed: &Composed, mode: &ModeEntry) -> Verdict 
     };
     world.resource_scope(|world, mut bench: Mut<Bench>| {
         let tools = Tools { device: &device, adapter: &adapter, shaders: world.resource::<Assets<Shader>>() };
-        bench.try_out(composed, mode.declaration.stage == Stage::Polygon, tools)
+        let row = || model.row(&Values::default(), Encoding::Srgb, false);
+        bench.try_out(composed, mode.declaration.stage == Stage::Polygon, row, tools)
     })
 }
 

@@ -49,7 +49,14 @@ use crate::{
     },
     registry::Registry,
     scene::spawn::CurrentScene,
-    shader::{live::LiveShaders, status::ShaderStatus},
+    shader::{
+        live::LiveShaders,
+        status::ShaderStatus,
+        trial::{
+            Bench,
+            process::{Budget, TrialProcess},
+        },
+    },
 };
 
 pub mod authoring;
@@ -124,6 +131,10 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     }
     app.insert_resource(CurrentScene(options.scene.clone())).insert_resource(lab);
     app.insert_resource(files::DiskFiles::new(options.file.clone(), options.stamp));
+    if let Some(program) = options.trial_program {
+        let wake = watching::waker(app.world());
+        app.world_mut().resource_mut::<Bench>().try_in(TrialProcess::new(program, Budget::default(), wake));
+    }
     shaders::open(app.world_mut(), &options.folders);
     if let Some(path) = options.open {
         app.add_systems(Startup, move |mut effects: MessageWriter<LabEffect>| {
@@ -452,6 +463,7 @@ fn redraw(
     lab: Res<Lab>,
     terms: Res<ShownTerms>,
     live: Res<LiveShaders>,
+    bench: Res<Bench>,
     cameras: Query<&bevy::transform::components::Transform, With<PictureCamera>>,
     mut settling: ResMut<Settling>,
     mut requests: MessageWriter<RequestRedraw>,
@@ -471,7 +483,7 @@ fn redraw(
         settling.last = Some(Box::new(now));
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }
-    if live.is_busy() {
+    if live.is_busy() && !bench.is_waiting() {
         // Problems are told after a while, and what is not on the picture is tried one in a frame.
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }

@@ -34,14 +34,19 @@ pub(super) struct WatchingPlugin;
 
 impl Plugin for WatchingPlugin {
     fn build(&self, app: &mut App) {
-        let proxy = app.world().get_resource::<EventLoopProxyWrapper>().map(|proxy| (**proxy).clone());
-        let wake = move || {
-            if let Some(proxy) = &proxy {
-                // An error: the window is closed.
-                let _ = proxy.send_event(WinitUserEvent::WakeUp);
-            }
-        };
+        let wake = waker(app.world());
         app.add_message::<FilesChanged>().insert_resource(FileWatch(Watcher::new(wake)));
+    }
+}
+
+/// Wakes the window, which sleeps when nothing happens; from any thread.
+pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + use<> {
+    let proxy = world.get_resource::<EventLoopProxyWrapper>().map(|proxy| (**proxy).clone());
+    move || {
+        if let Some(proxy) = &proxy {
+            // An error: the window is closed.
+            let _ = proxy.send_event(WinitUserEvent::WakeUp);
+        }
     }
 }
 

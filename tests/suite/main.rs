@@ -26,6 +26,8 @@ mod shader_panel;
 mod study;
 mod support;
 mod tangents;
+#[cfg(unix)]
+mod trial;
 mod window;
 mod window_reload;
 mod witness;
