@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use png::{BitDepth, ColorType, Compression, Encoder, SrgbRenderingIntent};
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent};
 
 use crate::files::Output;
 
@@ -49,15 +49,23 @@ pub fn encode(
         let (keyword, value) = ((*keyword).to_owned(), (*value).to_owned());
         // Latin-1 fits the plain chunk that every reader knows; names like "Blinn–Phong" do not.
         if value.chars().all(|c| u32::from(c) < 256) {
-            encoder.add_text_chunk(keyword, value)?;
+            encoder.add_text_chunk(keyword, value).map_err(plain)?;
         } else {
-            encoder.add_itxt_chunk(keyword, value)?;
+            encoder.add_itxt_chunk(keyword, value).map_err(plain)?;
         }
     }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(rgb8)?;
-    writer.finish()?;
+    let mut writer = encoder.write_header().map_err(plain)?;
+    writer.write_image_data(rgb8).map_err(plain)?;
+    writer.finish().map_err(plain)?;
     to.flush()
+}
+
+/// What the system says keeps its kind.
+fn plain(error: EncodingError) -> io::Error {
+    match error {
+        EncodingError::IoError(error) => error,
+        error => error.into(),
+    }
 }
 
 #[cfg(test)]

@@ -92,7 +92,7 @@ impl Name {
             // People write words; what is random has almost always letters of both sizes or digits among them.
             let classes = [u8::is_ascii_lowercase, u8::is_ascii_uppercase, u8::is_ascii_digit];
             let mixed = classes.iter().filter(|class| word.bytes().any(|b| class(&b))).count() > 1;
-            let is_scene = file.len() > ".x.json".len() && file.starts_with('.') && file.ends_with(".json");
+            let is_scene = file.len() >= ".x.json".len() && file.starts_with('.') && file.ends_with(".json");
             return (is_scene && random(word) && mixed).then_some(Self::OldScene);
         }
         let (file, process) = name.strip_suffix(".partial")?.rsplit_once('.')?;
@@ -213,6 +213,7 @@ mod tests {
             (".lcm-backup.tmp", Some(Name::Draft)),
             (".lcm-a1B2c3.123.whole", Some(Name::Whole(123))),
             (".room.json.a1B2c3.tmp", Some(Name::OldScene)),
+            (".r.json.a1B2c3.tmp", Some(Name::OldScene)),
             ("room.png.4711.partial", Some(Name::OldPicture)),
             (".lcm-a1B2c.tmp", None),
             (".lcm-a1B2c3d.tmp", None),

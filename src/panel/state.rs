@@ -635,7 +635,7 @@ impl Lab {
     /// What the window calls the document: the name of the scene, else the name of the file.
     #[must_use]
     pub fn title(&self) -> String {
-        let file = || Some(self.path.as_ref()?.file_stem()?.to_string_lossy().into_owned());
+        let file = || Some(printable(&self.path.as_ref()?.file_stem()?.to_string_lossy()).into_owned());
         self.scene.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
     }
 
