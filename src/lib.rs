@@ -11,6 +11,7 @@
 //!
 //! - [`optics`]: the vocabulary of every model, pure functions on vectors, no Bevy.
 //! - [`reflection`], [`shading`], [`light`], [`shape`]: a trait and a list each; one file per kind.
+//! - [`files`]: the one guard between the program and files.
 //! - [`assets`]: where shader files and own models are read from.
 //! - [`registry`]: what is known, looked up by id; registration from inside and outside the crate.
 //! - [`observer`]: the camera.
@@ -25,6 +26,7 @@
 //! - [`window`]: panels, camera and entities in one window.
 //! - [`cli`]: the command line.
 
+pub mod files;
 pub mod optics;
 
 pub mod light;

@@ -5,7 +5,7 @@ use std::{fmt::Write as _, path::PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, Options, Outcome, complain, print, scenes::Source};
+use super::{Failure, Options, Outcome, complain, print, print_text, scenes::Source};
 use crate::{
     registry::Registry,
     scene::{error::Problem, load::Defaults},
@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
         print(&format!("{json}\n"))?;
     } else if !options.quiet {
-        print(&told)?;
+        print_text(&told)?;
     }
     match invalid {
         0 => Ok(()),

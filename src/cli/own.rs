@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::{
     Failure, Options, Outcome, complain,
     evaluate::find,
-    print,
+    print_paths, print_text,
     workshop::{Places, valid},
 };
 use crate::{
@@ -64,7 +64,7 @@ fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
         }
         _ => Failure::Write(format!("{} could not be written: {e}", path.display())),
     })?;
-    print(&format!("{}\n", path.display()))?;
+    print_paths([path.as_path()])?;
     let flags = places.flags();
     options.tell(format_args!(
         "Edit this file; scenes name the model \"{id}\". `lcm render --reflection {id}{flags}` shows it, \
@@ -94,7 +94,7 @@ pub(super) fn check(id: &str, options: Options, registry: &Registry) -> Outcome 
         evaluator.evaluate(pairs)
     })?;
     bar.finish_and_clear();
-    print(&report(model, &findings))?;
+    print_text(&report(model, &findings))?;
     let broken: Vec<_> = claims(model, &findings).filter(|c| c.claimed && !c.kept).map(|c| c.law).collect();
     if findings.not_finite > 0 {
         complain(format_args!("{id} gives values that are no numbers"));

@@ -2,7 +2,7 @@
 
 use std::{
     collections::{BTreeSet, HashMap},
-    fs,
+    fs, io,
     path::{Path, PathBuf},
     str::FromStr,
 };
@@ -11,7 +11,9 @@ use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
-    Failure, Options, Outcome, progress,
+    Failure, Options, Outcome,
+    outputs::{self, inputs},
+    progress,
     scenes::Source,
     workshop::{drawable, invalid, not_followed_on_cpu, not_on_cpu},
 };
@@ -20,6 +22,7 @@ use crate::{
         gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
         png,
     },
+    files::{Kind, is_descriptor, kind as kind_on_disk, printable},
     optics::{TermSelection, tone::ToneMapping},
     reference,
     registry::Registry,
@@ -140,6 +143,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     }
     let changes = Changes::new(arguments, registry)?;
     let files = files(&sources, arguments.output.as_deref())?;
+    let read = inputs(sources.iter().filter_map(Source::file), registry);
+    files.iter().try_for_each(|file| outputs::picture(file, &read))?;
 
     // All scenes are read before the first is rendered: what is wrong with the last one is said at once.
     let mut scenes = Vec::with_capacity(sources.len());
@@ -158,6 +163,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     for scene in &scenes {
         drawable(registry, scene)?;
     }
+    // All files are in one folder.
+    files.first().into_iter().for_each(|file| outputs::tidy_beside(file));
     let bar = progress(scenes.len() as u64, options);
     let mut painter = Painter::new(arguments.renderer)?;
     let by_cpu = scenes.iter().filter(|scene| !painter.takes_gpu(scene, registry));
@@ -170,7 +177,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         ));
     }
     for ((scene, source), file) in scenes.iter().zip(&sources).zip(&files) {
-        bar.set_message(source.name());
+        bar.set_message(printable(&source.name()).into_owned());
         let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
         if let Some(folder) = folder {
             fs::create_dir_all(folder).map_err(|e| {
@@ -186,7 +193,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         if bar.is_hidden() {
             options.tell(format_args!("wrote {}", file.display()));
         } else {
-            bar.println(format!("wrote {}", file.display()));
+            bar.println(printable(&format!("wrote {}", file.display())));
         }
     }
     bar.finish_and_clear();
@@ -234,8 +241,10 @@ impl Painter {
             ("Shading model", &job.scene.shading_model),
             ("Renderer", renderer),
         ];
-        png::write(job.file, job.width, job.height, &rgb8, &facts)
-            .map_err(|e| Failure::Write(format!("{} could not be written: {e}", job.file.display())))
+        png::write(job.file, job.width, job.height, &rgb8, &facts).map_err(|e| match e.kind() {
+            io::ErrorKind::BrokenPipe => Failure::Closed,
+            _ => Failure::Write(format!("{} could not be written: {e}", job.file.display())),
+        })
     }
 
     fn on_gpu(&mut self, job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
@@ -389,16 +398,22 @@ enum Output {
     Folder,
 }
 
-/// A path that ends in `.png` is a file, unless there is a folder of that name; other picture formats
-/// are a misunderstanding; everything else is a folder.
+/// A path that ends in `.png` is a file, unless there is a folder of that name; so is a device or a pipe. Other
+/// picture formats are a misunderstanding; everything else is a folder.
 fn kind(path: &Path) -> Result<Output, Failure> {
     if path == Path::new("-") {
         return Err(Failure::Usage(
-            "-o -: pictures are not written to standard output; name a PNG file".to_owned(),
+            "-o -: name a PNG file, or the device of standard output, /dev/stdout".to_owned(),
         ));
     }
-    if path.is_dir() {
-        return Ok(Output::Folder);
+    match kind_on_disk(path) {
+        Ok(Kind::Folder) => return Ok(Output::Folder),
+        Ok(Kind::Device | Kind::Pipe) => return Ok(Output::File),
+        Ok(Kind::Socket | Kind::Unknown) => {
+            return Err(Failure::Write(format!("-o {} is no place for a picture", path.display())));
+        }
+        Ok(Kind::File) if is_descriptor(path) => return Ok(Output::File),
+        Ok(Kind::File) | Err(_) => {}
     }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     match extension.as_str() {
@@ -412,7 +427,7 @@ fn kind(path: &Path) -> Result<Output, Failure> {
                 png.display()
             )))
         }
-        _ if path.is_file() => Err(Failure::Usage(format!(
+        _ if path.is_file() => Err(Failure::Write(format!(
             "-o {} is a file, but not a PNG file; name a PNG file or a folder",
             path.display()
         ))),

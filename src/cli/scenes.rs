@@ -38,6 +38,14 @@ impl Source {
         }
     }
 
+    /// The file, if it is one.
+    pub(super) fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Default | Self::Stdin => None,
+            Self::File(path) => Some(path),
+        }
+    }
+
     /// What pictures of the scene are called.
     pub(super) fn stem(&self) -> String {
         match self {
@@ -65,7 +73,7 @@ impl Source {
                 Ok(Loaded { scene: Scene::default(), missing: Vec::new(), stamp: Stamp::of(&[]) })
             }
             Self::Stdin => load::reader(io::stdin().lock(), load::STDIN, registry, defaults),
-            Self::File(path) => load::file(path, registry, defaults),
+            Self::File(path) => load::input(path, registry, defaults),
         }
     }
 

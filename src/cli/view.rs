@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Failure, Options, Outcome, render::Size, scenes::Source, workshop::Places};
+use super::{Failure, Options, Outcome, outputs, render::Size, scenes::Source, workshop::Places};
 use crate::{
     assets::Folders,
+    files,
     registry::Registry,
     scene::{
         Scene,
@@ -66,6 +67,8 @@ pub struct ViewOptions {
     /// The program that tries shaders when it is called with
     /// [`COMMAND`](crate::shader::trial::process::COMMAND); without it the window itself does.
     pub trial_program: Option<PathBuf>,
+    /// What there is to say when the window opens.
+    pub warnings: Vec<String>,
     /// Log more.
     pub verbose: bool,
     /// Log errors only.
@@ -77,6 +80,18 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
     let registry = &workshop.registry;
     let source = Source::of(arguments.scene.as_deref());
     let Arguments { exit_after, capture, size, .. } = arguments;
+    if let Some(capture) = &capture {
+        outputs::picture(capture, &outputs::inputs(source.file(), registry))?;
+        let _ = files::tidy(files::folder_of(capture));
+    }
+    let warnings = match &source {
+        // What a killed process was about to save is finished before it is read.
+        Source::File(path) => {
+            let target = files::follow(path).unwrap_or_else(|_| path.clone());
+            files::tidy(files::folder_of(&target)).iter().map(ToString::to_string).collect()
+        }
+        Source::Default | Source::Stdin => Vec::new(),
+    };
     let Options { verbose, quiet, .. } = options;
     let mut view = ViewOptions {
         scene: Scene::default(),
@@ -90,10 +105,13 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         registry: registry.clone(),
         folders: workshop.folders.clone(),
         trial_program: super::trial::program(),
+        warnings,
         verbose,
         quiet,
     };
     match source {
+        // What can be read only once cannot be followed or saved to.
+        Source::File(ref path) if files::is_stream(path) => view.scene = source.open(registry, options)?,
         Source::File(path) => {
             meant_command(&path)?;
             match load::file(&path, registry, options.defaults()) {

@@ -20,6 +20,7 @@ use super::{
     settings::Settings,
 };
 use crate::{
+    files::printable,
     light::MAX_LIGHTS,
     optics::TermSelection,
     reflection::parameter::Value,
@@ -634,7 +635,7 @@ impl Lab {
     /// What the window calls the document: the name of the scene, else the name of the file.
     #[must_use]
     pub fn title(&self) -> String {
-        let file = || Some(self.path.as_ref()?.file_stem()?.to_string_lossy().into_owned());
+        let file = || Some(printable(&self.path.as_ref()?.file_stem()?.to_string_lossy()).into_owned());
         self.scene.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
     }
 
@@ -701,7 +702,7 @@ impl Lab {
 
     /// Adds a message; an error unfolds the strip that shows it.
     pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
-        let message = Note { severity, text: text.into() };
+        let message = Note { severity, text: printable(&text.into()).into_owned() };
         // The same words twice in a row say no more than once.
         if self.messages.last() != Some(&message) {
             self.messages.push(message);

@@ -126,6 +126,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     lab.path.clone_from(&options.file);
     lab.disk.use_defaults = options.use_defaults;
     load_settings(&mut lab);
+    options.warnings.iter().for_each(|warning| lab.say(Severity::Warning, warning.as_str()));
     if let Some(registry) = app.world().get_resource::<Registry>() {
         lab.fill_model_slots(registry);
     }

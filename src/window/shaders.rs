@@ -8,7 +8,7 @@ use std::{
 
 use bevy::ecs::prelude::*;
 
-use super::watching::{FileWatch, FilesChanged, complain};
+use super::watching::{FileWatch, FilesChanged, complain, complain_in_colour};
 use crate::{
     assets::{self, Folders},
     panel::{
@@ -106,8 +106,11 @@ pub(super) fn tell(live: Res<LiveShaders>, mut lab: ResMut<Lab>) {
     for trouble in status.troubles.iter().filter(|t| !known(&lab.shaders.troubles, t)) {
         let file =
             trouble.path.as_ref().map_or_else(|| trouble.problem.file.clone(), |p| p.display().to_string());
-        let report = if io::stderr().is_terminal() { coloured } else { annotated };
-        complain(&report(&trouble.problem, &file));
+        if io::stderr().is_terminal() {
+            complain_in_colour(&coloured(&trouble.problem, &file));
+        } else {
+            complain(&annotated(&trouble.problem, &file));
+        }
         if !trouble.stale.is_empty() {
             complain(&format!("The picture shows the last good version of {}.", trouble.stale.join(", ")));
         }

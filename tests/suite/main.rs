@@ -5,6 +5,7 @@ mod albedo;
 mod assets;
 mod command_line;
 mod extension;
+mod files;
 mod golden;
 mod gpu_parity;
 mod hot_swap;

@@ -41,7 +41,14 @@ impl Screen {
 
     /// Runs the program until it ends.
     pub fn lcm(&self, arguments: &[&str], config: &Path) -> Output {
-        lcm(arguments, config).env("DISPLAY", &self.display).output().expect("lcm runs")
+        self.command(arguments, config).output().expect("lcm runs")
+    }
+
+    /// The program on this screen, not yet started.
+    pub fn command(&self, arguments: &[&str], config: &Path) -> Command {
+        let mut command = lcm(arguments, config);
+        command.env("DISPLAY", &self.display);
+        command
     }
 
     /// Starts the program, and leaves it running until the result is dropped.
