@@ -9,20 +9,21 @@ use super::{
     Outcome,
     angles::{self, Column},
     evaluate::{Arguments, Machine, find},
-    workshop::valid,
+    workshop::{Workshop, valid},
 };
 use crate::{
     capture::evaluate::albedos,
     optics::{Frame, albedo::directional, colour::Encoding},
     reflection::parameter::ABOVE_ZERO,
-    registry::Registry,
 };
 
 /// The column that is read. At μ = 0 the viewer is in the surface, where a response is 0 by definition and
 /// no limit of the albedo.
 const COLUMNS: [Column; 1] = [Column { name: "mu", range: Some((ABOVE_ZERO as f64, 1.0)) }];
 
-pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
+pub(super) fn run(arguments: &Arguments, workshop: &mut Workshop) -> Outcome {
+    workshop.need(&arguments.model);
+    let registry = &workshop.registry;
     let model = find(registry, &arguments.model)?;
     let values = arguments.set.values(model)?;
     valid(registry, model)?;

@@ -11,7 +11,7 @@ use crate::{
     scene::{
         Scene,
         error::LoadError,
-        load::{self, Defaults, Stamp},
+        load::{Defaults, Stamp},
     },
 };
 
@@ -70,8 +70,7 @@ pub struct ViewOptions {
 }
 
 pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Outcome {
-    let workshop = places.open_for_window()?;
-    let registry = &workshop.registry;
+    let mut workshop = places.open_for_window(options)?;
     let source = Source::of(arguments.scene.as_deref());
     let Arguments { exit_after, capture, size, .. } = arguments;
     let Options { verbose, quiet, .. } = options;
@@ -84,15 +83,17 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         size: size.map(|s| [s.width, s.height]),
         exit_after,
         capture,
-        registry: registry.clone(),
+        // The scene decides how much of it is read.
+        registry: Registry::default(),
         folders: workshop.folders.clone(),
         verbose,
         quiet,
     };
     match source {
-        Source::File(path) => {
+        Source::File(ref path) => {
+            let path = path.clone();
             meant_command(&path)?;
-            match load::file(&path, registry, options.defaults()) {
+            match source.read(&mut workshop, options.defaults()) {
                 // The window asks what there is to ask, with a dialog.
                 Ok(loaded) if !loaded.missing.is_empty() && options.defaults() == Defaults::Ask => {
                     view.open = Some(path);
@@ -112,8 +113,9 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
                 Err(error) => return Err(Failure::Invalid(error.to_string())),
             }
         }
-        Source::Default | Source::Stdin => view.scene = source.open(registry, options)?,
+        Source::Default | Source::Stdin => view.scene = source.open(&mut workshop, options)?,
     }
+    view.registry = workshop.registry;
     crate::window::view(view)
 }
 

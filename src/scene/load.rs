@@ -2,6 +2,7 @@
 //! can be wrong (R2, R5, R6) and a question for what is missing (R3).
 
 use std::{
+    collections::BTreeSet,
     fmt, fs,
     hash::{DefaultHasher, Hash as _, Hasher as _},
     io::{self, Read},
@@ -127,8 +128,23 @@ pub fn reader(
     registry: &Registry,
     defaults: Defaults,
 ) -> Result<Loaded, LoadError> {
-    let bytes = limited(from, name, |source| LoadError::Io { name: name.to_owned(), source })?;
-    from_bytes(&bytes, name, registry, defaults)
+    from_bytes(&all_of(from, name)?, name, registry, defaults)
+}
+
+/// Reads the content of a stream, which can be read once.
+///
+/// # Errors
+/// [`LoadError`] when it is too large for a scene, or cannot be read.
+pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
+    limited(from, name, |source| LoadError::Io { name: name.to_owned(), source })
+}
+
+/// The ids of the reflection models that a scene names, whether they are known or not and whatever else is wrong
+/// with it; none of what is not JSON.
+#[must_use]
+pub fn models_named(bytes: &[u8], registry: &Registry) -> BTreeSet<String> {
+    let text = decode(bytes, "").ok().filter(|text| check_syntax(text).is_ok());
+    text.map_or_else(BTreeSet::new, |text| read::models_named(text, registry))
 }
 
 /// Reads all, but no more than any scene has: devices and pipes do not say how long they are.
