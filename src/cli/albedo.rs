@@ -9,19 +9,20 @@ use super::{
     Outcome,
     angles::{self, Column},
     evaluate::{Answers, Arguments, Started, find},
-    workshop::valid,
+    workshop::{Workshop, valid},
 };
 use crate::{
     optics::{Frame, albedo::directional},
     reflection::parameter::ABOVE_ZERO,
-    registry::Registry,
 };
 
 /// The column that is read. At μ = 0 the viewer is in the surface, where a response is 0 by definition and
 /// no limit of the albedo.
 const COLUMNS: [Column; 1] = [Column { name: "mu", range: Some((ABOVE_ZERO as f64, 1.0)) }];
 
-pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
+pub(super) fn run(arguments: &Arguments, workshop: &mut Workshop) -> Outcome {
+    workshop.need(&arguments.model);
+    let registry = &workshop.registry;
     let model = find(registry, &arguments.model)?;
     let values = arguments.set.values(model)?;
     valid(registry, model)?;

@@ -12,7 +12,7 @@ use glam::Vec3;
 use super::{
     Failure, Outcome,
     angles::{self, Column},
-    workshop::{not_on_cpu, valid},
+    workshop::{Workshop, not_on_cpu, valid},
 };
 use crate::{
     capture::evaluate::Evaluator,
@@ -136,7 +136,9 @@ const COLUMNS: [Column; 4] = [
     Column { name: "phi_o", range: None },
 ];
 
-pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
+pub(super) fn run(arguments: &Arguments, workshop: &mut Workshop) -> Outcome {
+    workshop.need(&arguments.model);
+    let registry = &workshop.registry;
     let model = find(registry, &arguments.model)?;
     let values = arguments.set.values(model)?;
     valid(registry, model)?;

@@ -231,16 +231,16 @@ fn run(cli: Cli) -> Outcome {
     match cli.command {
         None => view::run(cli.view, options, places),
         Some(Command::View(arguments)) => view::run(arguments, options, places),
-        Some(Command::Render(arguments)) => render::run(&arguments, options, &places.open()?.registry),
-        Some(Command::Check(arguments)) => check::run(&arguments, options, &places.open()?.registry),
+        Some(Command::Render(arguments)) => render::run(&arguments, options, &mut places.open(options)?),
+        Some(Command::Check(arguments)) => check::run(&arguments, options, &mut places.open(options)?),
         Some(Command::New { file }) => new::run(&file, options, &Registry::builtin()),
         Some(Command::Models(arguments)) => models::run(arguments, options, places),
         Some(Command::Assets(command)) => assets::run(&command, options, &Registry::builtin()),
-        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &places.open()?.registry),
+        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &mut places.open(options)?),
         Some(Command::Study(arguments)) => study::run(&arguments, options, &Registry::builtin()),
-        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &places.open()?.registry),
+        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &mut places.open(options)?),
         Some(Command::TryShaders) => trial::run(),
-        Some(Command::Schema) => print(&crate::scene::schema::text(&places.open()?.registry)),
+        Some(Command::Schema) => print(&crate::scene::schema::text(places.open(options)?.list())),
     }
 }
 

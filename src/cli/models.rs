@@ -51,8 +51,8 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
     match arguments.command {
         Some(Command::New { name }) => own::new(&name, options, places),
         Some(Command::Duplicate { id, name }) => own::duplicate(&id, name.as_deref(), options, places),
-        Some(Command::Check { id }) => own::check(&id, options, &places.open()?.registry),
-        None => list(arguments.json, &places.open()?.registry),
+        Some(Command::Check { id }) => own::check(&id, options, &mut places.open(options)?),
+        None => list(arguments.json, places.open(options)?.list()),
     }
 }
 

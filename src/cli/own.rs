@@ -8,7 +8,7 @@ use super::{
     Failure, Options, Outcome, complain,
     evaluate::find,
     print_paths, print_text,
-    workshop::{Places, valid},
+    workshop::{Places, Workshop, valid},
 };
 use crate::{
     assets::write_new,
@@ -32,8 +32,10 @@ pub(super) fn new(name: &str, options: Options, places: &Places) -> Outcome {
 
 /// `lcm models duplicate ID [NAME]`.
 pub(super) fn duplicate(id: &str, name: Option<&str>, options: Options, places: &Places) -> Outcome {
-    let registry = places.open_for_writing()?.registry;
-    let model = find(&registry, id)?;
+    let mut workshop = places.open_for_writing(options)?;
+    workshop.need(id);
+    let registry = &workshop.registry;
+    let model = find(registry, id)?;
     let copy = match name {
         Some(name) => id_of(name)?,
         None => format!("{id}_copy"),
@@ -74,7 +76,9 @@ fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
 }
 
 /// `lcm models check ID`.
-pub(super) fn check(id: &str, options: Options, registry: &Registry) -> Outcome {
+pub(super) fn check(id: &str, options: Options, workshop: &mut Workshop) -> Outcome {
+    workshop.need(id);
+    let registry = &workshop.registry;
     if registry.broken_model(id).is_some() {
         // What is wrong with it is told already.
         return Err(Failure::Invalid(format!("{id} was not checked: its file has a mistake")));

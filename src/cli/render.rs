@@ -15,7 +15,7 @@ use super::{
     outputs::{self, inputs},
     progress,
     scenes::Source,
-    workshop::{drawable, invalid, not_followed_on_cpu, not_on_cpu},
+    workshop::{Workshop, drawable, invalid, not_followed_on_cpu, not_on_cpu},
 };
 use crate::{
     capture::{
@@ -133,7 +133,7 @@ pub(super) struct Job<'a> {
     pub(super) terms: TermSelection,
 }
 
-pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
+pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     let sources: Vec<_> = match arguments.scenes.as_slice() {
         [] => vec![Source::Default],
         scenes => scenes.iter().map(|s| Source::of(Some(s))).collect(),
@@ -141,7 +141,10 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     if sources.iter().filter(|s| **s == Source::Stdin).count() > 1 {
         return Err(Failure::Usage("- can be given once: standard input holds one scene".to_owned()));
     }
-    let changes = Changes::new(arguments, registry)?;
+    if let Some(id) = &arguments.reflection {
+        workshop.need(id);
+    }
+    let changes = Changes::new(arguments, &workshop.registry)?;
     let files = files(&sources, arguments.output.as_deref())?;
     let read = inputs(sources.iter().filter_map(Source::file), registry);
     files.iter().try_for_each(|file| outputs::picture(file, &read))?;
@@ -150,7 +153,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     let mut scenes = Vec::with_capacity(sources.len());
     let mut problems = Vec::new();
     for source in &sources {
-        match source.open(registry, options) {
+        match source.open(workshop, options) {
             Ok(scene) => scenes.push(changes.apply(scene)),
             Err(Failure::Invalid(problem)) => problems.push(problem),
             Err(other) => return Err(other),
@@ -160,6 +163,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         return Err(Failure::Invalid(problems.join("\n")));
     }
 
+    let registry = &workshop.registry;
     for scene in &scenes {
         drawable(registry, scene)?;
     }

@@ -12,7 +12,7 @@ use crate::{
     scene::{
         Scene,
         error::LoadError,
-        load::{self, Defaults, Stamp},
+        load::{Defaults, Stamp},
     },
 };
 
@@ -76,12 +76,11 @@ pub struct ViewOptions {
 }
 
 pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Outcome {
-    let workshop = places.open_for_window()?;
-    let registry = &workshop.registry;
+    let mut workshop = places.open_for_window(options)?;
     let source = Source::of(arguments.scene.as_deref());
     let Arguments { exit_after, capture, size, .. } = arguments;
     if let Some(capture) = &capture {
-        outputs::picture(capture, &outputs::inputs(source.file(), registry))?;
+        outputs::picture(capture, &outputs::inputs(source.file(), &workshop.registry))?;
         let _ = files::tidy(files::folder_of(capture));
     }
     let warnings = match &source {
@@ -102,7 +101,8 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         size: size.map(|s| [s.width, s.height]),
         exit_after,
         capture,
-        registry: registry.clone(),
+        // The scene decides how much of it is read.
+        registry: Registry::default(),
         folders: workshop.folders.clone(),
         trial_program: super::trial::program(),
         warnings,
@@ -111,10 +111,13 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
     };
     match source {
         // What can be read only once cannot be followed or saved to.
-        Source::File(ref path) if files::is_stream(path) => view.scene = source.open(registry, options)?,
-        Source::File(path) => {
+        Source::File(ref path) if files::is_stream(path) => {
+            view.scene = source.open(&mut workshop, options)?;
+        }
+        Source::File(ref path) => {
+            let path = path.clone();
             meant_command(&path)?;
-            match load::file(&path, registry, options.defaults()) {
+            match source.read(&mut workshop, options.defaults()) {
                 // The window asks what there is to ask, with a dialog.
                 Ok(loaded) if !loaded.missing.is_empty() && options.defaults() == Defaults::Ask => {
                     view.open = Some(path);
@@ -134,8 +137,9 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
                 Err(error) => return Err(Failure::Invalid(error.to_string())),
             }
         }
-        Source::Default | Source::Stdin => view.scene = source.open(registry, options)?,
+        Source::Default | Source::Stdin => view.scene = source.open(&mut workshop, options)?,
     }
+    view.registry = workshop.registry;
     crate::window::view(view)
 }
 

@@ -2,6 +2,7 @@
 //! can be wrong (R2, R5, R6) and a question for what is missing (R3).
 
 use std::{
+    collections::BTreeSet,
     fmt,
     hash::{DefaultHasher, Hash as _, Hasher as _},
     io::Read,
@@ -99,13 +100,12 @@ pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<
     from_bytes(&bytes(path)?, &path.display().to_string(), registry, defaults)
 }
 
-/// Reads a scene from what a command line names: a file, or a stream such as `/dev/stdin`.
+/// Reads the content of what a command line names: a file, or a stream such as `/dev/stdin`.
 ///
 /// # Errors
 /// [`LoadError`]; its text names it as `path` does.
-pub fn input(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
-    let bytes = files::read_input(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e))?;
-    from_bytes(&bytes, &path.display().to_string(), registry, defaults)
+pub fn input_bytes(path: &FilePath) -> Result<Vec<u8>, LoadError> {
+    files::read_input(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e))
 }
 
 /// Reads the content of a scene file, whatever it is.
@@ -126,6 +126,22 @@ pub fn reader(
     registry: &Registry,
     defaults: Defaults,
 ) -> Result<Loaded, LoadError> {
+    from_bytes(&all_of(from, name)?, name, registry, defaults)
+}
+
+/// The ids of the reflection models that a scene names, whether they are known or not and whatever else is wrong
+/// with it; none of what is not JSON.
+#[must_use]
+pub fn models_named(bytes: &[u8], registry: &Registry) -> BTreeSet<String> {
+    let text = decode(bytes, "").ok().filter(|text| check_syntax(text).is_ok());
+    text.map_or_else(BTreeSet::new, |text| read::models_named(text, registry))
+}
+
+/// Reads the content of a stream, which can be read once.
+///
+/// # Errors
+/// [`LoadError`] when it is too large for a scene, or cannot be read.
+pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
     let failed = |source| LoadError::Io { name: name.to_owned(), source };
     let mut bytes = Vec::new();
     // A stream does not say how long it is.
@@ -133,7 +149,7 @@ pub fn reader(
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { name: name.to_owned() });
     }
-    from_bytes(&bytes, name, registry, defaults)
+    Ok(bytes)
 }
 
 /// Reads a scene from the content of a file; `name` is what messages call it.

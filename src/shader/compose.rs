@@ -279,6 +279,11 @@ fn import_of(line: &str) -> Option<&str> {
     (rest.trim().is_empty() || rest.trim().starts_with("//") || rest.trim() == ";").then_some(name)
 }
 
+/// The paths of the files that a text asks for by `#import`; `path` is its own.
+pub(crate) fn imports_of<'a>(path: &'a str, text: &'a str) -> impl Iterator<Item = String> + 'a {
+    text.lines().filter_map(import_of).filter_map(move |name| beside(path, name))
+}
+
 /// The path of a file that another one names, from the folder of that one; none if it leads out.
 fn beside(from: &str, name: &str) -> Option<String> {
     let mut parts: Vec<_> = from.split('/').collect();

@@ -37,7 +37,7 @@ pub(super) fn open(world: &mut World, folders: &Folders) {
     let broken: Vec<_> = folders
         .models
         .iter()
-        .flat_map(|folder| own::files_in(folder).unwrap_or_default())
+        .flat_map(|folder| own::folder::files_in(folder).unwrap_or_default())
         .chain(unreadable.into_iter().map(|(path, _)| path))
         .collect();
     world.resource_mut::<LiveShaders>().start(sources, folders.clone());
@@ -61,7 +61,7 @@ pub(super) fn move_to(world: &mut World, folder: &Path) {
         None => {
             if let Some(models) = &folders.models {
                 // What is wrong with them is told when they are looked at.
-                let _ = own::read_folder(models, &mut registry, true);
+                let _ = own::folder::declare_folder(models, &mut registry);
             }
         }
     }

@@ -11,6 +11,7 @@ mod gpu_parity;
 mod hot_swap;
 mod interpret;
 mod laws;
+mod own_folder;
 mod own_models;
 mod panels;
 mod pictures;
