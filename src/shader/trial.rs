@@ -35,7 +35,7 @@ use naga_oil::compose::{ComposerError, ComposerErrorInner, ErrSource};
 use super::{
     check::{self, ShaderProblem, locate, reason},
     compose::Composed,
-    pitfall,
+    limits, pitfall,
 };
 
 /// The mark in the pipelines of our materials, by which one is found as an example.
@@ -137,6 +137,9 @@ impl Bench {
         if let Some(problem) = &composed.problem {
             return Verdict::Bad(problem.clone());
         }
+        if let Err(problem) = limits::check_text(composed) {
+            return Verdict::Bad(problem);
+        }
         let example = self.example.clone();
         let example = example.lock();
         let Some(example) = example.as_ref() else { return Verdict::NotYet };
@@ -172,7 +175,7 @@ impl Bench {
                 continue;
             }
             let module = compose(cache, composed, defs, tools)?;
-            if let Some((span, message)) = pitfall::find(&module) {
+            if let Some((span, message)) = limits::check_module(&module).or_else(|| pitfall::find(&module)) {
                 let offset = offset(&module, &composed.text);
                 return Err(located(composed, offset, [span].into_iter(), message));
             }
