@@ -7,6 +7,7 @@ mod command_line;
 mod extension;
 mod golden;
 mod gpu_parity;
+mod hostile;
 mod hot_swap;
 mod interpret;
 mod laws;
