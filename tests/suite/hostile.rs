@@ -2,7 +2,6 @@
 //! and the limit, within a bound on time and memory, and what else is in the folder goes on working.
 
 use std::{
-    fmt::Write as _,
     fs,
     io::Read as _,
     path::{Path, PathBuf},
@@ -262,17 +261,6 @@ fn at_the_limit() -> Vec<(&'static str, String)> {
         model("", &format!("let y = {}x{};", open.repeat(count), close.repeat(count)))
     };
     let n = most.nesting - 2;
-    let mut blocks = String::from("var y = x;\n    ");
-    for i in 0..most.blocks - 4 {
-        let _ = match i % 3 {
-            0 => write!(blocks, "if y > {i}.0 {{ "),
-            1 => write!(blocks, "switch u32(y) {{ case {i}u, 100u: {{ "),
-            _ => write!(blocks, "{{ "),
-        };
-        if i % 3 == 1 && i + 6 > most.blocks {
-            break;
-        }
-    }
     let ifs = |inner: &str| {
         let count = most.blocks - 3;
         let open = repeated(count, |i| format!("if y > -{i}.0 {{ "));
@@ -350,6 +338,16 @@ fn at_the_limit() -> Vec<(&'static str, String)> {
             ),
         ),
         ("switch", switch(most.cases - 1)),
+        ("doubling", doubling(11)),
+        ("statements", model("", &format!("var y = x;\n{}", "    y += sin(y) * x;\n".repeat(5000)))),
+        (
+            "variables",
+            model(
+                "var<private> a: array<vec4<f32>, 1000>;\nvar<private> b: array<vec4<f32>, 1000>;",
+                "a[u32(abs(x) * 999.0)] = v.xyzx;\n    b[u32(abs(v.x) * 999.0)] = l.xyzx;\n    \
+                 let y = a[u32(abs(x) * 998.0)].x + b[7].y;",
+            ),
+        ),
         (
             "table",
             model(

@@ -318,3 +318,106 @@ fn resource(tokens: &[Token], i: usize, binds: impl Fn(usize) -> bool) -> Result
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::limits::LIMITS;
+
+    fn said(text: &str) -> String {
+        let small = crate::shader::limits::Limits { nesting: 3, depth: 8, blocks: 3, cases: 2, ..LIMITS };
+        match check(text, &small, |_| false) {
+            Ok(()) => String::new(),
+            Err(Refusal::At(at, what)) => format!("{at}: {what}"),
+            Err(Refusal::Whole(what)) => what,
+        }
+    }
+
+    #[test]
+    fn depth_is_that_of_trees_and_brackets_and_not_length() {
+        for text in [
+            "fn f() { let y = ((x)); }",
+            "fn f() { let y = a + b + c + d + e + f + g; }",
+            "fn f() { let y = array(a + b + c + d, a + b + c + d, a + b + c + d); }",
+            "fn f() { let y = a + b + c + d; let z = a + b + c + d; }",
+            "fn f() { if a < b { } if a < b { } if a < b { } if c < d { } }",
+            "fn f() { let y = array<vec2<f32>, 2>(vec2<f32>(a), vec2<f32>(b)); }",
+            "fn f() { let y = a<<b; let z = a >= b; { { x = 1; } } }",
+            "fn f() { switch x { case 1: { } case 2: { } default: { } } switch x { case 1, 2: { } } }",
+            "fn f() { if a { } else if b { } else { } if c { } else if d { } }",
+            "/* ((((( /* ((( */ ((( */ fn f() { } // (((((((",
+        ] {
+            assert_eq!(said(text), "", "{text}");
+        }
+        for (text, at, what) in [
+            ("fn f() { let y = ((((x)))); }", 20, "nested 4 brackets deep; at most 3"),
+            ("fn f() { let y = a[b[c[d[0]]]]; }", 24, "nested 4 brackets"),
+            ("fn f() { let y = a<b<c<d<e>>>>(); }", 24, "nested 4 brackets"),
+            ("fn f() { let y = a<1, b<1, c<1, d<1, e>>>>(); }", 33, "nested 4 brackets"),
+            ("fn f() { let y = a+b+c+d+e+f+g+h+i; }", 32, "has 9 operators"),
+            ("fn f() { let y = ---------x; }", 25, "has 9 operators"),
+            ("fn f() { let y = x.x.x.x.x.x.x.x.x; }", 32, "has 9 operators"),
+            ("fn f() { let y = a + (b + (c + d + e + f)); }", 34, "has 9 operators"),
+            ("fn f() { let y = (a + (b + c + d + e)) + f; }", 37, "has 9 operators"),
+            ("fn f() { { { { } } } }", 13, "nested 4 deep; at most 3"),
+            ("fn f() { if a { } else if b { } else if c { } else if d { } }", 51, "3th `else if`"),
+            ("fn f() { switch x { case 1, 2, 3: { } } }", 29, "more than 2 cases"),
+            ("fn f() { switch x { case 1: { } case 2: { } case 3: { } } }", 44, "more than 2 cases"),
+        ] {
+            let said = said(text);
+            assert!(said.starts_with(&format!("{at}: ")) && said.contains(what), "{text}\n{said}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_hidden_by_what_the_preprocessor_leaves_out() {
+        assert_eq!(said("#ifdef A\nfn f() { x = (1); }\n#else\nfn f() { }\n#endif\n"), "");
+        assert_eq!(said("fn f() {\n#ifdef A\n x = (1);\n#endif\n}"), "");
+        for (text, what) in [
+            ("fn f() { x = (\n#ifdef A\n)\n#endif\n1); }", "before the condition"),
+            ("fn f() {\n#ifdef A\n}\n#endif\n}", "before the condition"),
+            ("#ifdef A\nfn f() { x = (\n#else\n#endif", "must close its own"),
+            ("#ifdef A\nfn f() { }", "has no #endif"),
+            ("fn f() { }\n#endif", "no condition"),
+            ("/* */ # ifdef A\nfn f() { }", "has no #endif"),
+            ("#ifdef A /*\n#endif */", "has no #endif"),
+            ("#define A \"\n/* \"", "not closed"),
+            ("fn f() { x = \"a\"; }", "no quotation marks"),
+            ("// a\u{2028}b", "ends the comment"),
+            ("// a\rb", "ends the comment"),
+            ("fn\u{85}f() { }", "invisible"),
+            ("fn f\u{a0}() { }", "invisible"),
+        ] {
+            assert!(said(text).contains(what), "{text:?}\n{}", said(text));
+        }
+        assert_eq!(said("// a\r\n/* \u{2028} */ fn ü() { }"), "");
+    }
+
+    #[test]
+    fn constants_and_types_are_counted_as_they_are_written_out() {
+        for text in [
+            "const N = 8; const M = N * 2; fn f() { var a: array<f32, M>; var b: array<vec2<f32>, 2 * N,>; }",
+            "alias T = array<f32, 64>; struct S { a: T, b: array<T, 8> } fn f(s: S) -> T { return s.a; }",
+            "fn g() { } fn f() { g(); const N = 4; var a: array<f32, u32(N)>; }",
+        ] {
+            assert_eq!(said(text), "", "{text}");
+        }
+        let chain: String = (0..70).map(|i| format!("fn g{}() {{ g{i}(); }} ", i + 1)).collect();
+        let doubled: String =
+            (0..20).map(|i| format!("const A{} = array(A{i}, A{i}); ", i + 1)).rev().collect();
+        for (text, what) in [
+            ("fn f() { var a: array<f32, 5000>; }", "up to 5000 elements"),
+            ("const N = 100; fn f() { var a: array<f32, N * N>; }", "elements"),
+            ("fn f() { var a: array<f32, 1 << 20>; }", "cannot be told"),
+            ("fn f() { var a: array<f32, u32(1.0 / 0.00001)>; }", "cannot be told"),
+            ("fn f() { let y = a[0]; } const a = array<array<array<f32, 99>, 99>, 99>();", "words when all"),
+            ("alias A = array<f32, 999>; alias B = array<A, 999>;", "words when all"),
+            (&chain, "a chain of 65"),
+            (&doubled, "words when all"),
+        ] {
+            assert!(said(text).contains(what), "{text}\n{}", said(text));
+        }
+        // What uses itself is told by the parser.
+        assert_eq!(said("const A = B; const B = A; fn f() { f(); }"), "");
+    }
+}
