@@ -3,7 +3,7 @@
 
 use std::{
     fs,
-    io::Read as _,
+    io::Read,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     thread,
@@ -120,7 +120,7 @@ fn corpus() -> Vec<Case> {
                     repeated(1600, |i| format!(" else if x > {i}.0 {{ y = {i}.0; }}\n"))
                 ),
             ),
-            "`else if` of its chain",
+            "`else if` is 65 blocks deep",
         ),
         case(
             "blocks_1000",
@@ -239,19 +239,23 @@ fn said(id: &str, text: &str) -> Result<(), Vec<ShaderProblem>> {
 
 #[test]
 fn every_hostile_model_is_refused_with_its_place_and_the_limit() {
+    let mut wrong = Vec::new();
     for Case { id, text, said: expected } in corpus() {
         let start = Instant::now();
-        let problems = said(id, &text).expect_err(id);
+        let Err(problems) = said(id, &text) else {
+            wrong.push(format!("{id} is not refused"));
+            continue;
+        };
         let elapsed = start.elapsed();
         let [problem] = &problems[..] else { panic!("{id}: {problems:?}") };
         let told = problem.to_string();
-        assert!(told.contains(expected), "{id}: {told}");
-        assert_eq!(problem.file, format!("models/{id}.wgsl"), "{told}");
         let line = text.lines().nth(problem.line - 1).unwrap_or_default();
-        assert_eq!(problem.source, line, "{id}: {told}");
-        assert!(elapsed < PATIENCE, "{id} takes {elapsed:?}");
-        eprintln!("{id}: {elapsed:?}");
+        let placed = problem.file == format!("models/{id}.wgsl") && problem.source == line;
+        if !told.contains(expected) || !placed || elapsed > PATIENCE {
+            wrong.push(format!("{id}, {elapsed:?}: {told}"));
+        }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// Models that go as far as is allowed, in every direction in which something calls itself.
@@ -445,7 +449,7 @@ fn watched(folder: &Path, arguments: &[&str], patience: Duration) -> Watched {
     Watched { status: status.code(), out, err, memory }
 }
 
-fn pump(from: Option<impl std::io::Read + Send + 'static>) -> thread::JoinHandle<String> {
+fn pump(from: Option<impl Read + Send + 'static>) -> thread::JoinHandle<String> {
     thread::spawn(move || {
         let mut bytes = Vec::new();
         if let Some(mut from) = from {

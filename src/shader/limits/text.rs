@@ -145,11 +145,11 @@ impl Walk<'_> {
                 let follows = before.is_some_and(|b| b.text == "else");
                 let group = self.innermost();
                 group.chain = if follows { group.chain + 1 } else { 0 };
-                let (chain, blocks) = (group.chain, group.nesting + group.chain);
+                let blocks = group.nesting + group.chain + 1;
                 let most = self.limits.blocks;
                 if follows && blocks > most {
                     let what = format!(
-                        "this is the {chain}th `else if` of its chain, {blocks} blocks deep; at most {most} are allowed"
+                        "this `else if` is {blocks} blocks deep, each in the one before; at most {most} are allowed; a switch is not nested"
                     );
                     return Err((token.at, what));
                 }
@@ -198,7 +198,7 @@ impl Walk<'_> {
         if let Some(mut closed) = self.groups.pop() {
             closed.next();
             let group = self.innermost();
-            group.deepest = group.deepest.max(closed.worst + 1);
+            group.deepest = group.deepest.max(closed.worst);
             let depth = group.above + group.operators + group.deepest;
             return self.check_depth(token, depth);
         }
@@ -349,22 +349,23 @@ mod tests {
         ] {
             assert_eq!(said(text), "", "{text}");
         }
-        for (text, at, what) in [
-            ("fn f() { let y = ((((x)))); }", 20, "nested 4 brackets deep; at most 3"),
-            ("fn f() { let y = a[b[c[d[0]]]]; }", 24, "nested 4 brackets"),
-            ("fn f() { let y = a<b<c<d<e>>>>(); }", 24, "nested 4 brackets"),
-            ("fn f() { let y = a<1, b<1, c<1, d<1, e>>>>(); }", 33, "nested 4 brackets"),
-            ("fn f() { let y = a+b+c+d+e+f+g+h+i; }", 32, "has 9 operators"),
-            ("fn f() { let y = ---------x; }", 25, "has 9 operators"),
-            ("fn f() { let y = x.x.x.x.x.x.x.x.x; }", 32, "has 9 operators"),
-            ("fn f() { let y = a + (b + (c + d + e + f)); }", 34, "has 9 operators"),
-            ("fn f() { let y = (a + (b + c + d + e)) + f; }", 37, "has 9 operators"),
-            ("fn f() { { { { } } } }", 13, "nested 4 deep; at most 3"),
-            ("fn f() { if a { } else if b { } else if c { } else if d { } }", 51, "3th `else if`"),
-            ("fn f() { switch x { case 1, 2, 3: { } } }", 29, "more than 2 cases"),
-            ("fn f() { switch x { case 1: { } case 2: { } case 3: { } } }", 44, "more than 2 cases"),
+        for (text, found, what) in [
+            ("fn f() { let y = ((((x)))); }", "(x)", "nested 4 brackets deep; at most 3"),
+            ("fn f() { let y = a[b[c[d[0]]]]; }", "[0]", "nested 4 brackets"),
+            ("fn f() { let y = a<b<c<d<e>>>>(); }", "<e>", "nested 4 brackets"),
+            ("fn f() { let y = a<1, b<1, c<1, d<1, e>>>>(); }", "<1, e>", "nested 4 brackets"),
+            ("fn f() { let y = a+b+c+d+e+f+g+h+i+j; }", "+j", "has 9 operators"),
+            ("fn f() { let y = - - - - - - - - -x; }", "-x", "has 9 operators"),
+            ("fn f() { let y = x.x.x.x.x.x.x.x.x.y; }", ".y", "has 9 operators"),
+            ("fn f() { let y = a + (b + (c + d + e + f + g)); }", "+ g", "has 9 operators"),
+            ("fn f() { let y = (a + (b + c + d + e + f)) + g; }", "+ g", "has 9 operators"),
+            ("fn f() { { { { } } } }", "{ } } } }", "nested 4 deep; at most 3"),
+            ("fn f() { if a { } else if b { } else if c { } }", "if c", "4 blocks deep"),
+            ("fn f() { switch x { case 1, 2, 3: { } } }", ", 3", "more than 2 cases"),
+            ("fn f() { switch x { case 1: { } case 2: { } case 3: { } } }", "case 3", "more than 2 cases"),
         ] {
             let said = said(text);
+            let at = text.find(found).expect("in the text");
             assert!(said.starts_with(&format!("{at}: ")) && said.contains(what), "{text}\n{said}");
         }
     }
