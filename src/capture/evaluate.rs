@@ -130,6 +130,7 @@ pub struct Evaluator {
     row: Buffer,
     /// The model on the CPU, if it is interpreted there.
     on_cpu: Option<Arc<dyn Surface>>,
+    patience: Duration,
 }
 
 impl Evaluator {
@@ -177,7 +178,16 @@ impl Evaluator {
         if let Some(error) = block_on(scope.pop()) {
             return Err(GpuError::Invalid(refused(&composed, &error)));
         }
-        let mut evaluator = Self { model: model.clone(), device, queue, layout, pipeline, row, on_cpu: None };
+        let mut evaluator = Self {
+            model: model.clone(),
+            device,
+            queue,
+            layout,
+            pipeline,
+            row,
+            on_cpu: None,
+            patience: PATIENCE,
+        };
         evaluator.set(&Values::default(), Encoding::Srgb);
         Ok(evaluator)
     }
@@ -250,7 +260,7 @@ impl Evaluator {
         }
         encoder.copy_buffer_to_buffer(&output, 0, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
-        Ok(read_back(device, &staging, PATIENCE)?
+        Ok(read_back(device, &staging, self.patience)?
             .chunks_exact(ANSWER_BYTES)
             .map(|b| Terms {
                 ambient: vector(&b[..12]),
@@ -258,5 +268,23 @@ impl Evaluator {
                 specular: vector(&b[32..44]),
             })
             .collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::Registry;
+
+    #[test]
+    fn a_batch_that_takes_too_long_is_not_waited_for() {
+        let registry = Registry::builtin();
+        let model = registry.model("disney").expect("built in");
+        let mut evaluator = Evaluator::new(&Sources::default(), model).expect("a Vulkan driver");
+        let pairs = vec![(Vec3::Z, Vec3::new(0.6, 0.0, 0.8)); BATCH + 1];
+        assert_eq!(evaluator.evaluate(&pairs).expect("in time").len(), pairs.len());
+        evaluator.patience = Duration::from_micros(1);
+        let late = evaluator.evaluate(&pairs).expect_err("no driver is as fast");
+        assert!(matches!(late, GpuError::Stuck(_)), "{late}");
     }
 }
