@@ -12,8 +12,9 @@ use lights_camera_models::{
     registry::Registry,
     shader::{
         check::validate,
-        compose::{Sources, compose_evaluation},
+        compose::{Composed, Sources, compose, compose_evaluation},
         interpret::Program,
+        limits::{check_module, check_text},
     },
 };
 
@@ -83,5 +84,24 @@ fn interpreted(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, models, interpreted);
+/// What the limits cost when a model is read, beside all that checks it: the text and the module of a shader that
+/// draws, and one that is as long as a file may be.
+fn limited(c: &mut Criterion) {
+    let registry = Registry::builtin();
+    let model = registry.model("disney").expect("built in");
+    let composed = compose_evaluation(&Sources::default(), model);
+    let module = validate(&composed).expect("valid WGSL");
+    let mode = &registry.modes()[0];
+    let drawn = compose(&Sources::default(), model, mode, registry.lights());
+    let mut group = c.benchmark_group("limits");
+    group.bench_function("text of a shader that draws", |b| b.iter(|| check_text(black_box(&drawn))));
+    group.bench_function("text of a model", |b| b.iter(|| check_text(black_box(&composed))));
+    group.bench_function("module of a model", |b| b.iter(|| check_module(black_box(&module))));
+    group.bench_function("all checks of a model", |b| b.iter(|| validate(black_box(&composed))));
+    let long = Composed { text: "a = b + c;\n".repeat(90_000), ..Composed::default() };
+    group.bench_function("text of a mebibyte", |b| b.iter(|| check_text(black_box(&long))));
+    group.finish();
+}
+
+criterion_group!(benches, models, interpreted, limited);
 criterion_main!(benches);

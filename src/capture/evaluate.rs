@@ -14,10 +14,12 @@ use bevy::render::{
 use bevy::tasks::block_on;
 use glam::{DVec3, Vec3};
 
+use std::{sync::Arc, time::Duration};
+
 use super::gpu::{GpuError, device, read_back, vector};
 use crate::{
-    optics::{Terms, albedo::directional_in_batches, colour::Encoding},
-    reflection::{ModelEntry, parameter::Values},
+    optics::{Frame, Terms, albedo::directional_in_batches, colour::Encoding},
+    reflection::{ModelEntry, Surface, laws::Random, parameter::Values},
     shader::{
         check,
         compose::{Sources, compose_evaluation},
@@ -79,6 +81,39 @@ const PAIR_BYTES: usize = 32;
 /// Bytes of `Terms` in `terms.wgsl`: three vec3, each padded to 16.
 const ANSWER_BYTES: usize = 48;
 
+/// As many pairs are asked for at a time, so that the bound on time is one on a part of the work.
+const BATCH: usize = 1 << 16;
+/// So long a batch may take; a slow model takes a second on two cores.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// So many pairs of a batch are asked on the CPU first.
+const SAMPLE: usize = 32;
+
+/// Whether a model with these values comes to an end, as far as a few directions tell: nothing can stop a GPU, but
+/// the interpreter stops itself. Models that are not interpreted do.
+///
+/// # Errors
+/// [`GpuError::Endless`].
+pub fn check_that_it_ends(model: &ModelEntry, values: &Values, encoding: Encoding) -> Result<(), GpuError> {
+    if !model.is_interpreted() {
+        return Ok(());
+    }
+    let mut random = Random(0xe4d);
+    let axes = [Vec3::Z, Vec3::NEG_Z, Vec3::X, Vec3::Y];
+    let mut pairs: Vec<_> = axes.iter().flat_map(|l| axes.map(|v| (*l, v))).collect();
+    pairs.extend((0..SAMPLE).map(|_| (random.direction(), random.direction())));
+    ends(model, model.instantiate(values, encoding).as_ref(), &pairs)
+}
+
+fn ends(model: &ModelEntry, surface: &dyn Surface, pairs: &[(Vec3, Vec3)]) -> Result<(), GpuError> {
+    for (l, v) in pairs.iter().step_by(pairs.len().div_ceil(2 * SAMPLE).max(1)) {
+        surface.response(*l, *v, &Frame::LOCAL);
+        if model.runs_too_long() {
+            return Err(GpuError::Endless(model.declaration.id));
+        }
+    }
+    Ok(())
+}
+
 /// A model on the GPU, ready to be asked again and again with one set of parameters after the other.
 pub struct Evaluator {
     model: ModelEntry,
@@ -87,6 +122,9 @@ pub struct Evaluator {
     layout: BindGroupLayout,
     pipeline: ComputePipeline,
     row: Buffer,
+    /// The model on the CPU, if it is interpreted there.
+    on_cpu: Option<Arc<dyn Surface>>,
+    patience: Duration,
 }
 
 impl Evaluator {
@@ -134,22 +172,37 @@ impl Evaluator {
         if let Some(error) = block_on(scope.pop()) {
             return Err(GpuError::Invalid(refused(&composed, &error)));
         }
-        Ok(Self { model: model.clone(), device, queue, layout, pipeline, row })
+        let mut evaluator = Self {
+            model: model.clone(),
+            device,
+            queue,
+            layout,
+            pipeline,
+            row,
+            on_cpu: None,
+            patience: PATIENCE,
+        };
+        evaluator.set(&Values::default(), Encoding::Srgb);
+        Ok(evaluator)
     }
 
     /// Answers with these parameters from now on.
     pub fn set(&mut self, values: &Values, encoding: Encoding) {
         self.row = row(&self.device, &self.model, values, encoding);
+        self.on_cpu = self.model.is_interpreted().then(|| self.model.instantiate(values, encoding));
     }
 
     /// The responses to pairs of directions, in as many passes as they need.
     ///
     /// # Errors
-    /// When the answers cannot be copied from the GPU.
+    /// When the answers cannot be copied from the GPU, or when the model does not come to an end.
     pub fn evaluate(&self, pairs: &[(Vec3, Vec3)]) -> Result<Vec<Terms>, GpuError> {
         let limit = self.device.limits().max_storage_buffer_binding_size as usize / ANSWER_BYTES;
         let mut answers = Vec::with_capacity(pairs.len());
-        for chunk in pairs.chunks(limit.min(65_535 * 64)) {
+        for chunk in pairs.chunks(limit.min(BATCH)) {
+            if let Some(surface) = &self.on_cpu {
+                ends(&self.model, surface.as_ref(), chunk)?;
+            }
             answers.extend(self.run(chunk)?);
         }
         Ok(answers)
@@ -215,7 +268,7 @@ impl Evaluator {
         }
         encoder.copy_buffer_to_buffer(&output, 0, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
-        Ok(read_back(device, &staging)?
+        Ok(read_back(device, &staging, self.patience)?
             .chunks_exact(ANSWER_BYTES)
             .map(|b| Terms {
                 ambient: vector(&b[..12]),
@@ -223,5 +276,23 @@ impl Evaluator {
                 specular: vector(&b[32..44]),
             })
             .collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::Registry;
+
+    #[test]
+    fn a_batch_that_takes_too_long_is_not_waited_for() {
+        let registry = Registry::builtin();
+        let model = registry.model("disney").expect("built in");
+        let mut evaluator = Evaluator::new(&Sources::default(), model).expect("a Vulkan driver");
+        let pairs = vec![(Vec3::Z, Vec3::new(0.6, 0.0, 0.8)); BATCH + 1];
+        assert_eq!(evaluator.evaluate(&pairs).expect("in time").len(), pairs.len());
+        evaluator.patience = Duration::from_micros(1);
+        let late = evaluator.evaluate(&pairs).expect_err("no driver is as fast");
+        assert!(matches!(late, GpuError::Stuck(_)), "{late}");
     }
 }

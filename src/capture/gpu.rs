@@ -31,6 +31,7 @@ use bevy::{
 };
 use glam::Vec3;
 use thiserror::Error;
+use wgpu::PollError;
 
 use crate::{
     app::{ScenePlugin, ShownTerms},
@@ -60,6 +61,14 @@ pub enum GpuError {
     /// A shader is wrong, and where is known.
     #[error("a shader is not valid: {0}")]
     Invalid(Box<ShaderProblem>),
+    /// A model does not come to an end, as the CPU found before the GPU was asked.
+    #[error(
+        "{0} was not run on the GPU: on the CPU, which interprets it, a function runs too long; a loop may have no end"
+    )]
+    Endless(&'static str),
+    /// The GPU does not come to an end.
+    #[error("the GPU did not finish within {0:?}; a loop in a shader may have no end")]
+    Stuck(Duration),
     /// The picture could not be copied from the GPU.
     #[error("the picture could not be copied from the GPU: {0}")]
     Copy(String),
@@ -349,7 +358,8 @@ impl GpuRenderer {
             Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 },
         );
         queue.submit([encoder.finish()]);
-        let bytes = read_back(device, staging)?;
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        let bytes = read_back(device, staging, PATIENCE + Duration::from_micros(pixels))?;
         Ok(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
     }
 
@@ -370,14 +380,22 @@ impl GpuRenderer {
     }
 }
 
-/// The bytes of a buffer to which everything submitted has been copied.
-pub(super) fn read_back(device: &RenderDevice, staging: &Buffer) -> Result<Vec<u8>, GpuError> {
+/// The bytes of a buffer to which everything submitted has been copied, if that is done in time.
+pub(super) fn read_back(
+    device: &RenderDevice,
+    staging: &Buffer,
+    patience: Duration,
+) -> Result<Vec<u8>, GpuError> {
     let failed = |e: &dyn std::fmt::Display| GpuError::Copy(e.to_string());
     let (sender, receiver) = std::sync::mpsc::channel();
     staging.slice(..).map_async(MapMode::Read, move |result| {
         let _ = sender.send(result);
     });
-    device.poll(PollType::wait_indefinitely()).map_err(|e| failed(&e))?;
+    match device.poll(PollType::Wait { submission_index: None, timeout: Some(patience) }) {
+        Ok(_) => {}
+        Err(PollError::Timeout) => return Err(GpuError::Stuck(patience)),
+        Err(e) => return Err(failed(&e)),
+    }
     receiver.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
     let bytes = staging.slice(..).get_mapped_range().to_vec();
     staging.unmap();

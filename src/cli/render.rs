@@ -19,11 +19,12 @@ use super::{
 };
 use crate::{
     capture::{
+        evaluate::check_that_it_ends,
         gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
         png,
     },
     files::{Kind, is_descriptor, kind as kind_on_disk, printable},
-    optics::{TermSelection, tone::ToneMapping},
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     reference,
     registry::Registry,
     scene::{Scene, check, error::quoted},
@@ -33,6 +34,8 @@ use crate::{
     },
 };
 
+/// Of so many objects the model is tried on the CPU before the graphics card draws it.
+const MOST_TRIED: usize = 64;
 /// Where pictures go when nothing else is said (CA `RENDERS_DIR`).
 const RENDERS_DIR: &str = "renders";
 
@@ -254,9 +257,15 @@ impl Painter {
     fn on_gpu(&mut self, job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
         let key = (job.width, job.height, job.samples);
         let failed = |e: GpuError| match e {
-            GpuError::Invalid(_) => e.into(),
+            GpuError::Invalid(_) | GpuError::Endless(_) => e.into(),
             e => Failure::NoRenderer(format!("{}: {e}", job.file.display())),
         };
+        // Nothing stops a loop without end on a graphics card.
+        for object in job.scene.objects.iter().take(MOST_TRIED) {
+            if let Some(model) = registry.model(job.scene.model_of(object)) {
+                check_that_it_ends(model, &object.material, Encoding::Srgb).map_err(failed)?;
+            }
+        }
         let renderer = match &mut self.last {
             Some((last, renderer)) if *last == key => renderer,
             slot => {

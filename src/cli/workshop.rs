@@ -214,6 +214,7 @@ impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {
         match error {
             GpuError::Invalid(problem) => Self::Invalid(annotated(&problem, &problem.file)),
+            GpuError::Endless(_) => Self::Invalid(error.to_string()),
             other => Self::NoRenderer(other.to_string()),
         }
     }

@@ -495,6 +495,19 @@ impl ModelEntry {
         self.on_cpu.as_ref().and_then(|on_cpu| on_cpu.trouble())
     }
 
+    /// True if the CPU interprets the model and found that a function does not come to an end. Elsewhere it would not
+    /// either, and nothing could stop it there.
+    #[must_use]
+    pub fn runs_too_long(&self) -> bool {
+        self.on_cpu.as_ref().is_some_and(|on_cpu| on_cpu.runs_too_long())
+    }
+
+    /// True if the CPU interprets the WGSL of the model.
+    #[must_use]
+    pub fn is_interpreted(&self) -> bool {
+        self.on_cpu.is_some()
+    }
+
     /// Whether the model has a lobe of its own whose albedo its shader reads.
     #[must_use]
     pub fn has_lobe(&self) -> bool {

@@ -8,7 +8,7 @@ use naga::{
     valid::{Capabilities, ValidationFlags, Validator},
 };
 
-use super::{compose::Composed, pitfall};
+use super::{compose::Composed, limits, pitfall};
 
 /// What is wrong with a shader, located in the author's file.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -33,7 +33,7 @@ impl fmt::Display for ShaderProblem {
 
 impl std::error::Error for ShaderProblem {}
 
-/// Parses and validates a composed source that has no imports left.
+/// Parses and validates a composed source that has no imports left, if it is within the [`limits`].
 ///
 /// # Errors
 /// The first problem, located in the author's file.
@@ -41,9 +41,20 @@ pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     if let Some(problem) = &composed.problem {
         return Err(problem.clone());
     }
+    limits::check_text(composed)?;
+    limits::on_stack(|| parsed(composed)).unwrap_or_else(|| {
+        let what = "the shader cannot be checked: the parser fails on it; the last change is the cause";
+        Err(locate(composed, None, what.to_owned()))
+    })
+}
+
+fn parsed(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     let module = wgsl::parse_str(&composed.text).map_err(|error| {
         locate(composed, place(composed, error.labels().map(|l| l.0)), error.message().to_owned())
     })?;
+    if let Some((span, message)) = limits::check_module(&module) {
+        return Err(locate(composed, place(composed, [span].into_iter()), message));
+    }
     Validator::new(ValidationFlags::all(), Capabilities::all())
         .validate(&module)
         .map_err(|e| locate(composed, place(composed, e.spans().map(|s| s.0)), reason(e.as_inner())))?;

@@ -133,6 +133,23 @@ impl Composed {
     pub fn depends_on(&self, path: &str) -> bool {
         self.map.has(path) || self.imports.contains(path)
     }
+
+    /// The first line (from 1) of the file that has most of the text.
+    #[must_use]
+    pub fn longest_file(&self) -> Option<usize> {
+        let mut sizes = vec![0; self.map.pieces.len()];
+        let mut piece = 0;
+        for (i, line) in self.text.lines().enumerate() {
+            while self.map.pieces.get(piece + 1).is_some_and(|(first, _)| *first <= i + 1) {
+                piece += 1;
+            }
+            if let Some(size) = sizes.get_mut(piece) {
+                *size += line.len();
+            }
+        }
+        let longest = (0..sizes.len()).max_by_key(|i| sizes[*i])?;
+        Some(self.map.pieces[longest].0)
+    }
 }
 
 /// A text without comments and indentation, which cost the composer time; lines stay where they are.
@@ -242,6 +259,16 @@ impl<'a> Composer<'a> {
             return;
         }
         match self.sources.get(&path) {
+            Some(text) if self.composed.text.len() + text.len() > super::limits::LIMITS.bytes => self
+                .complain(
+                    from,
+                    at,
+                    line,
+                    &format!(
+                        "with this file the shader has more than {} bytes, which are all that are allowed",
+                        super::limits::LIMITS.bytes
+                    ),
+                ),
             Some(text) => self.file(&path, text),
             None => self.complain(from, at, line, &format!("there is no file `{path}` to import")),
         }

@@ -850,8 +850,11 @@ fn built_in(registry: &Registry, path: &str) -> Option<&'static str> {
 /// Whether a text ends in the middle of a function, or is empty.
 fn ends_too_early(text: &str) -> bool {
     let end = text.trim_end().len();
-    match naga::front::wgsl::parse_str(text) {
-        Ok(_) => end == 0,
-        Err(error) => error.labels().any(|(span, _)| span.to_range().is_some_and(|range| range.start >= end)),
+    match super::limits::parse(text) {
+        None => false,
+        Some(Ok(_)) => end == 0,
+        Some(Err(error)) => {
+            error.labels().any(|(span, _)| span.to_range().is_some_and(|range| range.start >= end))
+        }
     }
 }

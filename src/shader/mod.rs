@@ -5,6 +5,7 @@ pub mod check;
 pub mod compose;
 pub mod file;
 pub mod interpret;
+pub mod limits;
 pub mod live;
 pub mod pitfall;
 pub mod report;

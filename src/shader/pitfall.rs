@@ -1,6 +1,11 @@
 //! Mistakes that WGSL allows and a picture does not survive: loops without end and divisions by a
 //! constant zero.
 
+use std::{
+    cell::RefCell,
+    collections::{HashMap, HashSet},
+};
+
 use naga::{
     Block, Expression, Function, GlobalVariable, Handle, Literal, LocalVariable, Module, Span, Statement,
     UnaryOperator,
@@ -61,16 +66,18 @@ impl Search<'_> {
 
     /// The truth of a condition that is always the same.
     fn always(&self, condition: Handle<Expression>) -> Option<bool> {
-        match &self.function.expressions[condition] {
-            Expression::Literal(Literal::Bool(truth)) => Some(*truth),
-            Expression::Unary { op: UnaryOperator::LogicalNot, expr } => self.always(*expr).map(|t| !t),
+        let (mut at, mut negated) = (condition, false);
+        while let Expression::Unary { op: UnaryOperator::LogicalNot, expr } = self.function.expressions[at] {
+            (at, negated) = (expr, !negated);
+        }
+        let literal = match &self.function.expressions[at] {
             Expression::Constant(constant) => {
-                let constant = &self.module.constants[*constant];
-                match self.module.global_expressions[constant.init] {
-                    Expression::Literal(Literal::Bool(truth)) => Some(truth),
-                    _ => None,
-                }
+                &self.module.global_expressions[self.module.constants[*constant].init]
             }
+            other => other,
+        };
+        match literal {
+            Expression::Literal(Literal::Bool(truth)) => Some(*truth != negated),
             _ => None,
         }
     }
@@ -159,7 +166,18 @@ impl Search<'_> {
     }
 
     /// Whether an expression may have another value in the next round of a loop that writes to these variables.
+    /// Values that are used twice are looked at once: a chain of sums of a value with itself would double the work
+    /// with each.
     fn may_change(&self, handle: Handle<Expression>, written: &Written) -> bool {
+        if let Some(known) = written.known.borrow().get(&handle) {
+            return *known;
+        }
+        let may = self.may_change_anew(handle, written);
+        written.known.borrow_mut().insert(handle, may);
+        may
+    }
+
+    fn may_change_anew(&self, handle: Handle<Expression>, written: &Written) -> bool {
         let change = |h: &Handle<Expression>| self.may_change(*h, written);
         match &self.function.expressions[handle] {
             Expression::Literal(_)
@@ -241,8 +259,12 @@ impl Search<'_> {
     /// Notes the variable that a pointer points into; values that are no pointers are passed over.
     fn note(&self, pointer: Handle<Expression>, written: &mut Written) {
         match &self.function.expressions[pointer] {
-            Expression::LocalVariable(variable) => written.locals.push(*variable),
-            Expression::GlobalVariable(variable) => written.globals.push(*variable),
+            Expression::LocalVariable(variable) => {
+                written.locals.insert(*variable);
+            }
+            Expression::GlobalVariable(variable) => {
+                written.globals.insert(*variable);
+            }
             Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => {
                 self.note(*base, written)
             }
@@ -253,10 +275,12 @@ impl Search<'_> {
 
 #[derive(Default)]
 struct Written {
-    locals: Vec<Handle<LocalVariable>>,
-    globals: Vec<Handle<GlobalVariable>>,
+    locals: HashSet<Handle<LocalVariable>>,
+    globals: HashSet<Handle<GlobalVariable>>,
     /// Statements that are not looked into: they may write anywhere.
     anything: bool,
+    /// What was found of values, see [`Search::may_change`].
+    known: RefCell<HashMap<Handle<Expression>, bool>>,
 }
 
 fn is_zero(expressions: &naga::Arena<Expression>, handle: Handle<Expression>, module: &Module) -> bool {

@@ -46,7 +46,7 @@ pub fn judged(composed: &Composed, faces: bool) -> Option<Result<(), Box<ShaderP
 }
 
 /// The text without what a preprocessor is needed for; places stay the same.
-fn standing_alone(text: &str, faces: bool) -> Option<String> {
+pub(super) fn standing_alone(text: &str, faces: bool) -> Option<String> {
     let mut out = String::with_capacity(text.len() + 512);
     let mut stand_ins = String::new();
     // For each open condition whether its lines count.

@@ -8,6 +8,7 @@ mod extension;
 mod files;
 mod golden;
 mod gpu_parity;
+mod hostile;
 mod hot_swap;
 mod interpret;
 mod laws;

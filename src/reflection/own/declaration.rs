@@ -33,6 +33,10 @@ const PART_KEYS: &[&str] = &["term", "text"];
 pub(super) const LONGEST_NAME: usize = 60;
 /// The most brackets of a declaration.
 const MOST_BRACKETS: usize = 600;
+/// The longest declaration, bytes.
+const MOST_BYTES: usize = 64 << 10;
+/// So many mistakes are told; who makes more made one at the beginning.
+const MOST_MISTAKES: usize = 50;
 /// The longest text, characters.
 pub(super) const LONGEST_TEXT: usize = 2000;
 
@@ -63,6 +67,10 @@ pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Ve
         let what = format!("the declaration has more than {MOST_BRACKETS} brackets, which none needs");
         return Err(vec![(comment.start, what)]);
     }
+    if comment.json.len() > MOST_BYTES {
+        let what = format!("the declaration is longer than {} KiB, which none needs to be", MOST_BYTES >> 10);
+        return Err(vec![(comment.start, what)]);
+    }
     let options = ParseOptions {
         allow_comments: true,
         allow_trailing_commas: true,
@@ -90,6 +98,7 @@ pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Ve
         Some(said) if mistakes.is_empty() => Ok(said),
         _ => {
             mistakes.sort_by_key(|(at, _)| *at);
+            mistakes.truncate(MOST_MISTAKES);
             Err(mistakes)
         }
     }
@@ -178,6 +187,9 @@ impl Reader<'_> {
         };
         let mut fields: Vec<(&'static str, &'b ObjectProp<'a>)> = Vec::new();
         for property in &object.properties {
+            if self.mistakes.len() >= MOST_MISTAKES {
+                break;
+            }
             let written = property.name.as_str();
             let at = if path.is_empty() { String::new() } else { format!("{path}.") };
             match known.iter().find(|k| **k == written) {
@@ -323,7 +335,7 @@ impl Reader<'_> {
             return laws;
         };
         let names = laws.list().map(|(name, _)| (name, name));
-        for (i, element) in list.elements.iter().enumerate() {
+        for (i, element) in list.elements.iter().take(MOST_MISTAKES).enumerate() {
             match self.word(element, &format!("laws[{i}]"), "a law", &names) {
                 Some("reciprocal") => laws.reciprocal = true,
                 Some("energy conserving") => laws.energy_conserving = true,
@@ -358,6 +370,9 @@ impl Reader<'_> {
             }
         };
         for (i, element) in list.elements.iter().enumerate() {
+            if self.mistakes.len() >= MOST_MISTAKES {
+                break;
+            }
             let path = format!("parameters[{i}]");
             let parameter = match element {
                 Ast::StringLit(name) => self.shared(element, &path, &name.value),

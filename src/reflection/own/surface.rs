@@ -67,6 +67,12 @@ impl OnCpu {
         }
     }
 
+    /// True if a function did not come to an end when it was last tried.
+    #[must_use]
+    pub fn runs_too_long(&self) -> bool {
+        self.endless.load(Ordering::Relaxed)
+    }
+
     /// The results of a function; zeros when it cannot be run.
     fn run<const N: usize>(
         &self,

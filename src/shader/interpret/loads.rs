@@ -42,8 +42,10 @@ struct Walk<'a> {
     /// When each expression gets its value, and is last used.
     made: Vec<Option<usize>>,
     used: Vec<usize>,
-    /// First and last moment of each loop.
-    loops: Vec<(usize, usize)>,
+    /// The loops in the order in which they begin.
+    loops: Vec<Round>,
+    /// The loop that is being walked through.
+    within: Option<usize>,
     /// For each variable the moments at which it is written.
     written: Vec<Vec<usize>>,
     /// For each variable the first moment at which it is seen other than being written as a whole.
@@ -53,6 +55,13 @@ struct Walk<'a> {
     uses: Vec<(Handle<Expression>, usize)>,
     /// Expressions whose value may be that of another.
     same: Vec<(Handle<Expression>, Handle<Expression>)>,
+}
+
+/// First and last moment of a loop, and the loop around it.
+struct Round {
+    start: usize,
+    end: usize,
+    around: Option<usize>,
 }
 
 impl Walk<'_> {
@@ -124,7 +133,9 @@ impl Walk<'_> {
                 }
             }
             Statement::Loop { body, continuing, break_if } => {
-                let start = self.now;
+                let this = self.loops.len();
+                self.loops.push(Round { start: self.now, end: usize::MAX, around: self.within });
+                self.within = Some(this);
                 self.block(body);
                 self.block(continuing);
                 self.now += 1;
@@ -132,7 +143,8 @@ impl Walk<'_> {
                     self.use_of(*condition);
                 }
                 self.now += 1;
-                self.loops.push((start, self.now));
+                self.within = self.loops[this].around;
+                self.loops[this].end = self.now;
             }
             Statement::Return { value } => {
                 self.returns += 1;
@@ -171,8 +183,18 @@ impl Walk<'_> {
 
     /// The last moment at which a value that was made at one moment and is used at another must last.
     fn lasts(&self, made: usize, used: usize) -> usize {
-        let around = self.loops.iter().filter(|(start, end)| *start >= made && *start < used && used <= *end);
-        around.map(|(_, end)| *end).fold(used, usize::max)
+        // The loop that began last before the use, or one around that.
+        let mut at = self.loops.partition_point(|l| l.start < used).checked_sub(1);
+        let mut last = used;
+        while let Some(round) = at.map(|at| &self.loops[at])
+            && round.start >= made
+        {
+            if used <= round.end {
+                last = last.max(round.end);
+            }
+            at = round.around;
+        }
+        last
     }
 }
 
@@ -219,6 +241,7 @@ pub(super) fn facts(function: &Function) -> Facts {
         made: vec![None; expressions],
         used: vec![0; expressions],
         loops: Vec::new(),
+        within: None,
         written: vec![Vec::new(); variables],
         seen: vec![usize::MAX; variables],
         set: vec![usize::MAX; variables],
@@ -247,7 +270,9 @@ pub(super) fn facts(function: &Function) -> Facts {
             return false;
         };
         let last = walk.used[handle.index()];
-        !walk.written[variable.index()].iter().any(|w| made < *w && *w <= last)
+        // The moments are in order.
+        let written = &walk.written[variable.index()];
+        written.get(written.partition_point(|w| *w <= made)).is_none_or(|w| *w > last)
     };
     let last_is_return = matches!(function.body.last(), Some(Statement::Return { .. }));
     Facts {

@@ -29,7 +29,7 @@ use super::{
 use crate::shader::{
     check::{ShaderProblem, locate},
     compose::Composed,
-    pitfall,
+    limits, pitfall,
 };
 
 impl Bench {
@@ -52,7 +52,7 @@ impl Bench {
                 continue;
             }
             let module = compose(cache, composed, defs, tools)?;
-            if let Some((span, message)) = pitfall::find(&module) {
+            if let Some((span, message)) = limits::check_module(&module).or_else(|| pitfall::find(&module)) {
                 let offset = offset(&module, &composed.text);
                 return Err(located(composed, offset, [span].into_iter(), message));
             }

@@ -25,7 +25,7 @@ use bevy::{
 };
 use naga::Module;
 
-use super::{check::ShaderProblem, compose::Composed};
+use super::{check::ShaderProblem, compose::Composed, limits};
 
 mod attempt;
 mod explain;
@@ -162,6 +162,9 @@ impl Bench {
     ) -> Verdict {
         if let Some(problem) = &composed.problem {
             return Verdict::Bad(problem.clone());
+        }
+        if let Err(problem) = limits::check_text(composed) {
+            return Verdict::Bad(problem);
         }
         if let Some(process) = &self.process {
             match process.ask(composed, faces, row) {

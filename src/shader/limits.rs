@@ -1,0 +1,205 @@
+//! Limits on what users write, so that a short file neither ends nor freezes the program.
+//!
+//! What parses, checks and compiles shaders calls itself as deep as they are nested, writes out every call and
+//! lays out every array; none of it has limits of its own, and a stack that overflows ends the process. So a text
+//! is looked at before it is parsed ([`check_text`]) and a module before it is checked ([`check_module`]), let
+//! alone given to a driver. Everything here takes time in proportion to the length of the text.
+//!
+//! The numbers: threads of Bevy and of rayon have stacks of 2 MiB, on which naga 29 and naga_oil 0.22 go at least
+//! four times as deep as is allowed here (the test `hostile` tries it); what is shipped stays five times below.
+
+use std::thread;
+
+use naga::{
+    Module, Span,
+    front::wgsl::{self, ParseError},
+};
+
+use super::{
+    check::{ShaderProblem, locate},
+    compose::{Composed, EVALUATE, WRAPPER},
+};
+
+mod expansion;
+mod module;
+mod text;
+mod token;
+
+/// What may be written.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// The longest composed text, bytes. The preprocessor has 21 bits for a place in it.
+    pub bytes: usize,
+    /// The most words and signs of a composed text.
+    pub tokens: usize,
+    /// The most statements of a composed text.
+    pub statements: usize,
+    /// The most declarations of a composed text: functions, constants, types, variables.
+    pub declarations: usize,
+    /// How many brackets may stand one in the other, those of template lists too.
+    pub nesting: usize,
+    /// How many operators, calls and brackets may lie on one way through an expression.
+    pub depth: usize,
+    /// How many blocks may stand one in the other; each `else if` is one in the one before.
+    pub blocks: usize,
+    /// The most values of `case` in a switch.
+    pub cases: usize,
+    /// How many declarations may use each other in a chain.
+    pub chain: usize,
+    /// The most elements of an array.
+    pub elements: u64,
+    /// The most words that a constant or a type may stand for when all is written out that it is made of.
+    pub expansion: u64,
+    /// The largest value or variable, bytes.
+    pub value_bytes: u32,
+    /// The most bytes of variables that a function may have, with all that it calls, and that a module may have; and the
+    /// same for constants.
+    pub variable_bytes: u64,
+    /// The most expressions of a function.
+    pub expressions: usize,
+    /// How many expressions may stand one on the other, through `let` as well.
+    pub values: usize,
+    /// The most steps of a function when every call is written out, as drivers do.
+    pub steps: u64,
+    /// How many loops may stand one in the other.
+    pub loops: usize,
+}
+
+/// What may be written in models and other shaders of the lab.
+pub const LIMITS: Limits = Limits {
+    bytes: 1 << 20,
+    tokens: 100_000,
+    statements: 8_192,
+    declarations: 1_024,
+    nesting: 100,
+    depth: 256,
+    blocks: 64,
+    cases: 256,
+    chain: 64,
+    elements: 4_096,
+    expansion: 65_536,
+    value_bytes: 16 << 10,
+    variable_bytes: 64 << 10,
+    expressions: 32_768,
+    values: 1_024,
+    steps: 65_536,
+    loops: 16,
+};
+
+/// The stack for parsing and checking what is within the limits, bytes: twice what threads of Bevy have.
+const STACK: usize = 4 << 20;
+
+/// Checks a composed text before it is parsed.
+///
+/// # Errors
+/// What goes beyond a limit, in terms of the author's file.
+pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
+    let text = &composed.text;
+    let line_of = |at: usize| text.as_bytes()[..at].iter().filter(|b| **b == b'\n').count() + 1;
+    let binds = |at: usize| {
+        let file = composed.map.locate(line_of(at)).map(|(file, _)| file);
+        file.is_none_or(|file| file == WRAPPER.path || file == EVALUATE.path)
+    };
+    text::check(text, &LIMITS, binds).map_err(|refusal| match refusal {
+        text::Refusal::At(at, what) => {
+            let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
+            locate(composed, Some((line_of(at), at - start + 1)), what)
+        }
+        // The longest file is most of it.
+        text::Refusal::Whole(what) => locate(composed, composed.longest_file().map(|line| (line, 1)), what),
+    })
+}
+
+/// Finds the first thing in a module that goes beyond a limit: where, and what. The module need not be valid.
+#[must_use]
+pub fn check_module(module: &Module) -> Option<(Span, String)> {
+    module::check(module, &LIMITS).err()
+}
+
+/// Parses a text by itself that may be anything; none if it goes beyond a limit.
+#[must_use]
+pub fn parse(text: &str) -> Option<Result<Module, ParseError>> {
+    text::check(text, &LIMITS, |_| true).ok()?;
+    on_stack(|| wgsl::parse_str(text))
+}
+
+/// Calls a function on a stack that is large enough for what is within the limits; none if it panics, or if there is
+/// no memory for a stack.
+pub(super) fn on_stack<T: Send>(call: impl FnOnce() -> T + Send) -> Option<T> {
+    thread::scope(|scope| {
+        let thread = thread::Builder::new().name("shader".to_owned()).stack_size(STACK);
+        thread.spawn_scoped(scope, call).ok()?.join().ok()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        reflection::own,
+        registry::Registry,
+        shader::{
+            compose::{compose, compose_evaluation},
+            whole,
+        },
+        shading::Stage,
+    };
+
+    impl Limits {
+        fn divided(self, n: u8) -> Self {
+            let (size, count) = (usize::from(n), u64::from(n));
+            Self {
+                bytes: self.bytes / size,
+                tokens: self.tokens / size,
+                statements: self.statements / size,
+                declarations: self.declarations / size,
+                nesting: self.nesting / size,
+                depth: self.depth / size,
+                blocks: self.blocks / size,
+                cases: self.cases / size,
+                chain: self.chain / size,
+                elements: self.elements / count,
+                expansion: self.expansion / count,
+                value_bytes: self.value_bytes / u32::from(n),
+                variable_bytes: self.variable_bytes / count,
+                expressions: self.expressions / size,
+                values: self.values / size,
+                steps: self.steps / count,
+                loops: self.loops / size,
+            }
+        }
+    }
+
+    /// All texts that the shipped models are drawn and evaluated with.
+    fn shipped() -> Vec<(String, Composed)> {
+        let mut registry = Registry::builtin();
+        for (name, text) in crate::assets::EXAMPLES {
+            let path = std::path::Path::new(name);
+            let model = own::read(path, text, &registry).unwrap_or_else(|p| panic!("{p:?}"));
+            registry.put_own_model(model);
+        }
+        let mut texts = Vec::new();
+        for model in registry.models() {
+            let id = model.declaration.id;
+            texts.push((format!("{id}, evaluated"), compose_evaluation(registry.sources(), model)));
+            for mode in registry.modes() {
+                let composed = compose(registry.sources(), model, mode, registry.lights());
+                let faces = mode.declaration.stage == Stage::Polygon;
+                let text = whole::standing_alone(&composed.text, faces).expect("built in");
+                texts.push((format!("{id}, {}", mode.declaration.id), Composed { text, ..composed }));
+            }
+        }
+        texts
+    }
+
+    #[test]
+    fn what_is_shipped_stays_far_below_the_limits() {
+        let fifth = LIMITS.divided(5);
+        for (name, composed) in shipped() {
+            let checked = text::check(&composed.text, &fifth, |_| true);
+            assert!(checked.is_ok(), "{name}: {checked:?}");
+            let module = wgsl::parse_str(&composed.text).expect("valid");
+            assert_eq!(module::check(&module, &fifth), Ok(()), "{name}");
+        }
+    }
+}

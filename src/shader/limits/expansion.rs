@@ -1,0 +1,284 @@
+//! What constants and types grow to where they are used: `const B = array(A, A)` doubles with every line, and an
+//! array of arrays has as many elements as their lengths multiplied. The parser evaluates constants, so this is
+//! estimated before, from the text: a word stands for as many words as its declaration.
+
+use std::collections::HashMap;
+
+use super::{
+    Limits,
+    text::Refusal,
+    token::{Finding, Kind, Token},
+};
+
+/// A declaration of the module.
+struct Declaration<'a> {
+    name: &'a str,
+    at: usize,
+    /// It is put where it is used: constants and types. Functions and variables are not.
+    expands: bool,
+    /// The tokens behind the name.
+    first: usize,
+    end: usize,
+}
+
+/// What is known of a declaration.
+#[derive(Clone, Copy)]
+enum State {
+    Unknown,
+    /// It is being looked at: one that uses itself is told by the parser.
+    Open,
+    /// The words that it stands for, and how many declarations stand one on the other in it.
+    Known(u64, usize),
+}
+
+struct Search<'a> {
+    limits: &'a Limits,
+    tokens: &'a [Token<'a>],
+    declarations: Vec<Declaration<'a>>,
+    /// Names that are given twice, as in the two parts of a condition, stand for both.
+    by_name: HashMap<&'a str, Vec<usize>>,
+    states: Vec<State>,
+    /// Of each declaration the one in it from which the longest chain goes on.
+    next: Vec<usize>,
+    /// What is being looked at, each within the one before.
+    path: Vec<usize>,
+    /// The initial values of constants, those in functions too: arrays may have them as lengths.
+    values: HashMap<&'a str, Vec<(usize, usize)>>,
+}
+
+/// Checks the declarations of a text.
+pub(super) fn check(tokens: &[Token], limits: &Limits) -> Result<(), Refusal> {
+    let most = limits.declarations;
+    let (declarations, values) = declarations(tokens);
+    if declarations.len() > most {
+        let what = format!(
+            "the shader has {} declarations when everything is joined that it is made of; at most {most} are allowed",
+            declarations.len()
+        );
+        return Err(Refusal::Whole(what));
+    }
+    let mut by_name: HashMap<_, Vec<_>> = HashMap::with_capacity(declarations.len());
+    for (i, declaration) in declarations.iter().enumerate() {
+        by_name.entry(declaration.name).or_default().push(i);
+    }
+    let states = vec![State::Unknown; declarations.len()];
+    let next = vec![usize::MAX; declarations.len()];
+    let mut search = Search { limits, tokens, declarations, by_name, states, next, path: Vec::new(), values };
+    let mut sum = 0_u64;
+    for i in 0..search.declarations.len() {
+        sum = sum.saturating_add(search.declaration(i)?.0);
+        if sum > 4 * limits.expansion {
+            let what = format!(
+                "constants and types are written out where they are used, which makes more than {} words when everything is joined that the shader is made of",
+                4 * limits.expansion
+            );
+            return Err(Refusal::Whole(what));
+        }
+    }
+    Ok(())
+}
+
+/// The declarations of a module, and what its constants are.
+fn declarations<'a>(tokens: &'a [Token]) -> (Vec<Declaration<'a>>, HashMap<&'a str, Vec<(usize, usize)>>) {
+    let mut found = Vec::new();
+    let mut values: HashMap<_, Vec<_>> = HashMap::new();
+    let (mut i, mut braces) = (0, 0_usize);
+    // The declaration that has not ended yet.
+    let mut open: Option<Declaration> = None;
+    while let Some(token) = tokens.get(i) {
+        match (token.kind, token.text) {
+            (Kind::Word, word @ ("const" | "alias" | "struct" | "fn" | "var" | "override")) => {
+                let mut at = i + 1;
+                if let Some(template) = tokens.get(at).filter(|t| t.kind == Kind::TemplateOpen) {
+                    at = template.end + 1;
+                }
+                if let Some(name) = tokens.get(at).filter(|t| t.kind == Kind::Word) {
+                    if word == "const" {
+                        values.entry(name.text).or_default().push(value(tokens, at + 1));
+                    }
+                    if braces == 0 {
+                        found.extend(open.take().map(|d| Declaration { end: i, ..d }));
+                        let expands = matches!(word, "const" | "alias" | "struct");
+                        open = Some(Declaration {
+                            name: name.text,
+                            at: name.at,
+                            expands,
+                            first: at + 1,
+                            end: at + 1,
+                        });
+                    }
+                    i = at;
+                }
+            }
+            (Kind::Open, "{") => braces += 1,
+            (Kind::Close, "}") => {
+                braces = braces.saturating_sub(1);
+                if braces == 0 {
+                    found.extend(open.take().map(|d| Declaration { end: i, ..d }));
+                }
+            }
+            (Kind::Semicolon, _) if braces == 0 => {
+                found.extend(open.take().map(|d| Declaration { end: i, ..d }));
+            }
+            _ => {}
+        }
+        i += 1;
+    }
+    found.extend(open.map(|d| Declaration { end: tokens.len(), ..d }));
+    (found, values)
+}
+
+/// The tokens of an initial value: from behind `=` up to the semicolon.
+fn value(tokens: &[Token], from: usize) -> (usize, usize) {
+    let rest = &tokens[from.min(tokens.len())..];
+    let end = rest.iter().position(|t| t.kind == Kind::Semicolon).unwrap_or(rest.len());
+    let start = rest[..end].iter().position(|t| t.text == "=").map_or(end, |at| at + 1);
+    (from + start, from + end)
+}
+
+impl<'a> Search<'a> {
+    /// The words that a declaration stands for where it is written, and its chain.
+    fn declaration(&mut self, i: usize) -> Result<(u64, usize), Finding> {
+        match self.states[i] {
+            State::Known(words, below) => return Ok((words, below)),
+            State::Open => return Ok((1, 0)),
+            State::Unknown => {}
+        }
+        let Declaration { at, first, end, expands, .. } = self.declarations[i];
+        self.path.push(i);
+        if self.path.len() > self.limits.chain {
+            return Err(self.chain(self.path[self.limits.chain / 2], self.path.len()));
+        }
+        self.states[i] = State::Open;
+        let (words, below) = self.words(first, end, i)?;
+        let chain = below + 1;
+        if chain > self.limits.chain {
+            // What is built in stands at the ends of a chain, so its middle is told.
+            let middle = (0..self.limits.chain / 2).fold(i, |at, _| self.next.get(at).copied().unwrap_or(at));
+            return Err(self.chain(middle, chain));
+        }
+        if expands && words > self.limits.expansion {
+            let what = format!(
+                "this stands for {words} words when all is written out that it is made of; at most {} are allowed",
+                self.limits.expansion
+            );
+            return Err((at, what));
+        }
+        self.states[i] = State::Known(words, chain);
+        self.path.pop();
+        Ok((words, chain))
+    }
+
+    fn chain(&self, blamed: usize, length: usize) -> Finding {
+        let what = format!(
+            "this is part of a chain of {length} constants, types and functions, each of which uses the next; at most {} are allowed",
+            self.limits.chain
+        );
+        (self.declarations.get(blamed).map_or(0, |d| d.at), what)
+    }
+
+    /// The words that some tokens stand for, and the longest chain of declarations below them.
+    fn words(&mut self, first: usize, end: usize, user: usize) -> Result<(u64, usize), Finding> {
+        let tokens = self.tokens;
+        // The arrays around: where each ends, and how many elements they have together.
+        let mut arrays: Vec<(usize, u64)> = Vec::new();
+        let (mut sum, mut below) = (0_u64, 0);
+        for i in first..end.min(tokens.len()) {
+            while arrays.last().is_some_and(|(end, _)| *end <= i) {
+                arrays.pop();
+            }
+            let elements = arrays.last().map_or(1, |(_, elements)| *elements);
+            let token = tokens[i];
+            let mut words = 1;
+            if token.kind == Kind::Word {
+                let next = tokens.get(i + 1);
+                let list = next.filter(|n| n.kind == Kind::TemplateOpen).map(|n| n.end);
+                if let Some(list) = list.filter(|_| token.text == "array") {
+                    let elements = elements.saturating_mul(self.length(token, i + 2, list)?);
+                    arrays.push((list, elements));
+                }
+                let member = i > 0 && tokens[i - 1].kind == Kind::Dot;
+                let called = next.is_some_and(|n| n.text == "(");
+                let named = if member { None } else { self.by_name.get(token.text).cloned() };
+                for declaration in named.into_iter().flatten() {
+                    let expands = self.declarations[declaration].expands;
+                    if expands || called {
+                        let (grown, chain) = self.declaration(declaration)?;
+                        if chain > below {
+                            below = chain;
+                            self.next[user] = declaration;
+                        }
+                        words += if expands { grown } else { 0 };
+                    }
+                }
+            }
+            sum = sum.saturating_add(elements.saturating_mul(words));
+        }
+        Ok((sum, below))
+    }
+
+    /// How many elements an array has at most, whose template list goes from one token to another.
+    fn length(&self, array: Token, first: usize, end: usize) -> Result<u64, Finding> {
+        let (mut at, mut brackets, mut commas) = (first, 0_usize, Vec::new());
+        while at < end {
+            match self.tokens[at].kind {
+                Kind::TemplateOpen => at = self.tokens[at].end,
+                Kind::Open => brackets += 1,
+                Kind::Close => brackets = brackets.saturating_sub(1),
+                Kind::Comma if brackets == 0 => commas.push(at),
+                _ => {}
+            }
+            at += 1;
+        }
+        // A comma may stand at the end.
+        let last = commas.get(1).copied().unwrap_or(end);
+        let Some(comma) = commas.first().copied() else { return Ok(1) };
+        let count = self.magnitude(comma + 1, last, 0);
+        match count {
+            Some(count) if count <= self.limits.elements => Ok(count),
+            Some(count) => {
+                let what = format!("this array has up to {count} elements; at most {} are allowed", self.limits.elements);
+                Err((array.at, what))
+            }
+            None => Err((
+                array.at,
+                "the length of this array cannot be told from here; write it as a whole number, or with constants that are, and + - * /"
+                    .to_owned(),
+            )),
+        }
+    }
+
+    /// The largest that an expression of whole numbers can be: a sum and a product are no larger than the product of
+    /// their parts, each one more.
+    fn magnitude(&self, first: usize, end: usize, depth: usize) -> Option<u64> {
+        let tokens = self.tokens.get(first..end)?;
+        let single = tokens.len() == 1;
+        let mut product = 1_u64;
+        for token in tokens {
+            let value = match token.kind {
+                Kind::Number => whole(token.text)?,
+                Kind::Word if matches!(token.text, "u32" | "i32" | "min" | "max" | "abs") => continue,
+                Kind::Word if depth < 8 => {
+                    let values = self.values.get(token.text)?;
+                    let each: Option<Vec<_>> =
+                        values.iter().map(|(first, end)| self.magnitude(*first, *end, depth + 1)).collect();
+                    each?.into_iter().max()?
+                }
+                Kind::Open | Kind::Close | Kind::Comma => continue,
+                Kind::Operator if matches!(token.text, "+" | "-" | "*" | "/" | "%") => continue,
+                _ => return None,
+            };
+            product = product.saturating_mul(if single { value } else { value.saturating_add(1) });
+        }
+        Some(product)
+    }
+}
+
+/// A whole number as WGSL writes it.
+fn whole(text: &str) -> Option<u64> {
+    let digits = text.trim_end_matches(['u', 'i']);
+    match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
+        Some(digits) => u64::from_str_radix(digits, 16).ok(),
+        None => digits.parse().ok(),
+    }
+}

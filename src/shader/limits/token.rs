@@ -1,0 +1,313 @@
+//! The tokens of a WGSL text, as far as limits need them: flat, in one pass, whatever the text is worth.
+//!
+//! Comments are left out as naga and the preprocessor leave them out, and characters on which the two differ are
+//! refused, so that nothing is hidden here that shows there.
+
+use std::ops::ControlFlow;
+
+/// A piece of text that is one thing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Token<'a> {
+    pub kind: Kind,
+    pub text: &'a str,
+    /// The byte where it stands.
+    pub at: usize,
+    /// Of the beginning of a template list, the number of the token that ends it.
+    pub end: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Word,
+    Number,
+    /// `(`, `[` or `{`.
+    Open,
+    /// `)`, `]` or `}`.
+    Close,
+    /// `<` and `>` around a template list.
+    TemplateOpen,
+    TemplateClose,
+    Comma,
+    Semicolon,
+    Colon,
+    Dot,
+    Attribute,
+    /// The rest, one for each operator.
+    Operator,
+    /// A line of the preprocessor: `if…`, `else…`, `endif…`.
+    Directive,
+}
+
+/// The longest name, bytes.
+const LONGEST_WORD: usize = 256;
+
+/// What is wrong at a byte.
+pub(super) type Finding = (usize, String);
+
+struct Scanner<'a> {
+    text: &'a str,
+    at: usize,
+    tokens: Vec<Token<'a>>,
+    /// The tokens `<` that may begin a template list, with the brackets around them.
+    pending: Vec<(usize, usize)>,
+    brackets: usize,
+    /// Only white space so far in this line.
+    line_begins: bool,
+    /// The rest of the line belongs to the preprocessor.
+    directive: bool,
+}
+
+/// The tokens of a text, at most so many and one.
+pub(super) fn tokens(text: &str, most: usize) -> Result<Vec<Token<'_>>, Finding> {
+    let mut scanner = Scanner {
+        text,
+        at: 0,
+        tokens: Vec::with_capacity((text.len() / 4).min(most + 1)),
+        pending: Vec::new(),
+        brackets: 0,
+        line_begins: true,
+        directive: false,
+    };
+    while scanner.at < text.len() && scanner.tokens.len() <= most {
+        if let ControlFlow::Break(finding) = scanner.step() {
+            return Err(finding);
+        }
+    }
+    Ok(scanner.tokens)
+}
+
+impl<'a> Scanner<'a> {
+    fn byte(&self, ahead: usize) -> u8 {
+        self.text.as_bytes().get(self.at + ahead).copied().unwrap_or(0)
+    }
+
+    /// One token, comment or stretch of white space.
+    fn step(&mut self) -> ControlFlow<Finding> {
+        let start = self.at;
+        match (self.byte(0), self.byte(1)) {
+            (b'\n', _) => {
+                self.at += 1;
+                self.line_begins = true;
+                self.directive = false;
+                return ControlFlow::Continue(());
+            }
+            (b' ' | b'\t' | b'\r' | 0x0b | 0x0c, _) => {
+                self.at += 1;
+                return ControlFlow::Continue(());
+            }
+            (b'/', b'/') => return self.line_comment(),
+            (b'/', b'*') => {
+                self.block_comment();
+                return ControlFlow::Continue(());
+            }
+            (b'"', _) => return self.quotation(),
+            (b'#', _) if !self.directive => {
+                self.hash();
+                return ControlFlow::Continue(());
+            }
+            _ => {}
+        }
+        self.line_begins = false;
+        let Some(kind) = self.advance() else {
+            let what = "this character is invisible and separates lines or words; write a space or an ordinary line end instead";
+            return ControlFlow::Break((start, what.to_owned()));
+        };
+        if self.directive {
+            return ControlFlow::Continue(());
+        }
+        if matches!(kind, Kind::Word | Kind::Number) && self.at - start > LONGEST_WORD {
+            let what = format!("this word has {} bytes; at most {LONGEST_WORD} are allowed", self.at - start);
+            return ControlFlow::Break((start, what));
+        }
+        self.push(kind, start);
+        ControlFlow::Continue(())
+    }
+
+    fn push(&mut self, kind: Kind, start: usize) {
+        let here = self.tokens.len();
+        let text = &self.text[start..self.at];
+        let mut kind = kind;
+        match (kind, text) {
+            (Kind::Operator, "<") if self.tokens.last().is_some_and(|t| t.kind == Kind::Word) => {
+                self.pending.push((here, self.brackets));
+            }
+            (Kind::TemplateClose, _) => match self.pending.pop() {
+                Some((open, _)) => {
+                    self.tokens[open].kind = Kind::TemplateOpen;
+                    self.tokens[open].end = here;
+                }
+                None => kind = Kind::Operator,
+            },
+            (Kind::Open, "{") | (Kind::Semicolon | Kind::Colon, _) | (Kind::Operator, "=") => {
+                self.pending.clear();
+                self.brackets = 0;
+            }
+            (Kind::Open, _) => self.brackets += 1,
+            (Kind::Close, ")" | "]") => {
+                self.drop_pending();
+                self.brackets = self.brackets.saturating_sub(1);
+            }
+            (Kind::Operator, "&&" | "||") => self.drop_pending(),
+            _ => {}
+        }
+        self.tokens.push(Token { kind, text, at: start, end: 0 });
+    }
+
+    /// What stands within the innermost brackets cannot begin a template list any more.
+    fn drop_pending(&mut self) {
+        while self.pending.last().is_some_and(|(_, brackets)| *brackets >= self.brackets) {
+            self.pending.pop();
+        }
+    }
+
+    /// Goes behind the next token; none on a character that is none.
+    fn advance(&mut self) -> Option<Kind> {
+        let (first, second) = (self.byte(0), self.byte(1));
+        let closes = self.pending.last().is_some_and(|(_, brackets)| *brackets == self.brackets);
+        let (kind, length) = match (first, second) {
+            (b'a'..=b'z' | b'A'..=b'Z' | b'_' | 0x80.., _) => return self.word(),
+            (b'0'..=b'9', _) | (b'.', b'0'..=b'9') => {
+                self.number();
+                return Some(Kind::Number);
+            }
+            (b'(' | b'[' | b'{', _) => (Kind::Open, 1),
+            (b')' | b']' | b'}', _) => (Kind::Close, 1),
+            (b',', _) => (Kind::Comma, 1),
+            (b';', _) => (Kind::Semicolon, 1),
+            (b':', _) => (Kind::Colon, 1),
+            (b'.', _) => (Kind::Dot, 1),
+            (b'@', _) => (Kind::Attribute, 1),
+            (b'>', _) if closes => (Kind::TemplateClose, 1),
+            (b'<', b'<') | (b'>', b'>') => (Kind::Operator, if self.byte(2) == b'=' { 3 } else { 2 }),
+            (b'&', b'&') | (b'|', b'|') | (b'+', b'+') | (b'-', b'-' | b'>') => (Kind::Operator, 2),
+            (b'<' | b'>' | b'=' | b'!' | b'+' | b'-' | b'*' | b'/' | b'%' | b'&' | b'|' | b'^', b'=') => {
+                (Kind::Operator, 2)
+            }
+            _ => (Kind::Operator, 1),
+        };
+        self.at += length;
+        Some(kind)
+    }
+
+    fn word(&mut self) -> Option<Kind> {
+        let bytes = self.text.as_bytes();
+        let start = self.at;
+        while let Some(b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'_' | 0x80..) = bytes.get(self.at) {
+            self.at += 1;
+        }
+        // The text is UTF-8, and only whole characters were taken.
+        let word = &self.text[start..self.at];
+        if !word.is_ascii() && word.contains(|c: char| separates(c) || c.is_whitespace()) {
+            return None;
+        }
+        Some(Kind::Word)
+    }
+
+    fn number(&mut self) {
+        let bytes = self.text.as_bytes();
+        let hexadecimal = self.byte(0) == b'0' && matches!(self.byte(1), b'x' | b'X');
+        self.at += 1;
+        loop {
+            match bytes.get(self.at) {
+                Some(b'+' | b'-') => {
+                    let before = bytes[self.at - 1];
+                    let exponent = if hexadecimal {
+                        matches!(before, b'p' | b'P')
+                    } else {
+                        matches!(before, b'e' | b'E')
+                    };
+                    if !exponent {
+                        return;
+                    }
+                }
+                Some(b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'.') => {}
+                _ => return,
+            }
+            self.at += 1;
+        }
+    }
+
+    fn line_comment(&mut self) -> ControlFlow<Finding> {
+        let rest = &self.text[self.at..];
+        let line = &rest[..rest.find('\n').unwrap_or(rest.len())];
+        let seen = line.trim_end_matches('\r');
+        if let Some(at) = seen.find(|c| matches!(c, '\u{b}' | '\u{c}' | '\r') || separates(c) && !joins(c)) {
+            let what = "this character ends the comment in WGSL although the line goes on; write an ordinary line end";
+            return ControlFlow::Break((self.at + at, what.to_owned()));
+        }
+        self.at += line.len();
+        ControlFlow::Continue(())
+    }
+
+    /// Comments nest. One that is not closed hides the rest.
+    fn block_comment(&mut self) {
+        let bytes = self.text.as_bytes();
+        let mut depth = 1;
+        self.at += 2;
+        while depth > 0 {
+            match bytes.get(self.at..self.at + 2) {
+                None => {
+                    self.at = bytes.len();
+                    return;
+                }
+                Some(b"/*") => (depth, self.at) = (depth + 1, self.at + 2),
+                Some(b"*/") => (depth, self.at) = (depth - 1, self.at + 2),
+                Some(pair) => {
+                    if pair[0] == b'\n' {
+                        self.line_begins = true;
+                        self.directive = false;
+                    }
+                    self.at += 1;
+                }
+            }
+        }
+    }
+
+    /// The preprocessor takes no comment between quotation marks for one.
+    fn quotation(&mut self) -> ControlFlow<Finding> {
+        let rest = &self.text[self.at + 1..];
+        let line = &rest[..rest.find('\n').unwrap_or(rest.len())];
+        match line.find('"') {
+            Some(end) if self.directive => {
+                self.at += end + 2;
+                ControlFlow::Continue(())
+            }
+            _ if self.directive => {
+                ControlFlow::Break((self.at, "this quotation mark is not closed in its line".to_owned()))
+            }
+            _ => ControlFlow::Break((self.at, "WGSL has no quotation marks".to_owned())),
+        }
+    }
+
+    /// A line of the preprocessor, or the name of a value that it puts in.
+    fn hash(&mut self) {
+        let start = self.at;
+        self.at += 1;
+        if self.line_begins && self.byte(0) != b'{' {
+            self.directive = true;
+            let rest = &self.text[self.at..];
+            let rest = rest[..rest.find('\n').unwrap_or(rest.len())].trim_start();
+            let word = rest.find(|c: char| !c.is_ascii_alphanumeric()).map_or(rest, |end| &rest[..end]);
+            let token = Token { kind: Kind::Directive, text: word, at: start, end: 0 };
+            self.tokens.push(token);
+            return;
+        }
+        self.line_begins = false;
+        if self.byte(0) == b'{' {
+            let rest = &self.text[self.at..];
+            let line = &rest[..rest.find('\n').unwrap_or(rest.len())];
+            self.at += line.find('}').map_or(1, |end| end + 1);
+        }
+        self.push(Kind::Number, start);
+    }
+}
+
+/// White space and line ends of WGSL beyond ASCII.
+fn separates(c: char) -> bool {
+    matches!(c, '\u{85}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}')
+}
+
+/// Those of them that do not end a line.
+fn joins(c: char) -> bool {
+    matches!(c, '\u{200e}' | '\u{200f}')
+}

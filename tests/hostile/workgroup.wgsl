@@ -1,0 +1,13 @@
+/* lcm {
+    "name": "Memory of a workgroup"
+} */
+
+// Only compute shaders have it. The renderer died of it.
+
+var<workgroup> W: f32;
+
+fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    let x = dot(l, v);
+    let y = W;
+    return Terms(vec3(0.0), vec3(y), vec3(0.0));
+}
