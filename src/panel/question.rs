@@ -58,6 +58,10 @@ type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, An
 
 fn words(lab: &Lab, question: &Question) -> Words {
     match question {
+        Question::Recover(offer) => {
+            let (title, text, answers) = offer.words(lab);
+            (title, text, Vec::new(), answers)
+        }
         Question::Unsaved { .. } => (
             "Save the changes?",
             format!("“{}” has changes that are not in its file. Without saving they are lost.", lab.title()),
