@@ -2,7 +2,10 @@
 
 use std::path::{self, PathBuf};
 
-use super::state::{Answer, Effect, Lab};
+use super::{
+    question::Words,
+    state::{Answer, Effect, Lab},
+};
 use crate::scene::Scene;
 
 /// A recovery copy that the user may have back.
@@ -34,39 +37,30 @@ pub enum Choice {
 }
 
 impl Offer {
-    /// Title, text and answers of the question.
-    pub(super) fn words(&self, lab: &Lab) -> (&'static str, String, Vec<(&'static str, Answer)>) {
+    /// The question about it.
+    pub(super) fn words(&self, lab: &Lab) -> Words {
         let Self { title, path: at, file, when, scene } = self;
-        let whose = match at {
-            Some(path) => format!("“{title}” ({})", path.display()),
-            None => format!("“{title}”, which was never saved,"),
-        };
-        match scene {
-            Ok(_) => {
-                let mut text =
-                    format!("{whose} had unsaved changes when its window ended unexpectedly, {when}.");
-                let shown = lab.path.as_ref().and_then(|shown| path::absolute(shown).ok());
-                if shown.is_some() && shown != *at {
-                    text +=
-                        &format!(" Recovering them replaces “{}” on screen, not in its file.", lab.title());
-                }
-                let answers = vec![
-                    ("Recover", Answer::Recover),
-                    ("Discard", Answer::Discard),
-                    ("Later", Answer::Cancel),
-                ];
-                ("Recover unsaved changes?", text, answers)
-            }
-            Err(problem) => {
-                let text = format!(
-                    "{whose} had unsaved changes when its window ended unexpectedly, {when}. They are in {}, but that \
-                     cannot be read:\n\n{problem}",
-                    file.display()
-                );
-                let answers = vec![("Keep the file", Answer::Cancel), ("Delete it", Answer::Discard)];
-                ("The recovery copy has errors", text, answers)
-            }
+        let mut text = format!("“{title}” had unsaved changes when its window closed unexpectedly {when}.");
+        let mut details = Vec::new();
+        if let Err(problem) = scene {
+            text += " The recovery copy can't be read.";
+            // Behind the name of the file come line and column.
+            let at = problem.strip_prefix(&format!("{}:", file.display()));
+            let problem = at.map_or_else(|| problem.clone(), |at| format!("line {at}"));
+            details.push(("Problem".to_owned(), problem));
+            details.push(("Copy".to_owned(), file.display().to_string()));
+            let answers = vec![("Keep the copy", Answer::Cancel), ("Delete it", Answer::Discard)];
+            return ("Keep the recovery copy?", text, details, answers);
         }
+        let shown = lab.path.as_ref().and_then(|shown| path::absolute(shown).ok());
+        if shown.is_some() && shown != *at {
+            text += &format!(" Recovering them closes “{}”.", lab.title());
+        }
+        let place = at.as_ref().map_or_else(|| "never saved".to_owned(), |at| at.display().to_string());
+        details.push(("File".to_owned(), place));
+        let answers =
+            vec![("Recover", Answer::Recover), ("Discard", Answer::Discard), ("Later", Answer::Cancel)];
+        ("Recover unsaved changes?", text, details, answers)
     }
 }
 
@@ -146,16 +140,25 @@ mod tests {
     #[test]
     fn the_question_names_the_scene_its_file_and_what_is_wrong() {
         let lab = Lab::default();
-        let (_, text, answers) = offer(Ok(Scene::default())).words(&lab);
+        let all = |offer: Offer| {
+            let (title, text, details, answers) = offer.words(&lab);
+            let details: Vec<_> = details.into_iter().map(|(what, more)| format!("{what}: {more}")).collect();
+            (format!("{title}\n{text}\n{}", details.join("\n")), answers)
+        };
+        let (text, answers) = all(offer(Ok(Scene::default())));
         for part in ["“Room”", "/scenes/room.json", "5 minutes ago"] {
             assert!(text.contains(part), "{text}");
         }
         // Enter loses nothing, and neither does Escape.
         assert_eq!(answers[0].1, Answer::Recover);
-        let (_, text, answers) = offer(Err("line 3 is odd".to_owned())).words(&lab);
-        assert!(text.contains("line 3 is odd") && text.contains("/data/recovery/1-2/scene.json"), "{text}");
+        let copy = "/data/recovery/1-2/scene.json";
+        let (text, answers) = all(offer(Err(format!("{copy}:3:1: what is odd"))));
+        assert!(
+            text.contains("Problem: line 3:1: what is odd") && text.contains(&format!("Copy: {copy}")),
+            "{text}"
+        );
         assert_eq!(answers[0].1, Answer::Cancel);
-        let (_, text, _) = Offer { path: None, ..offer(Ok(Scene::default())) }.words(&lab);
+        let (text, _) = all(Offer { path: None, ..offer(Ok(Scene::default())) });
         assert!(text.contains("never saved"), "{text}");
     }
 

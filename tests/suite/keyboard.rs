@@ -13,7 +13,6 @@ use std::{
 #[derive(Clone, Copy)]
 pub enum Key {
     Escape = 9,
-    One = 10,
     Two = 11,
     Three = 12,
     Tab = 23,

@@ -78,6 +78,8 @@ impl Desk {
                 None => command.env_remove(name),
             };
         }
+        // Libraries complain where it is missing.
+        command.env("XDG_RUNTIME_DIR", self.folder.path());
         command.env("DISPLAY", self.screen.display()).current_dir(self.folder.path()).stdin(Stdio::null());
         command
     }
