@@ -68,14 +68,25 @@ struct Surroundings {
     data: Option<PathBuf>,
 }
 
+/// The folder that an environment variable names.
+fn folder(variable: &str) -> Option<PathBuf> {
+    env::var_os(variable).filter(|value| !value.is_empty()).map(PathBuf::from)
+}
+
+/// The folder of the user's data: the one that [`DATA_VARIABLE`] names, else the usual place of the operating
+/// system; `None` when there is neither.
+#[must_use]
+pub fn data_folder() -> Option<PathBuf> {
+    let usual =
+        || Some(directories::ProjectDirs::from("", "", "lights-camera-models")?.data_dir().to_owned());
+    folder(DATA_VARIABLE).or_else(usual)
+}
+
 impl Surroundings {
     fn of_process() -> Self {
-        let folder = |name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
         let beside = || Some(env::current_exe().ok()?.parent()?.to_owned());
         let roots = [folder("BEVY_ASSET_ROOT"), folder("CARGO_MANIFEST_DIR"), beside()];
-        let usual =
-            || Some(directories::ProjectDirs::from("", "", "lights-camera-models")?.data_dir().to_owned());
-        Self { roots: roots.into_iter().flatten().collect(), data: folder(DATA_VARIABLE).or_else(usual) }
+        Self { roots: roots.into_iter().flatten().collect(), data: data_folder() }
     }
 }
 

@@ -21,6 +21,8 @@
 //! - [`capture`]: rendering without a window, PNG files.
 //! - [`study`]: what tells the models apart, as numbers and a report.
 //! - [`watch`]: which files on disk change.
+//! - [`recovery`]: copies of unsaved work, for the next start.
+//! - [`signals`]: what ends the program from outside.
 //! - [`panel`]: what the window shows, as functions of a state that return actions.
 //! - [`app`]: the scene plugin and the order of the systems.
 //! - [`window`]: panels, camera and entities in one window.
@@ -42,7 +44,9 @@ pub mod shader;
 
 pub mod capture;
 pub mod panel;
+pub mod recovery;
 pub mod reference;
+pub mod signals;
 pub mod study;
 pub mod watch;
 

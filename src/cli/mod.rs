@@ -55,7 +55,7 @@ struct Cli {
 const USAGE: &str = "lcm [OPTIONS] [SCENE]\n       lcm [OPTIONS] <COMMAND>";
 /// Explained below the help.
 const EXIT_STATUS: &str = "Exit status: 0 done; 1 a scene or an input is invalid; 2 wrong usage; \
-                           3 no renderer or no display; 4 could not write.";
+                           3 no renderer or no display; 4 could not write; 128 + n ended by signal n (Ctrl+C: 130).";
 
 /// What holds for every command.
 #[derive(Args, Clone, Copy, Debug)]

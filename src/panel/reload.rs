@@ -94,8 +94,9 @@ fn take(
     (scene, defaulted): (Scene, Vec<String>),
     discard: bool,
 ) -> Vec<Effect> {
-    let edited = lab.scene != lab.saved && lab.scene != scene;
-    if edited && !discard && scene != lab.saved {
+    // What a recovered document began with is not known.
+    let edited = (lab.recovered || lab.scene != lab.saved) && lab.scene != scene;
+    if edited && !discard && (lab.recovered || scene != lab.saved) {
         if lab.disk.asked != Some(Some(version)) {
             lab.disk_settled();
             lab.disk.asked = Some(Some(version));
@@ -215,6 +216,7 @@ impl Lab {
         }
         self.selection = selection;
         self.saved = scene.clone();
+        self.recovered = false;
         self.aside.clear();
         self.defaulted = defaulted;
         if self.scene.reflection_model != scene.reflection_model {

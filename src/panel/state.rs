@@ -16,6 +16,7 @@ use super::{
     author::{Ask, ModelDraft},
     follow::Aside,
     limits,
+    recovery::{Choice, Offer},
     reload::OnDisk,
     settings::Settings,
 };
@@ -97,6 +98,8 @@ pub struct Lab {
     pub renaming: Option<Selection>,
     /// The document as it is in the file.
     pub(super) saved: Scene,
+    /// The document came from a recovery copy: no file is known to have it.
+    pub(super) recovered: bool,
     /// What waits for the document to be saved first.
     after_save: Option<Action>,
     /// A dialog that something other than the panels wants opened: what waited for the document to be
@@ -296,6 +299,8 @@ pub enum Question {
         /// The state of the file.
         version: Stamp,
     },
+    /// An earlier window left unsaved changes.
+    Recover(Box<Offer>),
 }
 
 /// A part that a scene file lacks, and its default.
@@ -324,6 +329,8 @@ pub enum Answer {
     Reload,
     /// Keep what is on screen; saving replaces what is on disk now.
     Keep,
+    /// Go on with what an earlier window left.
+    Recover,
 }
 
 /// What a user can do. Panels return these.
@@ -536,6 +543,8 @@ pub enum Effect {
         /// Its state.
         version: Stamp,
     },
+    /// What becomes of the recovery copy that the question was about.
+    Recovery(Choice),
     /// Write to standard error, for those who watch it.
     Complain(String),
     /// End the program.
@@ -613,6 +622,7 @@ impl Lab {
             keyboard_free: true,
             panels: Vec::new(),
             renaming: None,
+            recovered: false,
             after_save: None,
             wanted_dialog: None,
             may_discard: false,
@@ -629,7 +639,14 @@ impl Lab {
     /// Whether the document differs from its file.
     #[must_use]
     pub fn is_dirty(&self) -> bool {
-        !self.defaulted.is_empty() || self.disk.gone || self.scene != self.saved
+        self.recovered || !self.defaulted.is_empty() || self.disk.gone || self.scene != self.saved
+    }
+
+    /// True while the user is asked about unsaved changes, or saves them, in order to close the window.
+    #[must_use]
+    pub fn is_quitting(&self) -> bool {
+        let asked = matches!(&self.question, Some(Question::Unsaved { then }) if **then == Action::Quit);
+        asked || self.after_save == Some(Action::Quit)
     }
 
     /// What the window calls the document: the name of the scene, else the name of the file.
@@ -731,6 +748,7 @@ impl Lab {
         self.remember_file(&path);
         self.path = Some(path);
         self.saved = self.scene.clone();
+        self.recovered = false;
         self.defaulted.clear();
         self.disk_settled();
         let mut effects = vec![Effect::SaveSettings];
@@ -921,11 +939,18 @@ impl Lab {
         self.renaming = None;
         self.after_save = None;
         self.may_discard = false;
+        self.recovered = false;
         self.defaulted.clear();
         self.disk_settled();
         self.view.terms = TermSelection::All;
         self.select_first();
         self.use_slot(&self.scene.reflection_model.clone());
+    }
+
+    /// The scene of a recovery copy becomes the document; it is unsaved.
+    pub(super) fn recovered(&mut self, path: Option<PathBuf>, scene: Scene) {
+        self.replace_document(path, scene);
+        self.recovered = true;
     }
 
     fn remember_file(&mut self, path: &Path) {
@@ -957,6 +982,7 @@ impl Lab {
                 Vec::new()
             }
             (Question::EmptyFile { .. }, Answer::UseDefaults) => self.start_new(),
+            (Question::Recover(offer), answer) => self.answer_offer(*offer, answer),
             (Question::ChangedOnDisk { path }, Answer::Overwrite) => {
                 vec![Effect::SaveFile { path, overwrite: true }]
             }
@@ -967,6 +993,7 @@ impl Lab {
             (Question::NewerOnDisk { path, scene, version }, Answer::Keep) => {
                 // What is on disk is known now: saving replaces it.
                 self.saved = *scene;
+                self.recovered = false;
                 self.disk_settled();
                 vec![Effect::ExpectFile { path, version }]
             }

@@ -65,7 +65,7 @@ impl Missing {
 }
 
 /// The state of a file, to notice that someone else changed it: its length and a hash of its content.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Stamp {
     length: u64,
     hash: u64,

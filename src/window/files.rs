@@ -40,6 +40,12 @@ impl DiskFiles {
         Self { seen: file.zip(stamp), read: None, stream }
     }
 
+    /// The state in which a file was last read or written, if it was.
+    #[must_use]
+    pub fn known(&self, path: &Path) -> Option<Stamp> {
+        self.seen.as_ref().filter(|(seen, _)| seen == path).map(|(_, stamp)| *stamp)
+    }
+
     /// Another document is open: what was read of its file is what counts from now on.
     pub fn document_changed(&mut self, path: Option<&Path>) {
         self.seen = self.read.take().filter(|read| Some(read.0.as_path()) == path);

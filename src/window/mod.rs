@@ -10,7 +10,10 @@ use std::{
 };
 
 use bevy::{
-    app::{App, AppExit, Last, Plugin, PluginGroup, Plugins, PostUpdate, PreUpdate, Startup},
+    app::{
+        App, AppExit, Last, Plugin, PluginGroup, Plugins, PostUpdate, PreUpdate, Startup,
+        TerminalCtrlCHandlerPlugin,
+    },
     asset::AssetPlugin,
     camera::{Camera, Camera2d, CameraOutputMode, ClearColorConfig, Hdr, Viewport, visibility::RenderLayers},
     ecs::prelude::*,
@@ -47,6 +50,7 @@ use crate::{
         state::{Action, Badge, Effect, Lab, LabEffect, Note, Severity},
         theme::Palette,
     },
+    recovery::Store,
     registry::Registry,
     scene::spawn::CurrentScene,
     shader::{
@@ -62,9 +66,11 @@ use crate::{
 pub mod authoring;
 mod camera;
 mod capture;
+mod ending;
 pub mod files;
 mod gizmos;
 mod pick;
+mod recovery;
 mod shaders;
 pub mod watching;
 
@@ -113,7 +119,9 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
             })
             .set(AssetPlugin { watch_for_changes_override: Some(false), ..AssetPlugin::default() })
             .set(log_plugin(&options))
-            .disable::<PipelinedRenderingPlugin>(),
+            .disable::<PipelinedRenderingPlugin>()
+            // Signals are heard elsewhere, also while the window sleeps.
+            .disable::<TerminalCtrlCHandlerPlugin>(),
         EguiPlugin::default(),
         PanOrbitCameraPlugin,
         ScenePlugin,
@@ -137,16 +145,28 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
         app.world_mut().resource_mut::<Bench>().try_in(TrialProcess::new(program, Budget::default(), wake));
     }
     shaders::open(app.world_mut(), &options.folders);
-    if let Some(path) = options.open {
+    if let Some(path) = options.open.clone() {
         app.add_systems(Startup, move |mut effects: MessageWriter<LabEffect>| {
             effects.write(LabEffect(Effect::OpenFile(path.clone())));
         });
     }
+    let store = Store::of_user();
+    let proxy = app.world().get_resource::<EventLoopProxyWrapper>();
+    let farewell = recovery::Farewell::prepare(store.clone(), proxy);
+    let guard = ending::Guard::set(&farewell.keeper);
+    let mut copies = recovery::Recovery::new(farewell.clone());
+    if options.exit_after.is_none() || !options.quiet {
+        let file = options.file.as_deref().or(options.open.as_deref());
+        copies.look(store.as_ref(), file, options.exit_after.is_none());
+    }
+    app.insert_resource(copies);
     if let Some(frames) = options.exit_after {
         app.insert_resource(WinitSettings::continuous());
         app.add_plugins(capture::ExitAfter { frames, file: options.capture, failure: failure.clone() });
     }
-    app.run();
+    ending::run(&mut app, &farewell.keeper)?;
+    drop(guard);
+    farewell.say();
     let failure = failure.lock().ok().and_then(|mut f| f.take());
     failure.map_or(Ok(()), Err)
 }
@@ -227,8 +247,8 @@ impl Plugin for WindowSystemsPlugin {
         .init_resource::<FrameClock>()
         .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin, watching::WatchingPlugin))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
-        .add_systems(Last, measure_frame)
-        .add_systems(PreUpdate, close_requested)
+        .add_systems(Last, (measure_frame, recovery::keep))
+        .add_systems(PreUpdate, (close_requested, recovery::interrupted))
         .add_systems(
             PreUpdate,
             mend_input.after(EguiPreUpdateSet::ProcessInput).before(EguiPreUpdateSet::BeginPass),
@@ -243,6 +263,8 @@ impl Plugin for WindowSystemsPlugin {
                     watching::watch_document,
                     watching::follow_document,
                     carry_out,
+                    recovery::stayed,
+                    recovery::offer,
                     pick::pick,
                     lab_to_scene,
                 )
@@ -311,6 +333,7 @@ fn carry_out(
     mut exit: MessageWriter<AppExit>,
     editors: Res<authoring::Editors>,
     proxy: Option<Res<EventLoopProxyWrapper>>,
+    mut recovery: ResMut<recovery::Recovery>,
     mut commands: Commands,
 ) {
     for complaint in editors.take() {
@@ -328,8 +351,10 @@ fn carry_out(
                 camera.home();
             }
             Effect::Quit => {
+                recovery.farewell.close();
                 exit.write(AppExit::Success);
             }
+            Effect::Recovery(choice) => recovery.answer(choice, &mut lab, &mut files, &registry),
             Effect::LookAgain(path) => watch.0.report_later(&path, watching::GRACE),
             Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
