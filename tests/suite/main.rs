@@ -10,6 +10,7 @@ mod gpu_parity;
 mod hot_swap;
 mod interpret;
 mod laws;
+mod memory;
 mod own_models;
 mod panels;
 mod pictures;
