@@ -34,6 +34,8 @@ use crate::{
 pub const MODEL_SLOTS: usize = 9;
 /// The most files that the list of recent files holds.
 pub const RECENT_FILES: usize = 10;
+/// The most messages that are kept; the oldest give way.
+pub const MAX_MESSAGES: usize = 500;
 /// Two positions nearer than this are the same place, metres.
 const SAME_PLACE: f32 = 1e-6;
 
@@ -60,7 +62,7 @@ pub struct Lab {
     pub path: Option<PathBuf>,
     /// What the inspector shows.
     pub selection: Selection,
-    /// Messages, oldest first; each stays until it is dismissed.
+    /// Messages, oldest first; each stays until it is dismissed, or until [`MAX_MESSAGES`] newer ones are there.
     pub messages: Vec<Note>,
     /// What is shown and how.
     pub view: View,
@@ -722,6 +724,9 @@ impl Lab {
         let message = Note { severity, text: printable(&text.into()).into_owned() };
         // The same words twice in a row say no more than once.
         if self.messages.last() != Some(&message) {
+            if self.messages.len() >= MAX_MESSAGES {
+                self.messages.remove(0);
+            }
             self.messages.push(message);
         }
         if severity == Severity::Error {

@@ -51,6 +51,13 @@ const SLICE: Duration = Duration::from_millis(200);
 const MODELS: &str = "models/";
 /// A failure of the renderer so soon after an exchange is blamed on it.
 const PROBATION: Duration = Duration::from_secs(5);
+/// As many shaders that nothing is drawn with stay ready for a change back; each keeps some megabytes.
+pub const SPARE: usize = 32;
+/// What the assets of the others hold: the least that a pipeline can be made of.
+const RESTING: &str = "
+@vertex fn vertex(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> { return vec4(position, 1.0); }
+@fragment fn fragment() -> @location(0) vec4<f32> { return vec4(0.0); }
+";
 
 /// Exchanges shaders while they are on the picture.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,12 +72,11 @@ impl Plugin for LiveShadersPlugin {
     }
 }
 
-/// What tells shaders apart: model, mode, the number of light types that were known, and the declaration of the
-/// model with its parameters, from which the layout of its row follows.
-type Key = (&'static str, &'static str, usize, [usize; 2]);
+/// What tells shaders apart: model, mode, and the number of light types that were known.
+type Key = (&'static str, &'static str, usize);
 
 fn key(model: &ModelEntry, mode: &ModeEntry, registry: &Registry) -> Key {
-    (model.declaration.id, mode.declaration.id, registry.lights().len(), layout_of(model))
+    (model.declaration.id, mode.declaration.id, registry.lights().len())
 }
 
 /// What tells the layouts of rows of one model apart: equal declarations are one, as are equal parameters.
@@ -78,9 +84,16 @@ fn layout_of(model: &ModelEntry) -> [usize; 2] {
     [std::ptr::from_ref(model.declaration) as usize, model.parameters.as_ptr() as usize]
 }
 
+/// What Bevy calls the asset of a shader.
+fn path_of_asset(key: Key) -> String {
+    format!("{COMPOSED}{}/{}.wgsl", key.0, key.1)
+}
+
 /// One shader.
 struct Live {
     handle: Handle<Shader>,
+    /// The declaration that it was made for.
+    layout: [usize; 2],
     /// What is drawn with.
     shown: Composed,
     /// What was drawn with before, and until when: the renderer may still refuse what came after.
@@ -89,6 +102,8 @@ struct Live {
     refused: Option<Refused>,
     /// A file it is made of changed.
     due: bool,
+    /// When it was last on the picture, in numbers of [`LiveShaders::rest`].
+    seen: u64,
 }
 
 struct Refused {
@@ -105,6 +120,10 @@ pub struct LiveShaders {
     /// The text of each file as it last came through.
     good: Sources,
     shaders: HashMap<Key, Live>,
+    /// The assets of shaders that are made anew when something is drawn with them again.
+    resting: HashMap<Key, Handle<Shader>>,
+    /// How often shaders were looked through for some that may rest.
+    looks: u64,
     /// The files of own models and their texts, whatever these are worth.
     own: BTreeMap<String, (PathBuf, String)>,
     /// Own models that were read and are still to be tried.
@@ -171,6 +190,12 @@ impl LiveShaders {
     #[must_use]
     pub fn refused(&self) -> Option<&ShaderProblem> {
         self.shaders.values().find_map(|live| live.refused.as_ref().map(|refused| &*refused.problem))
+    }
+
+    /// How many shaders are ready to be drawn with.
+    #[must_use]
+    pub fn ready(&self) -> usize {
+        self.shaders.len()
     }
 
     /// Whether what is drawn with is what the files say, all of it.
@@ -455,7 +480,8 @@ impl LiveShaders {
         registry: &Registry,
     ) -> Option<Handle<Shader>> {
         let key = key(model, mode, registry);
-        if let Some(live) = self.shaders.get(&key) {
+        let layout = layout_of(model);
+        if let Some(live) = self.shaders.get(&key).filter(|live| live.layout == layout) {
             return Some(live.handle.clone());
         }
         if !self.started {
@@ -494,10 +520,59 @@ impl LiveShaders {
             None => self.last_good(world, model, mode, registry)?,
         };
         let asset = self.asset(&shown, key);
-        let handle = world.resource_mut::<Assets<Shader>>().add(asset);
+        let replaced = self.replaced(key, registry);
+        let mut assets = world.resource_mut::<Assets<Shader>>();
+        let handle = match replaced {
+            Some(handle) => {
+                // The asset is there as long as its handle.
+                let _ = assets.insert(handle.id(), asset);
+                handle
+            }
+            None => assets.add(asset),
+        };
         self.stale_status = true;
-        self.shaders.insert(key, Live { handle: handle.clone(), shown, before: None, refused, due });
+        let seen = self.looks;
+        let live = Live { handle: handle.clone(), layout, shown, before: None, refused, due, seen };
+        self.shaders.insert(key, live);
         Some(handle)
+    }
+
+    /// The asset that a shader takes over: that of the same model as it was declared before or as it rested, or of an
+    /// own model that is gone. Bevy never lets go of a pipeline, but makes it anew when its shader changes; with an
+    /// asset for each declaration, each would keep megabytes.
+    fn replaced(&mut self, key: Key, registry: &Registry) -> Option<Handle<Shader>> {
+        if let Some(live) = self.shaders.remove(&key) {
+            return Some(live.handle);
+        }
+        if let Some(handle) = self.resting.remove(&key) {
+            return Some(handle);
+        }
+        // Materials of own models are of one type, so any of them may take it.
+        registry.own_file(key.0)?;
+        let gone = |known: &&Key| known.1 == key.1 && registry.model(known.0).is_none();
+        let known = *self.shaders.keys().chain(self.resting.keys()).find(gone)?;
+        self.shaders.remove(&known).map(|live| live.handle).or_else(|| self.resting.remove(&known))
+    }
+
+    /// Lets shaders rest that were not on the picture for longest, if there are many: their pipelines stay, since Bevy
+    /// keeps those, but are made of next to nothing.
+    fn rest(&mut self, world: &mut World, visible: &Visible) {
+        self.looks += 1;
+        for (_, live) in self.shaders.iter_mut().filter(|(key, _)| visible.has(key)) {
+            live.seen = self.looks;
+        }
+        let idle = |(key, live): &(&Key, &Live)| !visible.has(key) && !live.due && live.refused.is_none();
+        let mut idle: Vec<_> =
+            self.shaders.iter().filter(idle).map(|(key, live)| (live.seen, *key)).collect();
+        idle.sort_unstable();
+        let many = idle.len().saturating_sub(SPARE);
+        for (_, key) in idle.into_iter().take(many) {
+            let Some(live) = self.shaders.remove(&key) else { continue };
+            let asset = Shader::from_wgsl(RESTING, path_of_asset(key));
+            // The asset is there as long as its handle.
+            let _ = world.resource_mut::<Assets<Shader>>().insert(live.handle.id(), asset);
+            self.resting.insert(key, live.handle);
+        }
     }
 
     /// The latest that can be drawn with: the file of the model with the others as they last came through, else all
@@ -533,8 +608,7 @@ impl LiveShaders {
     }
 
     fn asset(&self, composed: &Composed, key: Key) -> Shader {
-        let text = without_comments(&composed.text);
-        let mut shader = Shader::from_wgsl(text, format!("{COMPOSED}{}/{}.wgsl", key.0, key.1));
+        let mut shader = Shader::from_wgsl(without_comments(&composed.text), path_of_asset(key));
         if !self.is_built_in(composed) {
             // What users write may read outside of arrays.
             shader.validate_shader = ValidateShader::Enabled;
@@ -551,8 +625,12 @@ impl LiveShaders {
     /// is not.
     fn work(&mut self, world: &mut World, registry: &Registry, visible: &Visible) {
         let begin = Instant::now();
-        // Shaders of older declarations: nothing is drawn with them any more.
-        self.shaders.retain(|key, _| registry.model(key.0).is_none_or(|model| layout_of(model) == key.3));
+        // Shaders of older declarations are made anew when something is drawn with them.
+        for (key, live) in &mut self.shaders {
+            if registry.model(key.0).is_some_and(|model| layout_of(model) != live.layout) {
+                (live.due, live.refused) = (false, None);
+            }
+        }
         let mut due: Vec<Key> = self.shaders.iter().filter(|(_, live)| live.due).map(|(k, _)| *k).collect();
         due.sort_unstable();
         let (on_picture, off_picture): (Vec<_>, Vec<_>) = due.into_iter().partition(|k| visible.has(k));
@@ -578,7 +656,7 @@ impl LiveShaders {
         let entries = registry.model(key.0).zip(registry.mode(key.1));
         let Some((model, mode)) = entries.filter(|(model, mode)| self::key(model, mode, registry) == key)
         else {
-            // An older declaration, which nothing is drawn with any more.
+            // Other light types were known then; nothing is drawn with it any more.
             if let Some(live) = self.shaders.get_mut(&key) {
                 live.due = false;
             }
@@ -787,6 +865,7 @@ fn exchange(world: &mut World) {
             return;
         }
         live.forget_gone(world, &visible);
+        live.rest(world, &visible);
         // Problems that are too young now are told later.
         let young = live.fresh_problems().next().is_some();
         live.stale_status = young;
@@ -825,8 +904,8 @@ fn take_back(error: &RenderError, main: &mut World, render: &mut World) -> Rende
                 continue;
             };
             let refused = std::mem::replace(&mut entry.shown, before);
-            let path = format!("{COMPOSED}{}/{}.wgsl", key.0, key.1);
-            let _ = shaders.insert(entry.handle.id(), Shader::from_wgsl(entry.shown.text.clone(), path));
+            let asset = Shader::from_wgsl(entry.shown.text.clone(), path_of_asset(*key));
+            let _ = shaders.insert(entry.handle.id(), asset);
             let problem = Box::new(ShaderProblem {
                 file: file.clone(),
                 line: 1,

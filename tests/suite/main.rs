@@ -13,6 +13,7 @@ mod hot_swap;
 mod interpret;
 mod keyboard;
 mod laws;
+mod memory;
 mod own_folder;
 mod own_models;
 mod panels;
