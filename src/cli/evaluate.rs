@@ -72,7 +72,7 @@ pub(super) enum Started<'a> {
     /// With the surface that answers.
     Cpu(Arc<dyn Surface>),
     /// With what it needs to begin.
-    Gpu(Gpu<'a>),
+    Gpu(Box<Gpu<'a>>),
 }
 
 /// A graphics card that begins to work when it is first asked.
@@ -107,7 +107,7 @@ impl Machine {
     ) -> Started<'a> {
         match self {
             Self::Cpu => Started::Cpu(model.instantiate(values, Encoding::Srgb)),
-            Self::Gpu => Started::Gpu(Gpu { registry, model, values, evaluator: None }),
+            Self::Gpu => Started::Gpu(Box::new(Gpu { registry, model, values, evaluator: None })),
         }
     }
 }

@@ -149,8 +149,6 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
     let changes = Changes::new(arguments, &workshop.registry)?;
     let files = files(&sources, arguments.output.as_deref())?;
-    let read = inputs(sources.iter().filter_map(Source::file), registry);
-    files.iter().try_for_each(|file| outputs::picture(file, &read))?;
 
     // All scenes are read before the first is rendered: what is wrong with the last one is said at once.
     let mut scenes = Vec::with_capacity(sources.len());
@@ -167,6 +165,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
 
     let registry = &workshop.registry;
+    // By now it knows the files of models and shaders that are read.
+    let read = inputs(sources.iter().filter_map(Source::file), registry);
+    files.iter().try_for_each(|file| outputs::picture(file, &read))?;
     for scene in &scenes {
         drawable(registry, scene)?;
     }

@@ -126,7 +126,8 @@ impl Workshop {
             // Each is read, also when the first brings something new.
             let read = named.iter().filter(|id| self.read(id)).count() > 0;
             let rest = || matches!(loaded, Err(LoadError::Invalid { .. }));
-            if !read && !(rest() && self.declare_rest().0) {
+            let more = read || rest() && self.declare_rest().0;
+            if !more {
                 return loaded;
             }
         }

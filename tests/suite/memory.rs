@@ -67,7 +67,7 @@ fn declared(edit: usize) -> String {
     let more: String = (0..edit % 4)
         .map(|i| format!("{{ \"name\": \"more_{i}\", \"min\": 0, \"max\": 1, \"default\": 1 }}, "))
         .collect();
-    let level = if edit % 2 == 0 { 0.25 } else { 0.75 };
+    let level = if edit.is_multiple_of(2) { 0.25 } else { 0.75 };
     format!(
         "/* lcm {{ \"name\": \"Edited\", \"summary\": \"Edit {edit}.\", \"parameters\": [{more}\
          {{ \"name\": \"level\", \"min\": 0, \"max\": 1, \"default\": {level} }}] }} */\n\
@@ -106,7 +106,7 @@ fn an_edited_declaration_takes_the_place_of_the_one_before() {
         lab.save("own/edited.wgsl", declared(edit));
         // The shader and the table change in one frame, or the picture would be of other parameters.
         let shown = middle(&lab.frame());
-        let expected = if edit % 2 == 0 { 137 } else { 225 };
+        let expected = if edit.is_multiple_of(2) { 137 } else { 225 };
         assert!(shown.abs_diff(expected) <= 1, "edit {edit}: {shown}");
     }
     assert_eq!(held(&mut lab.renderer), before);

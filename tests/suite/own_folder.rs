@@ -322,7 +322,7 @@ fn the_registry_knows_how_much_was_read_and_what_is_wanted() {
     );
     assert_eq!(registry.sources().get("models/c.wgsl"), None);
     assert_eq!(read_model("c", &mut registry), Reading::Read);
-    assert_eq!(wanted(&registry), [PathBuf::new(); 0]);
+    assert!(wanted(&registry).is_empty());
 
     // What did not change is not read again.
     assert_eq!(declare_rest(&mut registry).files, 0);
