@@ -25,6 +25,7 @@ use bevy::{
 use super::{
     check::ShaderProblem,
     compose::{Composed, Sources, WRAPPER, compose, compose_evaluation, without_comments},
+    reading::{Done, Job, Reader},
     status::{Reloaded, ShaderStatus, Trouble},
     trial::{Bench, COMPOSED, Tools, TrialPlugin, Verdict},
 };
@@ -47,6 +48,8 @@ use crate::{
 pub const GRACE: Duration = Duration::from_millis(150);
 /// So long a frame may try shaders before it is drawn: with many on the picture, the window goes on answering.
 const SLICE: Duration = Duration::from_millis(200);
+/// As many own models that were read are tried at the same time.
+const ARRIVING: usize = 16;
 /// How the paths of own models begin.
 const MODELS: &str = "models/";
 /// A failure of the renderer so soon after an exchange is blamed on it.
@@ -126,6 +129,8 @@ pub struct LiveShaders {
     looks: u64,
     /// The files of own models and their texts, whatever these are worth.
     own: BTreeMap<String, (PathBuf, String)>,
+    /// Reads own models.
+    reader: Reader,
     /// Own models that were read and are still to be tried.
     arriving: Vec<OwnModel>,
     /// An object waits for a shader that is tried for the first time.
@@ -181,6 +186,7 @@ impl LiveShaders {
     #[must_use]
     pub fn is_trying(&self) -> bool {
         self.awaited
+            || self.reader.is_busy()
             || !self.unused.is_empty()
             || !self.arriving.is_empty()
             || self.shaders.values().any(|live| live.due)
@@ -278,22 +284,59 @@ impl LiveShaders {
     fn read_model(&mut self, path: &str, registry: &mut Registry) {
         let Some((file, text)) = self.own.get(path).cloned() else { return };
         self.arriving.retain(|model| model.path != file);
-        let mut read = own::read(&file, &text, registry);
-        if let Err(problems) = &read
-            && problems.iter().any(|p| !p.file.starts_with(MODELS))
-        {
-            // The mistake is in a file that all models share, and is told there.
-            let mut lenient = registry.clone();
-            *lenient.sources_mut() = self.lenient();
-            read = own::read(&file, &text, &lenient);
+        let job =
+            Job { source: path.to_owned(), file, text, registry: registry.clone(), lenient: self.lenient() };
+        if let Some(done) = self.reader.read(job) {
+            self.take_read(done, registry);
         }
-        match read {
+    }
+
+    /// Takes what became of reading an own model, unless its file has another text by now.
+    fn take_read(&mut self, done: Done, registry: &mut Registry) {
+        if self.own.get(&done.source).is_none_or(|(_, text)| *text != done.text) {
+            return;
+        }
+        match done.result {
             Ok(model) => {
-                self.change = Some((path.to_owned(), Instant::now()));
+                self.change = Some((done.source, Instant::now()));
                 self.arriving.push(model);
             }
-            Err(problems) => self.refuse_model(path, problems, registry),
+            Err(problems) => self.refuse_model(&done.source, problems, registry),
         }
+    }
+
+    /// Reads the models that a scene uses and of which only the declaration is known.
+    fn read_wanted(&mut self, world: &mut World) {
+        let Some(scene) = world.get_resource::<CurrentScene>() else { return };
+        let registry = world.resource::<Registry>();
+        let wanted: Vec<_> = registry.wants_reading(scene.0.models()).map(Path::to_owned).collect();
+        for file in wanted {
+            // One that is known has a mistake.
+            if self.path_of(&file).is_some_and(|path| !self.own.contains_key(&path)) {
+                let mut registry = world.resource_mut::<Registry>();
+                self.look_at(&file, registry.bypass_change_detection());
+            }
+        }
+    }
+
+    /// True while a model is read or tried for the first time.
+    fn is_arriving(&self, model: &ModelEntry, registry: &Registry) -> bool {
+        let source = model.declaration.wgsl.path;
+        registry.unread_file(model.declaration.id).is_some()
+            && !self.unusable.contains_key(source)
+            && (self.reader.has(source)
+                || self.arriving.iter().any(|m| m.entry.declaration.id == model.declaration.id))
+    }
+
+    /// Has own models read on a thread of its own, which calls `wake`.
+    pub fn read_apart(&mut self, wake: impl Fn() + Send + 'static) {
+        self.reader = Reader::apart(wake);
+    }
+
+    /// True while a thread reads own models; it wakes who waits.
+    #[must_use]
+    pub fn is_reading(&self) -> bool {
+        self.reader.is_reading()
     }
 
     /// An own model has mistakes. A new one whose declaration is right can be chosen all the same, and is drawn as
@@ -320,7 +363,9 @@ impl LiveShaders {
     /// Tries the own models that were read, and makes those known that can be drawn with: parameters, text and
     /// shader are exchanged together or not at all.
     fn adopt(&mut self, world: &mut World, visible: &Visible) {
-        for model in std::mem::take(&mut self.arriving) {
+        let mut arriving = std::mem::take(&mut self.arriving);
+        self.arriving = arriving.split_off(arriving.len().min(ARRIVING));
+        for model in arriving {
             let registry = world.resource::<Registry>().clone();
             let path = model.entry.declaration.wgsl.path;
             let modes: Vec<_> =
@@ -487,6 +532,10 @@ impl LiveShaders {
         if !self.started {
             self.started = true;
             self.current = registry.sources().clone();
+        }
+        if self.is_arriving(model, registry) {
+            self.awaited = true;
+            return None;
         }
         let wanted = compose(&self.current, model, mode, registry.lights());
         // From here on these files are used.
@@ -848,11 +897,18 @@ impl Visible {
 
 /// Exchanges the shaders whose files changed.
 fn exchange(world: &mut World) {
+    if world.is_resource_changed::<CurrentScene>() {
+        world.resource_scope(|world, mut live: Mut<LiveShaders>| live.read_wanted(world));
+    }
     if !world.resource::<LiveShaders>().is_busy() {
         return;
     }
     let visible = Visible::of(world);
     world.resource_scope(|world, mut live: Mut<LiveShaders>| {
+        for done in live.reader.finished() {
+            let mut registry = world.resource_mut::<Registry>();
+            live.take_read(done, registry.bypass_change_detection());
+        }
         live.approved.clear();
         live.awaited = false;
         world.resource::<Bench>().begin_frame();

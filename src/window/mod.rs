@@ -144,6 +144,8 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
         let wake = watching::waker(app.world());
         app.world_mut().resource_mut::<Bench>().try_in(TrialProcess::new(program, Budget::default(), wake));
     }
+    let wake = watching::waker(app.world());
+    app.world_mut().resource_mut::<LiveShaders>().read_apart(wake);
     shaders::open(app.world_mut(), &options.folders);
     if let Some(path) = options.open.clone() {
         app.add_systems(Startup, move |mut effects: MessageWriter<LabEffect>| {
@@ -509,7 +511,7 @@ fn redraw(
         settling.last = Some(Box::new(now));
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }
-    if live.is_busy() && !bench.is_waiting() {
+    if live.is_busy() && !bench.is_waiting() && !live.is_reading() {
         // Problems are told after a while, and what is not on the picture is tried one in a frame.
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }

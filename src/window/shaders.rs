@@ -33,11 +33,14 @@ pub(super) fn open(world: &mut World, folders: &Folders) {
         None => Vec::new(),
     };
     let sources = registry.sources().clone();
-    // What is wrong with these is found when they are looked at.
+    // What is wrong with these is found when they are looked at. Models of which the declaration is right are read
+    // when the scene uses them.
+    let declared = |path: &PathBuf| own::id_of(path).is_some_and(|id| registry.unread_file(id).is_some());
     let broken: Vec<_> = folders
         .models
         .iter()
         .flat_map(|folder| own::folder::files_in(folder).unwrap_or_default())
+        .filter(|path| !declared(path))
         .chain(unreadable.into_iter().map(|(path, _)| path))
         .collect();
     world.resource_mut::<LiveShaders>().start(sources, folders.clone());

@@ -29,6 +29,8 @@ pub const COMMAND: &str = "try-shaders";
 const START: Duration = Duration::from_secs(30);
 /// So often a process that works is looked after.
 const WATCH: Duration = Duration::from_millis(10);
+/// Many answers are told of together, at most so often.
+const PACE: Duration = Duration::from_millis(50);
 /// As many answers are kept for those who ask again.
 const KEPT: usize = 256;
 
@@ -111,13 +113,14 @@ impl Shared {
 }
 
 impl TrialProcess {
-    /// A process of `program`, started when it is needed. `wake` is called after every answer.
+    /// A process of `program`, started when it is needed. `wake` is called when there are answers.
     #[must_use]
     pub fn new(program: PathBuf, budget: Budget, wake: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
         let theirs = shared.clone();
         thread::spawn(move || {
             let mut worker = Worker { shared: theirs, program, budget, process: None };
+            let mut told = Instant::now();
             while let Some((key, request)) = worker.next() {
                 let verdict = worker.verdict(&request);
                 let mut state = worker.shared.lock();
@@ -129,9 +132,12 @@ impl TrialProcess {
                     }
                     None => state.broken = true,
                 }
-                let broken = state.broken;
+                let (broken, last) = (state.broken, state.queue.is_empty());
                 drop(state);
-                wake();
+                if broken || last || told.elapsed() > PACE {
+                    told = Instant::now();
+                    wake();
+                }
                 if broken {
                     return;
                 }
