@@ -59,6 +59,7 @@ pub mod files;
 mod gizmos;
 mod pick;
 mod shaders;
+mod still;
 pub mod watching;
 
 /// The size of a new window, points.
@@ -213,7 +214,12 @@ impl Plugin for WindowSystemsPlugin {
         .init_resource::<Settling>()
         .init_resource::<authoring::Editors>()
         .init_resource::<FrameClock>()
-        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin, watching::WatchingPlugin))
+        .add_plugins((
+            gizmos::GizmosPlugin,
+            camera::CameraPlugin,
+            still::StillPlugin,
+            watching::WatchingPlugin,
+        ))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
         .add_systems(Last, measure_frame)
         .add_systems(PreUpdate, close_requested)
@@ -260,7 +266,7 @@ fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>
     // Four samples double the cost of a frame where the GPU is a program on the CPU.
     let samples = if software { 1 } else { 4 };
     commands
-        .spawn((picture_camera(samples), Hdr, camera::orbit()))
+        .spawn((picture_camera(samples), Hdr, still::own_texture(), camera::orbit()))
         .insert(PictureCamera { follows_observer: true, fits_width: true });
     commands.spawn((
         Camera2d,

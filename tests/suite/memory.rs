@@ -1,4 +1,4 @@
-//! What is replaced is let go: memory stays bounded however long somebody works.
+//! Memory stays bounded however long somebody works, since whatever is replaced is let go.
 
 use std::fs;
 
@@ -27,7 +27,7 @@ use crate::{
     reload::{Lab, phong_scene},
 };
 
-/// What a renderer holds that Bevy or we might forget to let go.
+/// The things that a renderer holds, and that Bevy or we might forget to let go.
 #[derive(Debug, PartialEq)]
 struct Held {
     shaders: usize,
@@ -67,7 +67,7 @@ fn declared(edit: usize) -> String {
     let more: String = (0..edit % 4)
         .map(|i| format!("{{ \"name\": \"more_{i}\", \"min\": 0, \"max\": 1, \"default\": 1 }}, "))
         .collect();
-    let level = if edit % 2 == 0 { 0.25 } else { 0.75 };
+    let level = if edit.is_multiple_of(2) { 0.25 } else { 0.75 };
     format!(
         "/* lcm {{ \"name\": \"Edited\", \"summary\": \"Edit {edit}.\", \"parameters\": [{more}\
          {{ \"name\": \"level\", \"min\": 0, \"max\": 1, \"default\": {level} }}] }} */\n\
@@ -106,7 +106,7 @@ fn an_edited_declaration_takes_the_place_of_the_one_before() {
         lab.save("own/edited.wgsl", declared(edit));
         // The shader and the table change in one frame, or the picture would be of other parameters.
         let shown = middle(&lab.frame());
-        let expected = if edit % 2 == 0 { 137 } else { 225 };
+        let expected = if edit.is_multiple_of(2) { 137 } else { 225 };
         assert!(shown.abs_diff(expected) <= 1, "edit {edit}: {shown}");
     }
     assert_eq!(held(&mut lab.renderer), before);
