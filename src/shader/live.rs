@@ -56,7 +56,7 @@ const MODELS: &str = "models/";
 const PROBATION: Duration = Duration::from_secs(5);
 /// As many shaders that nothing is drawn with stay ready for a change back; each keeps some megabytes.
 pub const SPARE: usize = 32;
-/// What the assets of the others hold: the least that a pipeline can be made of.
+/// The content of the others' assets: the least that a pipeline can be made of.
 const RESTING: &str = "
 @vertex fn vertex(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> { return vec4(position, 1.0); }
 @fragment fn fragment() -> @location(0) vec4<f32> { return vec4(0.0); }
@@ -87,7 +87,7 @@ fn layout_of(model: &ModelEntry) -> [usize; 2] {
     [std::ptr::from_ref(model.declaration) as usize, model.parameters.as_ptr() as usize]
 }
 
-/// What Bevy calls the asset of a shader.
+/// The path by which Bevy knows the asset of a shader.
 fn path_of_asset(key: Key) -> String {
     format!("{COMPOSED}{}/{}.wgsl", key.0, key.1)
 }

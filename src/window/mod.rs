@@ -72,6 +72,7 @@ mod gizmos;
 mod pick;
 mod recovery;
 mod shaders;
+mod still;
 pub mod watching;
 
 /// The size of a new window, points.
@@ -247,7 +248,12 @@ impl Plugin for WindowSystemsPlugin {
         .init_resource::<Settling>()
         .init_resource::<authoring::Editors>()
         .init_resource::<FrameClock>()
-        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin, watching::WatchingPlugin))
+        .add_plugins((
+            gizmos::GizmosPlugin,
+            camera::CameraPlugin,
+            still::StillPlugin,
+            watching::WatchingPlugin,
+        ))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
         .add_systems(Last, (measure_frame, recovery::keep))
         .add_systems(PreUpdate, (close_requested, recovery::interrupted))
@@ -296,7 +302,7 @@ fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>
     // Four samples double the cost of a frame where the GPU is a program on the CPU.
     let samples = if software { 1 } else { 4 };
     commands
-        .spawn((picture_camera(samples), Hdr, camera::orbit()))
+        .spawn((picture_camera(samples), Hdr, still::own_texture(), camera::orbit()))
         .insert(PictureCamera { follows_observer: true, fits_width: true });
     commands.spawn((
         Camera2d,

@@ -1,4 +1,4 @@
-//! What is replaced is let go: memory stays bounded however long somebody works.
+//! Memory stays bounded however long somebody works, since whatever is replaced is let go.
 
 use std::fs;
 
@@ -27,7 +27,7 @@ use crate::{
     reload::{Lab, phong_scene},
 };
 
-/// What a renderer holds that Bevy or we might forget to let go.
+/// The things that a renderer holds, and that Bevy or we might forget to let go.
 #[derive(Debug, PartialEq)]
 struct Held {
     shaders: usize,
