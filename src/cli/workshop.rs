@@ -93,13 +93,20 @@ impl Workshop {
         }
     }
 
-    /// Reads the declarations of all models that are not known yet; whether there was one, and what is wrong.
-    pub(super) fn declare_rest(&mut self) -> (bool, folder::Problems) {
+    /// Reads the declarations of all models that are not known yet; whether there was one, and what is wrong with
+    /// files. That the folder cannot be read is told at once.
+    fn declare_rest(&mut self) -> (bool, folder::Problems) {
         let found = folder::declare_rest(&mut self.registry);
+        let is_folder = |path: &Path| Some(path) == self.registry.own_folder();
+        let (of_folder, of_files): (Vec<_>, Vec<_>) =
+            found.problems.into_iter().partition(|(path, _)| is_folder(path));
+        if !of_folder.is_empty() {
+            complain(all_annotated(&of_folder));
+        }
         if found.files > 0 {
             self.options.detail(format_args!("looked for declarations in {} files", found.files));
         }
-        (found.files > 0, found.problems)
+        (found.files > 0, of_files)
     }
 
     /// Reads all declarations for a command that is about them, and tells what is wrong with them.

@@ -247,25 +247,25 @@ fn parameters_that_only_a_declaration_knows_are_valid_and_saved() {
 #[test]
 fn messages_list_and_suggest_what_only_declarations_know() {
     let bench = Bench::crowded();
-    let unknown = bench.run("check -", &scene("fuz_321", &json!({ "dept_321": 1 }), None));
+    let unknown = bench.run("check -", &scene("fuzzz_321", &json!({ "depthh_321": 1 }), None));
     assert_eq!(unknown.status, Some(1));
     for expected in [
         "\"fuzz_0\"",
         "\"fuzz_499\"",
         "did you mean \"fuzz_321\"?",
-        "among the own models there is no models/fuz_321.wgsl",
+        "among the own models there is no models/fuzzz_321.wgsl",
         "did you mean \"depth_321\"?",
     ] {
         assert!(unknown.err.contains(expected), "{expected} is not in {}", unknown.err);
     }
     // In the order of the names, after the built-in ones, also when one was read before the others.
-    let mixed = bench.run("check -", &scene("fuzz_77", &json!({}), Some("fuz_321")));
+    let mixed = bench.run("check -", &scene("fuzz_77", &json!({}), Some("fuzzz_321")));
     let places =
         ["\"phong\"", "\"fuzz_0\"", "\"fuzz_1\"", "\"fuzz_77\"", "\"fuzz_78\""].map(|id| mixed.err.find(id));
     assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?} {}", mixed.err);
-    let typo = bench.run("evaluate fuz_321", ANGLES);
+    let typo = bench.run("evaluate fuzzz_321", ANGLES);
     assert!(typo.status == Some(2) && typo.err.contains("did you mean \"fuzz_321\"?"), "{}", typo.err);
-    let typo = bench.run("render --reflection fuz_321 --size 8x8", "");
+    let typo = bench.run("render --reflection fuzzz_321 --size 8x8", "");
     assert!(typo.status == Some(2) && typo.err.contains("did you mean \"fuzz_321\"?"), "{}", typo.err);
 }
 
@@ -372,7 +372,7 @@ fn brackets_in_brackets_are_read_on_every_thread() {
     let bench = Bench::new();
     for i in 0..8 {
         bench.put(&format!("deep_{i}.wgsl"), &format!("/* lcm {}1{} */", "[".repeat(600), "]".repeat(600)));
-        bench.put(&format!("deeper_{i}.wgsl"), &format!("/* lcm {}", "{\"a\":".repeat(100_000)));
+        bench.put(&format!("deeper_{i}.wgsl"), &format!("/* lcm {} */", "{\"a\":".repeat(100_000)));
     }
     let problems = declare_rest(&mut bench.registry()).problems;
     assert_eq!(problems.len(), 16, "{problems:?}");

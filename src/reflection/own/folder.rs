@@ -84,6 +84,10 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
     let Some(path) = registry.unread_file(id).map(Path::to_owned).or_else(|| file_of(id, registry)) else {
         return Reading::Missing;
     };
+    // What is found to be bad is not declared later.
+    if let Some(print) = Print::of(&path) {
+        registry.note_seen(&path, print);
+    }
     let text = match file::read(&path, &named(&path)) {
         Ok(text) => text,
         Err(problem) => return broken(id, vec![(path, problem)], registry),
