@@ -8,7 +8,11 @@ use crate::{files, registry::Registry};
 /// What a command reads: scenes, and the files that its registry was read from.
 pub(super) fn inputs<'a>(scenes: impl IntoIterator<Item = &'a Path>, registry: &Registry) -> Vec<PathBuf> {
     let models = registry.own_models().map(|(_, path)| path.to_owned());
-    let shaders = registry.sources().edited().filter_map(|source| registry.path_on_disk(source));
+    // Looking for the file of each of many models among all of them would take a while.
+    let shaders = registry.sources().edited().filter_map(|source| match source.strip_prefix("models/") {
+        Some(file) => Some(registry.own_folder()?.join(file)),
+        None => registry.path_on_disk(source),
+    });
     scenes.into_iter().map(Path::to_owned).chain(models).chain(shaders).collect()
 }
 
