@@ -65,7 +65,7 @@ impl Interrupt {
 
 #[cfg(unix)]
 mod system {
-    use std::{fs, io, thread};
+    use std::{io, path::Path, thread};
 
     use signal_hook::{
         consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM},
@@ -74,13 +74,15 @@ mod system {
     };
 
     use super::Interrupt;
+    use crate::files;
 
     pub(super) fn listen(
         interrupt: Interrupt,
         wake: impl Fn() + Send + 'static,
         last_act: impl Fn(&str) + Send + 'static,
     ) -> io::Result<()> {
-        let ignored = ignored(&fs::read_to_string("/proc/self/status").unwrap_or_default());
+        let status = files::read(Path::new("/proc/self/status"), 1 << 16).unwrap_or_default();
+        let ignored = ignored(&String::from_utf8_lossy(&status));
         let wanted = [SIGINT, SIGTERM, SIGHUP, SIGQUIT].into_iter().filter(|s| ignored & (1 << (s - 1)) == 0);
         let mut signals = Signals::new(wanted)?;
         thread::Builder::new().name("signals".to_owned()).spawn(move || {

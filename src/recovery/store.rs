@@ -2,14 +2,14 @@
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
-    io::{self, Read as _, Write as _},
+    io,
     path::{Path, PathBuf},
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
 use super::About;
 use crate::{
-    assets,
+    assets, files,
     registry::Registry,
     scene::{
         Scene,
@@ -130,7 +130,7 @@ fn look(folder: PathBuf) -> Option<Left> {
         }
         return None;
     };
-    let about = read_file(&folder.join(ABOUT), MAX_ABOUT_BYTES).ok();
+    let about = files::read(&folder.join(ABOUT), MAX_ABOUT_BYTES).ok();
     // The copy counts, whatever became of what is said of it.
     let mut about = about.and_then(|bytes| serde_json::from_slice::<About>(&bytes).ok()).unwrap_or_default();
     if about.title.is_empty() {
@@ -181,10 +181,10 @@ impl Session {
                 // Between the two writes, the copy of one document must not pass for that of another.
                 remove_file(&self.file())?;
             }
-            write_file(&self.folder.join(ABOUT), &serde_json::to_vec(about)?)?;
+            files::write(&self.folder.join(ABOUT), &serde_json::to_vec(about)?)?;
             self.about = Some(about.clone());
         }
-        write_file(&self.file(), text.as_bytes())
+        Ok(files::write(&self.file(), text.as_bytes())?)
     }
 
     /// Removes the copy and all that belongs to it.
@@ -203,7 +203,7 @@ impl Left {
     pub fn scene(&self, registry: &Registry) -> Result<Scene, Vec<String>> {
         let file = self.session.file();
         let name = file.display().to_string();
-        let bytes = read_file(&file, MAX_FILE_BYTES).map_err(|e| vec![format!("{name}: {e}")])?;
+        let bytes = files::read(&file, MAX_FILE_BYTES).map_err(|e| vec![format!("{name}: {e}")])?;
         load::from_bytes(&bytes, &name, registry, Defaults::Use)
             .map(|loaded| loaded.scene)
             .map_err(|e| e.to_string().lines().map(str::to_owned).collect())
@@ -227,29 +227,6 @@ fn remove_file(file: &Path) -> io::Result<()> {
         Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(()),
         other => other,
     }
-}
-
-/// Writes a file, all or nothing.
-fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let mut file = tempfile::Builder::new().prefix(".").suffix(".tmp").tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
-}
-
-/// Reads a regular file that is not larger than it should be.
-fn read_file(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::other("it is not a regular file"));
-    }
-    let mut bytes = Vec::new();
-    File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > limit {
-        return Err(io::Error::other("it is too large"));
-    }
-    Ok(bytes)
 }
 
 #[cfg(test)]

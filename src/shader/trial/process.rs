@@ -8,7 +8,7 @@ use std::{
     collections::{HashMap, VecDeque},
     hash::{DefaultHasher, Hash as _, Hasher as _},
     io::{BufRead as _, BufReader, Write as _},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, ChildStdin, Command, ExitStatus, Stdio},
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc},
     thread,
@@ -18,9 +18,12 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::Verdict;
-use crate::shader::{
-    check::{ShaderProblem, locate},
-    compose::{Composed, LineMap},
+use crate::{
+    files,
+    shader::{
+        check::{ShaderProblem, locate},
+        compose::{Composed, LineMap},
+    },
 };
 
 /// The command of the program that tries shaders.
@@ -46,7 +49,7 @@ pub struct Budget {
 impl Default for Budget {
     /// A hundred times what the shipped models take.
     fn default() -> Self {
-        Self { time: Duration::from_secs(5), memory: 1 << 30 }
+        Self { time: Duration::from_secs(10), memory: 1 << 30 }
     }
 }
 
@@ -118,7 +121,7 @@ impl TrialProcess {
     pub fn new(program: PathBuf, budget: Budget, wake: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
         let theirs = shared.clone();
-        thread::spawn(move || {
+        let started = thread::Builder::new().name("trials".to_owned()).spawn(move || {
             let mut worker = Worker { shared: theirs, program, budget, process: None };
             let mut told = Instant::now();
             while let Some((key, request)) = worker.next() {
@@ -143,6 +146,7 @@ impl TrialProcess {
                 }
             }
         });
+        shared.lock().broken |= started.is_err();
         Self { shared }
     }
 
@@ -312,7 +316,7 @@ struct Running {
 }
 
 impl Running {
-    fn start(program: &std::path::Path) -> std::io::Result<Self> {
+    fn start(program: &Path) -> std::io::Result<Self> {
         let mut command = Command::new(program);
         command.arg(COMMAND).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         #[cfg(unix)]
@@ -395,6 +399,7 @@ fn resident(process: u32) -> Option<u64> {
     }
     /// Of all processors that the driver runs on.
     const PAGE: u64 = 4096;
-    let text = std::fs::read_to_string(format!("/proc/{process}/statm")).ok()?;
+    let text = files::read(Path::new(&format!("/proc/{process}/statm")), PAGE).ok()?;
+    let text = String::from_utf8_lossy(&text);
     Some(text.split(' ').nth(1)?.parse::<u64>().ok()? * PAGE)
 }
