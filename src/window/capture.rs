@@ -3,6 +3,7 @@
 use std::{
     path::PathBuf,
     sync::{Arc, Mutex},
+    time::{Duration, Instant},
 };
 
 use bevy::{
@@ -15,7 +16,11 @@ use crate::{
     app::{LabFrame, LabSystems},
     capture::png,
     cli::Failure,
+    shader::live::LiveShaders,
 };
+
+/// The longest that shaders are waited for before frames are counted.
+const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Exits after so many frames; before, writes the window to a file, if one is given.
 pub(super) struct ExitAfter {
@@ -29,6 +34,7 @@ struct Countdown {
     left: u32,
     file: Option<PathBuf>,
     failure: Arc<Mutex<Option<Failure>>>,
+    since: Instant,
 }
 
 impl Plugin for ExitAfter {
@@ -37,12 +43,22 @@ impl Plugin for ExitAfter {
             left: self.frames,
             file: self.file.clone(),
             failure: self.failure.clone(),
+            since: Instant::now(),
         })
         .add_systems(LabFrame, count.in_set(LabSystems::Capture));
     }
 }
 
-fn count(mut countdown: ResMut<Countdown>, mut commands: Commands, mut exit: MessageWriter<AppExit>) {
+fn count(
+    mut countdown: ResMut<Countdown>,
+    live: Res<LiveShaders>,
+    mut commands: Commands,
+    mut exit: MessageWriter<AppExit>,
+) {
+    // An object whose shader is still being tried is not on the picture yet.
+    if live.is_trying() && countdown.since.elapsed() < PATIENCE {
+        return;
+    }
     // After the capture was asked for, frames go on until it arrives.
     let Some(left) = countdown.left.checked_sub(1) else { return };
     countdown.left = left;
