@@ -1,6 +1,10 @@
 //! The whole process, as a user pays for it: start, read, render, write the PNG file, end.
 
-use std::process::{Command, Stdio};
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Stdio},
+};
 
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -28,5 +32,37 @@ fn render(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, render);
+/// What own models cost commands that do not name them, and one that lists them.
+fn own_models(criterion: &mut Criterion) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("assets/models/charlie_sheen.wgsl")).expect("it is shipped");
+    let scene = root.join("scenes/default.json");
+    let mut group = criterion.benchmark_group("own models in the folder, whole process");
+    group.sample_size(21);
+    for count in [0, 500] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let models = folder.path().join("models");
+        fs::create_dir(&models).expect("writable");
+        for i in 0..count {
+            fs::write(models.join(format!("sheen_{i}.wgsl")), &text).expect("writable");
+        }
+        for command in ["render", "check", "models"] {
+            group.bench_function(format!("{command}, {count}"), |b| {
+                b.iter(|| {
+                    let mut lcm = Command::new(env!("CARGO_BIN_EXE_lcm"));
+                    lcm.args([command, "--models"]).arg(&models).stdout(Stdio::null());
+                    match command {
+                        "render" => lcm.args(["--quiet", "-o"]).arg(folder.path().join("default.png")),
+                        "check" => lcm.arg(&scene),
+                        _ => &mut lcm,
+                    };
+                    assert!(lcm.status().expect("lcm runs").success());
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, render, own_models);
 criterion_main!(benches);

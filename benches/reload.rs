@@ -1,6 +1,7 @@
 //! From saving a shader to the picture: median and 95th percentile for a model, a term that all models use, and
 //! the light loop, in the default scene at the size of a window. A file is written, the watcher tells of it, the
-//! new version is tried, exchanged, compiled and drawn; frames follow each other as in a window that was woken.
+//! new version is tried, exchanged, compiled and drawn; frames follow each other as in a window that was woken. It is
+//! tried in the same process, and in another one as the window has it.
 //!
 //! Criterion reports means and medians; the 95th percentile is printed beside them.
 
@@ -18,7 +19,14 @@ use lights_camera_models::{
     capture::gpu::{GpuRenderer, Output},
     registry::Registry,
     scene::Scene,
-    shader::{compose::Sources, live::LiveShaders},
+    shader::{
+        compose::Sources,
+        live::LiveShaders,
+        trial::{
+            Bench,
+            process::{Budget, TrialProcess},
+        },
+    },
     watch::Watcher,
 };
 
@@ -31,7 +39,7 @@ struct Lab {
 }
 
 impl Lab {
-    fn new(folder: &Path) -> Self {
+    fn new(folder: &Path, apart: bool) -> Self {
         let folder = folder.canonicalize().expect("the folder is there");
         for source in built_in_sources(&Registry::builtin()) {
             let file = folder.join(source.path);
@@ -45,6 +53,13 @@ impl Lab {
         renderer.set_scene(Scene::default());
         renderer.settle().expect("the GPU draws");
         let (wake, news) = mpsc::channel();
+        if apart {
+            let wake = wake.clone();
+            let process = TrialProcess::new(env!("CARGO_BIN_EXE_lcm").into(), Budget::default(), move || {
+                let _ = wake.send(());
+            });
+            renderer.app().world_mut().resource_mut::<Bench>().try_in(process);
+        }
         let mut watcher = Watcher::new(move || {
             let _ = wake.send(());
         });
@@ -58,11 +73,8 @@ impl Lab {
         let start = Instant::now();
         fs::write(self.folder.join(path), text).expect("writable");
         loop {
-            self.news.recv_timeout(Duration::from_secs(10)).expect("the watcher tells");
+            self.news.recv_timeout(Duration::from_secs(10)).expect("somebody tells");
             let changed = self.watcher.changed();
-            if changed.is_empty() {
-                continue;
-            }
             let world = self.renderer.app().world_mut();
             world.resource_scope(|world, mut live: Mut<LiveShaders>| {
                 changed.iter().for_each(|f| live.look_at(f, &mut world.resource_mut::<Registry>()));
@@ -71,17 +83,24 @@ impl Lab {
             self.renderer.wait();
             let elapsed = start.elapsed();
             let live = self.renderer.app().world().resource::<LiveShaders>();
+            if live.is_trying() || live.sources().get(path) != Some(text) {
+                continue;
+            }
             assert!(live.is_up_to_date(), "{:?}", live.status().troubles);
-            assert_eq!(live.sources().get(path), Some(text), "the new version is shown");
             return elapsed;
         }
     }
 }
 
 fn latency(criterion: &mut Criterion) {
+    measure(criterion, "save to picture", false);
+    measure(criterion, "save to picture, tried in another process", true);
+}
+
+fn measure(criterion: &mut Criterion, title: &str, apart: bool) {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut lab = Lab::new(folder.path());
-    let mut group = criterion.benchmark_group("save to picture");
+    let mut lab = Lab::new(folder.path(), apart);
+    let mut group = criterion.benchmark_group(title);
     group.sample_size(30).measurement_time(Duration::from_secs(10));
     for (name, path) in [
         ("the model", "reflection/lambert.wgsl"),

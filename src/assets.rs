@@ -1,14 +1,14 @@
 //! Where shaders and own models are read from, and copies of them to edit.
 
 use std::{
-    env, fs,
-    io::{self, Write as _},
+    env, fs, io,
     path::{Path, PathBuf},
 };
 
 use thiserror::Error;
 
 use crate::{
+    files::{self, FileError},
     reflection::own,
     registry::Registry,
     shader::{Source, check::ShaderProblem, compose, file},
@@ -68,14 +68,25 @@ struct Surroundings {
     data: Option<PathBuf>,
 }
 
+/// The folder that an environment variable names.
+fn folder(variable: &str) -> Option<PathBuf> {
+    env::var_os(variable).filter(|value| !value.is_empty()).map(PathBuf::from)
+}
+
+/// The folder of the user's data: the one that [`DATA_VARIABLE`] names, else the usual place of the operating
+/// system; `None` when there is neither.
+#[must_use]
+pub fn data_folder() -> Option<PathBuf> {
+    let usual =
+        || Some(directories::ProjectDirs::from("", "", "lights-camera-models")?.data_dir().to_owned());
+    folder(DATA_VARIABLE).or_else(usual)
+}
+
 impl Surroundings {
     fn of_process() -> Self {
-        let folder = |name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
         let beside = || Some(env::current_exe().ok()?.parent()?.to_owned());
         let roots = [folder("BEVY_ASSET_ROOT"), folder("CARGO_MANIFEST_DIR"), beside()];
-        let usual =
-            || Some(directories::ProjectDirs::from("", "", "lights-camera-models")?.data_dir().to_owned());
-        Self { roots: roots.into_iter().flatten().collect(), data: folder(DATA_VARIABLE).or_else(usual) }
+        Self { roots: roots.into_iter().flatten().collect(), data: data_folder() }
     }
 }
 
@@ -230,14 +241,14 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
     let models = EXAMPLES.iter().map(|(name, text)| (folder.join("models").join(name), *text));
     let mut exported = Exported::default();
     for (path, text) in sources.chain(models) {
-        match fs::read(&path) {
+        match files::read(&path, file::MAX_BYTES) {
             Ok(there) if there == text.as_bytes() => exported.same += 1,
-            Ok(_) => exported.kept.push(path),
-            Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            Ok(_) | Err(FileError::TooLarge(_)) => exported.kept.push(path),
+            Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => {
                 write_new(&path, text).map_err(|error| AssetError::Write { path: path.clone(), error })?;
                 exported.written.push(path);
             }
-            Err(error) => return Err(AssetError::Write { path, error }),
+            Err(error) => return Err(AssetError::Write { path, error: error.into() }),
         }
     }
     Ok(exported)
@@ -248,26 +259,11 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
 /// # Errors
 /// [`io::ErrorKind::AlreadyExists`] when there is such a file, which is left alone.
 pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = files::folder_of(path);
     // A file in the place of the folder must not look as if the file itself were there.
     fs::create_dir_all(folder)
         .map_err(|e| io::Error::other(format!("the folder {} could not be made: {e}", folder.display())))?;
-    // The name begins with a dot, so that whoever watches the folder knows it for what it is.
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".lcm-").suffix(".tmp");
-    #[cfg(unix)]
-    let mode = {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As any program makes a new file; the umask of the user takes away from it.
-        fs::Permissions::from_mode(0o666)
-    };
-    #[cfg(unix)]
-    builder.permissions(mode);
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(text.as_bytes())?;
-    file.as_file().sync_all()?;
-    file.persist_noclobber(path).map_err(|e| e.error)?;
-    Ok(())
+    Ok(files::create(path, text.as_bytes())?)
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@
 //!
 //! - [`optics`]: the vocabulary of every model, pure functions on vectors, no Bevy.
 //! - [`reflection`], [`shading`], [`light`], [`shape`]: a trait and a list each; one file per kind.
+//! - [`files`]: the one guard between the program and files.
 //! - [`assets`]: where shader files and own models are read from.
 //! - [`registry`]: what is known, looked up by id; registration from inside and outside the crate.
 //! - [`observer`]: the camera.
@@ -20,11 +21,14 @@
 //! - [`capture`]: rendering without a window, PNG files.
 //! - [`study`]: what tells the models apart, as numbers and a report.
 //! - [`watch`]: which files on disk change.
+//! - [`recovery`]: copies of unsaved work, for the next start.
+//! - [`signals`]: what ends the program from outside.
 //! - [`panel`]: what the window shows, as functions of a state that return actions.
 //! - [`app`]: the scene plugin and the order of the systems.
 //! - [`window`]: panels, camera and entities in one window.
 //! - [`cli`]: the command line.
 
+pub mod files;
 pub mod optics;
 
 pub mod light;
@@ -40,7 +44,9 @@ pub mod shader;
 
 pub mod capture;
 pub mod panel;
+pub mod recovery;
 pub mod reference;
+pub mod signals;
 pub mod study;
 pub mod watch;
 

@@ -12,8 +12,9 @@
 //! ```
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, HashSet},
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use bevy::{app::App, ecs::resource::Resource};
@@ -29,6 +30,7 @@ use crate::{
     shader::compose::Sources,
     shading::{self, ModeEntry, ShadingMode},
     shape::{self, ObjectType, ShapeEntry},
+    watch::Print,
 };
 
 /// Where new kinds of things are made known.
@@ -59,7 +61,26 @@ pub struct Registry {
     lights: Vec<LightEntry>,
     shapes: Vec<ShapeEntry>,
     sources: Sources,
-    files: Files,
+    /// Shared by copies of the registry, of which the window makes many.
+    files: Arc<Files>,
+}
+
+/// How much of an own model was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// The declaration. The rest is read when the model is used; until then a stand-in is drawn.
+    Declaration,
+    /// The declaration. The rest is no good: the last text that was is drawn with, or a stand-in.
+    StandIn,
+    /// All of it.
+    Whole,
+}
+
+/// The file of an own model.
+#[derive(Clone, Debug)]
+struct OwnSource {
+    path: PathBuf,
+    extent: Extent,
 }
 
 /// What is known of files: shaders and own models.
@@ -70,9 +91,11 @@ struct Files {
     /// The folder that own models were read from.
     models: Option<PathBuf>,
     /// The files by the id of their model.
-    own: BTreeMap<&'static str, PathBuf>,
+    own: BTreeMap<&'static str, OwnSource>,
     /// By id why a file gives no model.
     broken: BTreeMap<String, String>,
+    /// The state of each file whose declaration was looked for, at that time.
+    seen: BTreeMap<PathBuf, Print>,
 }
 
 impl Registry {
@@ -151,7 +174,7 @@ impl Registry {
 
     /// Notes where shaders are read from.
     pub fn set_shader_folder(&mut self, folder: &Path) {
-        self.files.shaders = Some(folder.to_owned());
+        self.files_mut().shaders = Some(folder.to_owned());
     }
 
     /// The file on disk of a source that messages call by its path, if it was read from one.
@@ -172,23 +195,50 @@ impl Registry {
     /// place.
     pub fn put_own_model(&mut self, model: OwnModel) {
         self.sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
-        self.put_stand_in(model);
+        self.put_own(model, Extent::Whole);
     }
 
     /// Makes a model from a file known whose text is no good yet: the text that is known stays, and where there is
     /// none a stand-in is drawn.
     pub fn put_stand_in(&mut self, model: OwnModel) {
+        self.put_own(model, Extent::StandIn);
+    }
+
+    /// Makes a model from a file known of which only the declaration was read. A stand-in is drawn until the rest is
+    /// read, which [`wants_reading`](Self::wants_reading) asks for.
+    pub fn put_declared(&mut self, model: OwnModel) {
+        self.sources.forget(model.entry.declaration.wgsl.path);
+        self.put_own(model, Extent::Declaration);
+    }
+
+    fn put_own(&mut self, model: OwnModel, extent: Extent) {
         let id = model.entry.declaration.id;
-        self.files.broken.remove(id);
-        self.files.own.insert(id, model.path);
+        let files = self.files_mut();
+        files.broken.remove(id);
+        files.own.insert(id, OwnSource { path: model.path, extent });
         put(&mut self.models, model.entry, |m| m.declaration.id);
+    }
+
+    /// Puts the own models in the order of their ids, whichever was read first.
+    pub(crate) fn sort_own_models(&mut self) {
+        let is_own = |m: &ModelEntry| self.files.own.contains_key(m.declaration.id);
+        let places: Vec<_> = (0..self.models.len()).filter(|i| is_own(&self.models[*i])).collect();
+        let mut own: Vec<_> = places.iter().map(|i| self.models[*i].clone()).collect();
+        own.sort_by_key(|m| m.declaration.id);
+        for (place, model) in places.into_iter().zip(own) {
+            self.models[place] = model;
+        }
+    }
+
+    fn files_mut(&mut self) -> &mut Files {
+        Arc::make_mut(&mut self.files)
     }
 
     /// Forgets a model, and its text if it came from a file.
     pub fn remove_model(&mut self, id: &str) {
         let Some(at) = self.models.iter().position(|m| m.declaration.id == id) else { return };
         let model = self.models.remove(at);
-        if self.files.own.remove(id).is_some() {
+        if self.files_mut().own.remove(id).is_some() {
             self.sources.forget(model.declaration.wgsl.path);
         }
     }
@@ -196,7 +246,38 @@ impl Registry {
     /// The file of a model that came from one.
     #[must_use]
     pub fn own_file(&self, id: &str) -> Option<&Path> {
-        self.files.own.get(id).map(PathBuf::as_path)
+        self.files.own.get(id).map(|own| own.path.as_path())
+    }
+
+    /// How much was read of the file of a model that came from one.
+    #[must_use]
+    pub fn extent(&self, id: &str) -> Option<Extent> {
+        self.files.own.get(id).map(|own| own.extent)
+    }
+
+    /// The file of a model of which only the declaration was read.
+    #[must_use]
+    pub fn unread_file(&self, id: &str) -> Option<&Path> {
+        self.own_file(id).filter(|_| self.extent(id) == Some(Extent::Declaration))
+    }
+
+    /// The files that are to be read now that these models are used: of some only the declaration is known. See
+    /// [`own::read`](reflection::own::read).
+    pub fn wants_reading<'a>(
+        &'a self,
+        used: impl IntoIterator<Item = &'a str>,
+    ) -> impl Iterator<Item = &'a Path> {
+        used.into_iter().filter_map(|id| self.unread_file(id))
+    }
+
+    /// The state of each file whose declaration was looked for, at that time.
+    pub(crate) fn files_seen(&self) -> &BTreeMap<PathBuf, Print> {
+        &self.files.seen
+    }
+
+    /// Notes the state of a file whose declaration is looked for.
+    pub(crate) fn note_seen(&mut self, file: &Path, print: Print) {
+        self.files_mut().seen.insert(file.to_owned(), print);
     }
 
     /// The models that came from files, with these.
@@ -206,7 +287,7 @@ impl Registry {
 
     /// Notes where own models are read from.
     pub fn set_own_folder(&mut self, folder: &Path) {
-        self.files.models = Some(folder.to_owned());
+        self.files_mut().models = Some(folder.to_owned());
     }
 
     /// Where own models are read from, if they are.
@@ -217,7 +298,7 @@ impl Registry {
 
     /// Notes why the file of that id gives no model, or none as it is.
     pub fn mark_broken(&mut self, id: &str, why: String) {
-        self.files.broken.insert(id.to_owned(), why);
+        self.files_mut().broken.insert(id.to_owned(), why);
     }
 
     /// Why the file of that id gives no model: where it is wrong and what is.
@@ -228,8 +309,8 @@ impl Registry {
 
     /// Every parameter that some model declares, each name once, in order of first declaration.
     pub fn material_parameters(&self) -> impl Iterator<Item = &'static Parameter> + '_ {
-        let all = || self.models.iter().flat_map(|m| m.parameters.iter());
-        all().enumerate().filter(move |(i, p)| !all().take(*i).any(|q| q.name == p.name)).map(|(_, p)| p)
+        let mut known = HashSet::new();
+        self.models.iter().flat_map(|m| m.parameters).filter(move |p| known.insert(p.name))
     }
 
     /// The declaration of a material parameter by name.

@@ -22,8 +22,9 @@ use std::{
 
 use notify::{Event, EventKind, RecursiveMode, event::ModifyKind};
 
+pub(crate) use self::look::Print;
 use self::{
-    look::{Found, Place, Print, is_temporary},
+    look::{Found, Place, is_temporary},
     system::{is_absent, is_reading, reason},
 };
 

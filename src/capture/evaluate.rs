@@ -59,18 +59,12 @@ pub fn albedos(
     encoding: Encoding,
     views: &[Vec3],
 ) -> Result<Vec<DVec3>, GpuError> {
-    /// As many views have their batches in memory at a time.
-    const VIEWS: usize = 64;
     if views.is_empty() {
         return Ok(Vec::new());
     }
     let mut evaluator = Evaluator::new(sources, model)?;
     evaluator.set(values, encoding);
-    let mut albedos = Vec::with_capacity(views.len());
-    for views in views.chunks(VIEWS) {
-        albedos.extend(directional_in_batches(views, |pairs| evaluator.evaluate(pairs))?);
-    }
-    Ok(albedos)
+    evaluator.albedos(views)
 }
 
 /// The parameters of a model as its shader reads them. The response asks for the lobe, not for the albedo.
@@ -212,6 +206,20 @@ impl Evaluator {
             answers.extend(self.run(chunk)?);
         }
         Ok(answers)
+    }
+
+    /// The directional albedos for views, as [`albedos`] has them.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    pub fn albedos(&self, views: &[Vec3]) -> Result<Vec<DVec3>, GpuError> {
+        /// As many views have their batches in memory at a time.
+        const VIEWS: usize = 64;
+        let mut albedos = Vec::with_capacity(views.len());
+        for views in views.chunks(VIEWS) {
+            albedos.extend(directional_in_batches(views, |pairs| self.evaluate(pairs))?);
+        }
+        Ok(albedos)
     }
 
     fn run(&self, pairs: &[(Vec3, Vec3)]) -> Result<Vec<Terms>, GpuError> {

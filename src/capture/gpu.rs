@@ -38,7 +38,7 @@ use crate::{
     observer::camera::picture_camera,
     optics::TermSelection,
     scene::{Scene, spawn::CurrentScene},
-    shader::{check::ShaderProblem, live::LiveShaders},
+    shader::{check::ShaderProblem, live::LiveShaders, trial::Bench},
 };
 
 /// Why the GPU renderer could not draw.
@@ -292,6 +292,10 @@ impl GpuRenderer {
         while ready < 2 {
             self.step();
             ready = if self.is_waiting()? { 0 } else { ready + 1 };
+            if self.app.world().get_resource::<Bench>().is_some_and(Bench::is_waiting) {
+                // Another process has the processors for what it tries.
+                std::thread::sleep(Duration::from_millis(2));
+            }
             if start.elapsed() > PATIENCE {
                 return Err(GpuError::TimedOut(PATIENCE));
             }
@@ -299,7 +303,8 @@ impl GpuRenderer {
         Ok(())
     }
 
-    fn is_waiting(&self) -> Result<bool, GpuError> {
+    /// True while something waits to be loaded or compiled.
+    pub(super) fn is_waiting(&self) -> Result<bool, GpuError> {
         let Some(render_app) = self.app.get_sub_app(RenderApp) else { return Ok(false) };
         let cache = render_app.world().resource::<PipelineCache>();
         for pipeline in cache.pipelines() {

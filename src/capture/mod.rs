@@ -3,3 +3,4 @@
 pub mod evaluate;
 pub mod gpu;
 pub mod png;
+pub mod trial;

@@ -1,19 +1,21 @@
 //! PNG files: pictures that say what they show.
 
 use std::{
-    fs::{self, File},
+    fs,
     io::{self, BufWriter, Write},
     path::Path,
 };
 
-use png::{BitDepth, ColorType, Compression, Encoder, SrgbRenderingIntent};
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent};
+
+use crate::files::Output;
 
 /// Writes an sRGB picture (red, green, blue, row by row from the top) with `text`: pairs of keyword
 /// and value, which picture viewers show; keywords such as `Software`, `Title` and `Description` are
 /// those of the PNG specification.
 ///
-/// Missing folders are created. The file appears complete or not at all: it is written beside its
-/// place and moved there. Devices and pipes are written straight.
+/// Missing folders are created. A file appears complete or not at all; standard output, devices and pipes are
+/// written straight, as [`Output`] says.
 ///
 /// # Errors
 /// If `rgb8` is not `width · height · 3` bytes, a keyword is empty or longer than 79 characters, or
@@ -22,25 +24,9 @@ pub fn write(path: &Path, width: u32, height: u32, rgb8: &[u8], text: &[(&str, &
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         fs::create_dir_all(folder)?;
     }
-    if path.exists() && !path.is_file() {
-        if path.is_dir() {
-            return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a folder"));
-        }
-        return encode(File::options().write(true).open(path)?, width, height, rgb8, text);
-    }
-    // A link stays a link: what it points to is replaced.
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let mut beside = path.file_name().unwrap_or_default().to_owned();
-    beside.push(format!(".{}.partial", std::process::id()));
-    let beside = path.with_file_name(beside);
-    let written = File::create(&beside)
-        .and_then(|file| encode(BufWriter::new(file), width, height, rgb8, text))
-        .and_then(|()| fs::rename(&beside, &path));
-    if written.is_err() {
-        // Whatever went wrong is reported; that the remains could not be removed is not news.
-        let _ = fs::remove_file(&beside);
-    }
-    written
+    let mut output = Output::open(path)?;
+    encode(BufWriter::new(&mut output), width, height, rgb8, text)?;
+    Ok(output.finish()?)
 }
 
 /// The picture as the bytes of a PNG file.
@@ -63,19 +49,29 @@ pub fn encode(
         let (keyword, value) = ((*keyword).to_owned(), (*value).to_owned());
         // Latin-1 fits the plain chunk that every reader knows; names like "Blinn–Phong" do not.
         if value.chars().all(|c| u32::from(c) < 256) {
-            encoder.add_text_chunk(keyword, value)?;
+            encoder.add_text_chunk(keyword, value).map_err(plain)?;
         } else {
-            encoder.add_itxt_chunk(keyword, value)?;
+            encoder.add_itxt_chunk(keyword, value).map_err(plain)?;
         }
     }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(rgb8)?;
-    writer.finish()?;
+    let mut writer = encoder.write_header().map_err(plain)?;
+    writer.write_image_data(rgb8).map_err(plain)?;
+    writer.finish().map_err(plain)?;
     to.flush()
+}
+
+/// What the system says keeps its kind.
+fn plain(error: EncodingError) -> io::Error {
+    match error {
+        EncodingError::IoError(error) => error,
+        error => error.into(),
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
+
     use super::*;
 
     fn gradient() -> Vec<u8> {

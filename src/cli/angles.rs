@@ -1,12 +1,24 @@
-//! Tables of numbers on standard input: CSV with a header line, every problem with its line.
+//! Tables of numbers on standard input: CSV with a header line, every problem with its line. They may be without
+//! end: rows are answered as they come, and neither lines nor problems grow without bound.
 
-use std::io::{self, Read};
+use std::io::{BufRead, Read as _};
 
-use super::Failure;
+use super::{Failure, Outcome};
 use crate::{
     reflection::parameter::ABOVE_ZERO,
     scene::{error::quoted, load::STDIN},
 };
+
+/// No line is longer, bytes: four numbers, each written out in full, take a fraction of it.
+const MAX_LINE: usize = 4096;
+/// So many rows are answered at a time, or fewer when their text is long.
+const BATCH_ROWS: usize = 16_384;
+/// No batch has much more text, bytes.
+const BATCH_BYTES: usize = 1 << 20;
+/// So many problems are told; of others only how many there are.
+const MAX_TOLD: usize = 20;
+/// Who has made so many mistakes need not wait for the last one.
+const MAX_PROBLEMS: usize = 1_000_000;
 
 /// One line of a table: the text as it was written, and its numbers.
 pub(super) struct Row<const N: usize> {
@@ -25,65 +37,166 @@ pub(super) struct Column {
     pub range: Option<(f64, f64)>,
 }
 
-/// Reads a table from standard input.
-pub(super) fn from_stdin<const N: usize>(columns: &[Column; N]) -> Result<Vec<Row<N>>, Failure> {
-    let mut bytes = Vec::new();
-    io::stdin()
-        .lock()
-        .read_to_end(&mut bytes)
-        .map_err(|e| Failure::Invalid(format!("{STDIN} could not be read: {e}")))?;
-    let text = String::from_utf8(bytes).map_err(|e| {
-        Failure::Invalid(format!("{STDIN}: not UTF-8 text from byte {} on", e.utf8_error().valid_up_to()))
-    })?;
-    parse(&text, columns).map_err(|problems| Failure::Invalid(problems.join("\n")))
+/// Reads a table and has its rows answered in batches, in order; the last one may be empty. Once there is a problem
+/// nothing more is answered, but the rest is read for others. A table whose first batch has one gives no answer.
+///
+/// # Errors
+/// Everything that is wrong with the table, or what went wrong with an answer.
+pub(super) fn stream<const N: usize>(
+    input: impl BufRead,
+    columns: &[Column; N],
+    mut answer: impl FnMut(&[Row<N>]) -> Outcome,
+) -> Outcome {
+    let mut table = Table::new(input, columns);
+    table.header()?;
+    let mut batch = Vec::new();
+    let mut bytes = 0;
+    while table.problems.count < MAX_PROBLEMS
+        && let Some(line) = table.line()?
+    {
+        if line.trim().is_empty() {
+            continue;
+        }
+        bytes += line.len();
+        // What was found before is kept as long as all is well.
+        match table.row(&line) {
+            Some(row) if table.problems.count == 0 => batch.push(row),
+            _ => batch.clear(),
+        }
+        if batch.len() >= BATCH_ROWS || bytes >= BATCH_BYTES && !batch.is_empty() {
+            answer(&batch)?;
+            batch.clear();
+            bytes = 0;
+        }
+    }
+    if table.problems.count > 0 {
+        return Err(table.problems.failure());
+    }
+    answer(&batch)
 }
 
-/// The rows of a table, or everything that is wrong with it.
-pub(super) fn parse<const N: usize>(text: &str, columns: &[Column; N]) -> Result<Vec<Row<N>>, Vec<String>> {
-    let names = columns.each_ref().map(|c| c.name);
-    let header = names.join(",");
-    // Spreadsheets put a byte order mark before CSV.
-    let mut lines = text.trim_start_matches('\u{FEFF}').lines().enumerate();
-    let Some((_, first)) = lines.next() else {
-        return Err(vec![format!("{STDIN} is empty, but the first line must be the header {header}")]);
-    };
-    if !first.split(',').map(str::trim).eq(names) {
-        return Err(vec![format!(
-            "{STDIN}:1: the header is {}, but it must be {header}",
-            quoted(first.trim())
-        )]);
+/// What is wrong with a table: the first problems, and how many there are.
+#[derive(Default)]
+struct Problems {
+    told: Vec<String>,
+    count: usize,
+}
+
+impl Problems {
+    fn add(&mut self, problem: String) {
+        self.count += 1;
+        if self.told.len() < MAX_TOLD {
+            self.told.push(problem);
+        }
     }
-    let mut rows = Vec::new();
-    let mut problems = Vec::new();
-    for (i, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let number = i + 1;
+
+    /// All in one, a line each.
+    fn failure(&self) -> Failure {
+        let mut lines = self.told.clone();
+        match self.count - lines.len() {
+            0 => {}
+            1 => lines.push(format!("{STDIN}: there is 1 more problem")),
+            more => {
+                let least = if self.count < MAX_PROBLEMS { "" } else { "at least " };
+                lines.push(format!("{STDIN}: there are {least}{more} more problems"));
+            }
+        }
+        Failure::Invalid(lines.join("\n"))
+    }
+}
+
+/// A table that is being read.
+struct Table<'a, R, const N: usize> {
+    input: R,
+    columns: &'a [Column; N],
+    /// The lines that were read.
+    lines: usize,
+    /// Their bytes.
+    bytes: usize,
+    problems: Problems,
+}
+
+impl<'a, R: BufRead, const N: usize> Table<'a, R, N> {
+    fn new(input: R, columns: &'a [Column; N]) -> Self {
+        Self { input, columns, lines: 0, bytes: 0, problems: Problems::default() }
+    }
+
+    /// A problem after which nothing can be understood, and those before it.
+    fn give_up(&mut self, problem: String) -> Failure {
+        self.problems.add(problem);
+        self.problems.failure()
+    }
+
+    /// The next line, with its end.
+    fn line(&mut self) -> Result<Option<String>, Failure> {
+        let mut line = Vec::new();
+        if let Err(e) = (&mut self.input).take(MAX_LINE as u64 + 1).read_until(b'\n', &mut line) {
+            return Err(self.give_up(format!("{STDIN} could not be read: {e}")));
+        }
+        if line.is_empty() {
+            return Ok(None);
+        }
+        self.lines += 1;
+        if line.len() > MAX_LINE {
+            let number = self.lines;
+            return Err(self.give_up(format!(
+                "{STDIN}:{number}: the line is longer than {MAX_LINE} bytes, which no row of numbers is"
+            )));
+        }
+        let begin = self.bytes;
+        self.bytes += line.len();
+        String::from_utf8(line).map(Some).map_err(|e| {
+            let at = begin + e.utf8_error().valid_up_to();
+            self.give_up(format!("{STDIN}: not UTF-8 text from byte {at} on"))
+        })
+    }
+
+    fn names(&self) -> [&'static str; N] {
+        self.columns.each_ref().map(|c| c.name)
+    }
+
+    /// Reads the first line.
+    fn header(&mut self) -> Outcome {
+        let names = self.names();
+        let header = names.join(",");
+        let Some(first) = self.line()? else {
+            return Err(
+                self.give_up(format!("{STDIN} is empty, but the first line must be the header {header}"))
+            );
+        };
+        // Spreadsheets put a byte order mark before CSV.
+        let first = first.trim_start_matches('\u{FEFF}').trim();
+        if first.split(',').map(str::trim).eq(names) {
+            return Ok(());
+        }
+        Err(self.give_up(format!("{STDIN}:1: the header is {}, but it must be {header}", quoted(first))))
+    }
+
+    /// The row in a line, if it is one.
+    fn row(&mut self, line: &str) -> Option<Row<N>> {
+        let number = self.lines;
         let cells: Vec<_> = line.split(',').map(|cell| cell.trim().to_owned()).collect();
         let count = cells.len();
         let Ok(text) = <[String; N]>::try_from(cells) else {
             let columns = if count == 1 { "is 1 column".to_owned() } else { format!("are {count} columns") };
-            problems.push(format!("{STDIN}:{number}: there {columns}, but there must be {N}: {header}"));
-            continue;
+            let header = self.names().join(",");
+            self.problems.add(format!("{STDIN}:{number}: there {columns}, but there must be {N}: {header}"));
+            return None;
         };
         let mut numbers = [0.0; N];
         let mut good = true;
-        for ((cell, column), to) in text.iter().zip(columns).zip(&mut numbers) {
+        for ((cell, column), to) in text.iter().zip(self.columns).zip(&mut numbers) {
             match legal(cell, column) {
                 Ok(value) => *to = value,
                 Err(rule) => {
                     good = false;
-                    problems.push(format!(
-                        "{STDIN}:{number}: {} is {}, but {rule}",
-                        column.name,
-                        quoted(cell)
-                    ));
+                    let name = column.name;
+                    self.problems.add(format!("{STDIN}:{number}: {name} is {}, but {rule}", quoted(cell)));
                 }
             }
         }
-        if good {
-            rows.push(Row { text, numbers });
-        }
+        good.then_some(Row { text, numbers })
     }
-    if problems.is_empty() { Ok(rows) } else { Err(problems) }
 }
 
 /// The number in a cell, or the rule that it breaks.
@@ -107,6 +220,21 @@ mod tests {
 
     const COLUMNS: [Column; 2] =
         [Column { name: "a", range: Some((0.0, 90.0)) }, Column { name: "b", range: None }];
+
+    /// The rows of a table, or everything that is wrong with it.
+    fn parse<const N: usize>(text: &str, columns: &[Column; N]) -> Result<Vec<Row<N>>, Vec<String>> {
+        let mut rows = Vec::new();
+        let copy = |row: &Row<N>| Row { text: row.text.clone(), numbers: row.numbers };
+        let read = stream(text.as_bytes(), columns, |batch| {
+            rows.extend(batch.iter().map(copy));
+            Ok(())
+        });
+        match read {
+            Ok(()) => Ok(rows),
+            Err(Failure::Invalid(problems)) => Err(problems.lines().map(str::to_owned).collect()),
+            Err(other) => panic!("{other:?}"),
+        }
+    }
 
     #[test]
     fn a_table_is_read_as_spreadsheets_write_it() {
@@ -132,5 +260,66 @@ mod tests {
         );
         assert!(parse("", &COLUMNS).err().unwrap_or_default()[0].contains("is empty"));
         assert!(parse("b,a\n", &COLUMNS).err().unwrap_or_default()[0].contains("the header is \"b,a\""));
+    }
+
+    #[test]
+    fn a_long_table_is_answered_in_batches_and_in_order() {
+        let mut text = "a,b\n".to_owned();
+        let count = 2 * BATCH_ROWS + 7;
+        (0..count).for_each(|i| text.push_str(&format!("1,{i}\n")));
+        let mut sizes = Vec::new();
+        let mut next = 0;
+        let read = stream(text.as_bytes(), &COLUMNS, |batch| {
+            sizes.push(batch.len());
+            for row in batch {
+                assert_eq!(row.numbers[1], f64::from(next));
+                next += 1;
+            }
+            Ok(())
+        });
+        assert!(read.is_ok());
+        assert_eq!(sizes, [BATCH_ROWS, BATCH_ROWS, 7]);
+        // Long lines make small batches.
+        let row = format!("1,2{}\n", " ".repeat(4000));
+        let mut sizes = Vec::new();
+        let read = stream(format!("a,b\n{}", row.repeat(1000)).as_bytes(), &COLUMNS, |batch| {
+            sizes.push(batch.len());
+            Ok(())
+        });
+        assert!(read.is_ok());
+        assert!(sizes.len() > 3 && sizes.iter().sum::<usize>() == 1000, "{sizes:?}");
+    }
+
+    #[test]
+    fn after_a_problem_nothing_is_answered() {
+        let mut answered = 0;
+        let text = format!("a,b\n{}x,1\n{}", "1,2\n".repeat(BATCH_ROWS + 5), "1,2\n".repeat(BATCH_ROWS));
+        let read = stream(text.as_bytes(), &COLUMNS, |batch| {
+            answered += batch.len();
+            Ok(())
+        });
+        assert!(matches!(read, Err(Failure::Invalid(problem)) if problem.contains("a is \"x\"")));
+        assert_eq!(answered, BATCH_ROWS);
+    }
+
+    #[test]
+    fn problems_and_lines_are_bounded() {
+        let problems = parse(&format!("a,b\n{}", "x,1\n".repeat(25)), &COLUMNS).err().unwrap_or_default();
+        assert_eq!(problems.len(), MAX_TOLD + 1);
+        assert_eq!(problems[MAX_TOLD], "standard input: there are 5 more problems");
+        let problems = parse(&format!("a,b\n{}", "x,1\n".repeat(21)), &COLUMNS).err().unwrap_or_default();
+        assert_eq!(problems[MAX_TOLD], "standard input: there is 1 more problem");
+        let long = format!("a,b\n1,{}\n", "0".repeat(MAX_LINE));
+        let problems = parse(&long, &COLUMNS).err().unwrap_or_default();
+        assert_eq!(
+            problems,
+            ["standard input:2: the line is longer than 4096 bytes, which no row of numbers is"]
+        );
+        let fits = format!("a,b\n1,{}\n", "0".repeat(MAX_LINE - 3));
+        assert!(parse(&fits, &COLUMNS).is_ok());
+        // Problems from before are told too.
+        let both =
+            parse(&format!("a,b\nx,1\n1,{}", "0".repeat(MAX_LINE)), &COLUMNS).err().unwrap_or_default();
+        assert_eq!(both.len(), 2, "{both:?}");
     }
 }

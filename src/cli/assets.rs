@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Subcommand;
 
-use super::{Failure, Options, Outcome, complain, print};
+use super::{Failure, Options, Outcome, complain, print_paths};
 use crate::{assets, registry::Registry};
 
 #[derive(Subcommand, Debug)]
@@ -20,8 +20,7 @@ pub(super) enum Command {
 pub(super) fn run(command: &Command, options: Options, registry: &Registry) -> Outcome {
     let Command::Export { folder } = command;
     let exported = assets::export(folder, registry).map_err(|e| Failure::Write(e.to_string()))?;
-    let paths: String = exported.written.iter().map(|path| format!("{}\n", path.display())).collect();
-    print(&paths)?;
+    print_paths(exported.written.iter().map(PathBuf::as_path))?;
     for path in &exported.kept {
         complain(format_args!("{} differs from the built-in one; it was left alone", path.display()));
     }

@@ -5,11 +5,8 @@ use std::{fmt::Write as _, path::PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, Options, Outcome, complain, print, scenes::Source};
-use crate::{
-    registry::Registry,
-    scene::{error::Problem, load::Defaults},
-};
+use super::{Failure, Options, Outcome, complain, print, print_text, scenes::Source, workshop::Workshop};
+use crate::scene::{error::Problem, load::Defaults};
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
@@ -29,7 +26,7 @@ struct Report {
     problems: Vec<Problem>,
 }
 
-pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
+pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     // A check does not ask: what is missing is a finding, unless defaults are welcome.
     let defaults = match options.defaults() {
         Defaults::Ask => Defaults::Refuse,
@@ -41,7 +38,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     for path in &arguments.scenes {
         let source = Source::of(Some(path));
         let mut problems = Vec::new();
-        match source.read(registry, defaults) {
+        match source.read(workshop, defaults) {
             Ok(loaded) => {
                 let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
                 // Writing to a String cannot fail.
@@ -67,7 +64,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
         print(&format!("{json}\n"))?;
     } else if !options.quiet {
-        print(&told)?;
+        print_text(&told)?;
     }
     match invalid {
         0 => Ok(()),

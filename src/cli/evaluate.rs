@@ -3,6 +3,7 @@
 use std::{
     io::{self, BufWriter, Write as _},
     str::FromStr,
+    sync::Arc,
 };
 
 use clap::{Args, ValueEnum};
@@ -11,13 +12,13 @@ use glam::Vec3;
 use super::{
     Failure, Outcome,
     angles::{self, Column},
-    workshop::{not_on_cpu, valid},
+    workshop::{Workshop, not_on_cpu, valid},
 };
 use crate::{
-    capture::evaluate::evaluate,
+    capture::evaluate::Evaluator,
     optics::{Frame, colour::Encoding, geometry::direction},
     reflection::{
-        ModelEntry, brdf, brdf_of,
+        ModelEntry, Surface, brdf, brdf_of,
         parameter::{Parameter, ParameterKind, Value, Values},
     },
     registry::Registry,
@@ -66,6 +67,51 @@ impl Machine {
     }
 }
 
+/// A machine that is ready to answer for a model with its parameters.
+pub(super) enum Started<'a> {
+    /// With the surface that answers.
+    Cpu(Arc<dyn Surface>),
+    /// With what it needs to begin.
+    Gpu(Box<Gpu<'a>>),
+}
+
+/// A graphics card that begins to work when it is first asked.
+pub(super) struct Gpu<'a> {
+    registry: &'a Registry,
+    model: &'a ModelEntry,
+    values: &'a Values,
+    evaluator: Option<Evaluator>,
+}
+
+impl Gpu<'_> {
+    pub(super) fn evaluator(&mut self) -> Result<&Evaluator, Failure> {
+        let evaluator = match self.evaluator.take() {
+            Some(evaluator) => evaluator,
+            None => {
+                let mut evaluator = Evaluator::new(self.registry.sources(), self.model)?;
+                evaluator.set(self.values, Encoding::Srgb);
+                evaluator
+            }
+        };
+        Ok(self.evaluator.insert(evaluator))
+    }
+}
+
+impl Machine {
+    /// Makes it ready.
+    pub(super) fn start<'a>(
+        self,
+        registry: &'a Registry,
+        model: &'a ModelEntry,
+        values: &'a Values,
+    ) -> Started<'a> {
+        match self {
+            Self::Cpu => Started::Cpu(model.instantiate(values, Encoding::Srgb)),
+            Self::Gpu => Started::Gpu(Box::new(Gpu { registry, model, values, evaluator: None })),
+        }
+    }
+}
+
 /// One `NAME=VALUE`.
 #[derive(Clone, Debug)]
 struct Setting {
@@ -90,38 +136,67 @@ const COLUMNS: [Column; 4] = [
     Column { name: "phi_o", range: None },
 ];
 
-pub(super) fn run(arguments: &Arguments, registry: &Registry) -> Outcome {
+pub(super) fn run(arguments: &Arguments, workshop: &mut Workshop) -> Outcome {
+    workshop.need(&arguments.model);
+    let registry = &workshop.registry;
     let model = find(registry, &arguments.model)?;
     let values = arguments.set.values(model)?;
     valid(registry, model)?;
     arguments.on.can_run(model)?;
-    let rows = angles::from_stdin(&COLUMNS)?;
-    let pairs: Vec<_> = rows
-        .iter()
-        .map(|row| {
-            let [theta_i, phi_i, theta_o, phi_o] = row.numbers;
-            (direction(theta_i, phi_i), direction(theta_o, phi_o))
-        })
-        .collect();
     let frame = Frame::LOCAL;
-    let brdfs: Vec<Vec3> = match arguments.on {
-        Machine::Cpu => {
-            let surface = model.instantiate(&values, Encoding::Srgb);
-            pairs.iter().map(|(l, v)| brdf(surface.as_ref(), *l, *v, &frame)).collect()
-        }
-        Machine::Gpu => evaluate(registry.sources(), model, &values, Encoding::Srgb, &pairs)?
-            .into_iter()
-            .zip(&pairs)
-            .map(|(terms, (l, v))| brdf_of(terms, *l, *v, &frame))
-            .collect(),
-    };
-    arguments.on.can_run(model)?;
-    let mut out = BufWriter::new(io::stdout().lock());
-    writeln!(out, "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b")?;
-    for (row, f) in rows.iter().zip(brdfs) {
-        writeln!(out, "{},{},{},{}", row.text.join(","), f.x, f.y, f.z)?;
+    let mut answers = Answers::new("theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b");
+    let mut machine = arguments.on.start(registry, model, &values);
+    angles::stream(io::stdin().lock(), &COLUMNS, |rows| {
+        let pairs: Vec<_> = rows
+            .iter()
+            .map(|row| {
+                let [theta_i, phi_i, theta_o, phi_o] = row.numbers;
+                (direction(theta_i, phi_i), direction(theta_o, phi_o))
+            })
+            .collect();
+        let brdfs: Vec<Vec3> = match &mut machine {
+            Started::Cpu(surface) => {
+                pairs.iter().map(|(l, v)| brdf(surface.as_ref(), *l, *v, &frame)).collect()
+            }
+            Started::Gpu(gpu) if !rows.is_empty() => {
+                let terms = gpu.evaluator()?.evaluate(&pairs)?;
+                terms.into_iter().zip(&pairs).map(|(terms, (l, v))| brdf_of(terms, *l, *v, &frame)).collect()
+            }
+            Started::Gpu(_) => Vec::new(),
+        };
+        arguments.on.can_run(model)?;
+        answers.write(rows.iter().map(|row| row.text.join(",")).zip(brdfs))
+    })?;
+    answers.finish()
+}
+
+/// The answers as CSV on standard output, with a header before the first.
+pub(super) struct Answers {
+    out: BufWriter<io::StdoutLock<'static>>,
+    header: Option<&'static str>,
+}
+
+impl Answers {
+    pub(super) fn new(header: &'static str) -> Self {
+        Self { out: BufWriter::new(io::stdout().lock()), header: Some(header) }
     }
-    Ok(out.flush()?)
+
+    /// Adds rows: what was asked, and the answer.
+    pub(super) fn write(&mut self, rows: impl Iterator<Item = (String, Vec3)>) -> Outcome {
+        if let Some(header) = self.header.take() {
+            writeln!(self.out, "{header}")?;
+        }
+        for (asked, answer) in rows {
+            writeln!(self.out, "{asked},{},{},{}", answer.x, answer.y, answer.z)?;
+        }
+        // Whoever waits for a batch gets it.
+        Ok(self.out.flush()?)
+    }
+
+    /// That was all.
+    pub(super) fn finish(mut self) -> Outcome {
+        self.write(std::iter::empty())
+    }
 }
 
 /// The model of that id.

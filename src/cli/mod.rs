@@ -7,14 +7,14 @@
 use std::{
     fmt,
     io::{self, IsTerminal as _, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::ExitCode,
 };
 
 use clap::{Args, Parser, Subcommand, error::ErrorKind};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{registry::Registry, scene::load::Defaults};
+use crate::{files::printable, registry::Registry, scene::load::Defaults};
 use workshop::Places;
 
 mod albedo;
@@ -24,10 +24,12 @@ mod check;
 mod evaluate;
 mod models;
 mod new;
+mod outputs;
 mod own;
 mod render;
 mod scenes;
 mod study;
+mod trial;
 mod view;
 mod workshop;
 
@@ -53,7 +55,7 @@ struct Cli {
 const USAGE: &str = "lcm [OPTIONS] [SCENE]\n       lcm [OPTIONS] <COMMAND>";
 /// Explained below the help.
 const EXIT_STATUS: &str = "Exit status: 0 done; 1 a scene or an input is invalid; 2 wrong usage; \
-                           3 no renderer or no display; 4 could not write.";
+                           3 no renderer or no display; 4 could not write; 128 + n ended by signal n (Ctrl+C: 130).";
 
 /// What holds for every command.
 #[derive(Args, Clone, Copy, Debug)]
@@ -128,6 +130,9 @@ enum Command {
     Albedo(evaluate::Arguments),
     /// Print the JSON Schema of scene files
     Schema,
+    /// Try shaders for a window
+    #[command(hide = true, name = crate::shader::trial::process::COMMAND)]
+    TryShaders,
 }
 
 /// Why a command did not do what it was asked.
@@ -178,28 +183,42 @@ pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            // Help and version are results; clap sends them to standard output.
-            let status = match error.kind() {
-                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => 0,
-                _ => 2,
+            return match error.kind() {
+                // Help and version are results; clap sends them to standard output.
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                    ended(error.print().and_then(|()| io::stdout().flush()).map_err(Failure::from))
+                }
+                _ => {
+                    misunderstood(&error);
+                    ExitCode::from(2)
+                }
             };
-            // Nobody is left to tell if this fails.
-            let _ = error.print();
-            return ExitCode::from(status);
         }
     };
-    match run(cli) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            match &failure {
-                Failure::Closed => {}
-                Failure::Usage(what) => complain(format_args!("error: {what}")),
-                // The problems are told already, as a result.
-                Failure::Invalid(what) if what.is_empty() => {}
-                Failure::Invalid(what) | Failure::NoRenderer(what) | Failure::Write(what) => complain(what),
-            }
-            ExitCode::from(failure.status())
-        }
+    ended(run(cli))
+}
+
+/// Tells of a failure, and gives the exit status.
+fn ended(outcome: Outcome) -> ExitCode {
+    let Err(failure) = outcome else { return ExitCode::SUCCESS };
+    match &failure {
+        Failure::Closed => {}
+        Failure::Usage(what) => complain(format_args!("error: {what}")),
+        // The problems are told already, as a result.
+        Failure::Invalid(what) if what.is_empty() => {}
+        Failure::Invalid(what) | Failure::NoRenderer(what) | Failure::Write(what) => complain(what),
+    }
+    ExitCode::from(failure.status())
+}
+
+/// Tells of a mistake that clap found, in its colours unless it repeats what a terminal would obey.
+fn misunderstood(error: &clap::Error) {
+    let odd = std::env::args_os().any(|word| printable(&word.to_string_lossy()) != word.to_string_lossy());
+    if odd {
+        complain(error.render().to_string().trim_end());
+    } else {
+        // Nobody is left to tell if this fails.
+        let _ = error.print();
     }
 }
 
@@ -212,28 +231,40 @@ fn run(cli: Cli) -> Outcome {
     match cli.command {
         None => view::run(cli.view, options, places),
         Some(Command::View(arguments)) => view::run(arguments, options, places),
-        Some(Command::Render(arguments)) => render::run(&arguments, options, &places.open()?.registry),
-        Some(Command::Check(arguments)) => check::run(&arguments, options, &places.open()?.registry),
+        Some(Command::Render(arguments)) => render::run(&arguments, options, &mut places.open(options)?),
+        Some(Command::Check(arguments)) => check::run(&arguments, options, &mut places.open(options)?),
         Some(Command::New { file }) => new::run(&file, options, &Registry::builtin()),
         Some(Command::Models(arguments)) => models::run(arguments, options, places),
         Some(Command::Assets(command)) => assets::run(&command, options, &Registry::builtin()),
-        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &places.open()?.registry),
+        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &mut places.open(options)?),
         Some(Command::Study(arguments)) => study::run(&arguments, options, &Registry::builtin()),
-        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &places.open()?.registry),
-        Some(Command::Schema) => print(&crate::scene::schema::text(&places.open()?.registry)),
+        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &mut places.open(options)?),
+        Some(Command::TryShaders) => trial::run(),
+        Some(Command::Schema) => print(&crate::scene::schema::text(places.open(options)?.list())),
     }
 }
 
-/// Writes a result to standard output.
+/// Writes a result for people to standard output, without what a terminal would obey.
+fn print_text(text: &str) -> Outcome {
+    print(&printable(text))
+}
+
+/// Writes paths to standard output, a line each: as they are for programs, fit to be shown for people.
+fn print_paths<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Outcome {
+    let lines: String = paths.into_iter().map(|path| format!("{}\n", path.display())).collect();
+    if io::stdout().is_terminal() { print_text(&lines) } else { print(&lines) }
+}
+
+/// Writes a result for programs to standard output.
 fn print(text: &str) -> Outcome {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes())?;
     Ok(out.flush()?)
 }
 
-/// Writes a line to standard error. That nobody reads it is no reason to panic.
+/// Writes a line to standard error, without what a terminal would obey. That nobody reads it is no reason to panic.
 fn complain(what: impl fmt::Display) {
-    let _ = writeln!(io::stderr().lock(), "{what}");
+    let _ = writeln!(io::stderr().lock(), "{}", printable(&what.to_string()));
 }
 
 /// A bar of so many steps where it helps: several of them, a terminal, and nobody who wants quiet.
@@ -254,7 +285,7 @@ fn ask(question: &str) -> Option<bool> {
         return None;
     }
     let mut err = io::stderr().lock();
-    write!(err, "{question} [y/N] ").and_then(|()| err.flush()).ok()?;
+    write!(err, "{} [y/N] ", printable(question)).and_then(|()| err.flush()).ok()?;
     let mut answer = String::new();
     io::stdin().read_line(&mut answer).ok()?;
     Some(matches!(answer.trim().to_lowercase().as_str(), "y" | "yes"))

@@ -6,7 +6,7 @@ use serde_json::{Value as Json, json};
 
 use clap::{Args, Subcommand};
 
-use super::{Options, Outcome, own, print, workshop::Places};
+use super::{Options, Outcome, own, print, print_text, workshop::Places};
 use crate::{
     reflection::{
         ModelEntry, Term,
@@ -51,8 +51,8 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
     match arguments.command {
         Some(Command::New { name }) => own::new(&name, options, places),
         Some(Command::Duplicate { id, name }) => own::duplicate(&id, name.as_deref(), options, places),
-        Some(Command::Check { id }) => own::check(&id, options, &places.open()?.registry),
-        None => list(arguments.json, &places.open()?.registry),
+        Some(Command::Check { id }) => own::check(&id, options, &mut places.open(options)?),
+        None => list(arguments.json, places.open(options)?.list()),
     }
 }
 
@@ -61,7 +61,7 @@ fn list(as_json: bool, registry: &Registry) -> Outcome {
         let models: Vec<_> = registry.models().iter().map(|m| model(m, registry)).collect();
         return print(&format!("{:#}\n", Json::from(models)));
     }
-    print(&table(registry))
+    print_text(&table(registry))
 }
 
 /// A model as programs read it.

@@ -7,8 +7,8 @@ use glam::Vec3;
 use super::{
     Failure, Options, Outcome, complain,
     evaluate::find,
-    print,
-    workshop::{Places, valid},
+    print_paths, print_text,
+    workshop::{Places, Workshop, valid},
 };
 use crate::{
     assets::write_new,
@@ -32,8 +32,10 @@ pub(super) fn new(name: &str, options: Options, places: &Places) -> Outcome {
 
 /// `lcm models duplicate ID [NAME]`.
 pub(super) fn duplicate(id: &str, name: Option<&str>, options: Options, places: &Places) -> Outcome {
-    let registry = places.open_for_writing()?.registry;
-    let model = find(&registry, id)?;
+    let mut workshop = places.open_for_writing(options)?;
+    workshop.need(id);
+    let registry = &workshop.registry;
+    let model = find(registry, id)?;
     let copy = match name {
         Some(name) => id_of(name)?,
         None => format!("{id}_copy"),
@@ -64,7 +66,7 @@ fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
         }
         _ => Failure::Write(format!("{} could not be written: {e}", path.display())),
     })?;
-    print(&format!("{}\n", path.display()))?;
+    print_paths([path.as_path()])?;
     let flags = places.flags();
     options.tell(format_args!(
         "Edit this file; scenes name the model \"{id}\". `lcm render --reflection {id}{flags}` shows it, \
@@ -74,7 +76,9 @@ fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
 }
 
 /// `lcm models check ID`.
-pub(super) fn check(id: &str, options: Options, registry: &Registry) -> Outcome {
+pub(super) fn check(id: &str, options: Options, workshop: &mut Workshop) -> Outcome {
+    workshop.need(id);
+    let registry = &workshop.registry;
     if registry.broken_model(id).is_some() {
         // What is wrong with it is told already.
         return Err(Failure::Invalid(format!("{id} was not checked: its file has a mistake")));
@@ -94,7 +98,7 @@ pub(super) fn check(id: &str, options: Options, registry: &Registry) -> Outcome 
         evaluator.evaluate(pairs)
     })?;
     bar.finish_and_clear();
-    print(&report(model, &findings))?;
+    print_text(&report(model, &findings))?;
     let broken: Vec<_> = claims(model, &findings).filter(|c| c.claimed && !c.kept).map(|c| c.law).collect();
     if findings.not_finite > 0 {
         complain(format_args!("{id} gives values that are no numbers"));

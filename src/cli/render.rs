@@ -2,17 +2,20 @@
 
 use std::{
     collections::{BTreeSet, HashMap},
-    fs,
+    fs, io,
     path::{Path, PathBuf},
     str::FromStr,
 };
 
+use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
-    Failure, Options, Outcome, progress,
+    Failure, Options, Outcome,
+    outputs::{self, inputs},
+    progress,
     scenes::Source,
-    workshop::{drawable, invalid, not_followed_on_cpu, not_on_cpu},
+    workshop::{Workshop, drawable, invalid, not_followed_on_cpu, not_on_cpu},
 };
 use crate::{
     capture::{
@@ -20,10 +23,15 @@ use crate::{
         gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
         png,
     },
+    files::{Kind, is_descriptor, kind as kind_on_disk, printable},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     reference,
     registry::Registry,
     scene::{Scene, check, error::quoted},
+    shader::trial::{
+        Bench,
+        process::{Budget, TrialProcess},
+    },
 };
 
 /// Of so many objects the model is tried on the CPU before the graphics card draws it.
@@ -128,7 +136,7 @@ pub(super) struct Job<'a> {
     pub(super) terms: TermSelection,
 }
 
-pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
+pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     let sources: Vec<_> = match arguments.scenes.as_slice() {
         [] => vec![Source::Default],
         scenes => scenes.iter().map(|s| Source::of(Some(s))).collect(),
@@ -136,14 +144,17 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     if sources.iter().filter(|s| **s == Source::Stdin).count() > 1 {
         return Err(Failure::Usage("- can be given once: standard input holds one scene".to_owned()));
     }
-    let changes = Changes::new(arguments, registry)?;
+    if let Some(id) = &arguments.reflection {
+        workshop.need(id);
+    }
+    let changes = Changes::new(arguments, &workshop.registry)?;
     let files = files(&sources, arguments.output.as_deref())?;
 
     // All scenes are read before the first is rendered: what is wrong with the last one is said at once.
     let mut scenes = Vec::with_capacity(sources.len());
     let mut problems = Vec::new();
     for source in &sources {
-        match source.open(registry, options) {
+        match source.open(workshop, options) {
             Ok(scene) => scenes.push(changes.apply(scene)),
             Err(Failure::Invalid(problem)) => problems.push(problem),
             Err(other) => return Err(other),
@@ -153,9 +164,15 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         return Err(Failure::Invalid(problems.join("\n")));
     }
 
+    let registry = &workshop.registry;
+    // By now it knows the files of models and shaders that are read.
+    let read = inputs(sources.iter().filter_map(Source::file), registry);
+    files.iter().try_for_each(|file| outputs::picture(file, &read))?;
     for scene in &scenes {
         drawable(registry, scene)?;
     }
+    // All files are in one folder.
+    files.first().into_iter().for_each(|file| outputs::tidy_beside(file));
     let bar = progress(scenes.len() as u64, options);
     let mut painter = Painter::new(arguments.renderer)?;
     let by_cpu = scenes.iter().filter(|scene| !painter.takes_gpu(scene, registry));
@@ -168,7 +185,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         ));
     }
     for ((scene, source), file) in scenes.iter().zip(&sources).zip(&files) {
-        bar.set_message(source.name());
+        bar.set_message(printable(&source.name()).into_owned());
         let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
         if let Some(folder) = folder {
             fs::create_dir_all(folder).map_err(|e| {
@@ -184,7 +201,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
         if bar.is_hidden() {
             options.tell(format_args!("wrote {}", file.display()));
         } else {
-            bar.println(format!("wrote {}", file.display()));
+            bar.println(printable(&format!("wrote {}", file.display())));
         }
     }
     bar.finish_and_clear();
@@ -232,8 +249,10 @@ impl Painter {
             ("Shading model", &job.scene.shading_model),
             ("Renderer", renderer),
         ];
-        png::write(job.file, job.width, job.height, &rgb8, &facts)
-            .map_err(|e| Failure::Write(format!("{} could not be written: {e}", job.file.display())))
+        png::write(job.file, job.width, job.height, &rgb8, &facts).map_err(|e| match e.kind() {
+            io::ErrorKind::BrokenPipe => Failure::Closed,
+            _ => Failure::Write(format!("{} could not be written: {e}", job.file.display())),
+        })
     }
 
     fn on_gpu(&mut self, job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
@@ -254,6 +273,7 @@ impl Painter {
                 let samples = if job.samples == 4 { 4 } else { 1 };
                 let renderer =
                     GpuRenderer::extended(job.width, job.height, samples, gpu::Output::Display, |app| {
+                        try_apart(app, registry);
                         app.insert_resource(registry.clone());
                     })
                     .map_err(failed)?;
@@ -267,6 +287,16 @@ impl Painter {
             return Err(invalid(registry, &problem));
         }
         renderer.read_rgb8().map_err(failed)
+    }
+}
+
+/// Has shaders that a user wrote tried in another process, for a driver may not survive them.
+fn try_apart(app: &mut App, registry: &Registry) {
+    if registry.sources().edited().next().is_some()
+        && let Some(program) = super::trial::program()
+        && let Some(mut bench) = app.world_mut().get_resource_mut::<Bench>()
+    {
+        bench.try_in(TrialProcess::new(program, Budget::default(), || {}));
     }
 }
 
@@ -382,16 +412,22 @@ enum Output {
     Folder,
 }
 
-/// A path that ends in `.png` is a file, unless there is a folder of that name; other picture formats
-/// are a misunderstanding; everything else is a folder.
+/// A path that ends in `.png` is a file, unless there is a folder of that name; so is a device or a pipe. Other
+/// picture formats are a misunderstanding; everything else is a folder.
 fn kind(path: &Path) -> Result<Output, Failure> {
     if path == Path::new("-") {
         return Err(Failure::Usage(
-            "-o -: pictures are not written to standard output; name a PNG file".to_owned(),
+            "-o -: name a PNG file, or the device of standard output, /dev/stdout".to_owned(),
         ));
     }
-    if path.is_dir() {
-        return Ok(Output::Folder);
+    match kind_on_disk(path) {
+        Ok(Kind::Folder) => return Ok(Output::Folder),
+        Ok(Kind::Device | Kind::Pipe) => return Ok(Output::File),
+        Ok(Kind::Socket | Kind::Unknown) => {
+            return Err(Failure::Write(format!("-o {} is no place for a picture", path.display())));
+        }
+        Ok(Kind::File) if is_descriptor(path) => return Ok(Output::File),
+        Ok(Kind::File) | Err(_) => {}
     }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     match extension.as_str() {
@@ -405,7 +441,7 @@ fn kind(path: &Path) -> Result<Output, Failure> {
                 png.display()
             )))
         }
-        _ if path.is_file() => Err(Failure::Usage(format!(
+        _ if path.is_file() => Err(Failure::Write(format!(
             "-o {} is a file, but not a PNG file; name a PNG file or a folder",
             path.display()
         ))),

@@ -6,15 +6,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{Failure, Options, ask};
-use crate::{
-    registry::Registry,
-    scene::{
-        Scene,
-        check::listed,
-        error::LoadError,
-        load::{self, Defaults, Loaded, Missing, Stamp},
-    },
+use super::{Failure, Options, ask, workshop::Workshop};
+use crate::scene::{
+    Scene,
+    check::listed,
+    error::LoadError,
+    load::{self, Defaults, Loaded, Missing, Stamp},
 };
 
 /// Where a scene comes from.
@@ -35,6 +32,14 @@ impl Source {
             None => Self::Default,
             Some(path) if path == Path::new("-") => Self::Stdin,
             Some(path) => Self::File(path.to_owned()),
+        }
+    }
+
+    /// The file, if it is one.
+    pub(super) fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Default | Self::Stdin => None,
+            Self::File(path) => Some(path),
         }
     }
 
@@ -59,20 +64,24 @@ impl Source {
     }
 
     /// Reads it as it is: no questions.
-    pub(super) fn read(&self, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
+    pub(super) fn read(&self, workshop: &mut Workshop, defaults: Defaults) -> Result<Loaded, LoadError> {
         match self {
             Self::Default => {
                 Ok(Loaded { scene: Scene::default(), missing: Vec::new(), stamp: Stamp::of(&[]) })
             }
-            Self::Stdin => load::reader(io::stdin().lock(), load::STDIN, registry, defaults),
-            Self::File(path) => load::file(path, registry, defaults),
+            Self::Stdin => {
+                workshop.load(&load::all_of(io::stdin().lock(), load::STDIN)?, load::STDIN, defaults)
+            }
+            Self::File(path) => {
+                workshop.load(&load::input_bytes(path)?, &path.display().to_string(), defaults)
+            }
         }
     }
 
     /// Reads it, and asks what there is to ask.
-    pub(super) fn open(&self, registry: &Registry, options: Options) -> Result<Scene, Failure> {
+    pub(super) fn open(&self, workshop: &mut Workshop, options: Options) -> Result<Scene, Failure> {
         let invalid = |e: LoadError| Failure::Invalid(e.to_string());
-        match self.read(registry, options.defaults()) {
+        match self.read(workshop, options.defaults()) {
             Ok(Loaded { scene, missing, .. }) if missing.is_empty() => Ok(scene),
             Ok(Loaded { scene, missing, .. }) => {
                 let name = self.name();

@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Failure, Options, Outcome, render::Size, scenes::Source, workshop::Places};
+use super::{Failure, Options, Outcome, outputs, render::Size, scenes::Source, workshop::Places};
 use crate::{
     assets::Folders,
+    files,
     registry::Registry,
     scene::{
         Scene,
         error::LoadError,
-        load::{self, Defaults, Stamp},
+        load::{Defaults, Stamp},
     },
 };
 
@@ -63,6 +64,11 @@ pub struct ViewOptions {
     pub registry: Registry,
     /// Where shaders and own models are read from. The shaders are not read yet.
     pub folders: Folders,
+    /// The program that tries shaders when it is called with
+    /// [`COMMAND`](crate::shader::trial::process::COMMAND); without it the window itself does.
+    pub trial_program: Option<PathBuf>,
+    /// What there is to say when the window opens.
+    pub warnings: Vec<String>,
     /// Log more.
     pub verbose: bool,
     /// Log errors only.
@@ -70,10 +76,21 @@ pub struct ViewOptions {
 }
 
 pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Outcome {
-    let workshop = places.open_for_window()?;
-    let registry = &workshop.registry;
+    let mut workshop = places.open_for_window(options)?;
     let source = Source::of(arguments.scene.as_deref());
     let Arguments { exit_after, capture, size, .. } = arguments;
+    if let Some(capture) = &capture {
+        outputs::picture(capture, &outputs::inputs(source.file(), &workshop.registry))?;
+        let _ = files::tidy(files::folder_of(capture));
+    }
+    let warnings = match &source {
+        // What a killed process was about to save is finished before it is read.
+        Source::File(path) => {
+            let target = files::follow(path).unwrap_or_else(|_| path.clone());
+            files::tidy(files::folder_of(&target)).iter().map(ToString::to_string).collect()
+        }
+        Source::Default | Source::Stdin => Vec::new(),
+    };
     let Options { verbose, quiet, .. } = options;
     let mut view = ViewOptions {
         scene: Scene::default(),
@@ -84,15 +101,23 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         size: size.map(|s| [s.width, s.height]),
         exit_after,
         capture,
-        registry: registry.clone(),
+        // The scene decides how much of it is read.
+        registry: Registry::default(),
         folders: workshop.folders.clone(),
+        trial_program: super::trial::program(),
+        warnings,
         verbose,
         quiet,
     };
     match source {
-        Source::File(path) => {
+        // What can be read only once cannot be followed or saved to.
+        Source::File(ref path) if files::is_stream(path) => {
+            view.scene = source.open(&mut workshop, options)?;
+        }
+        Source::File(ref path) => {
+            let path = path.clone();
             meant_command(&path)?;
-            match load::file(&path, registry, options.defaults()) {
+            match source.read(&mut workshop, options.defaults()) {
                 // The window asks what there is to ask, with a dialog.
                 Ok(loaded) if !loaded.missing.is_empty() && options.defaults() == Defaults::Ask => {
                     view.open = Some(path);
@@ -112,8 +137,9 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
                 Err(error) => return Err(Failure::Invalid(error.to_string())),
             }
         }
-        Source::Default | Source::Stdin => view.scene = source.open(registry, options)?,
+        Source::Default | Source::Stdin => view.scene = source.open(&mut workshop, options)?,
     }
+    view.registry = workshop.registry;
     crate::window::view(view)
 }
 

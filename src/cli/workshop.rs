@@ -1,16 +1,26 @@
 //! Shaders and own models on disk: where commands find them, and what is said of those that are wrong.
 
-use std::{collections::BTreeSet, path::PathBuf};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
 
 use clap::Args;
 
-use super::{Failure, Outcome, complain};
+use super::{Failure, Options, Outcome, complain};
 use crate::{
     assets::{self, Folders},
     capture::gpu::GpuError,
-    reflection::{Family, ModelEntry, own},
+    reflection::{
+        Family, ModelEntry,
+        own::folder::{self, Reading},
+    },
     registry::Registry,
-    scene::Scene,
+    scene::{
+        Scene,
+        error::LoadError,
+        load::{self, Defaults, Loaded},
+    },
     shader::{
         check::{self, ShaderProblem},
         compose::{Part, compose, compose_evaluation, files},
@@ -41,10 +51,94 @@ fn pasted(word: &str) -> String {
     }
 }
 
-/// What is known, and where it was read from.
+/// What is known, and where it was read from. Of the folder of own models only so much is read as a command needs.
 pub(super) struct Workshop {
     pub registry: Registry,
     pub folders: Folders,
+    options: Options,
+    /// A window draws models that are broken as stand-ins, and tells of them itself.
+    for_window: bool,
+    /// The ids whose files were read, or are not there.
+    tried: BTreeSet<String>,
+}
+
+impl Workshop {
+    /// Reads the model of that id, since it is used. Without one the declarations of all are read, so that messages
+    /// can list what there is.
+    pub(super) fn need(&mut self, id: &str) {
+        self.read(id);
+        if self.registry.model(id).is_none() && self.registry.broken_model(id).is_none() {
+            self.declare_rest();
+        }
+    }
+
+    /// Reads the model of that id, if it is not read yet; whether more is known now.
+    fn read(&mut self, id: &str) -> bool {
+        if !self.tried.insert(id.to_owned()) {
+            return false;
+        }
+        match folder::read_model(id, &mut self.registry) {
+            Reading::Known | Reading::Missing => false,
+            Reading::Read => {
+                let file = self.registry.own_file(id).unwrap_or(Path::new(id));
+                self.options.detail(format_args!("read {}", file.display()));
+                true
+            }
+            Reading::Broken(_) if self.for_window => false,
+            Reading::Broken(problems) => {
+                complain(all_annotated(&problems));
+                self.registry.remove_model(id);
+                true
+            }
+        }
+    }
+
+    /// Reads the declarations of all models that are not known yet; whether there was one, and what is wrong with
+    /// files. That the folder cannot be read is told at once.
+    fn declare_rest(&mut self) -> (bool, folder::Problems) {
+        let found = folder::declare_rest(&mut self.registry);
+        let is_folder = |path: &Path| Some(path) == self.registry.own_folder();
+        let (of_folder, of_files): (Vec<_>, Vec<_>) =
+            found.problems.into_iter().partition(|(path, _)| is_folder(path));
+        if !of_folder.is_empty() {
+            complain(all_annotated(&of_folder));
+        }
+        if found.files > 0 {
+            self.options.detail(format_args!("looked for declarations in {} files", found.files));
+        }
+        (found.files > 0, of_files)
+    }
+
+    /// Reads all declarations for a command that is about them, and tells what is wrong with them.
+    pub(super) fn list(&mut self) -> &Registry {
+        let (_, problems) = self.declare_rest();
+        if !problems.is_empty() {
+            complain(all_annotated(&problems));
+        }
+        &self.registry
+    }
+
+    /// Reads a scene from the content of a file, with the own models that it names. Only what is wrong with it makes
+    /// the declarations of others necessary: it may have parameters that they declare, and messages list them.
+    pub(super) fn load(&mut self, bytes: &[u8], name: &str, defaults: Defaults) -> Result<Loaded, LoadError> {
+        loop {
+            let loaded = load::from_bytes(bytes, name, &self.registry, defaults);
+            let named: BTreeSet<String> = match &loaded {
+                Ok(loaded) => loaded.scene.models().into_iter().map(str::to_owned).collect(),
+                Err(LoadError::Invalid { .. } | LoadError::Missing { .. }) => {
+                    load::models_named(bytes, &self.registry)
+                }
+                Err(_) => return loaded,
+            };
+            // Each is read, also when the first brings something new.
+            let read = named.iter().filter(|id| self.read(id)).count() > 0;
+            let rest = || matches!(loaded, Err(LoadError::Invalid { .. }));
+            let more = read || rest() && self.declare_rest().0;
+            if !more {
+                return loaded;
+            }
+        }
+    }
 }
 
 impl Places {
@@ -64,35 +158,39 @@ impl Places {
             .map_err(|e| Failure::Usage(e.to_string()))
     }
 
-    /// Reads everything. Own models that are wrong are told of and left out; shaders that cannot be read are an
-    /// error.
-    pub(super) fn open(&self) -> Result<Workshop, Failure> {
+    /// Reads the shaders; one that cannot be read is an error. Own models are read when they are needed.
+    pub(super) fn open(&self, options: Options) -> Result<Workshop, Failure> {
         if let Some(named) = self.models.as_deref().filter(|m| !m.exists()) {
             return Err(Failure::Usage(format!(
                 "--models is {}, but there is no such folder",
                 named.display()
             )));
         }
-        self.open_for_writing()
+        self.open_for_writing(options)
     }
 
     /// As [`open`](Self::open), for commands that make the folder of own models if it is not there.
-    pub(super) fn open_for_writing(&self) -> Result<Workshop, Failure> {
+    pub(super) fn open_for_writing(&self, options: Options) -> Result<Workshop, Failure> {
         let folders = self.folders()?;
         let mut registry = Registry::builtin();
+        if let Some(models) = &folders.models {
+            registry.set_own_folder(models);
+        }
         if let Some(shaders) = &folders.shaders {
             assets::read_shaders(shaders, &mut registry)
                 .map_err(|problems| Failure::Invalid(all_annotated(&problems)))?;
+            let problems = folder::import_for_shaders(&mut registry);
+            if !problems.is_empty() {
+                complain(all_annotated(&problems));
+            }
         }
-        if let Some(models) = &folders.models {
-            tell(&own::read_folder(models, &mut registry, false));
-        }
-        Ok(Workshop { registry, folders })
+        Ok(Workshop { registry, folders, options, for_window: false, tried: BTreeSet::new() })
     }
 
-    /// Reads what a window starts with: own models, those that are wrong as a stand-in. Nothing that is wrong keeps
-    /// the window from opening.
-    pub(super) fn open_for_window(&self) -> Result<Workshop, Failure> {
+    /// Reads what a window starts with: the declarations of all own models, since it lists them. Those that its scene
+    /// does not use are drawn as stand-ins until they are read, and so are those that are wrong. Nothing that is wrong
+    /// keeps the window from opening.
+    pub(super) fn open_for_window(&self, options: Options) -> Result<Workshop, Failure> {
         let folders = self.folders()?;
         let mut registry = Registry::builtin();
         if let Some(shaders) = &folders.shaders {
@@ -100,16 +198,9 @@ impl Places {
         }
         if let Some(models) = &folders.models {
             // The window itself tells of what is wrong.
-            let _ = own::read_folder(models, &mut registry, true);
+            let _ = folder::declare_folder(models, &mut registry);
         }
-        Ok(Workshop { registry, folders })
-    }
-}
-
-/// Tells of files that are wrong.
-fn tell(problems: &[(PathBuf, ShaderProblem)]) {
-    if !problems.is_empty() {
-        complain(all_annotated(problems));
+        Ok(Workshop { registry, folders, options, for_window: true, tried: BTreeSet::new() })
     }
 }
 

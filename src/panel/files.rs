@@ -7,6 +7,7 @@ use super::{
     state::{Effect, Lab, MissingPart, Question, Severity},
 };
 use crate::{
+    files::tidy,
     registry::Registry,
     scene::{Scene, load::Stamp},
 };
@@ -125,6 +126,8 @@ pub fn run(lab: &mut Lab, registry: &Registry, effect: Effect, files: &mut dyn F
 /// Reads the settings of the last session into the state; says so when they cannot be read.
 pub fn load_settings(lab: &mut Lab) {
     if let Some(folder) = settings::folder() {
+        // What is unfinished in there is settings, and those are read in a moment.
+        let _ = tidy(&folder);
         let (settings, complaint) = settings::load(&folder);
         lab.adopt(settings);
         if let Some(complaint) = complaint {

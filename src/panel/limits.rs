@@ -137,7 +137,7 @@ pub fn rotation() -> Limits {
 /// The size of an object, metres.
 #[must_use]
 pub fn object_size(size: SceneSize) -> Limits {
-    Limits::above_zero(f64::INFINITY).slider(0.0, f64::from(size.corner().max_element()))
+    Limits::above_zero(f64::from(check::MAX_SIZE)).slider(0.0, f64::from(size.corner().max_element()))
 }
 
 /// How finely an object is cut.

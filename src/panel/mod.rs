@@ -42,6 +42,7 @@ pub mod maths;
 pub mod messages;
 pub mod picture;
 pub mod question;
+pub mod recovery;
 pub mod reload;
 pub mod settings;
 pub mod shader;

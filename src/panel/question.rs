@@ -20,11 +20,11 @@ pub fn show(ctx: &egui::Context, lab: &Lab) -> Vec<Action> {
             ui.label(RichText::new(title).heading());
             ui.add_space(8.0);
             ui.add(egui::Label::new(text).wrap());
-            for (what, default) in details {
+            for (what, more) in details {
                 ui.add_space(4.0);
                 ui.horizontal_wrapped(|ui| {
                     ui.label(theme::strong(ui, what));
-                    ui.label(RichText::new(format!("default: {default}")).color(palette.weak));
+                    ui.label(RichText::new(more).color(palette.weak));
                 });
             }
             ui.add_space(16.0);
@@ -54,10 +54,12 @@ pub fn show(ctx: &egui::Context, lab: &Lab) -> Vec<Action> {
     out.map(Action::Answer).into_iter().collect()
 }
 
-type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, Answer)>);
+/// Title, text, lines of details (what, more), answers.
+pub(super) type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, Answer)>);
 
 fn words(lab: &Lab, question: &Question) -> Words {
     match question {
+        Question::Recover(offer) => offer.words(lab),
         Question::Unsaved { .. } => (
             "Save the changes?",
             format!("“{}” has changes that are not in its file. Without saving they are lost.", lab.title()),
@@ -69,7 +71,7 @@ fn words(lab: &Lab, question: &Question) -> Words {
             (
                 "Use the defaults?",
                 format!("{} lacks {what} that every scene has. Shall the defaults be used?", path.display()),
-                parts.iter().map(|p| (p.name.clone(), p.default.clone())).collect(),
+                parts.iter().map(|p| (p.name.clone(), format!("default: {}", p.default))).collect(),
                 vec![("Use the defaults", Answer::UseDefaults), ("Do not open", Answer::Cancel)],
             )
         }

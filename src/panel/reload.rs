@@ -10,6 +10,7 @@ use super::{
     state::{Badge, Effect, Lab, MissingPart, Note, Question, Selection, Severity},
 };
 use crate::{
+    files::printable,
     registry::Registry,
     scene::{Scene, load::Stamp},
 };
@@ -93,8 +94,9 @@ fn take(
     (scene, defaulted): (Scene, Vec<String>),
     discard: bool,
 ) -> Vec<Effect> {
-    let edited = lab.scene != lab.saved && lab.scene != scene;
-    if edited && !discard && scene != lab.saved {
+    // What a recovered document began with is not known.
+    let edited = (lab.recovered || lab.scene != lab.saved) && lab.scene != scene;
+    if edited && !discard && (lab.recovered || scene != lab.saved) {
         if lab.disk.asked != Some(Some(version)) {
             lab.disk_settled();
             lab.disk.asked = Some(Some(version));
@@ -140,24 +142,29 @@ fn doubt(
         lab.disk.gone = true;
         let text =
             format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.display());
-        lab.disk.badge = Some(Badge {
-            severity: Severity::Warning,
-            text: format!("{} was deleted: showing its last version", file_name(&path)),
-            help: text.clone(),
-        });
+        lab.disk.badge = badge(
+            Severity::Warning,
+            &format!("{} was deleted: showing its last version", file_name(&path)),
+            &text,
+        );
         lab.say_of_disk(Severity::Warning, text);
         return Vec::new();
     }
-    lab.disk.badge = Some(Badge {
-        severity: Severity::Error,
-        text: format!("{} has errors: showing the last good version", file_name(&path)),
-        help: problems.join("\n"),
-    });
+    lab.disk.badge = badge(
+        Severity::Error,
+        &format!("{} has errors: showing the last good version", file_name(&path)),
+        &problems.join("\n"),
+    );
     // The latest stands on top: the first problem.
     for problem in problems.iter().rev() {
         lab.say_of_disk(Severity::Error, problem.clone());
     }
     vec![Effect::Complain(problems.join("\n"))]
+}
+
+/// What the picture says, without what names of files may hold that is not to be shown.
+fn badge(severity: Severity, text: &str, help: &str) -> Option<Badge> {
+    Some(Badge { severity, text: printable(text).into_owned(), help: printable(help).into_owned() })
 }
 
 fn file_name(path: &Path) -> String {
@@ -178,20 +185,20 @@ impl Lab {
 
     /// The user leaves it open whether the file on disk or the document counts.
     pub(super) fn disk_undecided(&mut self, path: &Path) {
-        self.disk.badge = Some(Badge {
-            severity: Severity::Warning,
-            text: format!("{} changed on disk: showing yours", file_name(path)),
-            help: format!(
+        self.disk.badge = badge(
+            Severity::Warning,
+            &format!("{} changed on disk: showing yours", file_name(path)),
+            &format!(
                 "{} was changed by another program, and there are changes here that are not saved. Saving asks which \
                  of both to keep.",
                 path.display()
             ),
-        });
+        );
     }
 
     /// Says something about the file that gives way when there is something newer to say.
     fn say_of_disk(&mut self, severity: Severity, text: String) {
-        self.disk.notes.push(Note { severity, text: text.clone() });
+        self.disk.notes.push(Note { severity, text: printable(&text).into_owned() });
         self.say(severity, text);
     }
 
@@ -209,6 +216,7 @@ impl Lab {
         }
         self.selection = selection;
         self.saved = scene.clone();
+        self.recovered = false;
         self.aside.clear();
         self.defaulted = defaulted;
         if self.scene.reflection_model != scene.reflection_model {

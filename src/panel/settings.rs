@@ -1,18 +1,21 @@
 //! What survives a restart: theme, type size, panel sizes, recent files.
 
 use std::{
-    io::Write,
+    io,
     path::{Path, PathBuf},
 };
 
 use serde::{Deserialize, Serialize};
 
 use super::state::{ThemeChoice, View};
+use crate::files::{self, FileError};
 
 /// The environment variable that names another folder for the settings.
 pub const FOLDER_VARIABLE: &str = "LCM_CONFIG_DIR";
 /// The name of the file.
 const FILE: &str = "settings.json";
+/// Settings are not larger; long names of recent files included.
+const MAX_BYTES: u64 = 1 << 20;
 
 /// What survives a restart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,12 +66,12 @@ pub fn folder() -> Option<PathBuf> {
 #[must_use]
 pub fn load(folder: &Path) -> (Settings, Option<String>) {
     let path = folder.join(FILE);
-    let text = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return (Settings::default(), None),
+    let bytes = match files::read(&path, MAX_BYTES) {
+        Ok(bytes) => bytes,
+        Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => return (Settings::default(), None),
         Err(e) => return (Settings::default(), Some(unreadable(&path, &e))),
     };
-    match serde_json::from_str::<Settings>(&text) {
+    match serde_json::from_slice::<Settings>(&bytes) {
         Ok(settings) => (settings.tidy(), None),
         Err(e) => (Settings::default(), Some(unreadable(&path, &e))),
     }
@@ -84,14 +87,11 @@ fn unreadable(path: &Path, why: &dyn std::fmt::Display) -> String {
 /// A sentence, when the folder or the file cannot be written.
 pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
     let path = folder.join(FILE);
-    let write = || -> std::io::Result<()> {
+    let write = || -> Result<(), FileError> {
         std::fs::create_dir_all(folder)?;
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
-        serde_json::to_writer_pretty(&mut file, settings)?;
-        file.write_all(b"\n")?;
-        file.as_file().sync_all()?;
-        file.persist(&path)?;
-        Ok(())
+        let mut text = serde_json::to_string_pretty(settings).map_err(io::Error::from)?;
+        text.push('\n');
+        files::write(&path, text.as_bytes())
     };
     write().map_err(|e| format!("The settings cannot be written to {}: {e}.", path.display()))
 }

@@ -16,10 +16,12 @@ use super::{
     author::{Ask, ModelDraft},
     follow::Aside,
     limits,
+    recovery::{Choice, Offer},
     reload::OnDisk,
     settings::Settings,
 };
 use crate::{
+    files::printable,
     light::MAX_LIGHTS,
     optics::TermSelection,
     reflection::parameter::Value,
@@ -32,6 +34,8 @@ use crate::{
 pub const MODEL_SLOTS: usize = 9;
 /// The most files that the list of recent files holds.
 pub const RECENT_FILES: usize = 10;
+/// The most messages that are kept; the oldest give way.
+pub const MAX_MESSAGES: usize = 500;
 /// Two positions nearer than this are the same place, metres.
 const SAME_PLACE: f32 = 1e-6;
 
@@ -58,7 +62,7 @@ pub struct Lab {
     pub path: Option<PathBuf>,
     /// What the inspector shows.
     pub selection: Selection,
-    /// Messages, oldest first; each stays until it is dismissed.
+    /// Messages, oldest first; each stays until it is dismissed, or until [`MAX_MESSAGES`] newer ones are there.
     pub messages: Vec<Note>,
     /// What is shown and how.
     pub view: View,
@@ -96,6 +100,8 @@ pub struct Lab {
     pub renaming: Option<Selection>,
     /// The document as it is in the file.
     pub(super) saved: Scene,
+    /// The document came from a recovery copy: no file is known to have it.
+    pub(super) recovered: bool,
     /// What waits for the document to be saved first.
     after_save: Option<Action>,
     /// A dialog that something other than the panels wants opened: what waited for the document to be
@@ -295,6 +301,8 @@ pub enum Question {
         /// The state of the file.
         version: Stamp,
     },
+    /// An earlier window left unsaved changes.
+    Recover(Box<Offer>),
 }
 
 /// A part that a scene file lacks, and its default.
@@ -323,6 +331,8 @@ pub enum Answer {
     Reload,
     /// Keep what is on screen; saving replaces what is on disk now.
     Keep,
+    /// Go on with what an earlier window left.
+    Recover,
 }
 
 /// What a user can do. Panels return these.
@@ -535,6 +545,8 @@ pub enum Effect {
         /// Its state.
         version: Stamp,
     },
+    /// What becomes of the recovery copy that the question was about.
+    Recovery(Choice),
     /// Write to standard error, for those who watch it.
     Complain(String),
     /// End the program.
@@ -612,6 +624,7 @@ impl Lab {
             keyboard_free: true,
             panels: Vec::new(),
             renaming: None,
+            recovered: false,
             after_save: None,
             wanted_dialog: None,
             may_discard: false,
@@ -628,13 +641,20 @@ impl Lab {
     /// Whether the document differs from its file.
     #[must_use]
     pub fn is_dirty(&self) -> bool {
-        !self.defaulted.is_empty() || self.disk.gone || self.scene != self.saved
+        self.recovered || !self.defaulted.is_empty() || self.disk.gone || self.scene != self.saved
+    }
+
+    /// True while the user is asked about unsaved changes, or saves them, in order to close the window.
+    #[must_use]
+    pub fn is_quitting(&self) -> bool {
+        let asked = matches!(&self.question, Some(Question::Unsaved { then }) if **then == Action::Quit);
+        asked || self.after_save == Some(Action::Quit)
     }
 
     /// What the window calls the document: the name of the scene, else the name of the file.
     #[must_use]
     pub fn title(&self) -> String {
-        let file = || Some(self.path.as_ref()?.file_stem()?.to_string_lossy().into_owned());
+        let file = || Some(printable(&self.path.as_ref()?.file_stem()?.to_string_lossy()).into_owned());
         self.scene.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
     }
 
@@ -701,9 +721,12 @@ impl Lab {
 
     /// Adds a message; an error unfolds the strip that shows it.
     pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
-        let message = Note { severity, text: text.into() };
+        let message = Note { severity, text: printable(&text.into()).into_owned() };
         // The same words twice in a row say no more than once.
         if self.messages.last() != Some(&message) {
+            if self.messages.len() >= MAX_MESSAGES {
+                self.messages.remove(0);
+            }
             self.messages.push(message);
         }
         if severity == Severity::Error {
@@ -730,6 +753,7 @@ impl Lab {
         self.remember_file(&path);
         self.path = Some(path);
         self.saved = self.scene.clone();
+        self.recovered = false;
         self.defaulted.clear();
         self.disk_settled();
         let mut effects = vec![Effect::SaveSettings];
@@ -920,11 +944,18 @@ impl Lab {
         self.renaming = None;
         self.after_save = None;
         self.may_discard = false;
+        self.recovered = false;
         self.defaulted.clear();
         self.disk_settled();
         self.view.terms = TermSelection::All;
         self.select_first();
         self.use_slot(&self.scene.reflection_model.clone());
+    }
+
+    /// The scene of a recovery copy becomes the document; it is unsaved.
+    pub(super) fn recovered(&mut self, path: Option<PathBuf>, scene: Scene) {
+        self.replace_document(path, scene);
+        self.recovered = true;
     }
 
     fn remember_file(&mut self, path: &Path) {
@@ -956,6 +987,7 @@ impl Lab {
                 Vec::new()
             }
             (Question::EmptyFile { .. }, Answer::UseDefaults) => self.start_new(),
+            (Question::Recover(offer), answer) => self.answer_offer(*offer, answer),
             (Question::ChangedOnDisk { path }, Answer::Overwrite) => {
                 vec![Effect::SaveFile { path, overwrite: true }]
             }
@@ -966,6 +998,7 @@ impl Lab {
             (Question::NewerOnDisk { path, scene, version }, Answer::Keep) => {
                 // What is on disk is known now: saving replaces it.
                 self.saved = *scene;
+                self.recovered = false;
                 self.disk_settled();
                 vec![Effect::ExpectFile { path, version }]
             }

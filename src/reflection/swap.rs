@@ -171,6 +171,10 @@ pub struct Drawn {
     version: usize,
 }
 
+/// An object whose new shader is still being tried: it stays as it is for so long.
+#[derive(Clone, Component, Copy, Debug, Default)]
+pub struct AwaitsShader;
+
 impl Drawn {
     /// Id of the reflection model.
     #[must_use]
@@ -204,7 +208,7 @@ pub fn swap(world: &mut World) {
         let scene = world.resource_ref::<CurrentScene>();
         let scene_changed = scene.is_changed();
         let mut pending = Vec::new();
-        let mut query = world.query::<(Ref<LitObject>, Option<&Drawn>)>();
+        let mut query = world.query::<(Ref<LitObject>, Option<&Drawn>, Has<AwaitsShader>)>();
         let scene = &world.resource::<CurrentScene>().0;
         let registry = world.resource_ref::<Registry>();
         let scene_changed = scene_changed || registry.is_changed();
@@ -212,7 +216,7 @@ pub fn swap(world: &mut World) {
         let everywhere = LazyCell::new(|| shines_from_everywhere(scene, world.resource::<Registry>()));
         // More objects than a table has rows are no legal scene; what is beyond is not drawn.
         for (row, &entity) in world.resource::<SceneEntities>().objects.iter().enumerate().take(MAX_OBJECTS) {
-            let Ok((object, drawn)) = query.get(world, entity) else { continue };
+            let Ok((object, drawn, waits)) = query.get(world, entity) else { continue };
             let now = || Drawn {
                 model: scene.model_of(&object.0).to_owned(),
                 mode: scene.mode_of(&object.0).to_owned(),
@@ -220,7 +224,12 @@ pub fn swap(world: &mut World) {
                 everywhere: *everywhere,
                 version: registry.model(scene.model_of(&object.0)).map_or(0, super::ModelEntry::version),
             };
-            if all || object.is_changed() || drawn.is_none() || (scene_changed && drawn != Some(&now())) {
+            if all
+                || waits
+                || object.is_changed()
+                || drawn.is_none()
+                || (scene_changed && drawn != Some(&now()))
+            {
                 pending.push((row, entity, object.0.clone(), now()));
             }
         }
@@ -262,6 +271,10 @@ pub fn swap(world: &mut World) {
         let shader = world.resource_scope(|world, mut shaders: Mut<LiveShaders>| {
             shaders.get(world, model, mode, &registry)
         });
+        let Some(shader) = shader else {
+            world.entity_mut(entity).insert(AwaitsShader);
+            continue;
+        };
         let faces = mode.declaration.stage == Stage::Polygon;
         let table = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
             tables.set(model, row, &bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
@@ -283,7 +296,7 @@ pub fn swap(world: &mut World) {
         if entity.get::<Mesh3d>().map(|m| &m.0) != Some(&mesh) {
             entity.insert(Mesh3d(mesh));
         }
-        entity.insert((now, MeshTag(row as u32)));
+        entity.insert((now, MeshTag(row as u32))).remove::<AwaitsShader>();
     }
     forget_unused_meshes(world, &registry);
     world.resource_scope(|world, mut tables: Mut<ParameterTables>| {

@@ -34,6 +34,10 @@ pub const MAX_FIELD_OF_VIEW: f32 = 170.0;
 /// The legal exposures reach from minus this to plus this, EV.
 pub const MAX_EXPOSURE: f32 = 16.0;
 
+/// The largest legal size of an object, metres: a million kilometres. Far beyond, the squares of distances and of their
+/// derivatives are no numbers any more on graphics cards, and there is no picture that both renderers could agree on.
+pub const MAX_SIZE: f32 = 1e9;
+
 /// `Ok`, or the rule that is broken.
 pub type Rule = Result<(), String>;
 
@@ -104,9 +108,9 @@ pub fn field_of_view(degrees: f32) -> Rule {
 
 /// The largest extent of an object, in metres.
 pub fn size(metres: f32) -> Rule {
-    must(metres > 0.0 && metres.is_finite(), || {
-        if metres == f32::INFINITY {
-            "a size must be at most 3.4e38".to_owned()
+    must(metres > 0.0 && metres <= MAX_SIZE, || {
+        if metres > MAX_SIZE {
+            format!("a size must be at most {MAX_SIZE:e} m")
         } else {
             "a size must be greater than 0".to_owned()
         }

@@ -5,6 +5,7 @@ use std::{borrow::Cow, fmt, io, path::Path as FilePath};
 use serde::{Serialize, Serializer};
 
 use super::load::{MAX_FILE_BYTES, Missing};
+use crate::files::{FileError, Kind};
 
 /// A place in a text. Both count from 1; columns count characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -216,6 +217,14 @@ pub enum LoadError {
         /// Which scenes are in it.
         hint: Option<String>,
     },
+    /// The path leads to something that is neither file nor folder.
+    #[error("{name} is {kind}; a scene is a single JSON file, or comes from standard input with -")]
+    NoFile {
+        /// What was named.
+        name: String,
+        /// What it is.
+        kind: Kind,
+    },
     /// The operating system does not let this user read it.
     #[error("{name}: no permission to read this file")]
     PermissionDenied {
@@ -293,10 +302,16 @@ impl LoadError {
         }
     }
 
-    /// The error that a path leads to a folder.
+    /// The error that a file could not be read.
     #[must_use]
-    pub fn folder(path: &FilePath, name: &str) -> Self {
-        Self::Folder { name: name.to_owned(), hint: scenes_within(path) }
+    pub fn from_file(path: &FilePath, error: FileError) -> Self {
+        let name = path.display().to_string();
+        match error {
+            FileError::Kind(Kind::Folder) => Self::Folder { hint: scenes_within(path), name },
+            FileError::Kind(kind) => Self::NoFile { name, kind },
+            FileError::TooLarge(_) => Self::TooLarge { name },
+            error => Self::from_io(path, &name, error.into()),
+        }
     }
 
     /// The problems as data: those of an invalid scene, or the error itself as the only one.
@@ -317,6 +332,9 @@ impl LoadError {
                 vec![Problem::about(Path::root(), "could not be read: there is no such file")]
             }
             Self::Folder { .. } => vec![Problem::about(Path::root(), "could not be read: it is a folder")],
+            Self::NoFile { kind, .. } => {
+                vec![Problem::about(Path::root(), format!("could not be read: it is {kind}"))]
+            }
             Self::PermissionDenied { .. } => {
                 vec![Problem::about(Path::root(), "could not be read: no permission")]
             }

@@ -125,7 +125,7 @@ struct ObjectFile<'a> {
     /// Where its centre is: [x, y, z] in metres, inside the room, not where a light or the observer is.
     position: [f32; 3],
     /// Its largest extent, metres.
-    #[schemars(extend("exclusiveMinimum" = 0, "default" = 2))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1_000_000_000, "default" = 2))]
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<f32>,
     /// How it is turned: degrees about x, then y, then z.

@@ -2,9 +2,10 @@
 //! can be wrong (R2, R5, R6) and a question for what is missing (R3).
 
 use std::{
-    fmt, fs,
+    collections::BTreeSet,
+    fmt,
     hash::{DefaultHasher, Hash as _, Hasher as _},
-    io::{self, Read},
+    io::Read,
     path::Path as FilePath,
 };
 
@@ -15,7 +16,7 @@ use super::{
     error::{LoadError, Path, Place, Problem},
     read,
 };
-use crate::registry::Registry;
+use crate::{files, registry::Registry};
 
 /// Larger files are refused before they are read. The largest legal scene, with every parameter of
 /// 10 000 objects given, is less than a tenth of this.
@@ -64,7 +65,7 @@ impl Missing {
 }
 
 /// The state of a file, to notice that someone else changed it: its length and a hash of its content.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Stamp {
     length: u64,
     hash: u64,
@@ -91,7 +92,7 @@ pub struct Loaded {
     pub stamp: Stamp,
 }
 
-/// Reads a scene from a file.
+/// Reads a scene from a regular file.
 ///
 /// # Errors
 /// [`LoadError`]; its text names the file as `path` does.
@@ -99,22 +100,20 @@ pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<
     from_bytes(&bytes(path)?, &path.display().to_string(), registry, defaults)
 }
 
+/// Reads the content of what a command line names: a file, or a stream such as `/dev/stdin`.
+///
+/// # Errors
+/// [`LoadError`]; its text names it as `path` does.
+pub fn input_bytes(path: &FilePath) -> Result<Vec<u8>, LoadError> {
+    files::read_input(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e))
+}
+
 /// Reads the content of a scene file, whatever it is.
 ///
 /// # Errors
-/// [`LoadError`] when it is a folder, too large, or cannot be read.
+/// [`LoadError`] when it is no regular file, too large, or cannot be read.
 pub fn bytes(path: &FilePath) -> Result<Vec<u8>, LoadError> {
-    let name = path.display().to_string();
-    let error = |e| LoadError::from_io(path, &name, e);
-    let metadata = fs::metadata(path).map_err(error)?;
-    if metadata.is_dir() {
-        return Err(LoadError::folder(path, &name));
-    }
-    if metadata.len() > MAX_FILE_BYTES {
-        return Err(LoadError::TooLarge { name });
-    }
-    let file = fs::File::open(path).map_err(error)?;
-    limited(file, &name, error)
+    files::read(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e))
 }
 
 /// Reads a scene from a stream, for example [standard input](STDIN).
@@ -127,18 +126,26 @@ pub fn reader(
     registry: &Registry,
     defaults: Defaults,
 ) -> Result<Loaded, LoadError> {
-    let bytes = limited(from, name, |source| LoadError::Io { name: name.to_owned(), source })?;
-    from_bytes(&bytes, name, registry, defaults)
+    from_bytes(&all_of(from, name)?, name, registry, defaults)
 }
 
-/// Reads all, but no more than any scene has: devices and pipes do not say how long they are.
-fn limited(
-    from: impl Read,
-    name: &str,
-    error: impl Fn(io::Error) -> LoadError,
-) -> Result<Vec<u8>, LoadError> {
+/// The ids of the reflection models that a scene names, whether they are known or not and whatever else is wrong
+/// with it; none of what is not JSON.
+#[must_use]
+pub fn models_named(bytes: &[u8], registry: &Registry) -> BTreeSet<String> {
+    let text = decode(bytes, "").ok().filter(|text| check_syntax(text).is_ok());
+    text.map_or_else(BTreeSet::new, |text| read::models_named(text, registry))
+}
+
+/// Reads the content of a stream, which can be read once.
+///
+/// # Errors
+/// [`LoadError`] when it is too large for a scene, or cannot be read.
+pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
+    let failed = |source| LoadError::Io { name: name.to_owned(), source };
     let mut bytes = Vec::new();
-    from.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(error)?;
+    // A stream does not say how long it is.
+    from.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { name: name.to_owned() });
     }

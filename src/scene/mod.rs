@@ -4,6 +4,8 @@
 //! the panels edit it, the CPU renderer draws it. Angles are degrees, lengths metres, colours
 //! sRGB-encoded integers: the values as users write them.
 
+use std::collections::BTreeSet;
+
 use glam::Vec3;
 
 use crate::{
@@ -256,6 +258,13 @@ impl Default for Scene {
 }
 
 impl Scene {
+    /// The ids of the reflection models that the scene names, each once.
+    #[must_use]
+    pub fn models(&self) -> BTreeSet<&str> {
+        let own = self.objects.iter().filter_map(|o| o.reflection_model.as_deref());
+        own.chain([self.reflection_model.as_str()]).collect()
+    }
+
     /// The reflection model of an object: its own, or the scene's.
     #[must_use]
     pub fn model_of<'a>(&'a self, object: &'a Object) -> &'a str {

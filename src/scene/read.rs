@@ -1,7 +1,10 @@
 //! From JSON to a [`Scene`]: types, unknown, missing and repeated keys are found here; ranges and
 //! relations are [`check`]'s. Every problem gets the place of the value that it is about.
 
-use std::{borrow::Cow, collections::HashSet};
+use std::{
+    borrow::Cow,
+    collections::{BTreeSet, HashSet},
+};
 
 use glam::Vec3;
 use jsonc_parser::{
@@ -108,19 +111,7 @@ pub(super) fn scene(
     registry: &Registry,
     defaults: Defaults,
 ) -> Result<(Scene, Vec<Missing>), LoadError> {
-    let strict = ParseOptions {
-        allow_comments: false,
-        allow_loose_object_property_names: false,
-        allow_trailing_commas: false,
-        allow_missing_commas: false,
-        allow_single_quoted_strings: false,
-        allow_hexadecimal_numbers: false,
-        allow_unary_plus_numbers: false,
-        allow_bare_decimal_point_numbers: false,
-        allow_non_finite_numbers: false,
-        allow_extended_string_escapes: false,
-    };
-    let parsed = parse_to_ast(text, &CollectOptions::default(), &strict);
+    let parsed = parse_to_ast(text, &CollectOptions::default(), &STRICT);
     let syntax = |at: usize, what: String| LoadError::Syntax {
         name: name.to_owned(),
         place: Lines::new(text).place(at),
@@ -135,18 +126,7 @@ pub(super) fn scene(
         .value
         .ok_or_else(|| LoadError::Empty { name: name.to_owned() })?;
 
-    let mut reader = Reader {
-        text,
-        registry,
-        problems: Vec::new(),
-        reported: HashSet::new(),
-        missing: Vec::new(),
-        unlisted: 0,
-        suggestions: 0,
-        light_keys: light_keys(registry),
-        material_keys: registry.material_parameters().map(|p| p.name).collect(),
-        lines: Lines::new(text),
-    };
+    let mut reader = Reader::new(text, registry);
     let scene = reader.scene(&root);
     reader.check(&scene, &root);
     let Reader { mut problems, missing, unlisted, lines, .. } = reader;
@@ -170,6 +150,28 @@ pub(super) fn scene(
         .collect();
     Err(LoadError::Invalid { name: name.to_owned(), problems })
 }
+
+/// The reflection models that a scene names, from JSON whose syntax is checked already.
+pub(super) fn models_named(text: &str, registry: &Registry) -> BTreeSet<String> {
+    let parsed = parse_to_ast(text, &CollectOptions::default(), &STRICT);
+    let root = parsed.ok().and_then(|parsed| parsed.value);
+    let scene = root.map(|root| Reader::new(text, registry).scene(&root));
+    scene.map_or_else(BTreeSet::new, |scene| scene.models().into_iter().map(str::to_owned).collect())
+}
+
+/// JSON and nothing else.
+const STRICT: ParseOptions = ParseOptions {
+    allow_comments: false,
+    allow_loose_object_property_names: false,
+    allow_trailing_commas: false,
+    allow_missing_commas: false,
+    allow_single_quoted_strings: false,
+    allow_hexadecimal_numbers: false,
+    allow_unary_plus_numbers: false,
+    allow_bare_decimal_point_numbers: false,
+    allow_non_finite_numbers: false,
+    allow_extended_string_escapes: false,
+};
 
 /// The keys that some type of light has.
 fn light_keys(registry: &Registry) -> Vec<&'static str> {
@@ -216,6 +218,23 @@ struct Fields<'b, 'a> {
 impl<'b, 'a> Fields<'b, 'a> {
     fn get(&self, key: &str) -> Option<&'b Ast<'a>> {
         self.fields.iter().find(|(k, _)| *k == key).map(|(_, p)| &p.value)
+    }
+}
+
+impl<'a> Reader<'a> {
+    fn new(text: &'a str, registry: &'a Registry) -> Self {
+        Self {
+            text,
+            registry,
+            problems: Vec::new(),
+            reported: HashSet::new(),
+            missing: Vec::new(),
+            unlisted: 0,
+            suggestions: 0,
+            light_keys: light_keys(registry),
+            material_keys: registry.material_parameters().map(|p| p.name).collect(),
+            lines: Lines::new(text),
+        }
     }
 }
 

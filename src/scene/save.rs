@@ -21,7 +21,10 @@ use super::{
     load::{MAX_FILE_BYTES, Stamp},
     schema,
 };
-use crate::registry::Registry;
+use crate::{
+    files::{self, Draft, FileError, Kind},
+    registry::Registry,
+};
 
 /// What the writer expects to find where it writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,6 +78,14 @@ pub enum SaveError {
         /// The folder.
         path: PathBuf,
     },
+    /// The path leads to something that is neither file nor folder.
+    #[error("{} was not written: it is {kind}, and a scene is saved to a file", .path.display())]
+    NoFile {
+        /// What was named.
+        path: PathBuf,
+        /// What it is.
+        kind: Kind,
+    },
     /// The folder of the file does not exist.
     #[error("{} was not written: there is no folder {}", .path.display(), .folder.display())]
     NoFolder {
@@ -111,9 +122,8 @@ pub fn to_json(scene: &Scene, schema: Option<&str>, registry: &Registry) -> Stri
     pretty(&compact).unwrap_or_else(|| compact.into_owned())
 }
 
-/// Writes a scene, all or nothing: to a temporary file in the same folder, which then takes the place
-/// of the old one. Links are followed, permissions kept, and so is the `$schema` of the old file; a new
-/// file refers to [`schema::FILE_NAME`] if that is in its folder. Returns the stamp to expect next time.
+/// Writes a scene, all or nothing, as [`files::write`](fn@files::write) does. The `$schema` of the old file is kept;
+/// a new file refers to [`schema::FILE_NAME`] if that is in its folder. Returns the stamp to expect next time.
 ///
 /// # Errors
 /// [`SaveError`]; the old file is then untouched.
@@ -128,12 +138,9 @@ pub fn write(
     if !problems.is_empty() {
         return Err(SaveError::Invalid { path: shown(), problems });
     }
-    let io = |source| SaveError::Io { path: shown(), source };
-    let target = follow(path).map_err(io)?;
-    let folder = match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+    let failed = |error| SaveError::from_file(path, error);
+    let target = files::follow(path).map_err(|e| failed(e.into()))?;
+    let folder = files::folder_of(&target);
     if !folder.is_dir() {
         return Err(SaveError::NoFolder { path: shown(), folder: folder.to_owned() });
     }
@@ -145,44 +152,34 @@ pub fn write(
     };
     let text = to_json(scene, reference.as_deref(), registry);
 
-    let mut builder = tempfile::Builder::new();
-    let name = target.file_name().unwrap_or_default().to_string_lossy();
-    let prefix = format!(".{name}.");
-    builder.prefix(&prefix).suffix(".tmp");
-    #[cfg(unix)]
-    if old.is_none() {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As any program makes a new file; the umask of the user takes away from it.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let mut temporary = builder.tempfile_in(folder).map_err(io)?;
-    temporary.write_all(text.as_bytes()).map_err(io)?;
-    if let Some(old) = &old {
-        temporary.as_file().set_permissions(old.permissions.clone()).map_err(io)?;
-    }
-    temporary.as_file().sync_all().map_err(io)?;
+    let mut draft = Draft::new(&target).map_err(failed)?;
+    draft.write_all(text.as_bytes()).map_err(|e| failed(e.into()))?;
     if expected == Expected::Nothing {
-        temporary.persist_noclobber(&target).map_err(|e| match e.error.kind() {
-            io::ErrorKind::AlreadyExists => SaveError::Exists { path: shown() },
-            _ => io(e.error),
-        })?;
+        draft.create().map_err(failed)?;
     } else {
         // Look again: between the first look and here lies the writing.
         on_disk(&target, path, expected)?;
-        temporary.persist(&target).map_err(|e| io(e.error))?;
-    }
-    // The new name is safe once the folder is on disk too. Not every file system can do this, and the
-    // file itself is whole either way.
-    #[cfg(unix)]
-    if let Ok(folder) = fs::File::open(folder) {
-        let _ = folder.sync_all();
+        draft.replace().map_err(failed)?;
     }
     Ok(Stamp::of(text.as_bytes()))
 }
 
-/// What is worth keeping of the file that is overwritten.
+impl SaveError {
+    fn from_file(path: &Path, error: FileError) -> Self {
+        let path = path.to_owned();
+        match error {
+            FileError::Kind(Kind::Folder) => Self::Folder { path },
+            FileError::Kind(kind) => Self::NoFile { path, kind },
+            error => match io::Error::from(error) {
+                e if e.kind() == io::ErrorKind::AlreadyExists => Self::Exists { path },
+                source => Self::Io { path, source },
+            },
+        }
+    }
+}
+
+/// What is worth keeping of the file that is overwritten, beside what belongs to any file.
 struct Old {
-    permissions: fs::Permissions,
     schema: Option<String>,
 }
 
@@ -200,8 +197,9 @@ fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Old>
         }
         Err(e) => return Err(io(e)),
     };
-    if metadata.is_dir() {
-        return Err(SaveError::Folder { path: shown() });
+    match Kind::of(metadata.file_type()) {
+        Kind::File => {}
+        kind => return Err(SaveError::from_file(path, FileError::Kind(kind))),
     }
     if expected == Expected::Nothing {
         return Err(SaveError::Exists { path: shown() });
@@ -209,13 +207,18 @@ fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Old>
     if metadata.permissions().readonly() {
         return Err(SaveError::ReadOnly { path: shown() });
     }
-    let bytes = if metadata.len() <= MAX_FILE_BYTES { fs::read(target).map_err(io)? } else { Vec::new() };
+    let bytes = match files::read(target, MAX_FILE_BYTES) {
+        Ok(bytes) => bytes,
+        // No scene, whatever it is.
+        Err(FileError::TooLarge(_)) => Vec::new(),
+        Err(error) => return Err(SaveError::from_file(path, error)),
+    };
     if let Expected::Unchanged(stamp) = expected
         && stamp != Stamp::of(&bytes)
     {
         return Err(SaveError::Changed { path: shown() });
     }
-    Ok(Some(Old { permissions: metadata.permissions(), schema: schema_of(&bytes) }))
+    Ok(Some(Old { schema: schema_of(&bytes) }))
 }
 
 /// What the `$schema` of a scene file says.
@@ -227,20 +230,6 @@ fn schema_of(bytes: &[u8]) -> Option<String> {
         schema: Option<String>,
     }
     serde_json::from_slice::<Head>(bytes).ok()?.schema
-}
-
-/// Where a path leads, through links, whether there is a file at the end or not.
-fn follow(path: &Path) -> io::Result<PathBuf> {
-    let mut at = path.to_owned();
-    // As many as Linux follows.
-    for _ in 0..40 {
-        match fs::read_link(&at) {
-            Ok(target) => at = at.parent().unwrap_or(Path::new("")).join(target),
-            // Not a link, or nothing there.
-            Err(_) => return Ok(at),
-        }
-    }
-    Err(io::Error::other("too many links, each leading to the next"))
 }
 
 /// Compact JSON with the shortest numbers that are read back exactly, and whole ones without `.0`.

@@ -11,7 +11,7 @@ use naga::{
 use super::{compose::Composed, limits, pitfall};
 
 /// What is wrong with a shader, located in the author's file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ShaderProblem {
     /// Path below the folder of the shaders; of own models, `models/` and the name of the file.
     pub file: String,
@@ -85,7 +85,7 @@ fn place(composed: &Composed, spans: impl Iterator<Item = naga::Span>) -> Option
 }
 
 /// A problem at a line and column of the composed text, told in terms of the author's file.
-pub(super) fn locate(
+pub(crate) fn locate(
     composed: &Composed,
     place: Option<(usize, usize)>,
     message: String,

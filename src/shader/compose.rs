@@ -87,7 +87,7 @@ impl Sources {
 }
 
 /// Leads from lines of a composed source back to files.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct LineMap {
     /// First line (from 1) of each piece in the composed text, and the path of its file.
     pieces: Vec<(usize, String)>,
@@ -150,6 +150,43 @@ impl Composed {
         let longest = (0..sizes.len()).max_by_key(|i| sizes[*i])?;
         Some(self.map.pieces[longest].0)
     }
+}
+
+/// A text without comments and indentation, which cost the composer time; lines stay where they are.
+#[must_use]
+pub fn without_comments(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    // How many `/*` are open: they nest.
+    let mut depth = 0_usize;
+    for line in text.lines() {
+        let mut rest = line.trim();
+        while !rest.is_empty() {
+            let (next, mark) = match (depth, rest.find("/*"), rest.find("//"), rest.find("*/")) {
+                (0, Some(open), line, _) if line.is_none_or(|line| open < line) => (open, "/*"),
+                (0, _, Some(line), _) => (line, "//"),
+                (0, _, _, _) => (rest.len(), ""),
+                (_, Some(open), _, close) if close.is_none_or(|close| open < close) => (open, "/*"),
+                (_, _, _, Some(close)) => (close, "*/"),
+                (_, _, _, None) => (rest.len(), ""),
+            };
+            if depth == 0 {
+                out.push_str(&rest[..next]);
+            }
+            match mark {
+                "/*" => {
+                    // What stands before and behind stays apart.
+                    out.push(' ');
+                    depth += 1;
+                }
+                "*/" => depth -= 1,
+                "//" => break,
+                _ => {}
+            }
+            rest = &rest[next + mark.len()..];
+        }
+        out.push('\n');
+    }
+    out
 }
 
 /// Builds a composed source piece by piece.
@@ -267,6 +304,11 @@ fn import_of(line: &str) -> Option<&str> {
     let rest = line.trim().strip_prefix("#import")?.trim_start().strip_prefix('"')?;
     let (name, rest) = rest.split_once('"')?;
     (rest.trim().is_empty() || rest.trim().starts_with("//") || rest.trim() == ";").then_some(name)
+}
+
+/// The paths of the files that a text asks for by `#import`; `path` is its own.
+pub(crate) fn imports_of<'a>(path: &'a str, text: &'a str) -> impl Iterator<Item = String> + 'a {
+    text.lines().filter_map(import_of).filter_map(move |name| beside(path, name))
 }
 
 /// The path of a file that another one names, from the folder of that one; none if it leads out.
@@ -558,6 +600,28 @@ mod tests {
         );
         assert!(problem(&[("terms.wgsl", "#import \"../../x.wgsl\"")]).contains("leads out"));
         assert!(problem(&[("terms.wgsl", "#define_import_path a")]).contains("no import path"));
+    }
+
+    #[test]
+    fn comments_go_and_lines_stay() {
+        for (text, expected) in [
+            ("a // b\n  c", "a \nc\n"),
+            ("a /* b\nc */ d", "a  \n d\n"),
+            ("a/*/**/*/b", "a  b\n"),
+            ("a // /* b\nc", "a \nc\n"),
+            ("a /* // */ b", "a   b\n"),
+            ("/* never closed\nx", " \n\n"),
+        ] {
+            assert_eq!(without_comments(text), expected, "{text}");
+        }
+        // The shipped shaders mean the same without.
+        for model in Registry::builtin().models() {
+            let composed = compose_evaluation(&Sources::default(), model);
+            let slim = Composed { text: without_comments(&composed.text), ..composed.clone() };
+            let functions = |c: &Composed| super::super::check::validate(c).map(|m| m.functions.len()).ok();
+            assert_eq!(functions(&slim), functions(&composed), "{}", model.declaration.id);
+            assert_eq!(slim.text.lines().count(), composed.text.lines().count());
+        }
     }
 
     #[test]

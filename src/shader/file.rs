@@ -1,12 +1,9 @@
 //! Reading shader files, and saying where one is no text.
 
-use std::{
-    fs,
-    io::{self, Read as _},
-    path::Path,
-};
+use std::{io, path::Path};
 
 use super::check::ShaderProblem;
+use crate::files::{self, FileError};
 
 /// The largest file that is read, bytes.
 pub const MAX_BYTES: u64 = 1 << 20;
@@ -23,21 +20,18 @@ pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
         source: String::new(),
         message,
     };
-    let unreadable = |error: io::Error| match error.kind() {
-        io::ErrorKind::NotFound => {
-            failed("the file is gone; it is read again as soon as one of that name is there".to_owned())
-        }
-        _ => failed(format!("the file could not be read: {error}")),
-    };
-    // Reading a pipe would wait for ever.
-    if !fs::metadata(file).map_err(unreadable)?.is_file() {
-        return Err(failed("this is no file that can be read".to_owned()));
-    }
-    let mut bytes = Vec::new();
-    fs::File::open(file).and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(failed(format!("the file is larger than {} MiB, which no shader is", MAX_BYTES >> 20)));
-    }
+    let bytes = files::read(file, MAX_BYTES).map_err(|error| {
+        failed(match error {
+            FileError::Io(e) if e.kind() == io::ErrorKind::NotFound => {
+                "the file is gone; it is read again as soon as one of that name is there".to_owned()
+            }
+            FileError::Kind(kind) => format!("this is {kind}, no file that can be read"),
+            FileError::TooLarge(_) => {
+                format!("the file is larger than {} MiB, which no shader is", MAX_BYTES >> 20)
+            }
+            error => format!("the file could not be read: {error}"),
+        })
+    })?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let bytes = error.as_bytes();
@@ -58,6 +52,8 @@ pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn said(bytes: &[u8]) -> Result<String, String> {

@@ -24,16 +24,19 @@ use bevy::{
 
 use super::{
     check::ShaderProblem,
-    compose::{Composed, Sources, WRAPPER, compose, compose_evaluation},
+    compose::{Composed, Sources, WRAPPER, compose, compose_evaluation, without_comments},
+    reading::{Done, Job, Reader},
     status::{Reloaded, ShaderStatus, Trouble},
     trial::{Bench, COMPOSED, Tools, TrialPlugin, Verdict},
 };
 use crate::{
     app::{LabFrame, LabSystems},
     assets::{Folders, built_in_sources},
+    optics::colour::Encoding,
     reflection::{
         Ambient, ModelEntry,
         own::{self, OwnModel},
+        parameter::Values,
         swap::Drawn,
     },
     registry::Registry,
@@ -45,10 +48,19 @@ use crate::{
 pub const GRACE: Duration = Duration::from_millis(150);
 /// So long a frame may try shaders before it is drawn: with many on the picture, the window goes on answering.
 const SLICE: Duration = Duration::from_millis(200);
+/// As many own models that were read are tried at the same time.
+const ARRIVING: usize = 16;
 /// How the paths of own models begin.
 const MODELS: &str = "models/";
 /// A failure of the renderer so soon after an exchange is blamed on it.
 const PROBATION: Duration = Duration::from_secs(5);
+/// As many shaders that nothing is drawn with stay ready for a change back; each keeps some megabytes.
+pub const SPARE: usize = 32;
+/// The content of the others' assets: the least that a pipeline can be made of.
+const RESTING: &str = "
+@vertex fn vertex(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> { return vec4(position, 1.0); }
+@fragment fn fragment() -> @location(0) vec4<f32> { return vec4(0.0); }
+";
 
 /// Exchanges shaders while they are on the picture.
 #[derive(Clone, Copy, Debug, Default)]
@@ -63,12 +75,11 @@ impl Plugin for LiveShadersPlugin {
     }
 }
 
-/// What tells shaders apart: model, mode, the number of light types that were known, and the declaration of the
-/// model with its parameters, from which the layout of its row follows.
-type Key = (&'static str, &'static str, usize, [usize; 2]);
+/// What tells shaders apart: model, mode, and the number of light types that were known.
+type Key = (&'static str, &'static str, usize);
 
 fn key(model: &ModelEntry, mode: &ModeEntry, registry: &Registry) -> Key {
-    (model.declaration.id, mode.declaration.id, registry.lights().len(), layout_of(model))
+    (model.declaration.id, mode.declaration.id, registry.lights().len())
 }
 
 /// What tells the layouts of rows of one model apart: equal declarations are one, as are equal parameters.
@@ -76,9 +87,16 @@ fn layout_of(model: &ModelEntry) -> [usize; 2] {
     [std::ptr::from_ref(model.declaration) as usize, model.parameters.as_ptr() as usize]
 }
 
+/// The path by which Bevy knows the asset of a shader.
+fn path_of_asset(key: Key) -> String {
+    format!("{COMPOSED}{}/{}.wgsl", key.0, key.1)
+}
+
 /// One shader.
 struct Live {
     handle: Handle<Shader>,
+    /// The declaration that it was made for.
+    layout: [usize; 2],
     /// What is drawn with.
     shown: Composed,
     /// What was drawn with before, and until when: the renderer may still refuse what came after.
@@ -87,6 +105,8 @@ struct Live {
     refused: Option<Refused>,
     /// A file it is made of changed.
     due: bool,
+    /// When it was last on the picture, in numbers of [`LiveShaders::rest`].
+    seen: u64,
 }
 
 struct Refused {
@@ -103,10 +123,18 @@ pub struct LiveShaders {
     /// The text of each file as it last came through.
     good: Sources,
     shaders: HashMap<Key, Live>,
+    /// The assets of shaders that are made anew when something is drawn with them again.
+    resting: HashMap<Key, Handle<Shader>>,
+    /// How often shaders were looked through for some that may rest.
+    looks: u64,
     /// The files of own models and their texts, whatever these are worth.
     own: BTreeMap<String, (PathBuf, String)>,
+    /// Reads own models.
+    reader: Reader,
     /// Own models that were read and are still to be tried.
     arriving: Vec<OwnModel>,
+    /// An object waits for a shader that is tried for the first time.
+    awaited: bool,
     /// The composed texts that were tried with success in this frame.
     approved: HashSet<String>,
     /// Files that cannot be read and own models with mistakes, and since when.
@@ -157,13 +185,23 @@ impl LiveShaders {
     /// Whether something is still to be tried, so that the next picture may be another one.
     #[must_use]
     pub fn is_trying(&self) -> bool {
-        !self.unused.is_empty() || !self.arriving.is_empty() || self.shaders.values().any(|live| live.due)
+        self.awaited
+            || self.reader.is_busy()
+            || !self.unused.is_empty()
+            || !self.arriving.is_empty()
+            || self.shaders.values().any(|live| live.due)
     }
 
     /// The first problem that keeps a shader from being what its files say.
     #[must_use]
     pub fn refused(&self) -> Option<&ShaderProblem> {
         self.shaders.values().find_map(|live| live.refused.as_ref().map(|refused| &*refused.problem))
+    }
+
+    /// How many shaders are ready to be drawn with.
+    #[must_use]
+    pub fn ready(&self) -> usize {
+        self.shaders.len()
     }
 
     /// Whether what is drawn with is what the files say, all of it.
@@ -246,22 +284,59 @@ impl LiveShaders {
     fn read_model(&mut self, path: &str, registry: &mut Registry) {
         let Some((file, text)) = self.own.get(path).cloned() else { return };
         self.arriving.retain(|model| model.path != file);
-        let mut read = own::read(&file, &text, registry);
-        if let Err(problems) = &read
-            && problems.iter().any(|p| !p.file.starts_with(MODELS))
-        {
-            // The mistake is in a file that all models share, and is told there.
-            let mut lenient = registry.clone();
-            *lenient.sources_mut() = self.lenient();
-            read = own::read(&file, &text, &lenient);
+        let job =
+            Job { source: path.to_owned(), file, text, registry: registry.clone(), lenient: self.lenient() };
+        if let Some(done) = self.reader.read(job) {
+            self.take_read(done, registry);
         }
-        match read {
+    }
+
+    /// Takes what became of reading an own model, unless its file has another text by now.
+    fn take_read(&mut self, done: Done, registry: &mut Registry) {
+        if self.own.get(&done.source).is_none_or(|(_, text)| *text != done.text) {
+            return;
+        }
+        match done.result {
             Ok(model) => {
-                self.change = Some((path.to_owned(), Instant::now()));
+                self.change = Some((done.source, Instant::now()));
                 self.arriving.push(model);
             }
-            Err(problems) => self.refuse_model(path, problems, registry),
+            Err(problems) => self.refuse_model(&done.source, problems, registry),
         }
+    }
+
+    /// Reads the models that a scene uses and of which only the declaration is known.
+    fn read_wanted(&mut self, world: &mut World) {
+        let Some(scene) = world.get_resource::<CurrentScene>() else { return };
+        let registry = world.resource::<Registry>();
+        let wanted: Vec<_> = registry.wants_reading(scene.0.models()).map(Path::to_owned).collect();
+        for file in wanted {
+            // One that is known has a mistake.
+            if self.path_of(&file).is_some_and(|path| !self.own.contains_key(&path)) {
+                let mut registry = world.resource_mut::<Registry>();
+                self.look_at(&file, registry.bypass_change_detection());
+            }
+        }
+    }
+
+    /// True while a model is read or tried for the first time.
+    fn is_arriving(&self, model: &ModelEntry, registry: &Registry) -> bool {
+        let source = model.declaration.wgsl.path;
+        registry.unread_file(model.declaration.id).is_some()
+            && !self.unusable.contains_key(source)
+            && (self.reader.has(source)
+                || self.arriving.iter().any(|m| m.entry.declaration.id == model.declaration.id))
+    }
+
+    /// Has own models read on a thread of its own, which calls `wake`.
+    pub fn read_apart(&mut self, wake: impl Fn() + Send + 'static) {
+        self.reader = Reader::apart(wake);
+    }
+
+    /// True while a thread reads own models; it wakes who waits.
+    #[must_use]
+    pub fn is_reading(&self) -> bool {
+        self.reader.is_reading()
     }
 
     /// An own model has mistakes. A new one whose declaration is right can be chosen all the same, and is drawn as
@@ -288,7 +363,9 @@ impl LiveShaders {
     /// Tries the own models that were read, and makes those known that can be drawn with: parameters, text and
     /// shader are exchanged together or not at all.
     fn adopt(&mut self, world: &mut World, visible: &Visible) {
-        for model in std::mem::take(&mut self.arriving) {
+        let mut arriving = std::mem::take(&mut self.arriving);
+        self.arriving = arriving.split_off(arriving.len().min(ARRIVING));
+        for model in arriving {
             let registry = world.resource::<Registry>().clone();
             let path = model.entry.declaration.wgsl.path;
             let modes: Vec<_> =
@@ -300,10 +377,10 @@ impl LiveShaders {
             lenient.edit(path, model.text.clone());
             let verdict = modes.into_iter().map(|mode| {
                 let wanted = compose(&current, &model.entry, mode, registry.lights());
-                match self.try_out(world, &wanted, mode) {
+                match self.try_out(world, &wanted, &model.entry, mode) {
                     Verdict::Bad(_) => {
                         let wanted = compose(&lenient, &model.entry, mode, registry.lights());
-                        self.try_out(world, &wanted, mode)
+                        self.try_out(world, &wanted, &model.entry, mode)
                     }
                     verdict => verdict,
                 }
@@ -331,11 +408,17 @@ impl LiveShaders {
     }
 
     /// Tries a composed source, once.
-    fn try_out(&mut self, world: &mut World, composed: &Composed, mode: &ModeEntry) -> Verdict {
+    fn try_out(
+        &mut self,
+        world: &mut World,
+        composed: &Composed,
+        model: &ModelEntry,
+        mode: &ModeEntry,
+    ) -> Verdict {
         if composed.problem.is_none() && self.approved.contains(&composed.text) {
             return Verdict::Good;
         }
-        let verdict = try_out(world, composed, mode);
+        let verdict = try_out(world, composed, model, mode);
         if verdict == Verdict::Good {
             self.approved.insert(composed.text.clone());
         }
@@ -433,21 +516,26 @@ impl LiveShaders {
         again.iter().for_each(|own| self.read_model(own, registry));
     }
 
-    /// The shader of a model and a mode.
+    /// The shader of a model and a mode; none yet while another process tries it.
     pub(crate) fn get(
         &mut self,
         world: &mut World,
         model: &ModelEntry,
         mode: &ModeEntry,
         registry: &Registry,
-    ) -> Handle<Shader> {
+    ) -> Option<Handle<Shader>> {
         let key = key(model, mode, registry);
-        if let Some(live) = self.shaders.get(&key) {
-            return live.handle.clone();
+        let layout = layout_of(model);
+        if let Some(live) = self.shaders.get(&key).filter(|live| live.layout == layout) {
+            return Some(live.handle.clone());
         }
         if !self.started {
             self.started = true;
             self.current = registry.sources().clone();
+        }
+        if self.is_arriving(model, registry) {
+            self.awaited = true;
+            return None;
         }
         let wanted = compose(&self.current, model, mode, registry.lights());
         // From here on these files are used.
@@ -461,7 +549,7 @@ impl LiveShaders {
         if self.is_built_in(&wanted) {
             shown = Some(wanted);
         } else {
-            match self.try_out(world, &wanted, mode) {
+            match self.try_out(world, &wanted, model, mode) {
                 Verdict::Good => {
                     self.note_good(&wanted);
                     shown = Some(wanted);
@@ -469,36 +557,97 @@ impl LiveShaders {
                 Verdict::Bad(problem) => {
                     refused = Some(Refused { composed: wanted, problem, at: Instant::now() })
                 }
+                Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
+                    self.awaited = true;
+                    return None;
+                }
                 Verdict::NotYet => due = true,
             }
         }
         let shown = match shown {
             Some(shown) => shown,
-            None => self.last_good(world, model, mode, registry),
+            None => self.last_good(world, model, mode, registry)?,
         };
         let asset = self.asset(&shown, key);
-        let handle = world.resource_mut::<Assets<Shader>>().add(asset);
+        let replaced = self.replaced(key, registry);
+        let mut assets = world.resource_mut::<Assets<Shader>>();
+        let handle = match replaced {
+            Some(handle) => {
+                // The asset is there as long as its handle.
+                let _ = assets.insert(handle.id(), asset);
+                handle
+            }
+            None => assets.add(asset),
+        };
         self.stale_status = true;
-        self.shaders.insert(key, Live { handle: handle.clone(), shown, before: None, refused, due });
-        handle
+        let seen = self.looks;
+        let live = Live { handle: handle.clone(), layout, shown, before: None, refused, due, seen };
+        self.shaders.insert(key, live);
+        Some(handle)
+    }
+
+    /// The asset that a shader takes over: that of the same model as it was declared before or as it rested, or of an
+    /// own model that is gone. Bevy never lets go of a pipeline, but makes it anew when its shader changes; with an
+    /// asset for each declaration, each would keep megabytes.
+    fn replaced(&mut self, key: Key, registry: &Registry) -> Option<Handle<Shader>> {
+        if let Some(live) = self.shaders.remove(&key) {
+            return Some(live.handle);
+        }
+        if let Some(handle) = self.resting.remove(&key) {
+            return Some(handle);
+        }
+        // Materials of own models are of one type, so any of them may take it.
+        registry.own_file(key.0)?;
+        let gone = |known: &&Key| known.1 == key.1 && registry.model(known.0).is_none();
+        let known = *self.shaders.keys().chain(self.resting.keys()).find(gone)?;
+        self.shaders.remove(&known).map(|live| live.handle).or_else(|| self.resting.remove(&known))
+    }
+
+    /// Lets shaders rest that were not on the picture for longest, if there are many: their pipelines stay, since Bevy
+    /// keeps those, but are made of next to nothing.
+    fn rest(&mut self, world: &mut World, visible: &Visible) {
+        self.looks += 1;
+        for (_, live) in self.shaders.iter_mut().filter(|(key, _)| visible.has(key)) {
+            live.seen = self.looks;
+        }
+        let idle = |(key, live): &(&Key, &Live)| !visible.has(key) && !live.due && live.refused.is_none();
+        let mut idle: Vec<_> =
+            self.shaders.iter().filter(idle).map(|(key, live)| (live.seen, *key)).collect();
+        idle.sort_unstable();
+        let many = idle.len().saturating_sub(SPARE);
+        for (_, key) in idle.into_iter().take(many) {
+            let Some(live) = self.shaders.remove(&key) else { continue };
+            let asset = Shader::from_wgsl(RESTING, path_of_asset(key));
+            // The asset is there as long as its handle.
+            let _ = world.resource_mut::<Assets<Shader>>().insert(live.handle.id(), asset);
+            self.resting.insert(key, live.handle);
+        }
     }
 
     /// The latest that can be drawn with: the file of the model with the others as they last came through, else all
-    /// as they last came through, else what is built in.
+    /// as they last came through, else what is built in. None yet while another process tries one of them.
     fn last_good(
         &mut self,
         world: &mut World,
         model: &ModelEntry,
         mode: &ModeEntry,
         registry: &Registry,
-    ) -> Composed {
+    ) -> Option<Composed> {
         for sources in [self.lenient(), self.good.clone()] {
             let composed = compose(&sources, model, mode, registry.lights());
-            if self.is_built_in(&composed) || self.try_out(world, &composed, mode) == Verdict::Good {
-                return composed;
+            if self.is_built_in(&composed) {
+                return Some(composed);
+            }
+            match self.try_out(world, &composed, model, mode) {
+                Verdict::Good => return Some(composed),
+                Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
+                    self.awaited = true;
+                    return None;
+                }
+                Verdict::Bad(_) | Verdict::NotYet => {}
             }
         }
-        compose(&Sources::default(), model, mode, registry.lights())
+        Some(compose(&Sources::default(), model, mode, registry.lights()))
     }
 
     /// Whether a composed source holds nothing but what was built in, which tests have tried.
@@ -508,8 +657,7 @@ impl LiveShaders {
     }
 
     fn asset(&self, composed: &Composed, key: Key) -> Shader {
-        let mut shader =
-            Shader::from_wgsl(composed.text.clone(), format!("{COMPOSED}{}/{}.wgsl", key.0, key.1));
+        let mut shader = Shader::from_wgsl(without_comments(&composed.text), path_of_asset(key));
         if !self.is_built_in(composed) {
             // What users write may read outside of arrays.
             shader.validate_shader = ValidateShader::Enabled;
@@ -526,8 +674,12 @@ impl LiveShaders {
     /// is not.
     fn work(&mut self, world: &mut World, registry: &Registry, visible: &Visible) {
         let begin = Instant::now();
-        // Shaders of older declarations: nothing is drawn with them any more.
-        self.shaders.retain(|key, _| registry.model(key.0).is_none_or(|model| layout_of(model) == key.3));
+        // Shaders of older declarations are made anew when something is drawn with them.
+        for (key, live) in &mut self.shaders {
+            if registry.model(key.0).is_some_and(|model| layout_of(model) != live.layout) {
+                (live.due, live.refused) = (false, None);
+            }
+        }
         let mut due: Vec<Key> = self.shaders.iter().filter(|(_, live)| live.due).map(|(k, _)| *k).collect();
         due.sort_unstable();
         let (on_picture, off_picture): (Vec<_>, Vec<_>) = due.into_iter().partition(|k| visible.has(k));
@@ -553,7 +705,7 @@ impl LiveShaders {
         let entries = registry.model(key.0).zip(registry.mode(key.1));
         let Some((model, mode)) = entries.filter(|(model, mode)| self::key(model, mode, registry) == key)
         else {
-            // An older declaration, which nothing is drawn with any more.
+            // Other light types were known then; nothing is drawn with it any more.
             if let Some(live) = self.shaders.get_mut(&key) {
                 live.due = false;
             }
@@ -564,7 +716,7 @@ impl LiveShaders {
         let verdict = if shown_already || self.is_built_in(&wanted) {
             Verdict::Good
         } else {
-            self.try_out(world, &wanted, mode)
+            self.try_out(world, &wanted, model, mode)
         };
         if verdict == Verdict::Good {
             self.note_good(&wanted);
@@ -651,7 +803,7 @@ impl LiveShaders {
             return;
         };
         let composed = compose(&self.current, model, mode, registry.lights());
-        match self.try_out(world, &composed, mode) {
+        match self.try_out(world, &composed, model, mode) {
             Verdict::Good => {
                 self.unused_problems.remove(path);
                 self.note_good(&composed);
@@ -745,12 +897,21 @@ impl Visible {
 
 /// Exchanges the shaders whose files changed.
 fn exchange(world: &mut World) {
+    if world.is_resource_changed::<CurrentScene>() {
+        world.resource_scope(|world, mut live: Mut<LiveShaders>| live.read_wanted(world));
+    }
     if !world.resource::<LiveShaders>().is_busy() {
         return;
     }
     let visible = Visible::of(world);
     world.resource_scope(|world, mut live: Mut<LiveShaders>| {
+        for done in live.reader.finished() {
+            let mut registry = world.resource_mut::<Registry>();
+            live.take_read(done, registry.bypass_change_detection());
+        }
         live.approved.clear();
+        live.awaited = false;
+        world.resource::<Bench>().begin_frame();
         live.adopt(world, &visible);
         let registry = world.resource::<Registry>().clone();
         live.work(world, &registry, &visible);
@@ -760,6 +921,7 @@ fn exchange(world: &mut World) {
             return;
         }
         live.forget_gone(world, &visible);
+        live.rest(world, &visible);
         // Problems that are too young now are told later.
         let young = live.fresh_problems().next().is_some();
         live.stale_status = young;
@@ -767,7 +929,7 @@ fn exchange(world: &mut World) {
     });
 }
 
-fn try_out(world: &mut World, composed: &Composed, mode: &ModeEntry) -> Verdict {
+fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, mode: &ModeEntry) -> Verdict {
     let (Some(device), Some(adapter)) =
         (world.get_resource::<RenderDevice>().cloned(), world.get_resource::<RenderAdapter>().cloned())
     else {
@@ -775,7 +937,8 @@ fn try_out(world: &mut World, composed: &Composed, mode: &ModeEntry) -> Verdict 
     };
     world.resource_scope(|world, mut bench: Mut<Bench>| {
         let tools = Tools { device: &device, adapter: &adapter, shaders: world.resource::<Assets<Shader>>() };
-        bench.try_out(composed, mode.declaration.stage == Stage::Polygon, tools)
+        let row = || model.row(&Values::default(), Encoding::Srgb, false);
+        bench.try_out(composed, mode.declaration.stage == Stage::Polygon, row, tools)
     })
 }
 
@@ -797,8 +960,8 @@ fn take_back(error: &RenderError, main: &mut World, render: &mut World) -> Rende
                 continue;
             };
             let refused = std::mem::replace(&mut entry.shown, before);
-            let path = format!("{COMPOSED}{}/{}.wgsl", key.0, key.1);
-            let _ = shaders.insert(entry.handle.id(), Shader::from_wgsl(entry.shown.text.clone(), path));
+            let asset = Shader::from_wgsl(entry.shown.text.clone(), path_of_asset(*key));
+            let _ = shaders.insert(entry.handle.id(), asset);
             let problem = Box::new(ShaderProblem {
                 file: file.clone(),
                 line: 1,

@@ -8,6 +8,7 @@ pub mod interpret;
 pub mod limits;
 pub mod live;
 pub mod pitfall;
+mod reading;
 pub mod report;
 pub mod status;
 pub mod trial;

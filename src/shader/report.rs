@@ -4,6 +4,7 @@
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
 use super::check::ShaderProblem;
+use crate::files::printable;
 
 /// A problem as several lines of plain text. `file` is how the reader calls the file: its path on disk where it
 /// has one.
@@ -23,9 +24,11 @@ fn rendered(problem: &ShaderProblem, file: &str, renderer: &Renderer) -> String 
     let end = problem.source.len();
     let start = characters.next().map_or(end, |(at, _)| at);
     let next = characters.next().map_or(end, |(at, _)| at);
+    // The message and the source are made fit for a terminal by the renderer.
+    let file = printable(file);
     let snippet = Snippet::source(&problem.source)
         .line_start(problem.line)
-        .path(file)
+        .path(&*file)
         .annotation(AnnotationKind::Primary.span(start..next));
     renderer.render(&[Level::ERROR.primary_title(&problem.message).element(snippet)])
 }

@@ -33,11 +33,16 @@ var<private> view: BevyView;
 /// # Errors
 /// The first problem, located in the author's file.
 pub fn validate_drawing(composed: &Composed, faces: bool) -> Result<(), Box<ShaderProblem>> {
+    judged(composed, faces).unwrap_or(Ok(()))
+}
+
+/// As [`validate_drawing`]; none for what cannot be judged here.
+pub fn judged(composed: &Composed, faces: bool) -> Option<Result<(), Box<ShaderProblem>>> {
     if let Some(problem) = &composed.problem {
-        return Err(problem.clone());
+        return Some(Err(problem.clone()));
     }
-    let Some(text) = standing_alone(&composed.text, faces) else { return Ok(()) };
-    validate(&Composed { text, ..composed.clone() }).map(drop)
+    let text = standing_alone(&composed.text, faces)?;
+    Some(validate(&Composed { text, ..composed.clone() }).map(drop))
 }
 
 /// The text without what a preprocessor is needed for; places stay the same.

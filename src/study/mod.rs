@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use crate::{
     capture::png,
+    files,
     optics::{Frame, TermSelection, albedo, colour::Encoding, geometry::direction},
     reference,
     reference::Picture,
@@ -36,6 +37,19 @@ mod report;
 
 /// How many times [`run`] says what it does next.
 pub const STEPS: u64 = 5;
+
+/// The name of the report in its folder.
+pub const PAGE: &str = "index.html";
+
+/// True if a folder holds a report of this program.
+#[must_use]
+pub fn is_report(folder: &Path) -> bool {
+    /// It says so near its beginning.
+    const HEAD: u64 = 4096;
+    let start = files::read_start(&folder.join(PAGE), HEAD).unwrap_or_default();
+    let mark = format!("<meta name=\"generator\" content=\"{}", report::GENERATOR);
+    String::from_utf8_lossy(&start).contains(&mark)
+}
 
 /// What a study needs and cannot do without.
 #[derive(Debug, Error)]
@@ -120,21 +134,11 @@ impl Study {
     /// If the folder cannot be made or a file not be written.
     pub fn write(&self, folder: &Path) -> io::Result<()> {
         fs::create_dir_all(folder)?;
-        let put = |name: &str, text: &str| {
-            let mut file = tempfile::NamedTempFile::new_in(folder)?;
-            io::Write::write_all(&mut file, text.as_bytes())?;
-            #[cfg(unix)]
-            {
-                use std::os::unix::fs::PermissionsExt as _;
-                file.as_file().set_permissions(fs::Permissions::from_mode(0o644))?;
-            }
-            file.persist(folder.join(name)).map_err(|e| e.error)?;
-            io::Result::Ok(())
-        };
+        let put = |name: &str, text: &str| files::write(&folder.join(name), text.as_bytes());
         for table in &self.tables {
             put(&format!("{}.csv", table.name), &table.csv)?;
         }
-        put("index.html", &self.html)
+        Ok(put(PAGE, &self.html)?)
     }
 }
 

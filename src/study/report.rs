@@ -6,6 +6,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{Chapter, Settings};
 
+/// What the head of a report says of the program that wrote it; its version follows.
+pub(super) const GENERATOR: &str = "Lights, Camera, Models! ";
+
 const STYLE: &str = include_str!("report.css");
 
 /// A date as people write it, from days since 1970: H. Hinnant (2013), *chrono-Compatible Low-Level Date
@@ -122,7 +125,7 @@ pub(super) fn page(chapters: &[Chapter], settings: Settings) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="generator" content=(concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION")));
+                meta name="generator" content=(format!("{GENERATOR}{}", env!("CARGO_PKG_VERSION")));
                 title { "Physically based shading against Blinn–Phong: results" }
                 style { (PreEscaped(STYLE)) }
             }

@@ -15,7 +15,7 @@ const MAX_DEPTH: usize = 32;
 
 /// The state of a file, as far as it can be told without reading it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Print {
+pub(crate) struct Print {
     length: u64,
     modified: Option<SystemTime>,
     /// Tells a file from another one that takes its place.
@@ -24,7 +24,7 @@ pub(super) struct Print {
 
 impl Print {
     /// The state of a file; `None` when there is none.
-    pub(super) fn of(path: &Path) -> Option<Self> {
+    pub(crate) fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok()?;
         (!metadata.is_dir()).then(|| Self::from_metadata(&metadata))
     }

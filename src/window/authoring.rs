@@ -120,7 +120,15 @@ pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<Path
                 lab.say(Severity::Error, format!("There is no reflection model “{model}” to copy."));
                 return None;
             };
-            match own::duplicate(entry, registry.sources(), id) {
+            let sources = match own::folder::sources_with(model, registry) {
+                Ok(sources) => sources,
+                Err(why) => {
+                    let name = entry.declaration.name;
+                    lab.say(Severity::Error, format!("{name} was not copied: {}.", why.message));
+                    return None;
+                }
+            };
+            match own::duplicate(entry, &sources, id) {
                 Ok(text) => new_file(lab, registry, id, Some(model), &text),
                 Err(why) => {
                     lab.say(Severity::Error, format!("{} was not copied: {why}.", entry.declaration.name));

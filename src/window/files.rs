@@ -1,13 +1,14 @@
 //! Scene files on disk, for the panels.
 
 use std::{
-    fs, io,
+    io,
     path::{Path, PathBuf},
 };
 
 use bevy::ecs::resource::Resource;
 
 use crate::{
+    files::{self, Kind},
     panel::{
         files::{Files, Looked, Opened, Saved},
         state::MissingPart,
@@ -27,13 +28,22 @@ pub struct DiskFiles {
     seen: Option<(PathBuf, Stamp)>,
     /// A file that was read, but is not yet the document: there may be something to ask first.
     read: Option<(PathBuf, Stamp)>,
+    /// A document that came from a pipe or a device, which can be read only once.
+    stream: Option<PathBuf>,
 }
 
 impl DiskFiles {
     /// With a file that was read already, and its state then.
     #[must_use]
     pub fn new(file: Option<PathBuf>, stamp: Option<Stamp>) -> Self {
-        Self { seen: file.zip(stamp), read: None }
+        let stream = if stamp.is_none() { file.clone() } else { None };
+        Self { seen: file.zip(stamp), read: None, stream }
+    }
+
+    /// The state in which a file was last read or written, if it was.
+    #[must_use]
+    pub fn known(&self, path: &Path) -> Option<Stamp> {
+        self.seen.as_ref().filter(|(seen, _)| seen == path).map(|(_, stamp)| *stamp)
     }
 
     /// Another document is open: what was read of its file is what counts from now on.
@@ -70,10 +80,10 @@ impl Files for DiskFiles {
     }
 
     fn look(&mut self, path: &Path, registry: &Registry) -> Looked {
-        match fs::metadata(path) {
+        match files::kind(path) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Looked::Gone,
-            // Pipes and devices are read once.
-            Ok(m) if !m.is_file() && !m.is_dir() => return Looked::Same,
+            Ok(Kind::Pipe | Kind::Device) if self.stream.as_deref() == Some(path) => return Looked::Same,
+            // What a file has become instead is an error like any other.
             _ => {}
         }
         let bytes = match load::bytes(path) {

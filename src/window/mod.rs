@@ -10,7 +10,10 @@ use std::{
 };
 
 use bevy::{
-    app::{App, AppExit, Last, Plugin, PluginGroup, Plugins, PostUpdate, PreUpdate, Startup},
+    app::{
+        App, AppExit, Last, Plugin, PluginGroup, Plugins, PostUpdate, PreUpdate, Startup,
+        TerminalCtrlCHandlerPlugin,
+    },
     asset::AssetPlugin,
     camera::{Camera, Camera2d, CameraOutputMode, ClearColorConfig, Hdr, Viewport, visibility::RenderLayers},
     ecs::prelude::*,
@@ -47,18 +50,29 @@ use crate::{
         state::{Action, Badge, Effect, Lab, LabEffect, Note, Severity},
         theme::Palette,
     },
+    recovery::Store,
     registry::Registry,
     scene::spawn::CurrentScene,
-    shader::{live::LiveShaders, status::ShaderStatus},
+    shader::{
+        live::LiveShaders,
+        status::ShaderStatus,
+        trial::{
+            Bench,
+            process::{Budget, TrialProcess},
+        },
+    },
 };
 
 pub mod authoring;
 mod camera;
 mod capture;
+mod ending;
 pub mod files;
 mod gizmos;
 mod pick;
+mod recovery;
 mod shaders;
+mod still;
 pub mod watching;
 
 /// The size of a new window, points.
@@ -106,7 +120,9 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
             })
             .set(AssetPlugin { watch_for_changes_override: Some(false), ..AssetPlugin::default() })
             .set(log_plugin(&options))
-            .disable::<PipelinedRenderingPlugin>(),
+            .disable::<PipelinedRenderingPlugin>()
+            // Signals are heard elsewhere, also while the window sleeps.
+            .disable::<TerminalCtrlCHandlerPlugin>(),
         EguiPlugin::default(),
         PanOrbitCameraPlugin,
         ScenePlugin,
@@ -119,22 +135,41 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     lab.path.clone_from(&options.file);
     lab.disk.use_defaults = options.use_defaults;
     load_settings(&mut lab);
+    options.warnings.iter().for_each(|warning| lab.say(Severity::Warning, warning.as_str()));
     if let Some(registry) = app.world().get_resource::<Registry>() {
         lab.fill_model_slots(registry);
     }
     app.insert_resource(CurrentScene(options.scene.clone())).insert_resource(lab);
     app.insert_resource(files::DiskFiles::new(options.file.clone(), options.stamp));
+    if let Some(program) = options.trial_program {
+        let wake = watching::waker(app.world());
+        app.world_mut().resource_mut::<Bench>().try_in(TrialProcess::new(program, Budget::default(), wake));
+    }
+    let wake = watching::waker(app.world());
+    app.world_mut().resource_mut::<LiveShaders>().read_apart(wake);
     shaders::open(app.world_mut(), &options.folders);
-    if let Some(path) = options.open {
+    if let Some(path) = options.open.clone() {
         app.add_systems(Startup, move |mut effects: MessageWriter<LabEffect>| {
             effects.write(LabEffect(Effect::OpenFile(path.clone())));
         });
     }
+    let store = Store::of_user();
+    let proxy = app.world().get_resource::<EventLoopProxyWrapper>();
+    let farewell = recovery::Farewell::prepare(store.clone(), proxy);
+    let guard = ending::Guard::set(&farewell.keeper);
+    let mut copies = recovery::Recovery::new(farewell.clone());
+    if options.exit_after.is_none() || !options.quiet {
+        let file = options.file.as_deref().or(options.open.as_deref());
+        copies.look(store.as_ref(), file, options.exit_after.is_none());
+    }
+    app.insert_resource(copies);
     if let Some(frames) = options.exit_after {
         app.insert_resource(WinitSettings::continuous());
         app.add_plugins(capture::ExitAfter { frames, file: options.capture, failure: failure.clone() });
     }
-    app.run();
+    ending::run(&mut app, &farewell.keeper)?;
+    drop(guard);
+    farewell.say();
     let failure = failure.lock().ok().and_then(|mut f| f.take());
     failure.map_or(Ok(()), Err)
 }
@@ -213,10 +248,15 @@ impl Plugin for WindowSystemsPlugin {
         .init_resource::<Settling>()
         .init_resource::<authoring::Editors>()
         .init_resource::<FrameClock>()
-        .add_plugins((gizmos::GizmosPlugin, camera::CameraPlugin, watching::WatchingPlugin))
+        .add_plugins((
+            gizmos::GizmosPlugin,
+            camera::CameraPlugin,
+            still::StillPlugin,
+            watching::WatchingPlugin,
+        ))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
-        .add_systems(Last, measure_frame)
-        .add_systems(PreUpdate, close_requested)
+        .add_systems(Last, (measure_frame, recovery::keep))
+        .add_systems(PreUpdate, (close_requested, recovery::interrupted))
         .add_systems(
             PreUpdate,
             mend_input.after(EguiPreUpdateSet::ProcessInput).before(EguiPreUpdateSet::BeginPass),
@@ -231,6 +271,8 @@ impl Plugin for WindowSystemsPlugin {
                     watching::watch_document,
                     watching::follow_document,
                     carry_out,
+                    recovery::stayed,
+                    recovery::offer,
                     pick::pick,
                     lab_to_scene,
                 )
@@ -260,7 +302,7 @@ fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>
     // Four samples double the cost of a frame where the GPU is a program on the CPU.
     let samples = if software { 1 } else { 4 };
     commands
-        .spawn((picture_camera(samples), Hdr, camera::orbit()))
+        .spawn((picture_camera(samples), Hdr, still::own_texture(), camera::orbit()))
         .insert(PictureCamera { follows_observer: true, fits_width: true });
     commands.spawn((
         Camera2d,
@@ -299,6 +341,7 @@ fn carry_out(
     mut exit: MessageWriter<AppExit>,
     editors: Res<authoring::Editors>,
     proxy: Option<Res<EventLoopProxyWrapper>>,
+    mut recovery: ResMut<recovery::Recovery>,
     mut commands: Commands,
 ) {
     for complaint in editors.take() {
@@ -316,8 +359,10 @@ fn carry_out(
                 camera.home();
             }
             Effect::Quit => {
+                recovery.farewell.close();
                 exit.write(AppExit::Success);
             }
+            Effect::Recovery(choice) => recovery.answer(choice, &mut lab, &mut files, &registry),
             Effect::LookAgain(path) => watch.0.report_later(&path, watching::GRACE),
             Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
@@ -452,6 +497,7 @@ fn redraw(
     lab: Res<Lab>,
     terms: Res<ShownTerms>,
     live: Res<LiveShaders>,
+    bench: Res<Bench>,
     cameras: Query<&bevy::transform::components::Transform, With<PictureCamera>>,
     mut settling: ResMut<Settling>,
     mut requests: MessageWriter<RequestRedraw>,
@@ -471,7 +517,7 @@ fn redraw(
         settling.last = Some(Box::new(now));
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }
-    if live.is_busy() {
+    if live.is_busy() && !bench.is_waiting() && !live.is_reading() {
         // Problems are told after a while, and what is not on the picture is tried one in a frame.
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }

@@ -5,7 +5,7 @@ use bevy::{
     ecs::prelude::*,
     input::{ButtonInput, mouse::MouseButton},
     math::Ray3d,
-    picking::mesh_picking::ray_cast::{MeshRayCast, MeshRayCastSettings},
+    picking::mesh_picking::ray_cast::{MeshRayCast, MeshRayCastSettings, RayCastVisibility},
     transform::components::GlobalTransform,
     window::{PrimaryWindow, Window},
 };
@@ -52,7 +52,9 @@ pub(super) fn pick(
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
         let filter = |e: Entity| objects.contains(e);
-        let settings = MeshRayCastSettings::default().with_filter(&filter);
+        // A picture that stands still draws no object, but shows all of them.
+        let settings =
+            MeshRayCastSettings::default().with_filter(&filter).with_visibility(RayCastVisibility::Visible);
         let (hit, _) = ray_cast.cast_ray(ray, &settings).first()?;
         entities.objects.iter().position(|e| e == hit).map(Selection::Object)
     });

@@ -8,7 +8,7 @@ use std::{
 
 use bevy::ecs::prelude::*;
 
-use super::watching::{FileWatch, FilesChanged, complain};
+use super::watching::{FileWatch, FilesChanged, complain, complain_in_colour};
 use crate::{
     assets::{self, Folders},
     panel::{
@@ -33,11 +33,14 @@ pub(super) fn open(world: &mut World, folders: &Folders) {
         None => Vec::new(),
     };
     let sources = registry.sources().clone();
-    // What is wrong with these is found when they are looked at.
+    // What is wrong with these is found when they are looked at. Models of which the declaration is right are read
+    // when the scene uses them.
+    let declared = |path: &PathBuf| own::id_of(path).is_some_and(|id| registry.unread_file(id).is_some());
     let broken: Vec<_> = folders
         .models
         .iter()
-        .flat_map(|folder| own::files_in(folder).unwrap_or_default())
+        .flat_map(|folder| own::folder::files_in(folder).unwrap_or_default())
+        .filter(|path| !declared(path))
         .chain(unreadable.into_iter().map(|(path, _)| path))
         .collect();
     world.resource_mut::<LiveShaders>().start(sources, folders.clone());
@@ -61,7 +64,7 @@ pub(super) fn move_to(world: &mut World, folder: &Path) {
         None => {
             if let Some(models) = &folders.models {
                 // What is wrong with them is told when they are looked at.
-                let _ = own::read_folder(models, &mut registry, true);
+                let _ = own::folder::declare_folder(models, &mut registry);
             }
         }
     }
@@ -106,8 +109,11 @@ pub(super) fn tell(live: Res<LiveShaders>, mut lab: ResMut<Lab>) {
     for trouble in status.troubles.iter().filter(|t| !known(&lab.shaders.troubles, t)) {
         let file =
             trouble.path.as_ref().map_or_else(|| trouble.problem.file.clone(), |p| p.display().to_string());
-        let report = if io::stderr().is_terminal() { coloured } else { annotated };
-        complain(&report(&trouble.problem, &file));
+        if io::stderr().is_terminal() {
+            complain_in_colour(&coloured(&trouble.problem, &file));
+        } else {
+            complain(&annotated(&trouble.problem, &file));
+        }
         if !trouble.stale.is_empty() {
             complain(&format!("The picture shows the last good version of {}.", trouble.stale.join(", ")));
         }

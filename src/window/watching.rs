@@ -1,9 +1,8 @@
 //! What changes on disk reaches the window, which sleeps meanwhile.
 
 use std::{
-    fs,
     io::{self, Write as _},
-    path::{Path, PathBuf},
+    path::PathBuf,
     time::Duration,
 };
 
@@ -14,6 +13,7 @@ use bevy::{
 };
 
 use crate::{
+    files,
     panel::state::{Effect, Lab, LabEffect, Severity},
     watch::Watcher,
 };
@@ -34,14 +34,19 @@ pub(super) struct WatchingPlugin;
 
 impl Plugin for WatchingPlugin {
     fn build(&self, app: &mut App) {
-        let proxy = app.world().get_resource::<EventLoopProxyWrapper>().map(|proxy| (**proxy).clone());
-        let wake = move || {
-            if let Some(proxy) = &proxy {
-                // An error: the window is closed.
-                let _ = proxy.send_event(WinitUserEvent::WakeUp);
-            }
-        };
+        let wake = waker(app.world());
         app.add_message::<FilesChanged>().insert_resource(FileWatch(Watcher::new(wake)));
+    }
+}
+
+/// Wakes the window, which sleeps when nothing happens; from any thread.
+pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + use<> {
+    let proxy = world.get_resource::<EventLoopProxyWrapper>().map(|proxy| (**proxy).clone());
+    move || {
+        if let Some(proxy) = &proxy {
+            // An error: the window is closed.
+            let _ = proxy.send_event(WinitUserEvent::WakeUp);
+        }
     }
 }
 
@@ -78,16 +83,11 @@ pub(super) fn watch_document(
         watch.0.forget(&old);
     }
     watched.clone_from(&lab.path);
-    if let Some(path) = watched.as_deref().filter(|path| !is_stream(path)) {
+    if let Some(path) = watched.as_deref().filter(|path| !files::is_stream(path)) {
         watch.0.watch_file(path);
         // It may have changed between being read and being watched.
         watch.0.report_later(path, Duration::ZERO);
     }
-}
-
-/// Whether a path leads to something that can be read only once, such as a pipe.
-fn is_stream(path: &Path) -> bool {
-    fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir())
 }
 
 /// When the document's file changed, it is looked at.
@@ -102,7 +102,13 @@ pub(super) fn follow_document(
     }
 }
 
-/// Writes to standard error. That nobody reads it is no reason to panic.
+/// Writes to standard error, without what a terminal would obey.
 pub(super) fn complain(text: &str) {
+    complain_in_colour(&files::printable(text));
+}
+
+/// Writes to standard error a text that is free of such things but for its own colours. That nobody reads it is no
+/// reason to panic.
+pub(super) fn complain_in_colour(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }

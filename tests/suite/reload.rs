@@ -140,13 +140,13 @@ fn covered(picture: &[u8]) -> usize {
 }
 
 /// One way to break a file: what it is called, the file, what is put for what in it, and what is said.
-struct Breakage {
-    name: &'static str,
-    file: &'static str,
-    change: fn(&str) -> Vec<u8>,
-    said: &'static str,
+pub struct Breakage {
+    pub name: &'static str,
+    pub file: &'static str,
+    pub change: fn(&str) -> Vec<u8>,
+    pub said: &'static str,
     /// The line that is named, by what stands in it; empty for the first.
-    line: &'static str,
+    pub line: &'static str,
 }
 
 fn replaced(text: &str, from: &str, to: &str) -> Vec<u8> {
@@ -154,7 +154,7 @@ fn replaced(text: &str, from: &str, to: &str) -> Vec<u8> {
     text.replacen(from, to, 1).into_bytes()
 }
 
-const BREAKAGES: &[Breakage] = &[
+pub const BREAKAGES: &[Breakage] = &[
     Breakage {
         name: "syntax",
         file: "reflection/phong.wgsl",

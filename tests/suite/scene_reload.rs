@@ -8,12 +8,13 @@ use lights_camera_models::{
     optics::TermSelection,
     panel::{
         files::{self, Files as _, Looked},
+        recovery::Offer,
         state::{Action, Answer, Edit, Effect, Lab, ObjectField, Question, Selection, Severity, ViewChange},
     },
     registry::Registry,
     scene::{
         Object, Scene,
-        load::{self, Defaults},
+        load::{self, Defaults, Stamp},
         save,
         spawn::{CurrentScene, SceneEntities, reconcile},
     },
@@ -586,4 +587,64 @@ fn what_can_be_read_only_once_is_not_read_again() {
     let mut files = DiskFiles::new(Some(pipe.clone()), None);
     // Reading would wait for ever.
     assert_eq!(files.look(&pipe, &Registry::builtin()), Looked::Same);
+}
+
+/// A window that goes on with what an earlier one left of the file, as that knew it.
+fn recovered(copy: &Scene, known: &str) -> Desk {
+    let mut desk = Desk::new();
+    let path = desk.path();
+    // As a window without a scene.
+    desk.lab = Lab::default();
+    desk.files = DiskFiles::new(None, None);
+    let offer = Offer {
+        title: "Room".to_owned(),
+        path: Some(path.clone()),
+        file: PathBuf::from("copy.json"),
+        when: String::new(),
+        scene: Ok(copy.clone()),
+    };
+    desk.lab.ask(Question::Recover(Box::new(offer)));
+    desk.act(Action::Answer(Answer::Recover));
+    desk.files.expect(&path, Some(Stamp::of(known.as_bytes())));
+    assert!(desk.lab.is_dirty());
+    desk
+}
+
+#[test]
+fn what_is_recovered_is_saved_to_its_file_if_nobody_changed_that() {
+    let mut desk = recovered(&grown(1, 0.5), &text(&three()));
+    assert!(!desk.report());
+    assert_eq!(desk.lab.question, None);
+    desk.act(Action::Save);
+    assert_eq!((&desk.lab.question, desk.on_disk()), (&None, text(&grown(1, 0.5))));
+    assert!(!desk.lab.is_dirty());
+}
+
+#[test]
+fn what_is_recovered_never_replaces_the_changes_of_others_unasked() {
+    // Even if they are those with which an untouched window begins.
+    for other in [grown(0, 2.0), Scene::default(), three()] {
+        let mut desk = recovered(&grown(1, 0.5), "as it was");
+        desk.write(&text(&other));
+        desk.report();
+        assert!(matches!(desk.lab.question, Some(Question::NewerOnDisk { .. })), "{:?}", desk.lab.question);
+        assert_eq!(desk.lab.scene, grown(1, 0.5));
+        desk.act(Action::Answer(Answer::Keep));
+        assert!(desk.lab.is_dirty());
+        desk.act(Action::Save);
+        assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
+    }
+    // Before the watcher says so.
+    let mut desk = recovered(&grown(1, 0.5), "as it was");
+    desk.act(Action::Save);
+    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    assert_eq!(desk.on_disk(), text(&three()));
+}
+
+#[test]
+fn what_is_recovered_and_on_disk_by_now_is_saved() {
+    let mut desk = recovered(&three(), "as it was");
+    desk.report();
+    assert_eq!(desk.lab.question, None);
+    assert!(!desk.lab.is_dirty());
 }

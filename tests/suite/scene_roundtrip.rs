@@ -161,7 +161,7 @@ fn object() -> impl Strategy<Value = Object> {
         (
             prop::option::of("\\PC{0,20}"),
             position(),
-            prop_oneof![number(1e-30, 1e3), Just(f32::MAX), Just(f32::MIN_POSITIVE)],
+            prop_oneof![number(1e-30, 1e3), Just(1e9), Just(f32::MIN_POSITIVE)],
             vector(),
             prop::option::of(shape.declaration.tessellation.clone()),
             prop::option::of(prop::sample::select(models.clone())),

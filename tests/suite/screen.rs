@@ -39,9 +39,26 @@ impl Screen {
         Self { server, display: format!(":{}", line.trim()), memory }
     }
 
+    /// The name by which programs find it.
+    pub fn display(&self) -> &str {
+        &self.display
+    }
+
+    /// The process that is the screen.
+    pub fn process(&self) -> u32 {
+        self.server.id()
+    }
+
     /// Runs the program until it ends.
     pub fn lcm(&self, arguments: &[&str], config: &Path) -> Output {
-        lcm(arguments, config).env("DISPLAY", &self.display).output().expect("lcm runs")
+        self.command(arguments, config).output().expect("lcm runs")
+    }
+
+    /// The program on this screen, not yet started.
+    pub fn command(&self, arguments: &[&str], config: &Path) -> Command {
+        let mut command = lcm(arguments, config);
+        command.env("DISPLAY", &self.display);
+        command
     }
 
     /// Starts the program, and leaves it running until the result is dropped.
@@ -72,12 +89,13 @@ impl Drop for Screen {
     }
 }
 
-/// The program, with a folder for its settings, and without any display.
+/// The program, with a folder for its settings and its data, and without any display.
 pub fn lcm(arguments: &[&str], config: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lcm"));
     command
         .args(arguments)
         .env("LCM_CONFIG_DIR", config)
+        .env("LCM_DATA_DIR", config.join("data"))
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("WAYLAND_SOCKET")
         .env_remove("DISPLAY")

@@ -2,7 +2,10 @@
 //! the same one: reading a file again whose declaration did not change keeps nothing new, and whoever asks
 //! whether it changed compares pointers.
 
-use std::sync::{Mutex, PoisonError};
+use std::{
+    collections::HashSet,
+    sync::{LazyLock, Mutex, PoisonError},
+};
 
 use crate::reflection::{Declaration, EquationPart, parameter::Parameter};
 
@@ -23,10 +26,16 @@ where
     new
 }
 
-/// A text.
+/// A text. There are many: a folder of 500 models has thousands.
 pub(super) fn text(text: &str) -> &'static str {
-    static ALL: Kept<str> = Mutex::new(Vec::new());
-    kept(&ALL, text.to_owned(), |new| Box::leak(new.into_boxed_str()))
+    static ALL: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
+    let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(old) = all.get(text) {
+        return old;
+    }
+    let new: &'static str = Box::leak(text.into());
+    all.insert(new);
+    new
 }
 
 /// The choices of a parameter: name in files, name for people.

@@ -1,6 +1,7 @@
 //! Models that users write, one file each: `models/ID.wgsl` declares at its top what the model is called
 //! and which parameters it has, and defines below it `fn response` in WGSL. Nothing is compiled into the
-//! program: files are read at start, and again when they change.
+//! program. Of the files in a [`folder`] only so much is read as is needed: all of a model that is used, of the
+//! others the declaration when it is asked for, and nothing when it is not.
 //!
 //! ```wgsl
 //! /* lcm
@@ -21,28 +22,26 @@
 //! from everywhere by a formula of its own, without it by its directional albedo.
 
 use std::{
-    collections::BTreeMap,
-    fs, io,
     path::{Path, PathBuf},
     sync::Arc,
 };
 
 use naga::{Module, ScalarKind, TypeInner, VectorSize};
 
-use super::{Ambient, Declaration, Family, Lobe, ModelEntry, parameter::Parameter};
+use super::{Ambient, Declaration, Family, ModelEntry};
 use crate::{
     registry::Registry,
     shader::{
         Source,
         check::{self, ShaderProblem},
         compose::{compose, compose_evaluation},
-        file,
         whole::validate_drawing,
     },
     shading::Stage,
 };
 
 mod declaration;
+pub mod folder;
 mod intern;
 mod knobs;
 mod surface;
@@ -96,28 +95,6 @@ pub fn is_id(word: &str) -> bool {
 #[must_use]
 pub fn is_model(text: &str) -> bool {
     text::comment(text).is_ok() || text::definition(text, "response").is_some()
-}
-
-/// The WGSL files in a folder, by name; none where there is no folder.
-///
-/// # Errors
-/// When the folder cannot be read.
-pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let entries = match fs::read_dir(folder) {
-        Ok(entries) => entries,
-        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(e) => return Err(e),
-    };
-    let mut files = Vec::new();
-    for entry in entries {
-        let path = entry?.path();
-        let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-        if path.extension().is_some_and(|e| e == EXTENSION) && !hidden && path.is_file() {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
 }
 
 /// How messages call a file before its name is known to be good.
@@ -180,7 +157,7 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel, Ve
 }
 
 /// Reads the declaration of a model and leaves its WGSL alone: what is drawn, on both machines, is a stand-in. For
-/// a window that opens while a file is broken.
+/// a model that is not used yet, and for a window that opens while a file is broken. Cheap: nothing is compiled.
 ///
 /// # Errors
 /// Everything that is wrong with the declaration.
@@ -219,21 +196,8 @@ fn declared(
         wgsl: Source { path: intern::text(&source_path(id)), text: stand_in },
     });
     let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
-    let module =
-        stand_in_module(declaration, said.parameters, lobe.as_ref()).map_err(|found| vec![*found])?;
-    let entry = surface::entry(declaration, said.parameters, lobe.clone(), &module);
+    let entry = surface::stand_in(declaration, said.parameters, lobe.as_ref());
     Ok((OwnModel { entry, path: path.to_owned(), text: text.into() }, lobe))
-}
-
-/// The module of a model as its stand-in is drawn.
-fn stand_in_module(
-    declaration: &'static Declaration,
-    parameters: &'static [Parameter],
-    lobe: Option<&ModelEntry>,
-) -> Result<Module, Box<ShaderProblem>> {
-    let row = lobe.map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
-    let bare = ModelEntry::own(declaration, parameters, row, surface::nothing(), None);
-    check::validate(&compose_evaluation(&crate::shader::compose::Sources::default(), &bare))
 }
 
 /// The id of a file, if it can be one.
@@ -281,57 +245,4 @@ fn has_ambient_signature(module: &Module) -> bool {
                 [v, frame, m] if vector(v.ty) && called(frame.ty, "Frame") && called(m.ty, "Parameters")
             )
     })
-}
-
-/// Reads all models of a folder into a registry. A file that has a mistake is told of and left out; a scene that
-/// names it is told why (see [`Registry::broken_model`]). With `stand_in` a model whose WGSL alone is wrong is
-/// known and drawn as a stand-in, for a window in which the file is mended.
-pub fn read_folder(folder: &Path, registry: &mut Registry, stand_in: bool) -> Vec<(PathBuf, ShaderProblem)> {
-    registry.set_own_folder(folder);
-    let paths = match files_in(folder) {
-        Ok(paths) => paths,
-        Err(e) => {
-            let message = format!("the folder could not be read: {e}");
-            let problem = ShaderProblem {
-                file: "models".to_owned(),
-                line: 1,
-                column: 1,
-                source: String::new(),
-                message,
-            };
-            return vec![(folder.to_owned(), problem)];
-        }
-    };
-    let mut problems = Vec::new();
-    let mut models = Vec::new();
-    for path in paths {
-        match file::read(&path, &named(&path)) {
-            Ok(text) if is_model(&text) => models.push((path, text)),
-            // What models share is known by name before the first of them is read.
-            Ok(text) => registry.sources_mut().edit(named(&path), text),
-            Err(problem) => problems.push((path, problem)),
-        }
-    }
-    for (path, text) in models {
-        match read(&path, &text, registry) {
-            Ok(model) => registry.put_own_model(model),
-            Err(found) => {
-                if stand_in && let Ok(model) = declare(&path, &text, registry) {
-                    registry.put_stand_in(model);
-                }
-                problems.extend(found.into_iter().map(|problem| (path.clone(), problem)));
-            }
-        }
-    }
-    let mut first: BTreeMap<&Path, &ShaderProblem> = BTreeMap::new();
-    for (path, problem) in &problems {
-        first.entry(path).or_insert(problem);
-    }
-    for (path, problem) in first {
-        if let Some(id) = id_of(path) {
-            let place = format!("{}:{}:{}", path.display(), problem.line, problem.column);
-            registry.mark_broken(id, format!("{place}: {}", problem.message));
-        }
-    }
-    problems
 }

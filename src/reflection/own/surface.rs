@@ -128,19 +128,51 @@ pub(super) fn entry(
     ModelEntry::own(declaration, parameters, reads, instantiate, Some(on_cpu))
 }
 
-/// What makes surfaces that reflect nothing.
-pub(super) fn nothing() -> Instantiate {
-    Arc::new(|_, _| {
-        Arc::new(Interpreted {
-            on_cpu: Arc::new(OnCpu { programs: Err(String::new()), endless: AtomicBool::new(false) }),
-            ambient: Ambient::Formula,
-            anisotropic: false,
-            parameters: Vec::new(),
-            row: Vec::new(),
-            lobe: None,
-            curve: OnceLock::new(),
-        })
-    })
+/// The entry of a model of which no more is known than its declaration: the CPU draws the same as the WGSL of the
+/// stand-in, Lambert's law in grey.
+pub(super) fn stand_in(
+    declaration: &'static Declaration,
+    parameters: &'static [Parameter],
+    lobe: Option<&ModelEntry>,
+) -> ModelEntry {
+    let reads = lobe.map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
+    let instantiate: Instantiate =
+        Arc::new(move |_, _| Arc::new(Grey { ambient: declaration.ambient, curve: OnceLock::new() }));
+    ModelEntry::own(declaration, parameters, reads, instantiate, None)
+}
+
+/// The albedo of stand-ins.
+const GREY: f32 = 0.5;
+
+/// A stand-in.
+struct Grey {
+    ambient: Ambient,
+    curve: OnceLock<Option<AlbedoCurve>>,
+}
+
+impl Surface for Grey {
+    fn response(&self, l: Vec3, _: Vec3, frame: &Frame) -> Terms {
+        let diffuse = Vec3::splat(GREY * frame.n.dot(l).max(0.0));
+        Terms { ambient: Vec3::ZERO, diffuse, specular: Vec3::ZERO }
+    }
+
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        // As the graphics card has it, which reads the curve where there is one.
+        self.curve().map_or(Vec3::splat(GREY), |curve| curve.at(v, frame))
+    }
+
+    fn curve(&self) -> Option<AlbedoCurve> {
+        let new = || AlbedoCurve::new(|l, v| self.response(l, v, &Frame::LOCAL), false);
+        *self.curve.get_or_init(|| (self.ambient == Ambient::Albedo).then(new))
+    }
+
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        None
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        Vec::new()
+    }
 }
 
 /// The members of the WGSL struct `Parameters`, one word for each number.

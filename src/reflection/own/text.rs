@@ -73,21 +73,23 @@ pub(super) fn comment(text: &str) -> Result<Comment<'_>, Mistake> {
 pub(super) fn without_comments(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut at = 0;
-    while at < text.len() {
-        let rest = &text[at..];
+    while let Some(slash) = text[at..].find('/').map(|i| at + i) {
+        out.push_str(&text[at..slash]);
+        let rest = &text[slash..];
         let end = if rest.starts_with("//") {
-            at + rest.find('\n').unwrap_or(rest.len())
+            slash + rest.find('\n').unwrap_or(rest.len())
         } else if rest.starts_with("/*") {
-            block_comment(text, at).unwrap_or(text.len())
+            block_comment(text, slash).unwrap_or(text.len())
         } else {
-            let length = rest.chars().next().map_or(1, char::len_utf8);
-            out.push_str(&rest[..length]);
-            at += length;
+            out.push('/');
+            at = slash + 1;
             continue;
         };
+        at = slash;
         out.extend(text[at..end].bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }));
         at = end;
     }
+    out.push_str(&text[at..]);
     out
 }
 
@@ -119,7 +121,7 @@ pub(super) fn identifier(id: &str) -> Result<(), String> {
 
 /// Whether WGSL allows a name: it has many reserved words.
 pub(super) fn allowed_in_wgsl(name: &str) -> bool {
-    naga::front::wgsl::parse_str(&format!("struct S {{ {name}: f32 }}")).is_ok()
+    !naga::keywords::wgsl::RESERVED.contains(&name)
 }
 
 /// An id as people read it: `charlie_sheen` is Charlie sheen.
@@ -151,4 +153,35 @@ pub(super) fn defined_at(text: &str, name: &str) -> Option<usize> {
             ["fn", "struct", "const", "var", "alias", "override", ">"].iter().any(|w| before.ends_with(w));
         whole && defines
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_become_spaces_and_the_rest_stays() {
+        for (text, expected) in [
+            ("a / b", "a / b"),
+            ("é // x\nb", "é     \nb"),
+            ("a /* x /* y\n */ */ b", "a         \n       b"),
+            ("a /* never closed", "a                "),
+            ("a /", "a /"),
+            ("", ""),
+        ] {
+            assert_eq!(without_comments(text), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn names_are_refused_as_the_compiler_refuses_them() {
+        let compiles =
+            |name: &str| naga::front::wgsl::parse_str(&format!("struct S {{ {name}: f32 }}")).is_ok();
+        let reserved = naga::keywords::wgsl::RESERVED.iter().copied();
+        let known = naga::keywords::wgsl::BUILTIN_IDENTIFIERS.iter().copied();
+        let usual = ["base_colour", "k_d", "final", "sampler", "x", "macro_1"];
+        for name in reserved.chain(known).chain(usual).filter(|name| identifier(name).is_ok()) {
+            assert_eq!(allowed_in_wgsl(name), compiles(name), "{name}");
+        }
+    }
 }

@@ -244,7 +244,7 @@ impl Walk<'_> {
         if self.sections.is_empty() {
             return Ok(());
         }
-        Err((token.at, "this bracket was opened before the condition in which it is closed".to_owned()))
+        Err((token.at, "this closes a bracket from before a condition that is still open: its #endif is missing, or it does not close its own brackets".to_owned()))
     }
 
     fn directive(&mut self, token: Token) -> Result<(), Finding> {

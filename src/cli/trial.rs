@@ -1,0 +1,15 @@
+//! The hidden command that tries shaders for a window: see [`crate::shader::trial::process`].
+
+use std::{env, io, path::PathBuf};
+
+use super::Outcome;
+use crate::capture::trial::serve;
+
+pub(super) fn run() -> Outcome {
+    Ok(serve(io::stdin().lock(), io::stdout().lock())?)
+}
+
+/// The program whose command this is, to be started again.
+pub(super) fn program() -> Option<PathBuf> {
+    env::current_exe().ok()
+}

@@ -1,0 +1,229 @@
+//! Replacing files, all or nothing.
+
+use std::{
+    fs::{self, File, Metadata, TryLockError},
+    io::{self, Seek as _, Write},
+    path::{Path, PathBuf},
+};
+
+use tempfile::NamedTempFile;
+
+use super::{FileError, folder_of, follow, is_same, litter, options, regular, tidy};
+
+/// Writes a document, whether there is one or not: all or nothing, and on disk when this returns. Links are followed;
+/// mode, owner, group and hard links stay as they are where the system allows it.
+///
+/// # Errors
+/// When the path leads to something that is no regular file, or it cannot be written.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    let mut draft = Draft::new(path)?;
+    draft.write_all(bytes)?;
+    draft.replace()
+}
+
+/// Writes a document where there is none yet, as [`write`] does.
+///
+/// # Errors
+/// [`io::ErrorKind::AlreadyExists`] when there is a file, and as [`write`].
+pub fn create(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    let mut draft = Draft::new(path)?;
+    draft.write_all(bytes)?;
+    draft.create()
+}
+
+/// The new content of a file, not yet in its place. It is gone when dropped.
+#[derive(Debug)]
+pub struct Draft {
+    /// The file that it is for, links followed.
+    target: PathBuf,
+    file: NamedTempFile,
+    /// True if it has to be on disk before it takes its place.
+    synced: bool,
+}
+
+impl Draft {
+    /// An empty draft of a document; its folder is [`tidy`] then.
+    ///
+    /// # Errors
+    /// When the path leads to something that is no regular file, or nothing can be written in its folder.
+    pub fn new(path: &Path) -> Result<Self, FileError> {
+        let draft = Self::beside(path, true)?;
+        let _ = tidy(folder_of(&draft.target));
+        Ok(draft)
+    }
+
+    /// An empty draft of what can be calculated again, so that nobody need wait for the disk.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn fleeting(path: &Path) -> Result<Self, FileError> {
+        Self::beside(path, false)
+    }
+
+    fn beside(path: &Path, synced: bool) -> Result<Self, FileError> {
+        /// Another process that tidies up can take a file between its creation and its lock.
+        const ATTEMPTS: usize = 16;
+        let target = follow(path)?;
+        let is_new = existing(&target)?.is_none();
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(litter::PREFIX).suffix(litter::DRAFT);
+        #[cfg(unix)]
+        if is_new {
+            use std::os::unix::fs::PermissionsExt as _;
+            // As any program makes a new file; the umask of the user takes away from it.
+            builder.permissions(fs::Permissions::from_mode(0o666));
+        }
+        #[cfg(not(unix))]
+        let _ = is_new;
+        for _ in 0..ATTEMPTS {
+            let file = builder.tempfile_in(folder_of(&target))?;
+            let locked = match file.as_file().try_lock() {
+                Ok(()) => true,
+                Err(TryLockError::WouldBlock) => false,
+                // Not every file system has locks; there nobody tidies up.
+                Err(TryLockError::Error(_)) => true,
+            };
+            let there = fs::symlink_metadata(file.path());
+            if locked && there.is_ok_and(|there| file.as_file().metadata().is_ok_and(|m| is_same(&m, &there)))
+            {
+                return Ok(Self { target, file, synced });
+            }
+        }
+        Err(io::Error::other("its folder is tidied up without end").into())
+    }
+
+    /// Puts it in its place, where there must be nothing yet.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::AlreadyExists`] when there is something, and what the system says otherwise.
+    pub fn create(mut self) -> Result<(), FileError> {
+        self.sync()?;
+        let Self { target, file, synced } = self;
+        // The file stays open, and so locked, until its folder is on disk.
+        let _file = file.persist_noclobber(&target).map_err(|e| e.error)?;
+        sync_folder(&target, synced);
+        Ok(())
+    }
+
+    /// Puts it in its place, whether there is a file or not.
+    ///
+    /// # Errors
+    /// When there is something else than a regular file, and what the system says otherwise. But for
+    /// [`FileError::Unfinished`], what was there is unchanged then.
+    pub fn replace(mut self) -> Result<(), FileError> {
+        let old = existing(&self.target)?;
+        if let Some(old) = &old {
+            let alike = take_after(self.file.as_file(), old);
+            self.file.as_file().set_permissions(old.permissions())?;
+            if (!alike || links(old) > 1)
+                && let Some(place) = open_to_overwrite(&self.target, old)
+            {
+                return self.overwrite(place, old);
+            }
+        }
+        self.sync()?;
+        let Self { target, file, synced } = self;
+        let _file = file.persist(&target).map_err(|e| e.error)?;
+        sync_folder(&target, synced);
+        Ok(())
+    }
+
+    /// Overwrites what is there. That can be interrupted, so the draft is kept under a name that is no litter until
+    /// all is done.
+    fn overwrite(mut self, mut place: File, old: &Metadata) -> Result<(), FileError> {
+        self.synced = true;
+        self.sync()?;
+        let Self { target, file, .. } = self;
+        let copy = litter::whole(file.path(), old);
+        let mut whole = file.persist(&copy).map_err(|e| e.error)?;
+        sync_folder(&target, true);
+        whole
+            .rewind()
+            .and_then(|()| fill(&mut whole, &mut place))
+            .map_err(|error| FileError::Unfinished { copy: copy.clone(), error })?;
+        // All is done; a copy that could not be removed is found to be one by whoever tidies up.
+        let _ = fs::remove_file(&copy);
+        Ok(())
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        self.file.flush()?;
+        if self.synced { self.file.as_file().sync_all() } else { Ok(()) }
+    }
+}
+
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Makes an open file what another one is, and waits until that is on disk. On the way it is a beginning of it.
+pub(super) fn fill(from: &mut File, place: &mut File) -> io::Result<()> {
+    place.set_len(0)?;
+    io::copy(from, place)?;
+    place.sync_all()
+}
+
+/// The regular file that is there, if any.
+fn existing(target: &Path) -> Result<Option<Metadata>, FileError> {
+    match fs::metadata(target) {
+        Ok(metadata) => regular(&metadata).map(|()| Some(metadata)),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(e.into()),
+    }
+}
+
+/// Opens a file to overwrite it, if this user may and it is still the one that was looked at.
+pub(super) fn open_to_overwrite(target: &Path, old: &Metadata) -> Option<File> {
+    let file = options().write(true).open(target).ok()?;
+    let now = file.metadata().ok()?;
+    (regular(&now).is_ok() && is_same(&now, old)).then_some(file)
+}
+
+/// Gives a file the owner and group of another; true if it has both.
+#[cfg_attr(not(unix), allow(unused_variables))]
+fn take_after(file: &File, old: &Metadata) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{MetadataExt as _, fchown};
+        let Ok(new) = file.metadata() else { return false };
+        let user = (new.uid() != old.uid()).then_some(old.uid());
+        let group = (new.gid() != old.gid()).then_some(old.gid());
+        if (user, group) == (None, None) || fchown(file, user, group).is_ok() {
+            return true;
+        }
+        // Better the group alone than neither.
+        user.is_some() && group.is_some() && {
+            let _ = fchown(file, None, group);
+            false
+        }
+    }
+    #[cfg(not(unix))]
+    true
+}
+
+/// How many names a file has.
+#[cfg_attr(not(unix), allow(unused_variables))]
+fn links(metadata: &Metadata) -> u64 {
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::MetadataExt::nlink(metadata)
+    }
+    #[cfg(not(unix))]
+    1
+}
+
+/// A new name is safe once its folder is on disk too. Not every file system can do this, and the file itself is
+/// whole either way.
+#[cfg_attr(not(unix), allow(unused_variables))]
+fn sync_folder(file: &Path, synced: bool) {
+    #[cfg(unix)]
+    if synced && let Ok(folder) = File::open(folder_of(file)) {
+        let _ = folder.sync_all();
+    }
+}

@@ -1,0 +1,241 @@
+//! What killed processes leave, and what becomes of it.
+
+use std::{
+    fs::{self, File, Metadata},
+    io::Seek as _,
+    path::{Path, PathBuf},
+    time::Duration,
+};
+
+use super::{
+    FileError,
+    draft::{fill, open_to_overwrite},
+    is_same, options, read, read_start,
+};
+
+/// How the names of all temporary files begin. Whoever watches a folder knows them by the dot for what they are.
+pub(super) const PREFIX: &str = ".lcm-";
+/// How the name of a draft ends.
+pub(super) const DRAFT: &str = ".tmp";
+/// How the name of a whole copy of a file ends that is being overwritten.
+const WHOLE: &str = ".whole";
+/// The length of what makes a name unique.
+const RANDOM: usize = 6;
+/// Files under the names of older versions have no lock; none takes as long to write.
+const OLD: Duration = Duration::from_secs(60);
+/// No document is larger.
+const LARGEST: u64 = 64 << 20;
+
+/// A file that was being overwritten when its process ended, and is not what was to become of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unfinished {
+    /// What it was to become.
+    pub copy: PathBuf,
+    /// The file, if it is still there.
+    pub file: Option<PathBuf>,
+}
+
+impl std::fmt::Display for Unfinished {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let copy = self.copy.display();
+        match &self.file {
+            Some(file) => {
+                write!(f, "{} may be incomplete: saving it was interrupted", file.display())?;
+                write!(f, ". Its whole content is in {copy}; take that, or delete it.")
+            }
+            None => {
+                write!(
+                    f,
+                    "{copy} is the whole content of a file that is no longer there; take it, or delete it."
+                )
+            }
+        }
+    }
+}
+
+/// The name of the whole copy of a file while that is overwritten.
+#[cfg_attr(not(unix), allow(unused_variables))]
+pub(super) fn whole(draft: &Path, old: &Metadata) -> PathBuf {
+    #[cfg(unix)]
+    let inode = std::os::unix::fs::MetadataExt::ino(old);
+    #[cfg(not(unix))]
+    let inode = 0;
+    let name = draft.file_name().unwrap_or_default().to_string_lossy();
+    draft.with_file_name(format!("{}.{inode}{WHOLE}", name.trim_end_matches(DRAFT)))
+}
+
+/// A name that this program gives.
+#[derive(Debug, PartialEq, Eq)]
+enum Name {
+    /// A draft, locked as long as its process lives.
+    Draft,
+    /// The whole copy of the file with that inode.
+    Whole(u64),
+    /// A draft of a scene by an older version.
+    OldScene,
+    /// A draft of a picture by an older version.
+    OldPicture,
+}
+
+impl Name {
+    fn of(name: &str) -> Option<Self> {
+        let random = |word: &str| word.len() == RANDOM && word.bytes().all(|b| b.is_ascii_alphanumeric());
+        let digits = |word: &str| !word.is_empty() && word.bytes().all(|b| b.is_ascii_digit());
+        if let Some(rest) = name.strip_prefix(PREFIX) {
+            if rest.strip_suffix(DRAFT).is_some_and(random) {
+                return Some(Self::Draft);
+            }
+            let (word, inode) = rest.strip_suffix(WHOLE)?.split_once('.')?;
+            return (random(word) && digits(inode)).then(|| inode.parse().ok().map(Self::Whole)).flatten();
+        }
+        if let Some((file, word)) = name.strip_suffix(DRAFT).and_then(|rest| rest.rsplit_once('.')) {
+            // People write words; what is random has almost always letters of both sizes or digits among them.
+            let classes = [u8::is_ascii_lowercase, u8::is_ascii_uppercase, u8::is_ascii_digit];
+            let mixed = classes.iter().filter(|class| word.bytes().any(|b| class(&b))).count() > 1;
+            let is_scene = file.len() >= ".x.json".len() && file.starts_with('.') && file.ends_with(".json");
+            return (is_scene && random(word) && mixed).then_some(Self::OldScene);
+        }
+        let (file, process) = name.strip_suffix(".partial")?.rsplit_once('.')?;
+        (digits(process) && file.len() > 4 && file.to_ascii_lowercase().ends_with(".png"))
+            .then_some(Self::OldPicture)
+    }
+}
+
+/// Removes from a folder the drafts that no process works on any more, and finishes what was interrupted while it
+/// overwrote a file. Returns what could not be finished.
+#[must_use]
+pub fn tidy(folder: &Path) -> Vec<Unfinished> {
+    let mut unfinished = Vec::new();
+    let Ok(entries) = fs::read_dir(folder) else { return unfinished };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let Some(name) = name.to_str().and_then(Name::of) else { continue };
+        let path = entry.path();
+        match name {
+            Name::Draft => remove_if_left(&path),
+            Name::OldScene => remove_if_old(&path, b"{\n  \""),
+            Name::OldPicture => remove_if_old(&path, b"\x89PNG"),
+            Name::Whole(inode) => unfinished.extend(finish(folder, &path, inode)),
+        }
+    }
+    unfinished
+}
+
+/// A regular file that no process has locked, locked; a link is none.
+fn left(path: &Path) -> Option<File> {
+    if !fs::symlink_metadata(path).ok()?.is_file() {
+        return None;
+    }
+    let file = options().read(true).open(path).ok()?;
+    file.try_lock().ok()?;
+    // It may have been renamed before the lock was taken, and another may have its name.
+    let there = fs::symlink_metadata(path).ok()?;
+    (there.is_file() && is_same(&there, &file.metadata().ok()?)).then_some(file)
+}
+
+fn remove_if_left(path: &Path) {
+    if let Some(_lock) = left(path) {
+        // What cannot be removed is no news: the next one tries again.
+        let _ = fs::remove_file(path);
+    }
+}
+
+/// Removes a file of an older version, if it is empty or begins as such a file does.
+fn remove_if_old(path: &Path, beginning: &[u8]) {
+    let Some(lock) = left(path) else { return };
+    let age = lock.metadata().and_then(|m| m.modified()).ok().and_then(|at| at.elapsed().ok());
+    let Ok(start) = read_start(path, beginning.len() as u64) else { return };
+    if age.is_some_and(|age| age > OLD) && (start.is_empty() || start == beginning) {
+        let _ = fs::remove_file(path);
+    }
+}
+
+/// Finishes overwriting a file, if it was interrupted and nothing happened since.
+fn finish(folder: &Path, copy: &Path, inode: u64) -> Option<Unfinished> {
+    // Locked: somebody is at it.
+    let mut lock = left(copy)?;
+    let unfinished = |file| Some(Unfinished { copy: copy.to_owned(), file });
+    let Some((file, metadata)) = with_inode(folder, inode) else { return unfinished(None) };
+    let wanted = read(copy, LARGEST).ok()?;
+    let there = match read(&file, LARGEST) {
+        Ok(there) => there,
+        Err(FileError::TooLarge(_)) => return unfinished(Some(file)),
+        Err(_) => return None,
+    };
+    if there != wanted {
+        // Only what the interruption itself explains is undone, and only among files of one owner: in a folder that
+        // all may write to, the copy could come from anybody.
+        let interrupted =
+            wanted.starts_with(&there) && lock.metadata().is_ok_and(|m| owner(&m) == owner(&metadata));
+        let place = interrupted.then(|| open_to_overwrite(&file, &metadata)).flatten();
+        let done =
+            place.is_some_and(|mut place| lock.rewind().is_ok() && fill(&mut lock, &mut place).is_ok());
+        if !done {
+            return unfinished(Some(file));
+        }
+    }
+    let _ = fs::remove_file(copy);
+    None
+}
+
+/// The regular file of a folder with that inode.
+#[cfg_attr(not(unix), allow(unused_variables))]
+fn with_inode(folder: &Path, inode: u64) -> Option<(PathBuf, Metadata)> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{DirEntryExt as _, MetadataExt as _};
+        let entry = fs::read_dir(folder).ok()?.flatten().find(|entry| entry.ino() == inode)?;
+        let metadata = fs::symlink_metadata(entry.path()).ok()?;
+        (metadata.is_file() && metadata.ino() == inode).then(|| (entry.path(), metadata))
+    }
+    #[cfg(not(unix))]
+    None
+}
+
+#[cfg_attr(not(unix), allow(unused_variables))]
+fn owner(metadata: &Metadata) -> u32 {
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::MetadataExt::uid(metadata)
+    }
+    #[cfg(not(unix))]
+    0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_names_that_this_program_gives_are_litter() {
+        for (name, expected) in [
+            (".lcm-a1B2c3.tmp", Some(Name::Draft)),
+            (".lcm-backup.tmp", Some(Name::Draft)),
+            (".lcm-a1B2c3.123.whole", Some(Name::Whole(123))),
+            (".room.json.a1B2c3.tmp", Some(Name::OldScene)),
+            (".r.json.a1B2c3.tmp", Some(Name::OldScene)),
+            ("room.png.4711.partial", Some(Name::OldPicture)),
+            (".lcm-a1B2c.tmp", None),
+            (".lcm-a1B2c3d.tmp", None),
+            (".lcm-a1B2c3.tmp~", None),
+            (".lcm-a-B2c3.tmp", None),
+            ("lcm-a1B2c3.tmp", None),
+            (".lcm-a1B2c3.whole", None),
+            (".lcm-a1B2c3.12x.whole", None),
+            (".lcm-.tmp", None),
+            (".lcm-settings.json", None),
+            (".room.json.backup.tmp", None),
+            (".room.json.a1B2c3d.tmp", None),
+            (".room.txt.a1B2c3.tmp", None),
+            (".json.a1B2c3.tmp", None),
+            ("room.json.a1B2c3.tmp", None),
+            ("room.json", None),
+            ("room.png.partial", None),
+            ("room.png.x.partial", None),
+            ("film.mkv.4711.partial", None),
+            (".png.4711.partial", None),
+        ] {
+            assert_eq!(Name::of(name), expected, "{name}");
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! The results of commands: where they may go, and how they get there.
+
+use std::{
+    fs::File,
+    io::{self, Write},
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant},
+};
+
+use super::{Draft, FileError, Kind, input::descriptor, kind, options, read_start, same};
+
+/// How long a named pipe may have nobody who reads from it.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// How often it is asked whether there is room.
+const PAUSE: Duration = Duration::from_millis(1);
+
+/// How files of a sort begin.
+#[derive(Clone, Copy, Debug)]
+pub struct Signature {
+    /// The sort: "a PNG file".
+    pub what: &'static str,
+    /// The first bytes.
+    pub begins: &'static [u8],
+}
+
+/// Pictures.
+pub const PNG: Signature = Signature { what: "a PNG file", begins: b"\x89PNG\r\n\x1a\n" };
+
+/// Why an output must not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum Refused {
+    /// It is one of the inputs.
+    #[error("{} {}; it was not overwritten", .output.display(), told(.output, .input))]
+    Input {
+        /// The output.
+        output: PathBuf,
+        /// The input that is the same file.
+        input: PathBuf,
+    },
+    /// There is a file of another sort.
+    #[error("{} is there and is not {what}; it was not overwritten", .output.display())]
+    Foreign {
+        /// The output.
+        output: PathBuf,
+        /// What it would have to be.
+        what: &'static str,
+    },
+    /// What is there cannot be looked at.
+    #[error("{} is there and cannot be looked at ({error}); it was not overwritten", .output.display())]
+    Unknown {
+        /// The output.
+        output: PathBuf,
+        /// Why.
+        error: FileError,
+    },
+}
+
+fn told(output: &Path, input: &Path) -> String {
+    if output == input {
+        "is read by this command".to_owned()
+    } else {
+        format!("is the same file as {}, which is read by this command", input.display())
+    }
+}
+
+/// Asks whether a result may be written to a path. A file that is there must be of the same sort, so that nothing
+/// else is lost, and none of the inputs, whichever way a link leads. Nothing can be lost in an empty file, nor in a
+/// device.
+///
+/// # Errors
+/// Why not.
+pub fn may_overwrite<'a>(
+    output: &Path,
+    sort: Signature,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), Refused> {
+    // Where there is nothing, nothing is lost; what is wrong with other things shows when they are written to.
+    if !kind(output).is_ok_and(|kind| kind == Kind::File) || descriptor(output).is_some() {
+        return Ok(());
+    }
+    let owned = || output.to_owned();
+    if let Some(input) = inputs.into_iter().find(|input| same(input, output)) {
+        return Err(Refused::Input { output: owned(), input: input.to_owned() });
+    }
+    match read_start(output, sort.begins.len() as u64) {
+        Ok(start) if start.is_empty() || start == sort.begins => Ok(()),
+        Ok(_) => Err(Refused::Foreign { output: owned(), what: sort.what }),
+        Err(error) => Err(Refused::Unknown { output: owned(), error }),
+    }
+}
+
+/// Where a result goes: to a file, which appears complete or not at all, or straight to standard output, a device or
+/// a pipe.
+#[derive(Debug)]
+pub enum Output {
+    /// A file; [`finish`](Self::finish) puts it in its place.
+    File(Draft),
+    /// Standard output.
+    Standard(io::Stdout),
+    /// A device or a pipe.
+    Stream(File),
+}
+
+impl Output {
+    /// Opens it. A pipe is given some time to be read from.
+    ///
+    /// # Errors
+    /// When it is a folder or a socket, nobody reads from it, or it cannot be written to.
+    pub fn open(path: &Path) -> Result<Self, FileError> {
+        // What is open already is written to as it is, also where it leads to a file: that may hold more.
+        if descriptor(path) == Some("1") {
+            return Ok(Self::Standard(io::stdout()));
+        }
+        match kind(path) {
+            Ok(Kind::File) | Err(_) if descriptor(path).is_none() => Draft::fleeting(path).map(Self::File),
+            Ok(kind @ (Kind::File | Kind::Pipe | Kind::Device)) => stream(path, kind).map(Self::Stream),
+            Ok(kind) => Err(FileError::Kind(kind)),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// All is written.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn finish(mut self) -> Result<(), FileError> {
+        self.flush()?;
+        match self {
+            Self::File(draft) => draft.replace(),
+            Self::Standard(_) | Self::Stream(_) => Ok(()),
+        }
+    }
+}
+
+/// Opens what is written to straight.
+#[cfg_attr(not(unix), allow(unused_variables))]
+fn stream(path: &Path, kind: Kind) -> Result<File, FileError> {
+    let begin = Instant::now();
+    loop {
+        match options().write(true).open(path) {
+            // A pipe that nobody reads from.
+            #[cfg(unix)]
+            Err(e) if kind == Kind::Pipe && e.raw_os_error() == Some(libc::ENXIO) => {
+                if begin.elapsed() > PATIENCE {
+                    return Err(io::Error::other("nobody reads from it").into());
+                }
+                thread::sleep(PAUSE);
+            }
+            opened => return Ok(opened?),
+        }
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::File(draft) => draft.write(bytes),
+            Self::Standard(out) => out.write(bytes),
+            Self::Stream(file) => loop {
+                match file.write(bytes) {
+                    // The pipe is full for now.
+                    Err(e) if e.kind() == io::ErrorKind::WouldBlock => thread::sleep(PAUSE),
+                    done => return done,
+                }
+            },
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::File(draft) => draft.flush(),
+            Self::Standard(out) => out.flush(),
+            Self::Stream(file) => file.flush(),
+        }
+    }
+}

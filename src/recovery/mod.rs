@@ -1,0 +1,147 @@
+//! Recovery copies: unsaved work that outlives the window, however that ends.
+//!
+//! While the document has unsaved changes, [`Keeper`] keeps a copy of it in a folder of the window's own
+//! ([`Session`]), written by a thread of its own about a second after an edit. Saving and closing remove it;
+//! nothing else does. So whatever takes the window down, a signal, a crash, a lost display, at most that second is
+//! lost, and [`Store::left`] finds the copy at the next start.
+//!
+//! A copy is a scene file like any other, `scene.json`, with [`About`] beside it. No Bevy in here.
+
+use std::{path::PathBuf, sync::Arc, time::Duration};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    registry::Registry,
+    scene::{Scene, load::Stamp},
+};
+
+mod keeper;
+mod store;
+
+pub use keeper::{Keeper, Settled};
+pub use store::{Left, MAX_COPIES, Session, Store};
+
+/// The document behind a copy.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct About {
+    /// The name of the document.
+    pub title: String,
+    /// The file of the document, if it has one; from the root on.
+    #[serde(with = "path_text")]
+    pub path: Option<PathBuf>,
+    /// The state of that file when it was last read or written.
+    pub stamp: Option<Stamp>,
+    /// The process that wrote the copy.
+    pub process: u32,
+}
+
+/// A document with unsaved changes, as it is handed to the [`Keeper`].
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// What it is and where it belongs.
+    pub about: About,
+    /// The scene. It may break rules: unfinished work is work.
+    pub scene: Scene,
+    /// What is known at the time, for the order of parameters.
+    pub registry: Arc<Registry>,
+}
+
+/// The age of a copy in words: "5 minutes ago".
+#[must_use]
+pub fn ago(age: Duration) -> String {
+    let minutes = age.as_secs() / 60;
+    let (count, unit) = match minutes {
+        0 => return "less than a minute ago".to_owned(),
+        1..60 => (minutes, "minute"),
+        60..1440 => (minutes / 60, "hour"),
+        _ => (minutes / 1440, "day"),
+    };
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {unit}{plural} ago")
+}
+
+/// Paths as text where they are text; as bytes where the system allows others.
+mod path_text {
+    use std::path::{Path, PathBuf};
+
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(untagged)]
+    enum Text {
+        Text(String),
+        Bytes(Vec<u8>),
+    }
+
+    pub(super) fn serialize<S: Serializer>(path: &Option<PathBuf>, to: S) -> Result<S::Ok, S::Error> {
+        path.as_deref().map(text).serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<PathBuf>, D::Error> {
+        Ok(Option::<Text>::deserialize(from)?.map(path))
+    }
+
+    #[cfg(unix)]
+    fn text(path: &Path) -> Text {
+        use std::os::unix::ffi::OsStrExt as _;
+        let text = path.to_str().map(|text| Text::Text(text.to_owned()));
+        text.unwrap_or_else(|| Text::Bytes(path.as_os_str().as_bytes().to_owned()))
+    }
+
+    #[cfg(not(unix))]
+    fn text(path: &Path) -> Text {
+        Text::Text(path.to_string_lossy().into_owned())
+    }
+
+    fn path(text: Text) -> PathBuf {
+        match text {
+            Text::Text(text) => text.into(),
+            #[cfg(unix)]
+            Text::Bytes(bytes) => {
+                use std::os::unix::ffi::OsStringExt as _;
+                std::ffi::OsString::from_vec(bytes).into()
+            }
+            #[cfg(not(unix))]
+            Text::Bytes(bytes) => String::from_utf8_lossy(&bytes).into_owned().into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_age_of_a_copy_is_said_in_its_largest_unit() {
+        for (seconds, expected) in [
+            (0, "less than a minute ago"),
+            (59, "less than a minute ago"),
+            (60, "1 minute ago"),
+            (59 * 60, "59 minutes ago"),
+            (3600, "1 hour ago"),
+            (47 * 3600, "1 day ago"),
+            (96 * 3600, "4 days ago"),
+        ] {
+            assert_eq!(ago(Duration::from_secs(seconds)), expected);
+        }
+    }
+
+    #[test]
+    fn what_a_copy_is_about_is_read_back() {
+        let mut paths = vec![None, Some(PathBuf::from("/scenes/Grün.json"))];
+        #[cfg(unix)]
+        {
+            use std::os::unix::ffi::OsStringExt as _;
+            paths.push(Some(std::ffi::OsString::from_vec(b"/scenes/\xff.json".to_vec()).into()));
+        }
+        for path in paths {
+            let about =
+                About { title: "Room".to_owned(), path, stamp: Some(Stamp::of(b"text")), process: 12 };
+            let text = serde_json::to_string(&about).expect("no path is in the way");
+            assert_eq!(serde_json::from_str::<About>(&text).expect("read"), about);
+        }
+        assert_eq!(serde_json::from_str::<About>("{}").expect("read"), About::default());
+    }
+}

@@ -1,0 +1,405 @@
+//! Trials in a process of their own, with a budget of time and memory: a driver that crashes there, or does not come
+//! to an end, takes nothing along, and nobody waits for it.
+//!
+//! The process is this program with another command. It reads one [`Request`] a line and writes one [`Answer`] a
+//! line. It is started when something is tried for the first time, and started anew after it died.
+
+use std::{
+    collections::{HashMap, VecDeque},
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+    io::{BufRead as _, BufReader, Write as _},
+    path::{Path, PathBuf},
+    process::{Child, ChildStdin, Command, ExitStatus, Stdio},
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc},
+    thread,
+    time::{Duration, Instant},
+};
+
+use serde::{Deserialize, Serialize};
+
+use super::Verdict;
+use crate::{
+    files,
+    shader::{
+        check::{ShaderProblem, locate},
+        compose::{Composed, LineMap},
+    },
+};
+
+/// The command of the program that tries shaders.
+pub const COMMAND: &str = "try-shaders";
+/// The longest that a process may take until it is ready: software Vulkan starts within a second.
+const START: Duration = Duration::from_secs(30);
+/// So often a process that works is looked after.
+const WATCH: Duration = Duration::from_millis(10);
+/// Many answers are told of together, at most so often.
+const PACE: Duration = Duration::from_millis(50);
+/// As many answers are kept for those who ask again.
+const KEPT: usize = 256;
+
+/// What one trial may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// From the request to the answer.
+    pub time: Duration,
+    /// The memory of the process, bytes; known on Linux only.
+    pub memory: u64,
+}
+
+impl Default for Budget {
+    /// A hundred times what the shipped models take.
+    fn default() -> Self {
+        Self { time: Duration::from_secs(10), memory: 1 << 30 }
+    }
+}
+
+/// A shader to be tried.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Request {
+    /// The composed text.
+    pub text: String,
+    /// The files that it is made of.
+    pub map: LineMap,
+    /// True for meshes that know their polygons.
+    pub faces: bool,
+    /// The object's row in the table of parameters.
+    pub row: Vec<u8>,
+}
+
+/// What the process says.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub enum Answer {
+    /// It can be asked.
+    Ready,
+    /// The shader can be drawn with.
+    Good,
+    /// It cannot.
+    Bad(Box<ShaderProblem>),
+}
+
+/// A process that tries shaders, and the answers that it gave.
+#[derive(Debug)]
+pub struct TrialProcess {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    state: Mutex<State>,
+    news: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    queue: VecDeque<Waiting>,
+    /// What is being tried.
+    current: Option<u64>,
+    answers: HashMap<u64, (Verdict, u64)>,
+    frame: u64,
+    /// No process can be had.
+    broken: bool,
+    closed: bool,
+}
+
+#[derive(Debug)]
+struct Waiting {
+    key: u64,
+    request: Request,
+    /// When it was asked for last.
+    frame: u64,
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl TrialProcess {
+    /// A process of `program`, started when it is needed. `wake` is called when there are answers.
+    #[must_use]
+    pub fn new(program: PathBuf, budget: Budget, wake: impl Fn() + Send + 'static) -> Self {
+        let shared = Arc::new(Shared::default());
+        let theirs = shared.clone();
+        let started = thread::Builder::new().name("trials".to_owned()).spawn(move || {
+            let mut worker = Worker { shared: theirs, program, budget, process: None };
+            let mut told = Instant::now();
+            while let Some((key, request)) = worker.next() {
+                let verdict = worker.verdict(&request);
+                let mut state = worker.shared.lock();
+                state.current = None;
+                match verdict {
+                    Some(verdict) => {
+                        let frame = state.frame;
+                        state.answers.insert(key, (verdict, frame));
+                    }
+                    None => state.broken = true,
+                }
+                let (broken, last) = (state.broken, state.queue.is_empty());
+                drop(state);
+                if broken || last || told.elapsed() > PACE {
+                    told = Instant::now();
+                    wake();
+                }
+                if broken {
+                    return;
+                }
+            }
+        });
+        shared.lock().broken |= started.is_err();
+        Self { shared }
+    }
+
+    /// The verdict on a shader, [`Verdict::NotYet`] until there is one; none if no process can be had.
+    pub fn ask(&self, composed: &Composed, faces: bool, row: impl FnOnce() -> Vec<u8>) -> Option<Verdict> {
+        let mut hasher = DefaultHasher::new();
+        (&composed.text, faces).hash(&mut hasher);
+        let key = hasher.finish();
+        let mut state = self.shared.lock();
+        if state.broken {
+            return None;
+        }
+        let frame = state.frame;
+        if let Some((verdict, used)) = state.answers.get_mut(&key) {
+            *used = frame;
+            return Some(verdict.clone());
+        }
+        if state.current == Some(key) {
+            return Some(Verdict::NotYet);
+        }
+        if let Some(waiting) = state.queue.iter_mut().find(|w| w.key == key) {
+            waiting.frame = frame;
+            return Some(Verdict::NotYet);
+        }
+        let request = Request { text: composed.text.clone(), map: composed.map.clone(), faces, row: row() };
+        state.queue.push_back(Waiting { key, request, frame });
+        self.shared.news.notify_all();
+        Some(Verdict::NotYet)
+    }
+
+    /// Begins a new frame: what was not asked for in the last one is not tried any more.
+    pub fn begin_frame(&self) {
+        let mut state = self.shared.lock();
+        state.frame += 1;
+        let frame = state.frame;
+        state.queue.retain(|waiting| waiting.frame + 1 >= frame);
+        if state.answers.len() > KEPT {
+            let mut used: Vec<_> = state.answers.values().map(|(_, used)| *used).collect();
+            used.sort_unstable();
+            let oldest = used[used.len() / 2];
+            state.answers.retain(|_, (_, used)| *used > oldest);
+        }
+    }
+
+    /// True while something is tried or waits for it.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        let state = self.shared.lock();
+        !state.broken && (state.current.is_some() || !state.queue.is_empty())
+    }
+}
+
+impl Drop for TrialProcess {
+    fn drop(&mut self) {
+        self.shared.lock().closed = true;
+        self.shared.news.notify_all();
+    }
+}
+
+/// Keeps the process, on a thread of its own.
+struct Worker {
+    shared: Arc<Shared>,
+    program: PathBuf,
+    budget: Budget,
+    process: Option<Running>,
+}
+
+impl Worker {
+    /// The next shader to try; none when nobody asks any more.
+    fn next(&mut self) -> Option<(u64, Request)> {
+        let mut state = self.shared.lock();
+        loop {
+            if state.closed {
+                return None;
+            }
+            if let Some(waiting) = state.queue.pop_front() {
+                state.current = Some(waiting.key);
+                return Some((waiting.key, waiting.request));
+            }
+            state = self.shared.news.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Has a shader tried; none if no process can be had.
+    fn verdict(&mut self, request: &Request) -> Option<Verdict> {
+        let Ok(line) = serde_json::to_string(request) else { return None };
+        for attempt in 0..2 {
+            let process = match self.process.take() {
+                Some(process) => process,
+                None => self.start()?,
+            };
+            match self.fate(process, &line) {
+                Fate::Answered(Answer::Bad(problem)) => return Some(Verdict::Bad(problem)),
+                Fate::Answered(_) => return Some(Verdict::Good),
+                Fate::TooSlow => {
+                    let limit = self.budget.time.as_secs_f32();
+                    let message = format!(
+                        "the graphics driver did not finish compiling it and drawing a small picture with it within {limit} s; is there a loop of very many rounds?"
+                    );
+                    return Some(refused(request, message));
+                }
+                Fate::TooLarge => {
+                    let limit = self.budget.memory >> 20;
+                    let message =
+                        format!("the graphics driver needs more than {limit} MiB of memory to compile it");
+                    return Some(refused(request, message));
+                }
+                // It may have been ended by somebody else, so it is asked once more.
+                Fate::Died(_) if attempt == 0 => {}
+                Fate::Died(status) => {
+                    let how = status.map_or_else(String::new, |status| format!(" ({status})"));
+                    let message =
+                        format!("the graphics driver crashes when it compiles it or draws with it{how}");
+                    return Some(refused(request, message));
+                }
+            }
+        }
+        None
+    }
+
+    /// Starts a process and waits until it can be asked.
+    fn start(&self) -> Option<Running> {
+        let mut process = Running::start(&self.program).ok()?;
+        match process.answer(START, u64::MAX, || self.shared.lock().closed) {
+            Fate::Answered(Answer::Ready) => Some(process),
+            _ => None,
+        }
+    }
+
+    fn fate(&mut self, mut process: Running, line: &str) -> Fate {
+        if process.send(line).is_err() {
+            return Fate::Died(process.end());
+        }
+        let fate = process.answer(self.budget.time, self.budget.memory, || self.shared.lock().closed);
+        if let Fate::Answered(_) = fate {
+            self.process = Some(process);
+        }
+        fate
+    }
+}
+
+/// A shader that the process did not survive, told at the file of the model if the user wrote that.
+fn refused(request: &Request, message: String) -> Verdict {
+    let composed = Composed { text: request.text.clone(), map: request.map.clone(), ..Composed::default() };
+    let lines = 1..=request.text.lines().count();
+    let own = |line: &usize| request.map.locate(*line).is_some_and(|(file, _)| file.starts_with("models/"));
+    let of_response = |line: &usize| {
+        own(line) && request.text.lines().nth(line - 1).is_some_and(|text| text.contains("fn response"))
+    };
+    let place = lines.clone().find(of_response).or_else(|| lines.clone().find(own)).map(|line| (line, 1));
+    Verdict::Bad(locate(&composed, place, message))
+}
+
+/// What became of a request.
+enum Fate {
+    Answered(Answer),
+    TooSlow,
+    TooLarge,
+    Died(Option<ExitStatus>),
+}
+
+/// A process that runs; it ends with this value.
+struct Running {
+    child: Child,
+    input: Option<ChildStdin>,
+    answers: mpsc::Receiver<Answer>,
+}
+
+impl Running {
+    fn start(program: &Path) -> std::io::Result<Self> {
+        let mut command = Command::new(program);
+        command.arg(COMMAND).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        #[cfg(unix)]
+        {
+            use std::os::unix::process::CommandExt as _;
+            // Ctrl+C in the terminal is for the window.
+            command.process_group(0);
+        }
+        let mut child = command.spawn()?;
+        let input = child.stdin.take();
+        let output = child.stdout.take();
+        let (sender, answers) = mpsc::channel();
+        if let Some(output) = output {
+            thread::spawn(move || {
+                for line in BufReader::new(output).lines().map_while(Result::ok) {
+                    let Ok(answer) = serde_json::from_str(&line) else { continue };
+                    if sender.send(answer).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        Ok(Self { child, input, answers })
+    }
+
+    fn send(&mut self, line: &str) -> std::io::Result<()> {
+        let Some(input) = &mut self.input else { return Err(std::io::ErrorKind::BrokenPipe.into()) };
+        input.write_all(line.as_bytes())?;
+        input.write_all(b"\n")?;
+        input.flush()
+    }
+
+    /// Waits for an answer within a budget.
+    fn answer(&mut self, time: Duration, memory: u64, closed: impl Fn() -> bool) -> Fate {
+        let start = Instant::now();
+        loop {
+            match self.answers.recv_timeout(WATCH) {
+                Ok(answer) => return Fate::Answered(answer),
+                Err(mpsc::RecvTimeoutError::Disconnected) => return Fate::Died(self.end()),
+                Err(mpsc::RecvTimeoutError::Timeout) if closed() => return Fate::Died(self.end()),
+                Err(mpsc::RecvTimeoutError::Timeout) => {
+                    if start.elapsed() > time {
+                        return Fate::TooSlow;
+                    }
+                    if resident(self.child.id()).is_some_and(|bytes| bytes > memory) {
+                        return Fate::TooLarge;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Ends it, however it is; how it ended.
+    fn end(&mut self) -> Option<ExitStatus> {
+        self.input = None;
+        // A process whose output is closed is about to end by itself, and says better how.
+        for _ in 0..20 {
+            match self.child.try_wait() {
+                Ok(None) => thread::sleep(WATCH),
+                Ok(Some(status)) => return Some(status),
+                Err(_) => break,
+            }
+        }
+        let _ = self.child.kill();
+        self.child.wait().ok()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The memory that a process has, bytes, where the system tells.
+fn resident(process: u32) -> Option<u64> {
+    if !cfg!(target_os = "linux") {
+        return None;
+    }
+    /// Of all processors that the driver runs on.
+    const PAGE: u64 = 4096;
+    let text = files::read(Path::new(&format!("/proc/{process}/statm")), PAGE).ok()?;
+    let text = String::from_utf8_lossy(&text);
+    Some(text.split(' ').nth(1)?.parse::<u64>().ok()? * PAGE)
+}

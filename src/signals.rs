@@ -1,0 +1,170 @@
+//! What ends the program from outside: Ctrl+C in the terminal, and the signals of the operating system.
+//!
+//! A thread of their own hears them, so that they work while the window sleeps or hangs. The first Ctrl+C (`SIGINT`)
+//! is a wish: the window closes as it does for Ctrl+Q, with a question if there are unsaved changes. The second one,
+//! `SIGTERM`, `SIGHUP` and `SIGQUIT` end the program whatever the window does, after a last act that the caller
+//! gives; then the process dies of the signal, as whoever waits for it expects.
+
+use std::{
+    io,
+    sync::{
+        Arc,
+        atomic::{AtomicU8, Ordering},
+    },
+};
+
+/// What became of Ctrl+C.
+#[derive(Clone, Debug, Default)]
+pub struct Interrupt(Arc<AtomicU8>);
+
+/// Nobody asked.
+const NONE: u8 = 0;
+/// The window does not know yet.
+const HEARD: u8 = 1;
+/// The window closes, or asks whether it may.
+const TAKEN: u8 = 2;
+
+impl Interrupt {
+    /// Listens from now on. `wake` is called at the first Ctrl+C, `last_act` with the name of the signal that ends the
+    /// program, both on the thread that listens.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn listen(
+        wake: impl Fn() + Send + 'static,
+        last_act: impl Fn(&str) + Send + 'static,
+    ) -> io::Result<Self> {
+        let interrupt = Self::default();
+        system::listen(interrupt.clone(), wake, last_act)?;
+        Ok(interrupt)
+    }
+
+    /// True once for each Ctrl+C that the window should answer.
+    #[must_use]
+    pub fn take(&self) -> bool {
+        self.0.compare_exchange(HEARD, TAKEN, Ordering::SeqCst, Ordering::SeqCst).is_ok()
+    }
+
+    /// The user decided to stay: the next Ctrl+C is a wish again.
+    pub fn stay(&self) {
+        let _ = self.0.compare_exchange(TAKEN, NONE, Ordering::SeqCst, Ordering::SeqCst);
+    }
+
+    /// Ends the process as Ctrl+C does, if that is why the window was closed.
+    pub fn end_if_asked(&self) {
+        if self.0.load(Ordering::SeqCst) != NONE {
+            system::end_by_interrupt();
+        }
+    }
+
+    /// True if this Ctrl+C is the first.
+    fn is_first(&self) -> bool {
+        self.0.swap(HEARD, Ordering::SeqCst) == NONE
+    }
+}
+
+#[cfg(unix)]
+mod system {
+    use std::{io, path::Path, thread};
+
+    use signal_hook::{
+        consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM},
+        iterator::Signals,
+        low_level::{emulate_default_handler, signal_name},
+    };
+
+    use super::Interrupt;
+    use crate::files;
+
+    pub(super) fn listen(
+        interrupt: Interrupt,
+        wake: impl Fn() + Send + 'static,
+        last_act: impl Fn(&str) + Send + 'static,
+    ) -> io::Result<()> {
+        let status = files::read(Path::new("/proc/self/status"), 1 << 16).unwrap_or_default();
+        let ignored = ignored(&String::from_utf8_lossy(&status));
+        let wanted = [SIGINT, SIGTERM, SIGHUP, SIGQUIT].into_iter().filter(|s| ignored & (1 << (s - 1)) == 0);
+        let mut signals = Signals::new(wanted)?;
+        thread::Builder::new().name("signals".to_owned()).spawn(move || {
+            for signal in signals.forever() {
+                if signal == SIGINT && interrupt.is_first() {
+                    wake();
+                    continue;
+                }
+                last_act(signal_name(signal).unwrap_or("a signal"));
+                let _ = emulate_default_handler(signal);
+            }
+        })?;
+        Ok(())
+    }
+
+    /// The signals that whoever started the program wants ignored, as `nohup` does with `SIGHUP`, one bit each. Only
+    /// Linux tells.
+    pub(super) fn ignored(status: &str) -> u64 {
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+    }
+
+    pub(super) fn end_by_interrupt() {
+        let _ = emulate_default_handler(SIGINT);
+    }
+}
+
+#[cfg(not(unix))]
+mod system {
+    use std::{io, process};
+
+    use bevy::app::ctrlc;
+
+    use super::Interrupt;
+
+    /// What shells say of a program that Ctrl+C ended.
+    const INTERRUPTED: i32 = 130;
+
+    pub(super) fn listen(
+        interrupt: Interrupt,
+        wake: impl Fn() + Send + 'static,
+        last_act: impl Fn(&str) + Send + 'static,
+    ) -> io::Result<()> {
+        let heard = move || {
+            if interrupt.is_first() {
+                wake();
+            } else {
+                last_act("Ctrl+C");
+                end_by_interrupt();
+            }
+        };
+        ctrlc::set_handler(heard).map_err(io::Error::other)
+    }
+
+    pub(super) fn end_by_interrupt() {
+        process::exit(INTERRUPTED);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_is_a_wish_until_the_user_stays() {
+        let interrupt = Interrupt::default();
+        assert!(!interrupt.take());
+        for _ in 0..2 {
+            assert!(interrupt.is_first());
+            assert!(interrupt.take() && !interrupt.take());
+            interrupt.stay();
+        }
+        assert!(interrupt.is_first() && !interrupt.is_first(), "the window did not answer");
+        assert!(interrupt.take() && !interrupt.is_first(), "the window asks");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn signals_that_are_ignored_stay_so() {
+        let status =
+            "Name:\tlcm\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\nSigCgt:\t0000000000000440\n";
+        assert_eq!(system::ignored(status), 1 << 12 | 1);
+        assert_eq!(system::ignored(""), 0);
+    }
+}

@@ -1,0 +1,241 @@
+//! Recovery copies and Ctrl+C in the window: hands unsaved changes to the [`Keeper`], and asks about what an earlier
+//! window left.
+
+use std::{
+    collections::VecDeque,
+    path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, SystemTime},
+};
+
+use bevy::{
+    ecs::prelude::*,
+    winit::{EventLoopProxyWrapper, WinitUserEvent},
+};
+
+use super::{ending::PATIENCE, files::DiskFiles, watching::complain};
+use crate::{
+    panel::{
+        files::Files as _,
+        recovery::{Choice, Offer},
+        state::{Action, Lab, LabEffect, Question, Severity},
+    },
+    recovery::{About, Document, Keeper, Left, Store, ago},
+    registry::Registry,
+    signals::Interrupt,
+};
+
+/// What the window has in common with whoever waits for its end.
+#[derive(Clone)]
+pub(super) struct Farewell {
+    pub(super) keeper: Keeper,
+    interrupt: Interrupt,
+    /// The user decided to close the window.
+    closing: Arc<AtomicBool>,
+}
+
+impl Farewell {
+    /// Begins to keep copies, and to listen to signals.
+    pub(super) fn prepare(store: Option<Store>, proxy: Option<&EventLoopProxyWrapper>) -> Self {
+        let keeper = Keeper::start(store, waker(proxy));
+        let last = keeper.clone();
+        let last_act = move |signal: &str| {
+            if let Some(sentence) = last.settle(PATIENCE).sentence() {
+                complain(&format!("ended by {signal}; {sentence}"));
+            }
+        };
+        let interrupt = Interrupt::listen(waker(proxy), last_act).unwrap_or_else(|error| {
+            complain(&format!("signals end the window without a question: {error}"));
+            Interrupt::default()
+        });
+        Self { keeper, interrupt, closing: Arc::default() }
+    }
+
+    /// The user decided to close the window, whatever is unsaved.
+    pub(super) fn close(&self) {
+        self.closing.store(true, Ordering::SeqCst);
+    }
+
+    /// The window is closed. What is unsaved and was not given up is kept; Ctrl+C ends the process here.
+    pub(super) fn say(&self) {
+        if self.closing.load(Ordering::SeqCst) {
+            self.keeper.forget();
+        }
+        if let Some(sentence) = self.keeper.settle(PATIENCE).sentence() {
+            complain(&sentence);
+        }
+        self.interrupt.end_if_asked();
+    }
+}
+
+/// The copies: that of this window, and those that others left.
+#[derive(Resource)]
+pub(super) struct Recovery {
+    pub(super) farewell: Farewell,
+    /// What is still to be asked about, the best first.
+    left: VecDeque<Left>,
+    /// What the question is about.
+    asked: Option<Left>,
+    registry: Option<Arc<Registry>>,
+}
+
+/// How the window is told of something that another thread did.
+fn waker(proxy: Option<&EventLoopProxyWrapper>) -> impl Fn() + Send + use<> {
+    let proxy = proxy.map(|proxy| (**proxy).clone());
+    move || {
+        if let Some(proxy) = &proxy {
+            // An error: the window is closed.
+            let _ = proxy.send_event(WinitUserEvent::WakeUp);
+        }
+    }
+}
+
+impl Recovery {
+    /// Without anything to ask.
+    pub(super) fn new(farewell: Farewell) -> Self {
+        Self { farewell, left: VecDeque::new(), asked: None, registry: None }
+    }
+
+    /// Looks for what earlier windows left, that of the file on the command line first. `ask` is false where there is
+    /// nobody to answer: then it is only said.
+    pub(super) fn look(&mut self, store: Option<&Store>, file: Option<&path::Path>, ask: bool) {
+        let mut left = store.map(Store::left).unwrap_or_default();
+        let file = file.and_then(|file| path::absolute(file).ok());
+        left.sort_by_key(|left| file.is_none() || left.about.path != file);
+        if ask {
+            self.left = left.into();
+            return;
+        }
+        for left in left {
+            complain(&format!(
+                "unsaved changes of “{}” are kept in {}; a window without --exit-after offers them",
+                left.about.title,
+                left.session.file().display()
+            ));
+        }
+    }
+
+    /// Carries out the answer to the question about a copy.
+    pub(super) fn answer(
+        &mut self,
+        choice: Choice,
+        lab: &mut Lab,
+        files: &mut DiskFiles,
+        registry: &Registry,
+    ) {
+        let Some(left) = self.asked.take() else { return };
+        match choice {
+            Choice::Recovered => {
+                if let Some(path) = &left.about.path {
+                    files.expect(path, left.about.stamp);
+                }
+                self.farewell.keeper.adopt(left.session, document(lab, files, Arc::new(registry.clone())));
+                let more = self.left.len();
+                self.left.clear();
+                if more > 0 {
+                    let copies = if more == 1 { "One more copy is" } else { "More copies are" };
+                    let text = format!("{copies} kept: the window offers them at its next start.");
+                    lab.say(Severity::Info, text);
+                }
+            }
+            Choice::Discarded => left.session.remove(),
+            Choice::Next => {}
+            Choice::Later => self.left.clear(),
+        }
+    }
+}
+
+/// The document with its unsaved changes.
+fn document(lab: &Lab, files: &DiskFiles, registry: Arc<Registry>) -> Document {
+    Document { about: about(lab, files), scene: lab.scene.clone(), registry }
+}
+
+fn about(lab: &Lab, files: &DiskFiles) -> About {
+    About {
+        title: lab.title(),
+        // The next window may be started somewhere else.
+        path: lab.path.as_ref().map(|path| path::absolute(path).unwrap_or_else(|_| path.clone())),
+        stamp: lab.path.as_deref().and_then(|path| files.known(path)),
+        process: 0,
+    }
+}
+
+/// Ctrl+C in the terminal is Ctrl+Q in the window.
+pub(super) fn interrupted(
+    recovery: Res<Recovery>,
+    mut lab: ResMut<Lab>,
+    registry: Res<Registry>,
+    mut effects: MessageWriter<LabEffect>,
+) {
+    if recovery.farewell.interrupt.take() {
+        effects.write_batch(lab.apply(Action::Quit, &registry).into_iter().map(LabEffect));
+    }
+}
+
+/// After Ctrl+C the user may decide to stay. Runs right after the effects are carried out: what closes the window is
+/// none on its way then.
+pub(super) fn stayed(recovery: Res<Recovery>, lab: Res<Lab>) {
+    if !recovery.farewell.closing.load(Ordering::SeqCst) && !lab.is_quitting() {
+        recovery.farewell.interrupt.stay();
+    }
+}
+
+/// Asks about the next copy, as soon as nothing else is asked.
+pub(super) fn offer(mut recovery: ResMut<Recovery>, mut lab: ResMut<Lab>, registry: Res<Registry>) {
+    if recovery.left.is_empty() || lab.question.is_some() {
+        return;
+    }
+    let Some(left) = recovery.left.pop_front() else { return };
+    let scene = left.scene(&registry);
+    if let Err(problems) = &scene {
+        // The latest stands on top: the first problem.
+        for problem in problems.iter().rev() {
+            lab.say(Severity::Warning, problem.clone());
+        }
+        complain(&problems.join("\n"));
+    }
+    let age = SystemTime::now().duration_since(left.when).unwrap_or(Duration::ZERO);
+    lab.ask(Question::Recover(Box::new(Offer {
+        title: left.about.title.clone(),
+        path: left.about.path.clone(),
+        file: left.session.file(),
+        when: ago(age),
+        scene: scene.map_err(|problems| problems.into_iter().next().unwrap_or_default()),
+    })));
+    recovery.asked = Some(left);
+}
+
+/// Hands unsaved changes to the keeper; runs after all that changes the document in a frame.
+pub(super) fn keep(
+    mut recovery: ResMut<Recovery>,
+    mut lab: ResMut<Lab>,
+    files: Res<DiskFiles>,
+    registry: Res<Registry>,
+) {
+    let recovery = &mut *recovery;
+    if registry.is_changed() {
+        recovery.registry = None;
+    }
+    if let Some(why) = recovery.farewell.keeper.problem() {
+        lab.say(Severity::Warning, format!("There is no recovery copy of the unsaved changes: {why}."));
+    }
+    if !lab.is_changed() {
+        return;
+    }
+    if !lab.is_dirty() {
+        recovery.farewell.keeper.forget();
+        return;
+    }
+    let now = about(&lab, &files);
+    if !recovery.farewell.keeper.keeps(|kept| kept.about == now && kept.scene == lab.scene) {
+        let registry = recovery.registry.get_or_insert_with(|| Arc::new(registry.clone()));
+        recovery.farewell.keeper.keep(Document {
+            about: now,
+            scene: lab.scene.clone(),
+            registry: registry.clone(),
+        });
+    }
+}

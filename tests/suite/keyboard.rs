@@ -1,0 +1,114 @@
+//! Pressing keys on a virtual screen: the few requests of the X protocol that this takes, those of its extension XTEST.
+
+#![cfg(target_os = "linux")]
+
+use std::{
+    io::{Read as _, Write as _},
+    os::unix::net::UnixStream,
+    thread,
+    time::Duration,
+};
+
+/// Keys by their numbers on a PC keyboard, as Xvfb has one.
+#[derive(Clone, Copy)]
+pub enum Key {
+    Escape = 9,
+    Two = 11,
+    Three = 12,
+    Tab = 23,
+    Return = 36,
+    Control = 37,
+    S = 39,
+}
+
+/// A keyboard at a screen.
+pub struct Keyboard {
+    server: UnixStream,
+    /// The number of the extension.
+    xtest: u8,
+    /// The window that all others are in.
+    root: u32,
+}
+
+impl Keyboard {
+    /// At the screen of that name, such as ":99".
+    pub fn new(display: &str) -> Self {
+        let path = format!("/tmp/.X11-unix/X{}", display.trim_start_matches(':'));
+        let mut server = UnixStream::connect(path).expect("the server listens");
+        // Numbers with the lowest byte first, version 11.0, no password.
+        server.write_all(b"l\0\x0b\0\0\0\0\0\0\0\0\0").expect("sent");
+        let mut head = [0; 8];
+        server.read_exact(&mut head).expect("answered");
+        assert_eq!(head[0], 1, "the server refuses");
+        let mut facts = vec![0; 4 * usize::from(u16::from_le_bytes([head[6], head[7]]))];
+        server.read_exact(&mut facts).expect("answered");
+        // Behind the name of the maker and the formats of pixels, 8 bytes each, comes the first screen.
+        let maker = usize::from(u16::from_le_bytes([facts[16], facts[17]])).next_multiple_of(4);
+        let root = number(&facts, 32 + maker + 8 * usize::from(facts[21]));
+        let mut keyboard = Self { server, xtest: 0, root };
+        // QueryExtension.
+        let (reply, _) = keyboard.ask(b"\x62\0\x04\0\x05\0\0\0XTEST\0\0\0");
+        assert_eq!(reply[8], 1, "the server has the extension XTEST");
+        keyboard.xtest = reply[9];
+        keyboard
+    }
+
+    /// Presses keys together and lets them go. They reach the window that is shown, as if it had been clicked: without
+    /// a window manager nobody else sees to that.
+    pub fn press(&mut self, keys: &[Key]) {
+        let window = self.window();
+        // SetInputFocus.
+        self.tell(&[42, 1, 3, 0], &[window, 0]);
+        for key in keys {
+            self.fake(2, *key);
+        }
+        for key in keys.iter().rev() {
+            self.fake(3, *key);
+        }
+        // As between two strokes of a fast typist.
+        thread::sleep(Duration::from_millis(50));
+    }
+
+    /// The window that is shown.
+    fn window(&mut self) -> u32 {
+        // QueryTree.
+        let (_, children) = self.ask(&[&[15, 0, 2, 0][..], &self.root.to_le_bytes()].concat());
+        let mut children = children.chunks_exact(4).map(|child| number(child, 0));
+        children
+            // GetWindowAttributes: a window that is shown has the state 2.
+            .find(|child| self.ask(&[&[3, 0, 2, 0][..], &child.to_le_bytes()].concat()).0[26] == 2)
+            .expect("a window is shown")
+    }
+
+    fn fake(&mut self, event: u8, key: Key) {
+        let head = [self.xtest, 2, 9, 0, event, key as u8, 0, 0];
+        self.tell(&head, &[0; 7]);
+    }
+
+    fn tell(&mut self, head: &[u8], numbers: &[u32]) {
+        let rest: Vec<_> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
+        self.server.write_all(&[head, &rest].concat()).expect("sent");
+    }
+
+    /// The reply to a request, and what follows it.
+    fn ask(&mut self, request: &[u8]) -> ([u8; 32], Vec<u8>) {
+        self.server.write_all(request).expect("sent");
+        let mut reply = [0; 32];
+        loop {
+            self.server.read_exact(&mut reply).expect("answered");
+            // What is neither an answer nor an error is news, of which none is wanted.
+            assert_ne!(reply[0], 0, "the server refuses {request:?}: {reply:?}");
+            if reply[0] == 1 {
+                break;
+            }
+        }
+        let mut more = vec![0; 4 * number(&reply, 4) as usize];
+        self.server.read_exact(&mut more).expect("answered");
+        (reply, more)
+    }
+}
+
+/// A number in an answer.
+fn number(bytes: &[u8], at: usize) -> u32 {
+    u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes"))
+}
