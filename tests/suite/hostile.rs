@@ -92,7 +92,7 @@ fn corpus() -> Vec<Case> {
         case("buffer", file("buffer.wgsl"), "@binding(0) is not there"),
         case("texture", file("texture.wgsl"), "@binding(4) is not there"),
         case("barrier", file("barrier.wgsl"), "barriers are not available"),
-        case("hidden_brackets", file("hidden_brackets.wgsl"), "before the condition in which it is closed"),
+        case("hidden_brackets", file("hidden_brackets.wgsl"), "closes a bracket from before a condition"),
         case("hidden_comment", file("hidden_comment.wgsl"), "ends the comment in WGSL although"),
         case("quotation", file("quotation.wgsl"), "this quotation mark is not closed"),
         case("array_of_arrays", file("array_of_arrays.wgsl"), "bytes; at most 4096 are allowed"),
