@@ -50,7 +50,7 @@ pub struct Limits {
     pub elements: u64,
     /// The most words that a constant or a type may stand for when all is written out that it is made of.
     pub expansion: u64,
-    /// The largest value or variable, bytes.
+    /// The largest value or variable, bytes. Software Vulkan takes time by the square: ten seconds for this much.
     pub value_bytes: u32,
     /// The most bytes of variables that a function may have, with all that it calls, and that a module may have; and the
     /// same for constants.
@@ -76,10 +76,10 @@ pub const LIMITS: Limits = Limits {
     blocks: 64,
     cases: 256,
     chain: 64,
-    elements: 4_096,
+    elements: 1_024,
     expansion: 65_536,
-    value_bytes: 16 << 10,
-    variable_bytes: 64 << 10,
+    value_bytes: 4 << 10,
+    variable_bytes: 16 << 10,
     expressions: 32_768,
     values: 1_024,
     steps: 65_536,

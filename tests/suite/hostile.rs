@@ -92,10 +92,10 @@ fn corpus() -> Vec<Case> {
         case("buffer", file("buffer.wgsl"), "@binding(0) is not there"),
         case("texture", file("texture.wgsl"), "@binding(4) is not there"),
         case("barrier", file("barrier.wgsl"), "barriers are not available"),
-        case("hidden_brackets", file("hidden_brackets.wgsl"), "before the condition in which it is closed"),
+        case("hidden_brackets", file("hidden_brackets.wgsl"), "closes a bracket from before a condition"),
         case("hidden_comment", file("hidden_comment.wgsl"), "ends the comment in WGSL although"),
         case("quotation", file("quotation.wgsl"), "this quotation mark is not closed"),
-        case("array_of_arrays", file("array_of_arrays.wgsl"), "bytes; at most 16384 are allowed"),
+        case("array_of_arrays", file("array_of_arrays.wgsl"), "bytes; at most 4096 are allowed"),
         case("values_in_loop", file("values_in_loop.wgsl"), "this loop ends in its first round or never"),
         case("parentheses_800", nested(800, "(-"), "this is nested 101 brackets deep; at most 100"),
         case("parentheses_3000", nested(3000, "("), "this is nested 101 brackets deep; at most 100"),
@@ -166,12 +166,12 @@ fn corpus() -> Vec<Case> {
         case(
             "local_array",
             model("", "var a: array<f32, 1000000>;\n    a[u32(x)] = x;\n    let y = a[u32(x + 1.0)];"),
-            "this array has up to 1000000 elements; at most 4096",
+            "this array has up to 1000000 elements; at most 1024",
         ),
         case(
             "private_array",
             model("const N = 1000;\nvar<private> a: array<f32, N * N>;", "let y = a[u32(x)];"),
-            "elements; at most 4096",
+            "elements; at most 1024",
         ),
         case(
             "constant_array",
@@ -182,12 +182,12 @@ fn corpus() -> Vec<Case> {
             "many_variables",
             model(
                 &format!(
-                    "var<private> a: array<vec4<f32>, 1000>;\n{}",
-                    repeated(5, |i| { format!("var<private> a{i}: array<vec4<f32>, 1000>;\n") })
+                    "var<private> a: array<vec4<f32>, 250>;\n{}",
+                    repeated(5, |i| { format!("var<private> a{i}: array<vec4<f32>, 250>;\n") })
                 ),
                 "let y = x;",
             ),
-            "bytes of variables of the module; at most 65536",
+            "bytes of variables of the module; at most 16384",
         ),
         case("functions_18", doubling(18), "steps when every call in it is written out"),
         case("functions_26", doubling(26), "steps when every call in it is written out"),
@@ -211,13 +211,13 @@ fn corpus() -> Vec<Case> {
             model(&format!("const {} = 1;", "a".repeat(100_000)), "let y = x;"),
             "this word has 100000 bytes",
         ),
-        case("open_1mib", file_of("("), "brackets deep"),
-        case("less_1mib", file_of("a < "), "operators"),
-        case("blocks_1mib", file_of("{"), "nested 65 deep"),
+        case("open_1mib", file_of("("), "words and signs"),
+        case("less_1mib", file_of("a < "), "words and signs"),
+        case("blocks_1mib", file_of("{"), "words and signs"),
         case("semicolons_1mib", file_of("a;"), "words and signs"),
-        case("minus_1mib", file_of("-"), "operators"),
+        case("minus_1mib", file_of("-"), "words and signs"),
         case("attributes_1mib", file_of("@"), "words and signs"),
-        case("hash_1mib", file_of("#if A\n"), "this condition has no #endif"),
+        case("hash_1mib", file_of("#if A\n"), "words and signs"),
         case("numbers_1mib", file_of("1,"), "words and signs"),
     ]
 }
@@ -258,7 +258,8 @@ fn every_hostile_model_is_refused_with_its_place_and_the_limit() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Models that go as far as is allowed, in every direction in which something calls itself.
+/// Models that go as far as is allowed, in every direction in which something calls itself; in the others as far as
+/// software Vulkan takes no more than a second.
 fn at_the_limit() -> Vec<(&'static str, String)> {
     let most = limits::LIMITS;
     let nested = |count: usize, open: &str, close: &str| {
@@ -343,20 +344,20 @@ fn at_the_limit() -> Vec<(&'static str, String)> {
         ),
         ("switch", switch(most.cases - 1)),
         ("doubling", doubling(11)),
-        ("statements", model("", &format!("var y = x;\n{}", "    y += sin(y) * x;\n".repeat(5000)))),
+        ("statements", model("", &format!("var y = x;\n{}", "    y += sin(y) * x;\n".repeat(200)))),
         (
             "variables",
             model(
-                "var<private> a: array<vec4<f32>, 1000>;\nvar<private> b: array<vec4<f32>, 1000>;",
-                "a[u32(abs(x) * 999.0)] = v.xyzx;\n    b[u32(abs(v.x) * 999.0)] = l.xyzx;\n    \
-                 let y = a[u32(abs(x) * 998.0)].x + b[7].y;",
+                "var<private> a: array<vec4<f32>, 16>;\nvar<private> b: array<vec4<f32>, 16>;",
+                "a[u32(abs(x) * 15.0)] = v.xyzx;\n    b[u32(abs(v.x) * 15.0)] = l.xyzx;\n    \
+                 let y = a[u32(abs(x) * 14.0)].x + b[7].y;",
             ),
         ),
         (
             "table",
             model(
-                &format!("const T = array<f32, 1024>({});", repeated(1024, |i| format!("{i}.5, "))),
-                "let y = T[u32(abs(x) * 1000.0) % 1024u];",
+                &format!("const T = array<f32, 256>({});", repeated(256, |i| format!("{i}.5, "))),
+                "let y = T[u32(abs(x) * 1000.0) % 256u];",
             ),
         ),
     ]
