@@ -198,3 +198,57 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
     fs::write(&model, own_model("vec3(0.0, 1.0, 0.0)", "")).expect("writable");
     window.until("a green sphere", |p| shows(1)(p) && !stale(p));
 }
+
+/// A model whose response does something before it answers.
+fn doing(global: &str, what: &str) -> String {
+    own_model("vec3(0.0, 1.0, 0.0)", "").replace(
+        "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {",
+        &format!(
+            "{global}\nfn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{\n    var x = frame.n.x;\n    {what}"
+        ),
+    )
+}
+
+#[test]
+fn hostile_models_neither_end_nor_freeze_an_open_window() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let models = folder.path().join("models");
+    fs::create_dir(&models).expect("writable");
+    let model = models.join("tinted.wgsl");
+    fs::write(&model, own_model("vec3(1.0, 0.0, 0.0)", "")).expect("writable");
+    let room = folder.path().join("room.json");
+    let text = scene([255, 255, 255]).replace("\"lambert\"", "\"tinted\"");
+    fs::write(&room, &text).expect("writable");
+    let screen = Screen::new(1280, 720);
+    let models = models.to_string_lossy().into_owned();
+    let mut window =
+        screen.start(&["view", &room.to_string_lossy(), "--size", "1280x720", "--models", &models]);
+    window.until("a red sphere", shows(0));
+    let calls =
+        (0..26).map(|i| format!("fn f{}(x: f32) -> f32 {{ return f{i}(x) + f{i}(x + 1.0); }}\n", i + 1));
+    let calls = format!("fn f0(x: f32) -> f32 {{ return x; }}\n{}", calls.collect::<String>());
+    for (name, hostile) in [
+        ("workgroup", doing("var<workgroup> W: f32;", "W = x; x = W;")),
+        ("nested", doing("", &format!("x = {}x{};", "(-".repeat(3000), ")".repeat(3000)))),
+        ("summands", doing("", &format!("x = x{};", " + x".repeat(20_000)))),
+        ("array", doing("", "var a: array<f32, 1000000>; a[u32(x)] = x; x = a[u32(x + 1.0)];")),
+        ("calls", doing(&calls, "x = f26(x);")),
+        ("endless", doing("", "while x > -2.0 { x = x + 1.0; if x > 1e6 { x = 0.0; } }")),
+    ] {
+        save_by_renaming(&model, &hostile);
+        let begin = Instant::now();
+        until_said(&window, |news| news.contains("tinted.wgsl:"));
+        println!("{name}: told after {:?}", begin.elapsed());
+        assert!(shows(0)(&window.until("a badge", stale)), "{name}: the last good version stays");
+        // It goes on answering: another scene is shown.
+        save_by_renaming(&room, &text.replace("\"size\": 2,", "\"size\": 2.5,"));
+        window.until("a larger sphere", |p| shows(0)(p));
+        save_by_renaming(&room, &text);
+        save_by_renaming(&model, &own_model("vec3(1.0, 0.0, 0.0)", ""));
+        until_said(&window, str::is_empty);
+        window.until("no badge", |p| shows(0)(p) && !stale(p));
+    }
+    // The twin: a model that is none of these is drawn.
+    save_by_renaming(&model, &doing("", "x = x + 1.0;"));
+    window.until("a green sphere", shows(1));
+}
