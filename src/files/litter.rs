@@ -4,7 +4,7 @@ use std::{
     fs::{self, File, Metadata},
     io::Seek as _,
     path::{Path, PathBuf},
-    time::Duration,
+    time::{Duration, UNIX_EPOCH},
 };
 
 use super::{
@@ -61,7 +61,13 @@ pub(super) fn whole(draft: &Path, old: &Metadata) -> PathBuf {
     #[cfg(not(unix))]
     let inode = 0;
     let name = draft.file_name().unwrap_or_default().to_string_lossy();
-    draft.with_file_name(format!("{}.{inode}{WHOLE}", name.trim_end_matches(DRAFT)))
+    draft.with_file_name(format!("{}.{inode}-{}{WHOLE}", name.trim_end_matches(DRAFT), changed(old)))
+}
+
+/// When a file was changed last, nanoseconds since 1970.
+fn changed(file: &Metadata) -> u64 {
+    let since = file.modified().ok().and_then(|at| at.duration_since(UNIX_EPOCH).ok());
+    since.map_or(0, |since| since.as_nanos() as u64)
 }
 
 /// A name that this program gives.
@@ -69,8 +75,8 @@ pub(super) fn whole(draft: &Path, old: &Metadata) -> PathBuf {
 enum Name {
     /// A draft, locked as long as its process lives.
     Draft,
-    /// The whole copy of the file with that inode.
-    Whole(u64),
+    /// The whole copy of the file with that inode, which was changed last at that time.
+    Whole(u64, u64),
     /// A draft of a scene by an older version.
     OldScene,
     /// A draft of a picture by an older version.
@@ -85,8 +91,10 @@ impl Name {
             if rest.strip_suffix(DRAFT).is_some_and(random) {
                 return Some(Self::Draft);
             }
-            let (word, inode) = rest.strip_suffix(WHOLE)?.split_once('.')?;
-            return (random(word) && digits(inode)).then(|| inode.parse().ok().map(Self::Whole)).flatten();
+            let (word, rest) = rest.strip_suffix(WHOLE)?.split_once('.')?;
+            let (inode, time) = rest.split_once('-')?;
+            let known = random(word) && digits(inode) && digits(time);
+            return known.then(|| Some(Self::Whole(inode.parse().ok()?, time.parse().ok()?))).flatten();
         }
         if let Some((file, word)) = name.strip_suffix(DRAFT).and_then(|rest| rest.rsplit_once('.')) {
             // People write words; what is random has almost always letters of both sizes or digits among them.
@@ -115,7 +123,7 @@ pub fn tidy(folder: &Path) -> Vec<Unfinished> {
             Name::Draft => remove_if_left(&path),
             Name::OldScene => remove_if_old(&path, b"{\n  \""),
             Name::OldPicture => remove_if_old(&path, b"\x89PNG"),
-            Name::Whole(inode) => unfinished.extend(finish(folder, &path, inode)),
+            Name::Whole(inode, time) => unfinished.extend(finish(folder, &path, inode, time)),
         }
     }
     unfinished
@@ -151,7 +159,7 @@ fn remove_if_old(path: &Path, beginning: &[u8]) {
 }
 
 /// Finishes overwriting a file, if it was interrupted and nothing happened since.
-fn finish(folder: &Path, copy: &Path, inode: u64) -> Option<Unfinished> {
+fn finish(folder: &Path, copy: &Path, inode: u64, time: u64) -> Option<Unfinished> {
     // Locked: somebody is at it.
     let mut lock = left(copy)?;
     let unfinished = |file| Some(Unfinished { copy: copy.to_owned(), file });
@@ -165,8 +173,8 @@ fn finish(folder: &Path, copy: &Path, inode: u64) -> Option<Unfinished> {
     if there != wanted {
         // Only what the interruption itself explains is undone, and only among files of one owner: in a folder that
         // all may write to, the copy could come from anybody.
-        let interrupted =
-            wanted.starts_with(&there) && lock.metadata().is_ok_and(|m| owner(&m) == owner(&metadata));
+        let begun = wanted.starts_with(&there) || changed(&metadata) == time;
+        let interrupted = begun && lock.metadata().is_ok_and(|m| owner(&m) == owner(&metadata));
         let place = interrupted.then(|| open_to_overwrite(&file, &metadata)).flatten();
         let done =
             place.is_some_and(|mut place| lock.rewind().is_ok() && fill(&mut lock, &mut place).is_ok());
@@ -211,7 +219,9 @@ mod tests {
         for (name, expected) in [
             (".lcm-a1B2c3.tmp", Some(Name::Draft)),
             (".lcm-backup.tmp", Some(Name::Draft)),
-            (".lcm-a1B2c3.123.whole", Some(Name::Whole(123))),
+            (".lcm-a1B2c3.123-45.whole", Some(Name::Whole(123, 45))),
+            (".lcm-a1B2c3.123.whole", None),
+            (".lcm-a1B2c3.123-.whole", None),
             (".room.json.a1B2c3.tmp", Some(Name::OldScene)),
             (".r.json.a1B2c3.tmp", Some(Name::OldScene)),
             ("room.png.4711.partial", Some(Name::OldPicture)),

@@ -365,6 +365,6 @@ mod tests {
         let left = store.left();
         assert_eq!(left.len(), 1);
         let problems = left[0].scene(&Registry::builtin()).expect_err("no end");
-        assert!(problems[0].contains("not a regular file"), "{problems:?}");
+        assert!(problems[0].contains("it is a device, but it must be a file"), "{problems:?}");
     }
 }

@@ -17,7 +17,7 @@ use std::{
     process::{Command, Stdio},
     sync::mpsc,
     thread,
-    time::{Duration, Instant, SystemTime},
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 
 use lights_camera_models::{
@@ -410,7 +410,10 @@ fn a_picture_never_takes_the_place_of_what_is_read_or_of_what_is_no_picture() {
         (&["s.json", "-o", "notes.png"], "notes.png is there and is not a PNG file; it was not overwritten"),
         (&["s.json", "-o", "notes.txt"], "notes.txt is a file, but not a PNG file"),
         (&["-o", "link.png"], "link.png is there and is not a PNG file"),
-        (&["s.json", "--models", "models", "-o", "model.png"], "model.png is the same file as"),
+        (
+            &["s.json", "--models", "models", "--reflection", "mine", "-o", "model.png"],
+            "model.png is the same file as",
+        ),
         (&["empty.json", "--use-defaults", "-o", "empty.png"], "empty.png is the same file as empty.json"),
     ] {
         refused(&run(&mut render(at, arguments)), 4, expected);
@@ -667,7 +670,7 @@ fn a_whole_copy_is_no_litter() {
     let at = folder.path();
     let file = at.join("a.json");
     let text = written(&large());
-    let copy = |inode: u64| at.join(format!(".lcm-a1B2c3.{inode}.whole"));
+    let copy = |inode: u64| at.join(format!(".lcm-a1B2c3.{inode}-1.whole"));
     // Cut off, at any place: finished, when the window starts and at the next save alike.
     for (length, command) in [(0, None), (1000, None), (text.len() - 1, Some("new.json")), (text.len(), None)]
     {
@@ -681,6 +684,14 @@ fn a_whole_copy_is_no_litter() {
         assert_eq!(scene_in(&file), large(), "{length}");
         assert!(!copy.exists());
     }
+    // Killed before the first byte was overwritten: the file is as it was when that began.
+    save(&file, &Scene::default(), Expected::Anything).expect("written");
+    let metadata = fs::metadata(&file).expect("there");
+    let time = metadata.modified().expect("known").duration_since(UNIX_EPOCH).expect("later").as_nanos();
+    let name = format!(".lcm-a1B2c3.{}-{time}.whole", metadata.ino());
+    fs::write(at.join(&name), &text).expect("written");
+    assert_eq!(files::tidy(at), []);
+    assert_eq!(scene_in(&file), large());
     // Edited since, or gone: nobody but the user can know which one counts.
     fs::write(&file, "edited").expect("written");
     let left = copy(fs::metadata(&file).expect("there").ino());
@@ -835,7 +846,7 @@ fn a_window_that_starts_cleans_up_after_the_one_that_was_killed() {
     let file = at.join("a.json");
     fs::write(&file, &text[..200]).expect("written");
     let inode = fs::metadata(&file).expect("there").ino();
-    fs::write(at.join(format!(".lcm-a1B2c3.{inode}.whole")), &text).expect("written");
+    fs::write(at.join(format!(".lcm-a1B2c3.{inode}-1.whole")), &text).expect("written");
     fs::write(at.join(".lcm-a1B2c3.tmp"), "{").expect("written");
     let config = folder.path().join("config");
     fs::create_dir(&config).expect("made");

@@ -164,7 +164,7 @@ mod tests {
         for (text, expected) in [
             ("a / b", "a / b"),
             ("é // x\nb", "é     \nb"),
-            ("a /* x /* y\n */ */ b", "a         \n       b"),
+            ("a /* x /* y\n */ */ b", "a          \n       b"),
             ("a /* never closed", "a                "),
             ("a /", "a /"),
             ("", ""),

@@ -121,6 +121,8 @@ impl Walk<'_> {
             Kind::Open | Kind::TemplateOpen => self.open(token)?,
             Kind::Close if token.text == "}" => self.close_block(token)?,
             Kind::Close | Kind::TemplateClose => self.close(token)?,
+            // An assignment is no part of an expression.
+            Kind::Operator if token.text == "=" => {}
             Kind::Operator | Kind::Dot => self.operator(token)?,
             Kind::Comma => {
                 let group = self.innermost();
