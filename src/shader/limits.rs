@@ -76,7 +76,7 @@ pub const LIMITS: Limits = Limits {
     blocks: 64,
     cases: 256,
     chain: 64,
-    elements: 1_024,
+    elements: 4_096,
     expansion: 65_536,
     value_bytes: 4 << 10,
     variable_bytes: 16 << 10,

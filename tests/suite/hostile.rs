@@ -166,12 +166,12 @@ fn corpus() -> Vec<Case> {
         case(
             "local_array",
             model("", "var a: array<f32, 1000000>;\n    a[u32(x)] = x;\n    let y = a[u32(x + 1.0)];"),
-            "this array has up to 1000000 elements; at most 1024",
+            "this array has up to 1000000 elements; at most 4096",
         ),
         case(
             "private_array",
             model("const N = 1000;\nvar<private> a: array<f32, N * N>;", "let y = a[u32(x)];"),
-            "elements; at most 1024",
+            "elements; at most 4096",
         ),
         case(
             "constant_array",
