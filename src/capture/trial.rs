@@ -32,11 +32,11 @@ use crate::{
     registry::Registry,
     scene::{Light, Scene},
     shader::{
-        check::{ShaderProblem, locate},
+        check::ShaderProblem,
         compose::{Composed, without_comments},
         trial::{
             Bench, COMPOSED, Tools, Verdict,
-            process::{Answer, Budget, Request},
+            process::{Answer, Budget, Request, refused_whole},
         },
         whole::judged,
     },
@@ -177,12 +177,12 @@ impl Stage {
                     time.as_millis(),
                     SLOWEST.as_millis()
                 );
-                (Answer::Bad(locate(&composed, None, message)), true)
+                (Answer::Bad(refused_whole(request, message)), true)
             }
             Err(what) => {
-                let message = || format!("the graphics driver failed while drawing with it: {what}");
+                let message = format!("the graphics driver failed while drawing with it: {what}");
                 let problem = self.explained(&composed, request.faces);
-                (Answer::Bad(problem.unwrap_or_else(|| locate(&composed, None, message()))), false)
+                (Answer::Bad(problem.unwrap_or_else(|| refused_whole(request, message))), false)
             }
         }
     }

@@ -61,7 +61,7 @@ impl Machine {
     /// Whether it can run a model, or could when it last tried.
     pub(super) fn can_run(self, model: &ModelEntry) -> Outcome {
         match (self, model.not_on_cpu()) {
-            (Self::Cpu, Some(why)) => Err(Failure::NoRenderer(not_on_cpu(model, &why, "--on gpu"))),
+            (Self::Cpu, Some(why)) => Err(not_on_cpu(model, &why, "--on gpu")),
             _ => Ok(()),
         }
     }

@@ -313,7 +313,7 @@ fn on_cpu(job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
 fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
     for model in scene.objects.iter().filter_map(|o| registry.model(scene.model_of(o))) {
         if let Some(why) = model.not_on_cpu() {
-            return Err(Failure::NoRenderer(not_on_cpu(model, &why, "--renderer gpu")));
+            return Err(not_on_cpu(model, &why, "--renderer gpu"));
         }
     }
     Ok(())

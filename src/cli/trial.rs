@@ -11,5 +11,7 @@ pub(super) fn run() -> Outcome {
 
 /// The program whose command this is, to be started again.
 pub(super) fn program() -> Option<PathBuf> {
-    env::current_exe().ok()
+    // This name stays right when the file is replaced or removed, as a new build does.
+    let own = PathBuf::from("/proc/self/exe");
+    if cfg!(target_os = "linux") && own.exists() { Some(own) } else { env::current_exe().ok() }
 }

@@ -229,11 +229,15 @@ impl From<GpuError> for Failure {
 }
 
 /// That the CPU cannot run a model, and what can.
-pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> String {
-    format!(
-        "{} cannot be run on the CPU, which interprets own models: {why}; with {instead} the graphics card runs it",
-        model.declaration.id
-    )
+pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failure {
+    let id = model.declaration.id;
+    if model.runs_too_long() {
+        // Nor would the graphics card be asked to run it.
+        return Failure::Invalid(format!("{id} cannot be run: {why}"));
+    }
+    Failure::NoRenderer(format!(
+        "{id} cannot be run on the CPU, which interprets own models: {why}; with {instead} the graphics card runs it"
+    ))
 }
 
 /// The file on disk that a source was read from, for messages.

@@ -90,6 +90,12 @@ pub(crate) fn locate(
     place: Option<(usize, usize)>,
     message: String,
 ) -> Box<ShaderProblem> {
+    /// The longest message, characters: some of naga's repeat the text.
+    const LONGEST: usize = 400;
+    let message = match message.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &message[..end]),
+        None => message,
+    };
     let (line, column) = place.unwrap_or((1, 1));
     let (file, file_line) = composed.map.locate(line).unwrap_or(("(composed)", line));
     let source = composed.text.lines().nth(line.saturating_sub(1)).unwrap_or_default();

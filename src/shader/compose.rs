@@ -159,30 +159,32 @@ pub fn without_comments(text: &str) -> String {
     // How many `/*` are open: they nest.
     let mut depth = 0_usize;
     for line in text.lines() {
-        let mut rest = line.trim();
-        while !rest.is_empty() {
-            let (next, mark) = match (depth, rest.find("/*"), rest.find("//"), rest.find("*/")) {
-                (0, Some(open), line, _) if line.is_none_or(|line| open < line) => (open, "/*"),
-                (0, _, Some(line), _) => (line, "//"),
-                (0, _, _, _) => (rest.len(), ""),
-                (_, Some(open), _, close) if close.is_none_or(|close| open < close) => (open, "/*"),
-                (_, _, _, Some(close)) => (close, "*/"),
-                (_, _, _, None) => (rest.len(), ""),
-            };
-            if depth == 0 {
-                out.push_str(&rest[..next]);
-            }
-            match mark {
-                "/*" => {
-                    // What stands before and behind stays apart.
-                    out.push(' ');
+        let line = line.trim();
+        let bytes = line.as_bytes();
+        // The first byte that is not put out yet, and the one that is looked at.
+        let (mut from, mut at) = (0, 0);
+        while at < bytes.len() {
+            match (depth, bytes[at], bytes.get(at + 1)) {
+                (0, b'/', Some(b'/')) => break,
+                (_, b'/', Some(b'*')) => {
+                    if depth == 0 {
+                        out.push_str(&line[from..at]);
+                        // What stands before and behind stays apart.
+                        out.push(' ');
+                    }
                     depth += 1;
+                    at += 2;
                 }
-                "*/" => depth -= 1,
-                "//" => break,
-                _ => {}
+                (1.., b'*', Some(b'/')) => {
+                    depth -= 1;
+                    at += 2;
+                    from = at;
+                }
+                _ => at += 1,
             }
-            rest = &rest[next + mark.len()..];
+        }
+        if depth == 0 {
+            out.push_str(&line[from..at]);
         }
         out.push('\n');
     }
@@ -607,7 +609,7 @@ mod tests {
         for (text, expected) in [
             ("a // b\n  c", "a \nc\n"),
             ("a /* b\nc */ d", "a  \n d\n"),
-            ("a/*/**/*/b", "a  b\n"),
+            ("a/*/**/*/b", "a b\n"),
             ("a // /* b\nc", "a \nc\n"),
             ("a /* // */ b", "a   b\n"),
             ("/* never closed\nx", " \n\n"),

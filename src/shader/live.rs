@@ -210,6 +210,7 @@ impl LiveShaders {
         !self.is_trying()
             && self.shaders.values().all(|live| live.refused.is_none())
             && self.unusable.is_empty()
+            && self.unused_problems.is_empty()
     }
 
     /// The problems that are too young to be told.

@@ -10,7 +10,12 @@ use std::{
 
 use super::{check::ShaderProblem, compose::Sources};
 use crate::{
-    reflection::own::{self, OwnModel},
+    capture::evaluate::check_that_it_ends,
+    optics::colour::Encoding,
+    reflection::{
+        own::{self, OwnModel},
+        parameter::Values,
+    },
     registry::Registry,
 };
 
@@ -51,6 +56,18 @@ impl Job {
             // The mistake is in a file that all models share, and is told there.
             *registry.sources_mut() = lenient;
             result = own::read(&file, &text, &registry);
+        }
+        if let Ok(model) = &result
+            && let Err(why) = check_that_it_ends(&model.entry, &Values::default(), Encoding::Srgb)
+        {
+            let line = text.lines().position(|line| line.contains("fn response")).unwrap_or_default();
+            result = Err(vec![ShaderProblem {
+                file: source.clone(),
+                line: line + 1,
+                column: 1,
+                source: text.lines().nth(line).unwrap_or_default().to_owned(),
+                message: why.to_string(),
+            }]);
         }
         Done { source, text, result }
     }

@@ -99,8 +99,14 @@ fn look_at(world: &mut World, files: &[PathBuf]) {
 }
 
 /// Tells the panels and standard error of the state of the shaders.
-pub(super) fn tell(live: Res<LiveShaders>, mut lab: ResMut<Lab>) {
+pub(super) fn tell(live: Res<LiveShaders>, mut lab: ResMut<Lab>, mut troubled: Local<bool>) {
     let status = live.status();
+    // A problem may have given way to one that is too young to be told.
+    if *troubled && status.troubles.is_empty() && live.is_up_to_date() {
+        *troubled = false;
+        complain("All shaders are up to date again.");
+    }
+    *troubled |= !status.troubles.is_empty();
     if lab.shaders == *status {
         return;
     }
@@ -117,9 +123,6 @@ pub(super) fn tell(live: Res<LiveShaders>, mut lab: ResMut<Lab>) {
         if !trouble.stale.is_empty() {
             complain(&format!("The picture shows the last good version of {}.", trouble.stale.join(", ")));
         }
-    }
-    if !lab.shaders.troubles.is_empty() && status.troubles.is_empty() {
-        complain("All shaders are up to date again.");
     }
     lab.shaders = status.clone();
 }

@@ -138,15 +138,26 @@ fn whatever_becomes_of_the_process_is_told_and_the_picture_stays() {
 }
 
 #[test]
-fn without_another_process_shaders_are_tried_here() {
+fn what_cannot_be_tried_is_refused_and_tried_again_with_the_next_save() {
     let folder = tempfile::tempdir().expect("a folder");
-    for path in [folder.path().join("none"), program(folder.path(), "exit 3")] {
-        let mut lab = apart(&path, Budget::default());
-        let before = lab.frame();
-        lab.save("loop.wgsl", original("loop.wgsl").replace("* light.colour;", "* light.colour * 0.5;"));
-        assert!(settled(&mut lab) != before, "{}", path.display());
-        lab.save("loop.wgsl", "fn broken(");
-        settled(&mut lab);
-        assert_eq!(lab.troubles().len(), 1);
+    let path = folder.path().join("program");
+    let mut lab = apart(&path, Budget::default());
+    let before = lab.frame();
+    let dark = original("loop.wgsl").replace("* light.colour;", "* light.colour * 0.5;");
+    for does in [None, Some("exit 3")] {
+        if let Some(does) = does {
+            program(folder.path(), does);
+        }
+        lab.save("loop.wgsl", format!("{dark}// {does:?}\n"));
+        assert!(settled(&mut lab) == before, "{does:?}: it was not tried, and is shown");
+        let troubles = lab.troubles();
+        let [trouble] = &troubles[..] else { panic!("{does:?}: {troubles:?}") };
+        assert!(trouble.problem.message.contains("could not be tried"), "{}", trouble.problem);
     }
+    // The program is there again.
+    std::fs::remove_file(&path).expect("removed");
+    std::os::unix::fs::symlink(lcm(), &path).expect("linked");
+    lab.save("loop.wgsl", &dark);
+    assert!(settled(&mut lab) != before);
+    assert_eq!(lab.troubles(), []);
 }

@@ -94,7 +94,10 @@ pub fn is_id(word: &str) -> bool {
 /// functions that models share.
 #[must_use]
 pub fn is_model(text: &str) -> bool {
-    text::comment(text).is_ok() || text::definition(text, "response").is_some()
+    // A comment that is not closed swallows the function.
+    let begins =
+        text.trim_start().strip_prefix("/*").is_some_and(|rest| rest.trim_start().starts_with(MARKER));
+    begins || text::comment(text).is_ok() || text::definition(text, "response").is_some()
 }
 
 /// How messages call a file before its name is known to be good.

@@ -2,7 +2,7 @@
 //! array of arrays has as many elements as their lengths multiplied. The parser evaluates constants, so this is
 //! estimated before, from the text: a word stands for as many words as its declaration.
 
-use std::collections::HashMap;
+use std::{cell::Cell, collections::HashMap};
 
 use super::{
     Limits,
@@ -44,7 +44,12 @@ struct Search<'a> {
     path: Vec<usize>,
     /// The initial values of constants, those in functions too: arrays may have them as lengths.
     values: HashMap<&'a str, Vec<(usize, usize)>>,
+    /// How many more tokens the lengths of arrays may take to calculate.
+    steps: Cell<u32>,
 }
+
+/// So many tokens are read for the lengths of all arrays: constants that use each other are many.
+const STEPS: u32 = 1 << 20;
 
 /// Checks the declarations of a text.
 pub(super) fn check(tokens: &[Token], limits: &Limits) -> Result<(), Refusal> {
@@ -63,7 +68,9 @@ pub(super) fn check(tokens: &[Token], limits: &Limits) -> Result<(), Refusal> {
     }
     let states = vec![State::Unknown; declarations.len()];
     let next = vec![usize::MAX; declarations.len()];
-    let mut search = Search { limits, tokens, declarations, by_name, states, next, path: Vec::new(), values };
+    let steps = Cell::new(STEPS);
+    let path = Vec::new();
+    let mut search = Search { limits, tokens, declarations, by_name, states, next, path, values, steps };
     let mut sum = 0_u64;
     for i in 0..search.declarations.len() {
         sum = sum.saturating_add(search.declaration(i)?.0);
@@ -255,6 +262,7 @@ impl<'a> Search<'a> {
         let single = tokens.len() == 1;
         let mut product = 1_u64;
         for token in tokens {
+            self.steps.set(self.steps.get().checked_sub(1)?);
             let value = match token.kind {
                 Kind::Number => whole(token.text)?,
                 Kind::Word if matches!(token.text, "u32" | "i32" | "min" | "max" | "abs") => continue,
@@ -269,6 +277,10 @@ impl<'a> Search<'a> {
                 _ => return None,
             };
             product = product.saturating_mul(if single { value } else { value.saturating_add(1) });
+            if product > self.limits.elements {
+                // It does not become smaller.
+                break;
+            }
         }
         Some(product)
     }

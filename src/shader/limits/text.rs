@@ -292,9 +292,15 @@ impl Walk<'_> {
     }
 }
 
-/// Refuses memory that models may not have: what they need comes in as parameters.
+/// Refuses what models may not have: memory, since what they need comes in as parameters; `discard`, since they do not
+/// only draw pixels; and constants that somebody sets from outside.
 fn resource(tokens: &[Token], i: usize, binds: impl Fn(usize) -> bool) -> Result<(), Finding> {
     let token = tokens[i];
+    if token.kind == Kind::Word && matches!(token.text, "discard" | "override") && !binds(token.at) {
+        let instead =
+            if token.text == "discard" { "return what is reflected, or nothing" } else { "write const" };
+        return Err((token.at, format!("`{}` is not available to a model; {instead}", token.text)));
+    }
     let next = |n: usize| tokens.get(i + n).map_or("", |t| t.text);
     if matches!(token.text, "var" | "ptr") && next(1) == "<" {
         let space = next(2);
@@ -359,8 +365,8 @@ mod tests {
             ("fn f() { let y = a+b+c+d+e+f+g+h+i+j; }", "+j", "has 9 operators"),
             ("fn f() { let y = - - - - - - - - -x; }", "-x", "has 9 operators"),
             ("fn f() { let y = x.x.x.x.x.x.x.x.x.y; }", ".y", "has 9 operators"),
-            ("fn f() { let y = a + (b + (c + d + e + f + g)); }", "+ g", "has 9 operators"),
-            ("fn f() { let y = (a + (b + c + d + e + f)) + g; }", "+ g", "has 9 operators"),
+            ("fn f() { let y = a + (b + (c + d + e + f + g + h)); }", "+ h", "has 9 operators"),
+            ("fn f() { let y = (a + (b + c + d + e + f + h)) + g; }", "+ g", "has 9 operators"),
             ("fn f() { { { { } } } }", "{ } } } }", "nested 4 deep; at most 3"),
             ("fn f() { if a { } else if b { } else if c { } }", "if c", "4 blocks deep"),
             ("fn f() { switch x { case 1, 2, 3: { } } }", ", 3", "more than 2 cases"),

@@ -133,7 +133,7 @@ pub struct Tools<'a> {
     pub shaders: &'a Assets<Shader>,
 }
 impl Bench {
-    /// Has everything tried in another process from now on. Should that not work, it is tried here.
+    /// Has everything tried in another process from now on, and nothing here.
     pub fn try_in(&mut self, process: TrialProcess) {
         self.process = Some(process);
     }
@@ -167,10 +167,7 @@ impl Bench {
             return Verdict::Bad(problem);
         }
         if let Some(process) = &self.process {
-            match process.ask(composed, faces, row) {
-                Some(verdict) => return verdict,
-                None => self.process = None,
-            }
+            return process.ask(composed, faces, row);
         }
         self.try_here(composed, faces, tools)
     }

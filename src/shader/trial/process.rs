@@ -9,7 +9,7 @@ use std::{
     hash::{DefaultHasher, Hash as _, Hasher as _},
     io::{BufRead as _, BufReader, Write as _},
     path::{Path, PathBuf},
-    process::{Child, ChildStdin, Command, ExitStatus, Stdio},
+    process::{Child, Command, ExitStatus, Stdio},
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc},
     thread,
     time::{Duration, Instant},
@@ -34,6 +34,8 @@ const START: Duration = Duration::from_secs(30);
 const WATCH: Duration = Duration::from_millis(10);
 /// Many answers are told of together, at most so often.
 const PACE: Duration = Duration::from_millis(50);
+/// The beginning of the message about a shader that could not be tried.
+const UNTRIED: &str = "this could not be tried in another process";
 /// As many answers are kept for those who ask again.
 const KEPT: usize = 256;
 
@@ -96,8 +98,6 @@ struct State {
     current: Option<u64>,
     answers: HashMap<u64, (Verdict, u64)>,
     frame: u64,
-    /// No process can be had.
-    broken: bool,
     closed: bool,
 }
 
@@ -128,53 +128,50 @@ impl TrialProcess {
                 let verdict = worker.verdict(&request);
                 let mut state = worker.shared.lock();
                 state.current = None;
-                match verdict {
-                    Some(verdict) => {
-                        let frame = state.frame;
-                        state.answers.insert(key, (verdict, frame));
-                    }
-                    None => state.broken = true,
-                }
-                let (broken, last) = (state.broken, state.queue.is_empty());
+                let frame = state.frame;
+                state.answers.insert(key, (verdict, frame));
+                let last = state.queue.is_empty();
                 drop(state);
-                if broken || last || told.elapsed() > PACE {
+                if last || told.elapsed() > PACE {
                     told = Instant::now();
                     wake();
                 }
-                if broken {
-                    return;
-                }
             }
         });
-        shared.lock().broken |= started.is_err();
+        shared.lock().closed |= started.is_err();
         Self { shared }
     }
 
-    /// The verdict on a shader, [`Verdict::NotYet`] until there is one; none if no process can be had.
-    pub fn ask(&self, composed: &Composed, faces: bool, row: impl FnOnce() -> Vec<u8>) -> Option<Verdict> {
+    /// The verdict on a shader, [`Verdict::NotYet`] until there is one. What could not be tried is refused, and tried
+    /// when it is asked for again.
+    pub fn ask(&self, composed: &Composed, faces: bool, row: impl FnOnce() -> Vec<u8>) -> Verdict {
         let mut hasher = DefaultHasher::new();
         (&composed.text, faces).hash(&mut hasher);
         let key = hasher.finish();
         let mut state = self.shared.lock();
-        if state.broken {
-            return None;
-        }
         let frame = state.frame;
         if let Some((verdict, used)) = state.answers.get_mut(&key) {
             *used = frame;
-            return Some(verdict.clone());
+            let verdict = verdict.clone();
+            if matches!(&verdict, Verdict::Bad(problem) if problem.message.starts_with(UNTRIED)) {
+                state.answers.remove(&key);
+            }
+            return verdict;
         }
         if state.current == Some(key) {
-            return Some(Verdict::NotYet);
+            return Verdict::NotYet;
         }
         if let Some(waiting) = state.queue.iter_mut().find(|w| w.key == key) {
             waiting.frame = frame;
-            return Some(Verdict::NotYet);
+            return Verdict::NotYet;
         }
         let request = Request { text: composed.text.clone(), map: composed.map.clone(), faces, row: row() };
+        if state.closed {
+            return refused(&request, format!("{UNTRIED} (there is no thread for it)"));
+        }
         state.queue.push_back(Waiting { key, request, frame });
         self.shared.news.notify_all();
-        Some(Verdict::NotYet)
+        Verdict::NotYet
     }
 
     /// Begins a new frame: what was not asked for in the last one is not tried any more.
@@ -195,7 +192,7 @@ impl TrialProcess {
     #[must_use]
     pub fn is_busy(&self) -> bool {
         let state = self.shared.lock();
-        !state.broken && (state.current.is_some() || !state.queue.is_empty())
+        !state.closed && (state.current.is_some() || !state.queue.is_empty())
     }
 }
 
@@ -230,29 +227,37 @@ impl Worker {
         }
     }
 
-    /// Has a shader tried; none if no process can be had.
-    fn verdict(&mut self, request: &Request) -> Option<Verdict> {
-        let Ok(line) = serde_json::to_string(request) else { return None };
+    /// Has a shader tried.
+    fn verdict(&mut self, request: &Request) -> Verdict {
+        let untried =
+            |why: String| refused(request, format!("{UNTRIED} ({why}); save it again to repeat that"));
+        let line = match serde_json::to_string(request) {
+            Ok(line) => line,
+            Err(why) => return untried(why.to_string()),
+        };
         for attempt in 0..2 {
             let process = match self.process.take() {
                 Some(process) => process,
-                None => self.start()?,
+                None => match self.start() {
+                    Ok(process) => process,
+                    Err(why) => return untried(why),
+                },
             };
             match self.fate(process, &line) {
-                Fate::Answered(Answer::Bad(problem)) => return Some(Verdict::Bad(problem)),
-                Fate::Answered(_) => return Some(Verdict::Good),
+                Fate::Answered(Answer::Bad(problem)) => return Verdict::Bad(problem),
+                Fate::Answered(_) => return Verdict::Good,
                 Fate::TooSlow => {
                     let limit = self.budget.time.as_secs_f32();
                     let message = format!(
                         "the graphics driver did not finish compiling it and drawing a small picture with it within {limit} s; is there a loop of very many rounds?"
                     );
-                    return Some(refused(request, message));
+                    return refused(request, message);
                 }
                 Fate::TooLarge => {
                     let limit = self.budget.memory >> 20;
                     let message =
                         format!("the graphics driver needs more than {limit} MiB of memory to compile it");
-                    return Some(refused(request, message));
+                    return refused(request, message);
                 }
                 // It may have been ended by somebody else, so it is asked once more.
                 Fate::Died(_) if attempt == 0 => {}
@@ -260,26 +265,27 @@ impl Worker {
                     let how = status.map_or_else(String::new, |status| format!(" ({status})"));
                     let message =
                         format!("the graphics driver crashes when it compiles it or draws with it{how}");
-                    return Some(refused(request, message));
+                    return refused(request, message);
                 }
             }
         }
-        None
+        untried("it ended".to_owned())
     }
 
     /// Starts a process and waits until it can be asked.
-    fn start(&self) -> Option<Running> {
-        let mut process = Running::start(&self.program).ok()?;
+    fn start(&self) -> Result<Running, String> {
+        let program = self.program.display();
+        let mut process =
+            Running::start(&self.program).map_err(|e| format!("{program} could not be started: {e}"))?;
         match process.answer(START, u64::MAX, || self.shared.lock().closed) {
-            Fate::Answered(Answer::Ready) => Some(process),
-            _ => None,
+            Fate::Answered(Answer::Ready) => Ok(process),
+            Fate::Died(Some(status)) => Err(format!("{program} ended at once: {status}")),
+            _ => Err(format!("{program} was not ready within {} s", START.as_secs())),
         }
     }
 
     fn fate(&mut self, mut process: Running, line: &str) -> Fate {
-        if process.send(line).is_err() {
-            return Fate::Died(process.end());
-        }
+        process.send(line);
         let fate = process.answer(self.budget.time, self.budget.memory, || self.shared.lock().closed);
         if let Fate::Answered(_) = fate {
             self.process = Some(process);
@@ -288,8 +294,13 @@ impl Worker {
     }
 }
 
-/// A shader that the process did not survive, told at the file of the model if the user wrote that.
 fn refused(request: &Request, message: String) -> Verdict {
+    Verdict::Bad(refused_whole(request, message))
+}
+
+/// A problem of a shader as a whole, told at the file of the model if the user wrote that.
+#[must_use]
+pub fn refused_whole(request: &Request, message: String) -> Box<ShaderProblem> {
     let composed = Composed { text: request.text.clone(), map: request.map.clone(), ..Composed::default() };
     let lines = 1..=request.text.lines().count();
     let own = |line: &usize| request.map.locate(*line).is_some_and(|(file, _)| file.starts_with("models/"));
@@ -297,7 +308,7 @@ fn refused(request: &Request, message: String) -> Verdict {
         own(line) && request.text.lines().nth(line - 1).is_some_and(|text| text.contains("fn response"))
     };
     let place = lines.clone().find(of_response).or_else(|| lines.clone().find(own)).map(|line| (line, 1));
-    Verdict::Bad(locate(&composed, place, message))
+    locate(&composed, place, message)
 }
 
 /// What became of a request.
@@ -311,7 +322,8 @@ enum Fate {
 /// A process that runs; it ends with this value.
 struct Running {
     child: Child,
-    input: Option<ChildStdin>,
+    /// To a thread that writes: a process that does not read must not be waited for.
+    requests: Option<mpsc::Sender<String>>,
     answers: mpsc::Receiver<Answer>,
 }
 
@@ -326,7 +338,16 @@ impl Running {
             command.process_group(0);
         }
         let mut child = command.spawn()?;
-        let input = child.stdin.take();
+        let (requests, lines) = mpsc::channel::<String>();
+        if let Some(mut input) = child.stdin.take() {
+            thread::spawn(move || {
+                for line in lines {
+                    if writeln!(input, "{line}").and_then(|()| input.flush()).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
         let output = child.stdout.take();
         let (sender, answers) = mpsc::channel();
         if let Some(output) = output {
@@ -339,14 +360,14 @@ impl Running {
                 }
             });
         }
-        Ok(Self { child, input, answers })
+        Ok(Self { child, requests: Some(requests), answers })
     }
 
-    fn send(&mut self, line: &str) -> std::io::Result<()> {
-        let Some(input) = &mut self.input else { return Err(std::io::ErrorKind::BrokenPipe.into()) };
-        input.write_all(line.as_bytes())?;
-        input.write_all(b"\n")?;
-        input.flush()
+    fn send(&self, line: &str) {
+        if let Some(requests) = &self.requests {
+            // That nobody takes it shows when no answer comes.
+            let _ = requests.send(line.to_owned());
+        }
     }
 
     /// Waits for an answer within a budget.
@@ -371,7 +392,7 @@ impl Running {
 
     /// Ends it, however it is; how it ended.
     fn end(&mut self) -> Option<ExitStatus> {
-        self.input = None;
+        self.requests = None;
         // A process whose output is closed is about to end by itself, and says better how.
         for _ in 0..20 {
             match self.child.try_wait() {
