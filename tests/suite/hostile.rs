@@ -189,6 +189,27 @@ fn corpus() -> Vec<Case> {
             ),
             "bytes of variables of the module; at most 16384",
         ),
+        case(
+            "constants_powers",
+            model(
+                "",
+                &format!(
+                    "const n0 = 0;\n{}    var a: array<f32, n7>;\n    let y = a[0] + x;",
+                    repeated(7, |i| format!(
+                        "    const n{} = {};\n",
+                        i + 1,
+                        vec![format!("n{i}"); 30].join(" * ")
+                    ))
+                ),
+            ),
+            "the length of this array cannot be told",
+        ),
+        case(
+            "discard",
+            model("", "if x > 2.0 {\n    discard;\n    }\n    let y = x;"),
+            "`discard` is not available",
+        ),
+        case("override", model("override N: f32 = 1.0;", "let y = x * N;"), "`override` is not available"),
         case("functions_18", doubling(18), "steps when every call in it is written out"),
         case("functions_26", doubling(26), "steps when every call in it is written out"),
         case("switch_5000", switch(5000), "this switch has more than 256 cases"),
@@ -344,6 +365,7 @@ fn at_the_limit() -> Vec<(&'static str, String)> {
         ),
         ("switch", switch(most.cases - 1)),
         ("doubling", doubling(11)),
+        ("comments", model(&format!("{}{}", "/*".repeat(100_000), "*/".repeat(100_000)), "let y = x;")),
         ("statements", model("", &format!("var y = x;\n{}", "    y += sin(y) * x;\n".repeat(200)))),
         (
             "variables",
