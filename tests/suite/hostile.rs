@@ -202,7 +202,7 @@ fn corpus() -> Vec<Case> {
                     ))
                 ),
             ),
-            "the length of this array cannot be told",
+            "this array has up to",
         ),
         case(
             "discard",

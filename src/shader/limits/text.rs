@@ -43,7 +43,7 @@ pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) 
     let mut walk = Walk { limits, groups: vec![Group::new(b'{', 0, 0)], sections: Vec::new(), statements: 0 };
     for (i, token) in tokens.iter().enumerate() {
         walk.step(&tokens, i, *token)?;
-        if matches!(token.text, "var" | "ptr" | "binding") {
+        if matches!(token.text, "var" | "ptr" | "binding" | "discard" | "override") {
             resource(&tokens, i, &binds)?;
         }
     }
