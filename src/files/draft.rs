@@ -21,10 +21,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     draft.replace()
 }
 
-/// Writes a document where there is none yet, as [`write`] does.
+/// Writes a document where there is none yet, as [`write()`] does.
 ///
 /// # Errors
-/// [`io::ErrorKind::AlreadyExists`] when there is a file, and as [`write`].
+/// [`io::ErrorKind::AlreadyExists`] when there is a file, and as [`write()`].
 pub fn create(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let mut draft = Draft::new(path)?;
     draft.write_all(bytes)?;
