@@ -287,12 +287,19 @@ mod tests {
     #[test]
     fn a_batch_that_takes_too_long_is_not_waited_for() {
         let registry = Registry::builtin();
-        let model = registry.model("disney").expect("built in");
-        let mut evaluator = Evaluator::new(&Sources::default(), model).expect("a Vulkan driver");
+        let model = registry.model("lambert").expect("built in");
+        let mut sources = Sources::default();
+        let slow = "var s = l.x;\n    for (var i = 0u; i < 4000u; i++) { s = sin(s + f32(i)); }\n    return Terms(vec3(s), vec3(0.0), vec3(0.0));\n}\nfn unused(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {\n";
+        let original = model.declaration.wgsl.text;
+        let body = original.find("-> Terms {").expect("there") + "-> Terms {\n".len();
+        sources
+            .edit(model.declaration.wgsl.path, format!("{}{slow}{}", &original[..body], &original[body..]));
+        let mut evaluator = Evaluator::new(&sources, model).expect("a Vulkan driver");
         let pairs = vec![(Vec3::Z, Vec3::new(0.6, 0.0, 0.8)); BATCH + 1];
         assert_eq!(evaluator.evaluate(&pairs).expect("in time").len(), pairs.len());
         evaluator.patience = Duration::from_micros(1);
-        let late = evaluator.evaluate(&pairs).expect_err("no driver is as fast");
+        // On a busy machine the work may be done before anybody waits for it, but not again and again.
+        let late = (0..10).find_map(|_| evaluator.evaluate(&pairs).err()).expect("no driver is as fast");
         assert!(matches!(late, GpuError::Stuck(_)), "{late}");
     }
 }
