@@ -265,9 +265,8 @@ impl Actor {
         let mesh = mesh.map(|mesh| if faces { face_mesh(&mesh) } else { shared_mesh(&mesh) });
         let mesh = mesh.map(|mesh| world.resource_mut::<Assets<Mesh>>().add(mesh));
         let shader = world.resource_mut::<Assets<Shader>>().reserve_handle();
-        let scene = scene();
-        let at =
-            Transform::from_translation(scene.scene_size.corner() / 2.0).with_scale(glam::Vec3::splat(3.0));
+        let at = Transform::from_translation(Scene::default().scene_size.corner() / 2.0)
+            .with_scale(glam::Vec3::splat(3.0));
         let mut entity = world.spawn((MeshTag(0), at, Visibility::Hidden));
         if let Some(mesh) = mesh {
             entity.insert(Mesh3d(mesh));

@@ -27,7 +27,8 @@
 //! Renaming gives the name to another file. Where that would part hard links, or give the file to another owner or
 //! group than this user may restore, and where this user may write to the file, its content is overwritten instead.
 //! Because that can be interrupted, the complete copy beside it is first synced and renamed to
-//! `.lcm-XXXXXX.INODE-TIME.whole`, with the inode of the file that is overwritten and when it last changed, and only removed when that is synced.
+//! `.lcm-XXXXXX.INODE-TIME.whole`, with the inode of the file that is overwritten and when that last changed. It is
+//! only removed when all is synced.
 //! [`tidy`] never takes such a copy for litter. If the file it belongs to is as long as the copy and equal to it, all
 //! was done; if it is a beginning of the copy, the overwriting was interrupted, and is done again; otherwise both are
 //! left alone and the user is told.

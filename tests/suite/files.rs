@@ -38,7 +38,7 @@ use lights_camera_models::{
 
 use crate::{
     screen::{self, Screen},
-    support::{full_scene, read, root, written},
+    support::{command_in, full_scene, names, read, root, written},
 };
 
 /// Long for anything that is tried here, on a busy machine too.
@@ -89,12 +89,8 @@ fn run(command: &mut Command) -> Ran {
 
 /// The program in a folder, without a display and without input.
 fn lcm<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<Item = A>) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lcm"));
+    let mut command = command_in(folder, arguments);
     command
-        .args(arguments)
-        .current_dir(folder)
-        .env_remove("CARGO_MANIFEST_DIR")
-        .env_remove("BEVY_ASSET_ROOT")
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         .env("LCM_DATA_DIR", folder.join("no-such-folder"))
@@ -122,14 +118,6 @@ fn folder() -> tempfile::TempDir {
 
 fn pipe(path: &Path) {
     assert!(Command::new("mkfifo").arg(path).status().expect("mkfifo runs").success());
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("readable");
-    let mut names: Vec<_> =
-        entries.map(|e| e.expect("readable").file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 fn save(path: &Path, scene: &Scene, expected: Expected) -> Result<Stamp, SaveError> {

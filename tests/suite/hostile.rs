@@ -5,7 +5,7 @@ use std::{
     fs,
     io::Read,
     path::{Path, PathBuf},
-    process::{Child, Command, Stdio},
+    process::{Child, Stdio},
     thread,
     time::{Duration, Instant},
 };
@@ -20,7 +20,7 @@ use lights_camera_models::{
     },
 };
 
-use crate::support::root;
+use crate::support::{command_in, root};
 
 /// What a thread of Bevy has.
 const STACK: usize = 2 << 20;
@@ -442,12 +442,7 @@ struct Watched {
 
 /// Runs the program in a folder, for so long at most.
 fn watched(folder: &Path, arguments: &[&str], patience: Duration) -> Watched {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_lcm"))
-        .args(arguments)
-        .current_dir(folder)
-        .env_remove("CARGO_MANIFEST_DIR")
-        .env_remove("BEVY_ASSET_ROOT")
-        .env("LCM_DATA_DIR", root().join("no-such-folder"))
+    let mut child = command_in(folder, arguments)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

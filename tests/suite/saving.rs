@@ -16,7 +16,7 @@ use lights_camera_models::{
     },
 };
 
-use crate::support::{full_scene, read};
+use crate::support::{full_scene, names, read};
 
 fn write(path: &Path, scene: &Scene, expected: Expected) -> Result<Stamp, SaveError> {
     save::write(path, scene, &Registry::builtin(), expected)
@@ -24,15 +24,6 @@ fn write(path: &Path, scene: &Scene, expected: Expected) -> Result<Stamp, SaveEr
 
 fn load(path: &Path) -> load::Loaded {
     load::file(path, &Registry::builtin(), Defaults::Refuse).unwrap_or_else(|e| panic!("{e}"))
-}
-
-/// What is in a folder.
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("readable");
-    let mut names: Vec<_> =
-        entries.map(|e| e.expect("readable").file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! What several tests need.
 
 use std::{
+    ffi::OsStr,
     fs,
     io::Write as _,
     path::{Path, PathBuf},
@@ -111,15 +112,31 @@ impl From<Output> for Run {
     }
 }
 
-/// Runs the program in a folder, with an input.
-pub fn lcm_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Run {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_lcm"))
+/// The names in a folder, in order.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("readable");
+    let mut names: Vec<_> =
+        entries.map(|e| e.expect("readable").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// The program in a folder.
+pub fn command_in<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<Item = A>) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lcm"));
+    command
         .args(arguments)
         .current_dir(folder)
         // What cargo sets, and what the user of this machine keeps, would be found.
         .env_remove("CARGO_MANIFEST_DIR")
         .env_remove("BEVY_ASSET_ROOT")
-        .env("LCM_DATA_DIR", root().join("no-such-folder"))
+        .env("LCM_DATA_DIR", root().join("no-such-folder"));
+    command
+}
+
+/// Runs the program in a folder, with an input.
+pub fn lcm_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Run {
+    let mut child = command_in(folder, arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

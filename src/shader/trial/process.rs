@@ -34,8 +34,6 @@ const START: Duration = Duration::from_secs(30);
 const WATCH: Duration = Duration::from_millis(10);
 /// Many answers are told of together, at most so often.
 const PACE: Duration = Duration::from_millis(50);
-/// The beginning of the message about a shader that could not be tried.
-const UNTRIED: &str = "this could not be tried in another process";
 /// As many answers are kept for those who ask again.
 const KEPT: usize = 256;
 
@@ -96,9 +94,19 @@ struct State {
     queue: VecDeque<Waiting>,
     /// What is being tried.
     current: Option<u64>,
-    answers: HashMap<u64, (Verdict, u64)>,
+    answers: HashMap<u64, Kept>,
     frame: u64,
     closed: bool,
+}
+
+/// An answer.
+#[derive(Debug)]
+struct Kept {
+    verdict: Verdict,
+    /// When it was asked for last.
+    frame: u64,
+    /// False if the shader was not tried: the next who asks has it tried again.
+    lasting: bool,
 }
 
 #[derive(Debug)]
@@ -125,11 +133,14 @@ impl TrialProcess {
             let mut worker = Worker { shared: theirs, program, budget, process: None };
             let mut told = Instant::now();
             while let Some((key, request)) = worker.next() {
-                let verdict = worker.verdict(&request);
+                let (verdict, lasting) = match worker.verdict(&request) {
+                    Ok(verdict) => (verdict, true),
+                    Err(why) => (untried(&request, &format!("({why}); save it again to repeat that")), false),
+                };
                 let mut state = worker.shared.lock();
                 state.current = None;
                 let frame = state.frame;
-                state.answers.insert(key, (verdict, frame));
+                state.answers.insert(key, Kept { verdict, frame, lasting });
                 let last = state.queue.is_empty();
                 drop(state);
                 if last || told.elapsed() > PACE {
@@ -150,10 +161,10 @@ impl TrialProcess {
         let key = hasher.finish();
         let mut state = self.shared.lock();
         let frame = state.frame;
-        if let Some((verdict, used)) = state.answers.get_mut(&key) {
-            *used = frame;
-            let verdict = verdict.clone();
-            if matches!(&verdict, Verdict::Bad(problem) if problem.message.starts_with(UNTRIED)) {
+        if let Some(kept) = state.answers.get_mut(&key) {
+            kept.frame = frame;
+            let (verdict, lasting) = (kept.verdict.clone(), kept.lasting);
+            if !lasting {
                 state.answers.remove(&key);
             }
             return verdict;
@@ -167,7 +178,7 @@ impl TrialProcess {
         }
         let request = Request { text: composed.text.clone(), map: composed.map.clone(), faces, row: row() };
         if state.closed {
-            return refused(&request, format!("{UNTRIED} (there is no thread for it)"));
+            return untried(&request, "(there is no thread for it)");
         }
         state.queue.push_back(Waiting { key, request, frame });
         self.shared.news.notify_all();
@@ -181,10 +192,10 @@ impl TrialProcess {
         let frame = state.frame;
         state.queue.retain(|waiting| waiting.frame + 1 >= frame);
         if state.answers.len() > KEPT {
-            let mut used: Vec<_> = state.answers.values().map(|(_, used)| *used).collect();
+            let mut used: Vec<_> = state.answers.values().map(|kept| kept.frame).collect();
             used.sort_unstable();
             let oldest = used[used.len() / 2];
-            state.answers.retain(|_, (_, used)| *used > oldest);
+            state.answers.retain(|_, kept| kept.frame > oldest);
         }
     }
 
@@ -227,37 +238,29 @@ impl Worker {
         }
     }
 
-    /// Has a shader tried.
-    fn verdict(&mut self, request: &Request) -> Verdict {
-        let untried =
-            |why: String| refused(request, format!("{UNTRIED} ({why}); save it again to repeat that"));
-        let line = match serde_json::to_string(request) {
-            Ok(line) => line,
-            Err(why) => return untried(why.to_string()),
-        };
+    /// Has a shader tried; or why it could not be.
+    fn verdict(&mut self, request: &Request) -> Result<Verdict, String> {
+        let line = serde_json::to_string(request).map_err(|why| why.to_string())?;
         for attempt in 0..2 {
             let process = match self.process.take() {
                 Some(process) => process,
-                None => match self.start() {
-                    Ok(process) => process,
-                    Err(why) => return untried(why),
-                },
+                None => self.start()?,
             };
             match self.fate(process, &line) {
-                Fate::Answered(Answer::Bad(problem)) => return Verdict::Bad(problem),
-                Fate::Answered(_) => return Verdict::Good,
+                Fate::Answered(Answer::Bad(problem)) => return Ok(Verdict::Bad(problem)),
+                Fate::Answered(_) => return Ok(Verdict::Good),
                 Fate::TooSlow => {
                     let limit = self.budget.time.as_secs_f32();
                     let message = format!(
                         "the graphics driver did not finish compiling it and drawing a small picture with it within {limit} s; is there a loop of very many rounds?"
                     );
-                    return refused(request, message);
+                    return Ok(refused(request, message));
                 }
                 Fate::TooLarge => {
                     let limit = self.budget.memory >> 20;
                     let message =
                         format!("the graphics driver needs more than {limit} MiB of memory to compile it");
-                    return refused(request, message);
+                    return Ok(refused(request, message));
                 }
                 // It may have been ended by somebody else, so it is asked once more.
                 Fate::Died(_) if attempt == 0 => {}
@@ -265,11 +268,11 @@ impl Worker {
                     let how = status.map_or_else(String::new, |status| format!(" ({status})"));
                     let message =
                         format!("the graphics driver crashes when it compiles it or draws with it{how}");
-                    return refused(request, message);
+                    return Ok(refused(request, message));
                 }
             }
         }
-        untried("it ended".to_owned())
+        Err("it ended".to_owned())
     }
 
     /// Starts a process and waits until it can be asked.
@@ -292,6 +295,10 @@ impl Worker {
         }
         fate
     }
+}
+
+fn untried(request: &Request, why: &str) -> Verdict {
+    refused(request, format!("this could not be tried in another process {why}"))
 }
 
 fn refused(request: &Request, message: String) -> Verdict {
