@@ -318,7 +318,10 @@ impl GpuRenderer {
             }
         }
         let trying = self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying);
-        Ok(trying || cache.waiting_pipelines().next().is_some())
+        // Bevy goes on listing a pipeline for one frame after it was made.
+        let made =
+            |id| matches!(cache.pipelines().nth(id).map(|p| &p.state), Some(CachedPipelineState::Ok(_)));
+        Ok(trying || !cache.waiting_pipelines().all(made))
     }
 
     /// The bytes of the picture as last drawn, rows without padding.

@@ -24,7 +24,7 @@ use bevy::{
 
 use super::{
     check::ShaderProblem,
-    compose::{Composed, Sources, WRAPPER, compose, compose_evaluation, without_comments},
+    compose::{Composed, Sources, WRAPPER, compose, compose_evaluation, slim},
     reading::{Done, Job, Reader},
     status::{Reloaded, ShaderStatus, Trouble},
     trial::{Bench, COMPOSED, Tools, TrialPlugin, Verdict},
@@ -658,7 +658,7 @@ impl LiveShaders {
     }
 
     fn asset(&self, composed: &Composed, key: Key) -> Shader {
-        let mut shader = Shader::from_wgsl(without_comments(&composed.text), path_of_asset(key));
+        let mut shader = Shader::from_wgsl(slim(&composed.text), path_of_asset(key));
         if !self.is_built_in(composed) {
             // What users write may read outside of arrays.
             shader.validate_shader = ValidateShader::Enabled;
