@@ -56,7 +56,7 @@ fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
     }
     let Some(folder) = places.folders()?.models else {
         return Err(Failure::Usage(
-            "there is no folder for own models; name one: --models FOLDER".to_owned(),
+            "there is no folder for custom models; name one: --models FOLDER".to_owned(),
         ));
     };
     let path: PathBuf = folder.join(format!("{id}.{}", own::EXTENSION));

@@ -236,7 +236,7 @@ pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failur
         return Failure::Invalid(format!("{id} cannot be run: {why}"));
     }
     Failure::NoRenderer(format!(
-        "{id} cannot be run on the CPU, which interprets own models: {why}; with {instead} the graphics card runs it"
+        "{id} cannot be run on the CPU, which interprets custom models: {why}; with {instead} the graphics card runs it"
     ))
 }
 

@@ -205,7 +205,7 @@ impl Lab {
 
 /// Why a file cannot be opened.
 pub const BUILT_IN: &str = "The shaders are built in, so there is no file to open. Write them out for editing first: \
-     Edit, “Write the shaders out for editing…”. Or copy the model as a file.";
+     Edit, “Export shaders for editing…”. Or copy the model as a file.";
 
 /// The buttons about own models, for the chooser and the panel.
 pub fn buttons(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
@@ -221,7 +221,7 @@ pub fn buttons(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         }
         let copy = ui
             .add_enabled(shown.is_some(), Button::new("Duplicate as a file…"))
-            .on_hover_text(format!("Writes {name} into a file of your own, to be changed in an editor."));
+            .on_hover_text(format!("Writes {name} to a file as a custom model, to be changed in an editor."));
         if copy.clicked() {
             actions.push(Action::Author(Ask::Duplicate));
         }
@@ -249,7 +249,7 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
     let title = match &draft.of {
         Some(of) => {
             let name = registry.model(of).map_or(of.as_str(), |m| m.declaration.name);
-            format!("{name} as a file of your own")
+            format!("{name} as a custom model")
         }
         None => "A new reflection model".to_owned(),
     };
@@ -279,7 +279,7 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let checked = check_id(&draft.id, registry);
-    ui.label("Its name in scene files, and that of its file");
+    ui.label("Identifier (also the file name)");
     let mut text = draft.id.clone();
     let stroke = match &checked {
         Ok(()) => egui::Stroke::new(1.5, palette.accent),
@@ -334,14 +334,14 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
             });
         }
     }
-    let what = "It is chosen as soon as it is there, and listed under “Own files”. The first lines of the file say \
-                what people call it and which knobs it has.";
+    let what = "It is selected once created, and listed under “Custom models”. The first lines of the file declare its name and \
+                its parameters.";
     ui.add(egui::Label::new(theme::small(ui, what)).wrap());
     ui.add_space(12.0 * scale);
     let enter = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
     let line = vec2(ui.available_width(), 28.0 * scale);
     ui.allocate_ui_with_layout(line, Layout::right_to_left(Align::Center), |ui| {
-        let mut button = Button::new(theme::strong(ui, "Write the file")).min_size(vec2(80.0, 28.0) * scale);
+        let mut button = Button::new(theme::strong(ui, "Create")).min_size(vec2(80.0, 28.0) * scale);
         if checked.is_ok() {
             button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
         }

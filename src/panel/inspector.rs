@@ -34,7 +34,7 @@ impl Panel for Inspector {
     }
 
     fn title(&self) -> &'static str {
-        "Inspector"
+        "Properties"
     }
 
     fn place(&self) -> Place {
@@ -189,7 +189,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
     let caption = Caption {
         label: "position",
         unit: "m",
-        help: "Where the centre is; y is up, the origin is a corner of the room.",
+        help: "Position of the centre; y is up, the origin is a corner of the room.",
         ..Caption::default()
     };
     if let Some(p) =
@@ -243,9 +243,9 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
             .collect();
         if !unused.is_empty() {
-            let reason = format!("not used by {}", model.declaration.name);
+            let reason = format!("Not used by {}", model.declaration.name);
             ui.add_space(4.0);
-            ui.label(theme::small(ui, format!("Set, but {reason}: kept for models that do")));
+            ui.label(theme::small(ui, format!("{reason} (values kept)")));
             ui.add_space(2.0);
             for p in unused {
                 knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
@@ -295,18 +295,18 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
 
     section(
         ui,
-        "Its own model and shading",
+        "Override model and shading",
         object.reflection_model.is_some() || object.shading_model.is_some(),
         |ui| {
             let scene_model =
                 registry.model(&lab.scene.reflection_model).map_or("–", |m| m.declaration.name);
-            let of_scene = format!("as the scene: {scene_model}");
+            let of_scene = format!("Scene default ({scene_model})");
             let own = object.reflection_model.as_deref();
             let shown =
                 own.map_or(of_scene.as_str(), |id| registry.model(id).map_or(id, |m| m.declaration.name));
             let caption = Caption {
                 label: "reflection",
-                help: "The reflection model of this object: the scene’s, or its own.",
+                help: "The reflection model of this object: the scene’s, or an override.",
                 ..Caption::default()
             };
             let chosen = knob::list_knob(ui, "model", &caption, shown, |ui, id| {
@@ -317,7 +317,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
                 actions.push(set(ObjectField::Model(model.map(|m| m.declaration.id.to_owned()))));
             }
             let scene_mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
-            let of_scene = format!("as the scene: {scene_mode}");
+            let of_scene = format!("Scene default ({scene_mode})");
             let options: Vec<&str> = std::iter::once(of_scene.as_str())
                 .chain(registry.modes().iter().map(|m| m.declaration.name))
                 .collect();
@@ -326,7 +326,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             });
             let caption = Caption {
                 label: "shading",
-                help: "Where on this object the reflection model is evaluated: as the scene says, or its own way.",
+                help: "The shading of this object: the scene’s, or an override.",
                 ..Caption::default()
             };
             if let Some(k) = knob::choice_knob(ui, "mode", &caption, chosen.unwrap_or(usize::MAX), &options) {
@@ -361,7 +361,7 @@ fn measured(
     };
     let words = chooser::Words {
         label: "Search measured materials",
-        hint: "Search: name, author, year",
+        hint: "Search materials",
         none: "No material has that in its name or source.",
         foot: "The numbers are F₀ over the whole spectrum, as red, green and blue; models that calculate with n and k at three wavelengths differ a little.",
     };
@@ -428,7 +428,7 @@ fn readouts(ui: &mut Ui, lab: &Lab, model: &ModelEntry, object: &Object) {
         return;
     }
     ui.add_space(2.0);
-    ui.label(theme::small(ui, "What follows from these"));
+    ui.label(theme::small(ui, "Derived values"));
     for readout in &readouts {
         knob::readout(ui, readout);
     }
@@ -579,12 +579,12 @@ fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Ve
         }
     });
     if light.position.is_some() || light.direction.is_some() {
-        section(ui, "Place", true, |ui| {
+        section(ui, "Position", true, |ui| {
             if let Some(position) = light.position {
                 let caption = Caption {
                     label: "position",
                     unit: "m",
-                    help: "Where the light stands; y is up, the origin is a corner of the room.",
+                    help: "Position of the light; y is up, the origin is a corner of the room.",
                     ..Caption::default()
                 };
                 if let Some(p) = knob::vector_knob(
@@ -598,8 +598,11 @@ fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Ve
                 }
             }
             if let Some(direction) = light.direction
-                && let Some(d) =
-                    direction_knob(ui, direction, "Where the light shines; its length does not matter.")
+                && let Some(d) = direction_knob(
+                    ui,
+                    direction,
+                    "Direction in which the light shines; its length does not matter.",
+                )
             {
                 actions.push(set(LightField::Direction(d)));
             }
@@ -665,7 +668,7 @@ fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
     let scale = theme::scale_here(ui);
     ui.horizontal(|ui| {
         ui.set_min_height(30.0 * scale);
-        ui.label(theme::small(ui, "colour by"));
+        ui.label(theme::small(ui, "Colour from"));
         let chosen = usize::from(light.colour_temperature.is_some());
         let tip = |ui: &mut Ui, i: usize| {
             ui.label(if i == 0 {
@@ -733,13 +736,13 @@ fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     let scale = theme::scale_here(ui);
     let set = |o: Observer| Action::Edit(Edit::Observer(o));
     ui.label(RichText::new("Observer").heading());
-    ui.label(theme::small(ui, "The eye for which the scene is computed"));
+    ui.label(theme::small(ui, "The camera of the scene"));
     ui.add_space(6.0 * scale);
-    section(ui, "Place", true, |ui| {
+    section(ui, "Position", true, |ui| {
         let caption = Caption {
             label: "position",
             unit: "m",
-            help: "Where the eye is; y is up, the origin is a corner of the room.",
+            help: "Position of the eye; y is up, the origin is a corner of the room.",
             ..Caption::default()
         };
         if let Some(position) =
@@ -748,7 +751,7 @@ fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
             actions.push(set(Observer { position, ..o }));
         }
         if let Some(direction) =
-            direction_knob(ui, o.direction, "Where the eye looks; its length does not matter.")
+            direction_knob(ui, o.direction, "Viewing direction; its length does not matter.")
         {
             actions.push(set(Observer { direction, ..o }));
         }
@@ -770,12 +773,11 @@ fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
             actions.push(set(Observer { field_of_view: v as f32, ..o }));
         }
         ui.horizontal_wrapped(|ui| {
-            if ui.button("Look from here").on_hover_text("Put the camera where the observer is (H)").clicked()
-            {
+            if ui.button("View as observer").on_hover_text("Move the camera to the observer (H)").clicked() {
                 actions.push(Action::HomeView);
             }
             if ui
-                .button("Put the observer here")
+                .button("Set observer to this view")
                 .on_hover_text("Make the place of the camera that of the observer")
                 .clicked()
             {
@@ -864,7 +866,7 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
         let chosen = Encoding::ALL.iter().position(|e| *e == d.encoding).unwrap_or(0);
         let caption = Caption {
             label: "encoding",
-            help: "sRGB: colours are decoded to linear light, the picture is encoded for the display. Off: neither, which is wrong; seeing the difference is a lesson.",
+            help: "sRGB: colours are decoded to linear light, the picture is encoded for the display. Off: neither; deliberately wrong, for comparison.",
             ..Caption::default()
         };
         if let Some(i) = knob::choice_knob(ui, "encoding", &caption, chosen, &names) {
@@ -875,7 +877,7 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     let own = s.objects.iter().filter(|o| o.reflection_model.is_some() || o.shading_model.is_some()).count();
     ui.add_space(8.0 * scale);
     let text = format!("{} · {}", plural(s.lights.len(), "light"), plural(objects, "object"));
-    let text = if own > 0 { format!("{text}, {own} with a model or shading of its own") } else { text };
+    let text = if own > 0 { format!("{text}, {own} with an override of model or shading") } else { text };
     ui.add(egui::Label::new(theme::small(ui, text)).wrap());
 }
 

@@ -90,13 +90,20 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
         add("Reflection and shading", false, false, key, &label, Action::RecentModel(slot));
     }
     add("Reflection and shading", false, false, Key::T, "Next term of the equation alone", Action::NextTerms);
-    add("Own models", true, true, Key::N, "New reflection model…", Action::Author(Ask::New));
-    add("Own models", true, true, Key::D, "Duplicate the model as a file…", Action::Author(Ask::Duplicate));
-    add("Own models", true, false, Key::E, "Open the model in an editor", Action::Author(Ask::EditShown));
+    add("Custom models", true, true, Key::N, "New reflection model…", Action::Author(Ask::New));
+    add(
+        "Custom models",
+        true,
+        true,
+        Key::D,
+        "Duplicate the model as a file…",
+        Action::Author(Ask::Duplicate),
+    );
+    add("Custom models", true, false, Key::E, "Open the model in an editor", Action::Author(Ask::EditShown));
     add("Picture", false, false, Key::Tab, "Next object", Action::SelectNext);
     add("Picture", false, true, Key::Tab, "Previous object", Action::SelectPrevious);
     add("Picture", false, false, Key::H, "Home: the observer's view", Action::HomeView);
-    add("Picture", false, false, Key::C, "Look at what is selected", Action::FocusSelection);
+    add("Picture", false, false, Key::C, "Focus selection", Action::FocusSelection);
     add("Picture", false, false, Key::Plus, "Brighter by ½ EV", Action::Expose(0.5));
     add("Picture", false, false, Key::Minus, "Darker by ½ EV", Action::Expose(-0.5));
     add("Window", false, false, Key::F1, "This list", Action::View(ViewChange::Keys(!lab.view.keys_open)));

@@ -472,10 +472,9 @@ pub fn number_knob_beside(
                 ui.spacing_mut().item_spacing.x = 4.0 * scale;
                 let (left, right) = (number(limits.slider_min), number(limits.slider_max));
                 let left = if limits.is_above_zero() { format!(">{left}") } else { left };
-                let right = if limits.max > limits.slider_max { format!("{right}…") } else { right };
+                let right = if limits.max > limits.slider_max { format!("{right}+") } else { right };
                 let end = 30.0 * scale;
-                let more =
-                    |there: bool| there.then(|| format!("The slider ends here. More can be typed: {rule}."));
+                let more = |there: bool| there.then(|| format!("Larger values can be typed: {rule}."));
                 range_end(ui, &left, end, Align::Max, more(limits.min < limits.slider_min));
                 let width = (ui.available_width() - end - 26.0 * scale).max(24.0);
                 let (slider, new) = slider(ui, caption.label, value, default, limits, width);

@@ -243,7 +243,7 @@ mod tests {
     fn rules_are_sentences() {
         assert_eq!(Limits::between(0.5, 1.0).rule(), "between 0.5 and 1");
         assert_eq!(Limits::above_zero(90.0).rule(), "greater than 0 and at most 90");
-        assert_eq!(Limits::between(0.0, f64::INFINITY).whole().rule(), "a whole number of at least 0");
+        assert_eq!(Limits::between(0.0, f64::INFINITY).whole().rule(), "a whole number, 0 or more");
         assert_eq!(Limits::between(0.0, f64::INFINITY).rule(), "at least 0");
     }
 

@@ -179,9 +179,9 @@ impl Default for Dialogs {
                 .default_file_name("scene.json")
         };
         let folder = FileDialog::new()
-            .title("Write the shaders into which folder?")
+            .title("Export the shaders to which folder?")
             .id("folder dialog")
-            .labels(FileDialogLabels { open_button: "Write here".to_owned(), ..FileDialogLabels::default() })
+            .labels(FileDialogLabels { open_button: "Export here".to_owned(), ..FileDialogLabels::default() })
             .default_size(vec2(720.0, 440.0))
             .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
         Self {

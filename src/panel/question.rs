@@ -62,9 +62,9 @@ fn words(lab: &Lab, question: &Question) -> Words {
         Question::Recover(offer) => offer.words(lab),
         Question::Unsaved { .. } => (
             "Save the changes?",
-            format!("“{}” has changes that are not in its file. Without saving they are lost.", lab.title()),
+            format!("“{}” has unsaved changes.", lab.title()),
             Vec::new(),
-            vec![("Save", Answer::Save), ("Do not save", Answer::Discard), ("Cancel", Answer::Cancel)],
+            vec![("Save", Answer::Save), ("Don't save", Answer::Discard), ("Cancel", Answer::Cancel)],
         ),
         Question::MissingParts { path, parts, .. } => {
             let what = if parts.len() == 1 { "a part" } else { "parts" };
@@ -93,7 +93,7 @@ fn words(lab: &Lab, question: &Question) -> Words {
         Question::NewerOnDisk { path, .. } => (
             "Read the file again?",
             format!(
-                "{} was changed by another program, and there are changes here that are not saved. Read it again and lose your changes, or keep them? Kept, they replace the file when you save.",
+                "{} was changed by another program, and there are changes here that are not saved. Read it again and lose your changes, or keep them? If you keep them, saving overwrites the file.",
                 path.display()
             ),
             Vec::new(),

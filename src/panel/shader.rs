@@ -92,7 +92,7 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
         Part::Import => ("imported", "A file of yours that another one of the list asks for with `#import`."),
         Part::Mode => (
             "the shading mode",
-            "Where the model is evaluated, per polygon, per vertex or per pixel, and what is interpolated between.",
+            "The stage that evaluates the model: per polygon, per vertex or per pixel, and what is interpolated between.",
         ),
         Part::Loop => (
             "the light loop",
@@ -104,7 +104,7 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
         }
         Part::LightRecord => (
             "the light record",
-            "What the shader is told of each light: place, direction, colour, strength, parameters.",
+            "The record of each light in the shader: place, direction, colour, strength, parameters.",
         ),
         Part::Stages => (
             "the stages",
@@ -117,7 +117,7 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
         }
         Part::Wrapper => (
             "the wrapper",
-            "Where the graphics card enters: bindings and entry points. The only file that knows the renderer.",
+            "The entry points of the graphics card: bindings and entry points. The only file that knows the renderer.",
         ),
     };
     (name.to_owned(), help)
@@ -164,7 +164,7 @@ fn folder(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     let room = ui.available_width() - 36.0 * theme::scale_here(ui);
     let shown = tail(ui, &text, TextStyle::Small, room);
     let path = ui.label(RichText::new(shown).small().color(palette.text));
-    let mut help = format!("{text}\nA file that is saved in this folder is taken over at once.");
+    let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
     if let Some(models) = &lab.shaders.models {
         help += &format!("\nOwn models: {}", models.display());
     }
@@ -437,17 +437,17 @@ fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     let (heading, how) = match &lab.shaders.shaders {
         Some(_) => (
             "No errors",
-            "Open a file at the left, change it and save it: the picture follows. A mistake is told here, and the picture keeps the last version that worked.",
+            "Open a file at the left, change it and save it: the picture follows. Errors appear here, and the picture keeps the last version that worked.",
         ),
         None => (
             "No errors",
-            "To change what the picture is made of: write the files out, open one in an editor, save it. The picture follows. Or write a model of your own:",
+            "To change how the picture is computed: export the shaders, open one in an editor, save it. The picture follows. Or write a custom model:",
         ),
     };
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, heading));
         if let Some(last) = &lab.shaders.last {
-            let text = format!("{} taken over in {:.0} ms", last.file, last.milliseconds.max(0.0));
+            let text = format!("{} loaded in {:.0} ms", last.file, last.milliseconds.max(0.0));
             ui.add(egui::Label::new(theme::small(ui, text)).truncate());
         }
     });

@@ -1126,10 +1126,7 @@ impl Lab {
                 );
             }
             Selection::Object(_) if self.scene.objects.len() <= 1 => {
-                self.say(
-                    Severity::Info,
-                    "The last object stays: a scene needs at least one to show anything.",
-                );
+                self.say(Severity::Info, "Can’t delete the last object: a scene needs at least one.");
             }
             Selection::Light(i) if i < self.scene.lights.len() => {
                 self.change(|scene| drop(scene.lights.remove(i)));

@@ -52,11 +52,7 @@ impl Panel for StatusLine {
                     palette.weak,
                 ),
             }
-            let says = if lab.view.bottom_open {
-                "Fold the strip away (F8)"
-            } else {
-                "Unfold the strip with the messages (F8)"
-            };
+            let says = if lab.view.bottom_open { "Fold the strip away (F8)" } else { "Show messages (F8)" };
             let button = ui.add(Button::new(text).frame_when_inactive(false).small());
             button
                 .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("Messages: {count}")));

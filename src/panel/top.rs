@@ -144,9 +144,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             ui.separator();
             item(ui, "Save", Action::Save, actions);
             item(ui, "Save as…", Action::SaveAsDialog, actions);
-            ui.add_enabled_ui(lab.path.is_some(), |ui| {
-                item(ui, "Read again from disk", Action::Reload, actions)
-            });
+            ui.add_enabled_ui(lab.path.is_some(), |ui| item(ui, "Reload from disk", Action::Reload, actions));
             ui.separator();
             item(ui, "Quit", Action::Quit, actions);
         });
@@ -181,13 +179,13 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             item(ui, "New reflection model…", Action::Author(Ask::New), actions);
             item(ui, "Duplicate the model as a file…", Action::Author(Ask::Duplicate), actions);
             item(ui, "Open the model in an editor", Action::Author(Ask::EditShown), actions);
-            item(ui, "Write the shaders out for editing…", Action::Author(Ask::ExportDialog), actions);
+            item(ui, "Export shaders for editing…", Action::Author(Ask::ExportDialog), actions);
         });
         ui.menu_button("View", |ui| {
             ui.set_width(MENU_WIDTH * scale);
             item(ui, "Home: the observer’s view", Action::HomeView, actions);
-            item(ui, "Look at what is selected", Action::FocusSelection, actions);
-            item(ui, "Put the observer here", Action::ObserverFromView, actions);
+            item(ui, "Focus selection", Action::FocusSelection, actions);
+            item(ui, "Set observer to this view", Action::ObserverFromView, actions);
             ui.separator();
             for terms in TermSelection::ALL {
                 let name = match terms {
@@ -203,7 +201,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             let view = |c: ViewChange| Action::View(c);
             check(
                 ui,
-                "Signs at the lights",
+                "Show light markers",
                 v.show_gizmos,
                 "",
                 view(ViewChange::Gizmos(!v.show_gizmos)),
@@ -211,8 +209,8 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             );
             check(ui, "Outline of the room", v.show_room, "", view(ViewChange::Room(!v.show_room)), actions);
             ui.separator();
-            check(ui, "Tree", v.left_open, "", view(ViewChange::Left(!v.left_open)), actions);
-            check(ui, "Inspector", v.right_open, "", view(ViewChange::Right(!v.right_open)), actions);
+            check(ui, "Scene list", v.left_open, "", view(ViewChange::Left(!v.left_open)), actions);
+            check(ui, "Properties", v.right_open, "", view(ViewChange::Right(!v.right_open)), actions);
             for panel in lab.panels.iter().filter(|p| p.place == Place::Bottom) {
                 let shown = v.bottom_open && v.bottom_tab == panel.id;
                 let change = if shown {
@@ -278,7 +276,7 @@ fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
     let palette = Palette::here(ui);
     ui.add_space(6.0 * scale);
     let name = lab.name_of(lab.selection, registry);
-    let text = format!("{name}’s own {what}");
+    let text = format!("{name} overrides {what}");
     // The frame rate keeps its place.
     let room = (ui.available_width() - 96.0 * scale).max(40.0 * scale);
     let galley = theme::elided(ui, &text, egui::TextStyle::Small, palette.accent, room);

@@ -189,7 +189,7 @@ impl Family {
             Self::Diffuse => "Rough diffuse",
             Self::Microfacet => "Microfacet",
             Self::Standard => "Standard",
-            Self::Own => "Own files",
+            Self::Own => "Custom models",
         }
     }
 }
@@ -301,13 +301,13 @@ impl Readout {
         vec![
             Self {
                 symbol: "α_GGX",
-                label: "about the width α",
+                label: "equivalent GGX α",
                 help: "The width of the GGX or Beckmann distribution that is as sharp as this highlight: √(2/(n + 2)) for Blinn–Phong's exponent n, and Phong's n counts as 4n, since H turns half as far as R.",
                 value: ReadoutValue::Number(alpha),
             },
             Self {
                 symbol: "r",
-                label: "about the roughness",
+                label: "equivalent roughness",
                 help: "The roughness of metallic-roughness models that is as sharp as this highlight: the root of the width, r² = α.",
                 value: ReadoutValue::Number(equivalence::roughness_of_alpha(alpha)),
             },

@@ -102,7 +102,7 @@ impl Parameter {
             ParameterKind::Integer { min, max: Some(max), .. } => {
                 format!("a whole number between {min} and {max}")
             }
-            ParameterKind::Integer { min, max: None, .. } => format!("a whole number of at least {min}"),
+            ParameterKind::Integer { min, max: None, .. } => format!("a whole number, {min} or more"),
             ParameterKind::Colour { .. } => {
                 "three whole numbers from 0 to 255: [red, green, blue]".to_owned()
             }

@@ -202,7 +202,7 @@ pub(super) fn unknown_material_parameter(registry: &Registry, name: &str) -> Str
 pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
     let known = registry.models().iter().map(|m| (m.declaration.id, m.declaration.name));
     one_of("the reflection model", id, known).map_err(|rule| match registry.broken_model(id) {
-        Some(why) => format!("the file of that own model has a mistake: {why}"),
+        Some(why) => format!("the file of that custom model has a mistake: {why}"),
         None => rule + &own_model_missing(registry, id),
     })
 }
@@ -212,7 +212,7 @@ fn own_model_missing(registry: &Registry, id: &str) -> String {
     match registry.own_folder() {
         Some(folder) if folder.is_dir() && own::is_id(id) => {
             format!(
-                "; among the own models there is no {}",
+                "; among the custom models there is no {}",
                 folder.join(id).with_extension(own::EXTENSION).display()
             )
         }

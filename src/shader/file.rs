@@ -23,7 +23,7 @@ pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
     let bytes = files::read(file, MAX_BYTES).map_err(|error| {
         failed(match error {
             FileError::Io(e) if e.kind() == io::ErrorKind::NotFound => {
-                "the file is gone; it is read again as soon as one of that name is there".to_owned()
+                "the file is missing; it reloads when restored".to_owned()
             }
             FileError::Kind(kind) => format!("this is {kind}, no file that can be read"),
             FileError::TooLarge(_) => {

@@ -773,7 +773,7 @@ impl LiveShaders {
         let text = text(cause).unwrap_or_default();
         let generated = problem.file.starts_with('(');
         if !generated && !ends_too_early(text) {
-            problem.message.push_str(&format!("; this began with the change of {cause}"));
+            problem.message.push_str(&format!("; introduced by the change in {cause}"));
             return problem;
         }
         let last = text.trim_end().lines().last().unwrap_or_default();

@@ -20,17 +20,19 @@ pub fn coloured(problem: &ShaderProblem, file: &str) -> String {
 }
 
 fn rendered(problem: &ShaderProblem, file: &str, renderer: &Renderer) -> String {
-    let mut characters = problem.source.char_indices().skip(problem.column.saturating_sub(1));
-    let end = problem.source.len();
+    // The renderer makes the message and the source fit for a terminal, but for controls beyond ASCII.
+    let fit = |text: &str| text.replace(|c: char| c.is_control() && !c.is_ascii(), "\u{fffd}");
+    let (source, message) = (fit(&problem.source), fit(&problem.message));
+    let mut characters = source.char_indices().skip(problem.column.saturating_sub(1));
+    let end = source.len();
     let start = characters.next().map_or(end, |(at, _)| at);
     let next = characters.next().map_or(end, |(at, _)| at);
-    // The message and the source are made fit for a terminal by the renderer.
     let file = printable(file);
-    let snippet = Snippet::source(&problem.source)
+    let snippet = Snippet::source(&source)
         .line_start(problem.line)
         .path(&*file)
         .annotation(AnnotationKind::Primary.span(start..next));
-    renderer.render(&[Level::ERROR.primary_title(&problem.message).element(snippet)])
+    renderer.render(&[Level::ERROR.primary_title(&message).element(snippet)])
 }
 
 #[cfg(test)]
@@ -60,5 +62,20 @@ mod tests {
         assert!(annotated(&problem, "a").contains("there is no"));
         problem.source.clear();
         assert!(annotated(&problem, "a").contains("a:12:1"));
+    }
+
+    #[test]
+    fn nothing_that_a_terminal_obeys_comes_through() {
+        let odd = "a\u{1b}[2J\u{9b}2J\u{202e}b";
+        let problem = ShaderProblem {
+            file: odd.to_owned(),
+            line: 1,
+            column: 1,
+            source: odd.to_owned(),
+            message: odd.to_owned(),
+        };
+        let text = annotated(&problem, odd);
+        let obeyed = text.chars().find(|c| c.is_control() && *c != '\n' || *c == '\u{202e}');
+        assert_eq!(obeyed, None, "{text:?}");
     }
 }

@@ -155,7 +155,7 @@ fn models_folder(lab: &Lab, registry: &Registry) -> Option<PathBuf> {
 
 fn new_file(lab: &mut Lab, registry: &Registry, id: &str, of: Option<&str>, text: &str) {
     let Some(folder) = models_folder(lab, registry) else {
-        let why = "There is no folder for own models: name one with `lcm --models FOLDER`.";
+        let why = "There is no folder for custom models: name one with `lcm --models FOLDER`.";
         return lab.say(Severity::Error, why);
     };
     let path = folder.join(format!("{id}.{}", own::EXTENSION));

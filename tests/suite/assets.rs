@@ -65,7 +65,7 @@ fn a_new_model_is_written_listed_evaluated_and_checked() {
     );
     let json: Json = serde_json::from_str(&run(at, "--models made/here models --json", "").out).unwrap();
     let own = json.as_array().unwrap().last().unwrap();
-    assert_eq!((&own["id"], &own["family"]), (&"velvet_rim".into(), &"Own files".into()));
+    assert_eq!((&own["id"], &own["family"]), (&"velvet_rim".into(), &"Custom models".into()));
     assert_eq!(own["file"], "made/here/velvet_rim.wgsl");
     assert_eq!(own["parameters"][1]["name"], "gloss");
     assert!(run(at, "schema --models made/here", "").out.contains("\"velvet_rim\""));
@@ -192,7 +192,7 @@ fn what_the_cpu_does_not_know_is_said_and_the_graphics_card_does_it() {
     for (command, input) in [("evaluate table", ANGLES), ("albedo table", "mu\n1\n")] {
         let said = run(command, input);
         assert_eq!(said.status, Some(3), "{command}: {}", said.err);
-        let expected = "table cannot be run on the CPU, which interprets own models: ";
+        let expected = "table cannot be run on the CPU, which interprets custom models: ";
         assert!(said.err.contains(expected) && said.err.contains("with --on gpu"), "{}", said.err);
         assert_eq!(run(&format!("{command} --on gpu"), input).status, Some(0));
     }
@@ -249,12 +249,12 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
     let bad = render("bad");
     assert_eq!(bad.status, Some(2));
     assert!(
-        bad.err.contains("bad\", but the file of that own model has a mistake: models/bad.wgsl:4:"),
+        bad.err.contains("bad\", but the file of that custom model has a mistake: models/bad.wgsl:4:"),
         "{}",
         bad.err
     );
     let gone = render("gone");
-    assert!(gone.err.contains("among the own models there is no models/gone.wgsl"), "{}", gone.err);
+    assert!(gone.err.contains("among the custom models there is no models/gone.wgsl"), "{}", gone.err);
     assert_eq!(render("helped_model").status, Some(0));
 
     let scene = fs::read_to_string(root().join("scenes/default.json")).unwrap();
@@ -263,7 +263,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
     let checked = run(folder.path(), "check bad.json --models models", "");
     assert_eq!(checked.status, Some(1));
     assert!(
-        checked.err.contains("the file of that own model has a mistake: models/bad.wgsl:4:"),
+        checked.err.contains("the file of that custom model has a mistake: models/bad.wgsl:4:"),
         "{}",
         checked.err
     );

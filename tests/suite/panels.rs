@@ -550,7 +550,7 @@ fn a_measured_material_sets_what_was_measured_in_one_edit() {
     // A model that cannot be a measured material has no such knob.
     bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
     assert!(!bench.says("measured material"));
-    assert!(bench.says("about the roughness: 0.352"));
+    assert!(bench.says("equivalent roughness: 0.352"));
 }
 
 #[test]

@@ -308,7 +308,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "a broken shading mode",
         file: "shading/phong.wgsl",
         change: |t| replaced(t, "fn shade_pixel", "fn shade_pixels"),
-        said: "shade_pixel`; this began with the change of shading/phong.wgsl",
+        said: "shade_pixel`; introduced by the change in shading/phong.wgsl",
         line: "",
     },
     Breakage {

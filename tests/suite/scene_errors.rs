@@ -32,7 +32,7 @@ fn a_message_names_file_line_column_path_value_and_rule() {
     assert_eq!(
         said(text),
         "scene.json:8:28: objects[0].material.k_d is 0.20, but the diffuse coefficient must be between 0.5 and 1\n\
-         scene.json:8:43: objects[0].material.alpha is 3.5, but the shininess must be a whole number of at least 0"
+         scene.json:8:43: objects[0].material.alpha is 3.5, but the shininess must be a whole number, 0 or more"
     );
 }
 
@@ -293,7 +293,7 @@ fn every_constraint_has_its_message() {
         (
             "/objects/0/material/alpha",
             json!(-1),
-            "material.alpha is -1, but the shininess must be a whole number of at least 0",
+            "material.alpha is -1, but the shininess must be a whole number, 0 or more",
         ),
         (
             "/objects/0/material/base_colour",
@@ -426,7 +426,7 @@ fn numbers_too_large_for_32_bits_break_the_rule_of_their_field() {
             ("\"intensity\":20", "but an intensity must be"),
             ("\"size\":2", "but a size must be"),
             ("\"field_of_view\":45", "but the field of view must be between 1 and 170 degrees"),
-            ("\"alpha\":32", "but the shininess must be a whole number of at least 0"),
+            ("\"alpha\":32", "but the shininess must be a whole number, 0 or more"),
             ("\"exposure\":-1.5", "but the exposure must be between"),
             ("\"height\":10", "but the height of the room must be"),
         ] {

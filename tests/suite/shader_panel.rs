@@ -342,7 +342,7 @@ fn a_new_model_is_named_and_written() {
     bench.frame(vec![Event::Text("My Velvet".to_owned())]);
     bench.settle();
     assert!(bench.says("my_velvet would do"), "what would be right");
-    assert!(bench.find("Write the file").expect("there").disabled);
+    assert!(bench.find("Create").expect("there").disabled);
     bench.key(Key::Enter, Modifiers::NONE);
     assert!(bench.lab.draft.is_some() && bench.effects.is_empty(), "nothing is written under a wrong name");
     bench.type_into("Name of the model", "phong");
@@ -362,7 +362,7 @@ fn the_shown_model_is_copied() {
     bench.click("Edit");
     bench.click("Duplicate the model as a file… Ctrl+Shift+D");
     assert_eq!(bench.lab.draft, Some(ModelDraft { of: Some("phong".to_owned()), id: "my_phong".to_owned() }));
-    bench.click("Write the file");
+    bench.click("Create");
     let (model, id) = ("phong".to_owned(), "my_phong".to_owned());
     assert_eq!(bench.effects, [Effect::DuplicateModel { model, id }]);
     bench.key(Key::D, Modifiers::COMMAND | Modifiers::CTRL | Modifiers::SHIFT);
@@ -538,7 +538,7 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     assert!(bench.says("the model: models/my_velvet.wgsl") && !bench.says("my_velvet.wgsl: edited"));
     bench.key(Key::R, Modifiers::NONE);
-    assert!(bench.find("Own files").is_some(), "a family of its own");
+    assert!(bench.find("Custom models").is_some(), "a family of its own");
     bench.key(Key::Escape, Modifiers::NONE);
 
     // The same once more is refused, and asked again.

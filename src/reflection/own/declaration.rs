@@ -156,7 +156,7 @@ impl Reader<'_> {
         let source = self.text(&fields, "source", LONGEST_TEXT).unwrap_or_else(|| intern::text(&file));
         let summary = self
             .text(&fields, "summary", LONGEST_TEXT)
-            .unwrap_or_else(|| intern::text(&format!("A model of its own, in {file}.")));
+            .unwrap_or_else(|| intern::text(&format!("A custom model, in {file}.")));
         Some(Said {
             name,
             author,
