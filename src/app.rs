@@ -112,7 +112,7 @@ fn upload_lights(
         return;
     }
     let display = &scene.0.display;
-    let records: Vec<_> = scene.0.lights.iter().map(|l| record(l, &registry, display.encoding)).collect();
+    let records: Vec<_> = scene.0.shining().map(|l| record(l, &registry, display.encoding)).collect();
     let bytes = illumination_bytes(&records, terms.0, display);
     if *last != bytes {
         if let Some(mut buffer) = buffers.get_mut(&buffer.0) {

@@ -31,8 +31,14 @@ pub enum Icon {
     Down,
     /// Less.
     Up,
-    /// The observer.
+    /// The observer; something that can be seen.
     Eye,
+    /// Something that is hidden.
+    EyeOff,
+    /// A light that shines.
+    Lamp,
+    /// A light that is switched off.
+    LampOff,
     /// The room.
     Room,
     /// Back to the default.
@@ -76,7 +82,21 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
         }
         Icon::Down => line(&[(0.2, 0.36), (0.5, 0.66), (0.8, 0.36)]),
         Icon::Up => line(&[(0.2, 0.64), (0.5, 0.34), (0.8, 0.64)]),
-        Icon::Eye => {
+        Icon::Lamp | Icon::LampOff => {
+            let bulb: Vec<Pos2> = (0..=16)
+                .map(|i| {
+                    let a = (128.0 + 17.75 * i as f32).to_radians();
+                    at(0.5 + 0.32 * a.cos(), 0.4 + 0.32 * a.sin())
+                })
+                .collect();
+            painter.add(Shape::line(bulb, stroke));
+            line(&[(0.36, 0.78), (0.64, 0.78)]);
+            line(&[(0.4, 0.94), (0.6, 0.94)]);
+            if icon == Icon::LampOff {
+                line(&[(0.06, 0.94), (0.94, 0.06)]);
+            }
+        }
+        Icon::Eye | Icon::EyeOff => {
             let lid = |sign: f32| -> Vec<Pos2> {
                 (0..=12)
                     .map(|i| {
@@ -88,6 +108,9 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
             painter.add(Shape::line(lid(1.0), stroke));
             painter.add(Shape::line(lid(-1.0), stroke));
             painter.circle_filled(at(0.5, 0.5), 0.15 * s, colour);
+            if icon == Icon::EyeOff {
+                line(&[(0.06, 0.94), (0.94, 0.06)]);
+            }
         }
         Icon::Room => {
             line(&[(0.12, 0.34), (0.66, 0.34), (0.66, 0.9), (0.12, 0.9), (0.12, 0.34)]);

@@ -102,7 +102,7 @@ fn header(
             actions.push(rename(text))
         });
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if icon::button(ui, Icon::Bin, &format!("Remove {name}")).clicked() {
+            if icon::button(ui, Icon::Bin, &format!("Delete {name}")).clicked() {
                 actions.push(Action::Remove(part));
             }
             if icon::button(ui, Icon::Duplicate, &format!("Duplicate {name}")).clicked() {
@@ -212,7 +212,8 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
         match model {
             Some(model) => {
                 model_header(ui, model);
-                equation(ui, lab, model, actions);
+                equation(ui, model);
+                terms(ui, lab, registry, actions);
             }
             None => missing_model(ui, lab, registry, lab.scene.model_of(object), actions),
         }
@@ -474,7 +475,7 @@ fn missing_model(ui: &mut Ui, lab: &Lab, registry: &Registry, id: &str, actions:
     ui.add_space(6.0 * scale);
 }
 
-fn equation(ui: &mut Ui, lab: &Lab, model: &ModelEntry, actions: &mut Vec<Action>) {
+fn equation(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
     // Own models need not say one.
     if d.equation.is_empty() {
@@ -495,27 +496,34 @@ fn equation(ui: &mut Ui, lab: &Lab, model: &ModelEntry, actions: &mut Vec<Action
         }
     };
     maths::equation(ui, d.equation, name);
-    let has = |term: Term| d.equation.iter().any(|p: &EquationPart| p.term == term);
-    if has(Term::Total) {
-        ui.horizontal(|ui| {
-            ui.set_min_height(30.0 * theme::scale_here(ui));
-            ui.label(theme::small(ui, "show"));
-            let options =
-                [TermSelection::All, TermSelection::Ambient, TermSelection::Diffuse, TermSelection::Specular];
-            let chosen = options.iter().position(|t| *t == lab.view.terms);
-            let names = ["all", "ambient", "diffuse", "specular"];
-            let tip = |ui: &mut Ui, i: usize| {
-                ui.label(match options[i] {
-                    TermSelection::All => "The whole equation.".to_owned(),
-                    other => format!("The {} term alone, the others as if they were 0.", other.id()),
-                });
-                ui.label(theme::small(ui, "key T goes through them"));
-            };
-            if let Some(i) = segmented(ui, "Terms", &names, chosen, tip) {
-                actions.push(Action::View(ViewChange::Terms(options[i])));
-            }
-        });
+    ui.add_space(4.0);
+}
+
+/// The choice of the term that the picture shows, where there is one.
+fn terms(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+    let mut options = lab.offered_terms(registry);
+    if !options.contains(&lab.view.terms) {
+        options.push(lab.view.terms);
     }
+    if options.len() == 1 {
+        return;
+    }
+    ui.horizontal(|ui| {
+        ui.set_min_height(30.0 * theme::scale_here(ui));
+        ui.label(theme::small(ui, "show"));
+        let chosen = options.iter().position(|t| *t == lab.view.terms);
+        let names: Vec<_> = options.iter().map(|t| t.id()).collect();
+        let tip = |ui: &mut Ui, i: usize| {
+            ui.label(match options[i] {
+                TermSelection::All => "The whole equation.".to_owned(),
+                other => format!("The {} term alone, the others as if they were 0.", other.id()),
+            });
+            ui.label(theme::small(ui, "key T goes through them"));
+        };
+        if let Some(i) = segmented(ui, "Terms", &names, chosen, tip) {
+            actions.push(Action::View(ViewChange::Terms(options[i])));
+        }
+    });
     ui.add_space(4.0);
 }
 

@@ -69,7 +69,9 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
     add("File", true, true, Key::S, "Save as…", Action::SaveAsDialog);
     add("File", true, false, Key::Q, "Quit", Action::Quit);
     add("Edit", true, false, Key::D, "Duplicate", Action::Duplicate(lab.selection));
-    add("Edit", false, false, Key::Delete, "Remove", Action::Remove(lab.selection));
+    add("Edit", false, false, Key::Delete, "Delete", Action::Remove(lab.selection));
+    let toggle = "Hide or show the object, switch the light off or on";
+    add("Edit", false, false, Key::V, toggle, Action::Toggle(lab.selection));
     add("Edit", false, false, Key::F2, "Rename", Action::BeginRename(lab.selection));
     for mode in registry.modes() {
         let d = mode.declaration;

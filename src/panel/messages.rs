@@ -64,6 +64,11 @@ impl Panel for Messages {
                             ui.set_width(width);
                             ui.add_space(2.0 * scale);
                             ui.add(egui::Label::new(RichText::new(&message.text)).wrap().selectable(true));
+                            if let Some((label, action)) = &message.offer
+                                && ui.button(*label).clicked()
+                            {
+                                actions.push((**action).clone());
+                            }
                         });
                         if icon::button(ui, Icon::Copy, "Copy the message").clicked() {
                             actions.push(Action::Copy(message.text.clone()));

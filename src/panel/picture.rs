@@ -8,18 +8,14 @@ use glam::Vec3;
 
 use super::{
     author::SHADER_TAB,
+    caption::caption_text,
     icon,
     inspector::plural,
     maths, shader,
-    state::{Action, Lab, Selection, Severity, Shaders, ViewChange},
+    state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
-use crate::{
-    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    reflection::Term,
-    registry::Registry,
-    shader::status::ShaderStatus,
-};
+use crate::{optics::TermSelection, reflection::Term, registry::Registry, shader::status::ShaderStatus};
 
 /// Paints the overlays into the rectangle of the picture. Returns what was asked for there, and the place that
 /// can be clicked, which does not belong to the picture.
@@ -141,10 +137,26 @@ fn plate(
     rect
 }
 
+/// Says that terms of the equation are hidden.
+fn hidden_terms(lab: &Lab) -> Option<Badge> {
+    let shown = match lab.view.terms {
+        TermSelection::All => return None,
+        other => other.id(),
+    };
+    Some(Badge {
+        severity: Severity::Info,
+        text: format!("Only the {shown} term"),
+        help: "The other terms of the equation are hidden. T goes on to the next; View › All terms of the equation \
+               shows them all."
+            .to_owned(),
+    })
+}
+
 fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, scale: f32) {
     let palette = Palette::here(ui);
     let mut y = top;
-    for (i, badge) in lab.disk.badge.iter().chain(&lab.badges).enumerate() {
+    let hidden = hidden_terms(lab);
+    for (i, badge) in hidden.iter().chain(&lab.disk.badge).chain(&lab.badges).enumerate() {
         let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
         let painter = ui.painter_at(rect);
         let left = 18.0 * scale;
@@ -177,41 +189,6 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, scale: f32) {
         }
         y = place.bottom() + 4.0;
     }
-}
-
-/// What the picture shows, in words, so that a screenshot says it too.
-#[must_use]
-pub fn caption_text(lab: &Lab, registry: &Registry) -> String {
-    let object = match lab.selection {
-        Selection::Object(i) => lab.scene.objects.get(i),
-        _ => None,
-    };
-    let (model, mode) = match object {
-        Some(o) => (lab.scene.model_of(o), lab.scene.mode_of(o)),
-        None => (lab.scene.reflection_model.as_str(), lab.scene.shading_model.as_str()),
-    };
-    let model = registry.model(model).map_or(model, |m| m.declaration.name);
-    let (mode, stage) = match registry.mode(mode) {
-        Some(m) => (m.declaration.name, format!(" · computed {}", m.declaration.stage.phrase())),
-        None => (mode, String::new()),
-    };
-    let terms = match lab.view.terms {
-        TermSelection::All => String::new(),
-        other => format!(" · {} term alone", other.id()),
-    };
-    let exposure = match lab.scene.display.exposure {
-        0.0 => String::new(),
-        ev => format!(" · {}{} EV", if ev > 0.0 { "+" } else { "" }, super::limits::number(f64::from(ev))),
-    };
-    let tone = match lab.scene.display.tone_mapping {
-        ToneMapping::None => String::new(),
-        tone => format!(" · {}", tone.name()),
-    };
-    let encoding = match lab.scene.display.encoding {
-        Encoding::Srgb => "",
-        Encoding::Off => " · gamma-naive",
-    };
-    format!("{model} · {mode} shading{stage}{terms}{exposure}{tone}{encoding}")
 }
 
 fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) {

@@ -198,7 +198,7 @@ impl Lab {
 
     /// Says something about the file that gives way when there is something newer to say.
     fn say_of_disk(&mut self, severity: Severity, text: String) {
-        self.disk.notes.push(Note { severity, text: printable(&text).into_owned() });
+        self.disk.notes.push(Note { severity, text: printable(&text).into_owned(), offer: None });
         self.say(severity, text);
     }
 

@@ -16,9 +16,11 @@ use super::{
     author::{Ask, ModelDraft},
     follow::Aside,
     limits,
+    names::{Names, free_name, name_of},
     recovery::{Choice, Offer},
     reload::OnDisk,
     settings::Settings,
+    terms::KnownTerms,
 };
 use crate::{
     files::printable,
@@ -117,15 +119,20 @@ pub struct Lab {
     pub(super) seen_troubles: Vec<(String, String)>,
     /// What the document had and no model takes at present.
     pub(super) aside: Aside,
+    known_terms: KnownTerms,
+    /// True if the camera has left the observer, fed by the app.
+    pub camera_left: bool,
 }
 
 /// A message to the user.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Note {
     /// How bad it is.
     pub severity: Severity,
     /// What happened, where, and what to do.
     pub text: String,
+    /// A button beside it, and what it does.
+    pub offer: Option<(&'static str, Box<Action>)>,
 }
 
 /// How bad a message is.
@@ -372,6 +379,8 @@ pub enum Action {
     Duplicate(Selection),
     /// Remove a light or an object.
     Remove(Selection),
+    /// Hide an object or show it again; switch a light off or on.
+    Toggle(Selection),
     /// Begin typing the name of a part in the tree.
     BeginRename(Selection),
     /// Stop typing without a change.
@@ -470,6 +479,8 @@ pub enum Edit {
 pub enum LightField {
     /// The name; empty for none.
     Name(String),
+    /// False switches it off.
+    Enabled(bool),
     /// The type.
     Kind(String),
     /// Where it stands.
@@ -493,6 +504,8 @@ pub enum LightField {
 pub enum ObjectField {
     /// The name; empty for none.
     Name(String),
+    /// False hides it.
+    Visible(bool),
     /// The type.
     Kind(String),
     /// Where its centre is.
@@ -632,6 +645,8 @@ impl Lab {
             slot_use: Vec::new(),
             seen_troubles: Vec::new(),
             aside: Aside::default(),
+            known_terms: KnownTerms::default(),
+            camera_left: false,
         };
         lab.select_first();
         lab.use_slot(&lab.scene.reflection_model.clone());
@@ -709,6 +724,12 @@ impl Lab {
         }
     }
 
+    /// The terms that the picture can show alone, and all of them; the terms that are 0 everywhere are left out.
+    #[must_use]
+    pub fn offered_terms(&self, registry: &Registry) -> Vec<TermSelection> {
+        self.known_terms.offered(&self.scene, registry)
+    }
+
     /// The change that folds the strip at the bottom away, or unfolds it with the messages.
     #[must_use]
     pub fn strip_change(&self) -> ViewChange {
@@ -721,7 +742,11 @@ impl Lab {
 
     /// Adds a message; an error unfolds the strip that shows it.
     pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
-        let message = Note { severity, text: printable(&text.into()).into_owned() };
+        self.note(Note { severity, text: printable(&text.into()).into_owned(), offer: None });
+    }
+
+    fn note(&mut self, message: Note) {
+        let severity = message.severity;
         // The same words twice in a row say no more than once.
         if self.messages.last() != Some(&message) {
             if self.messages.len() >= MAX_MESSAGES {
@@ -751,6 +776,7 @@ impl Lab {
     /// The document has been written. Returns what waited for it.
     pub fn saved(&mut self, path: PathBuf, registry: &Registry) -> Vec<Effect> {
         self.remember_file(&path);
+        self.note_saved(&path);
         self.path = Some(path);
         self.saved = self.scene.clone();
         self.recovered = false;
@@ -761,6 +787,17 @@ impl Lab {
             effects.extend(self.apply(action, registry));
         }
         effects
+    }
+
+    fn note_saved(&mut self, path: &Path) {
+        let mut text = format!("Saved to {}.", printable(&path.to_string_lossy()));
+        let mut offer = None;
+        if self.camera_left {
+            text.push_str(" The view you turned to is not in the file: it has the observer’s.");
+            offer = Some(("Set observer to this view", Box::new(Action::ObserverFromView)));
+        }
+        self.messages.retain(|m| m.severity != Severity::Info || !m.text.starts_with("Saved to "));
+        self.note(Note { severity: Severity::Info, text, offer });
     }
 
     /// The document could not be written, or no file was chosen: what waited for it is dropped.
@@ -799,7 +836,13 @@ impl Lab {
                 };
             }
             Action::SaveAsDialog => return vec![Effect::PickSave],
-            Action::SaveAs(path) => return vec![Effect::SaveFile { path, overwrite: true }],
+            Action::SaveAs(path) => {
+                // A scene that was in no file is called as its file from now on, unless the user named it.
+                if self.path.is_none() && self.scene.name == self.saved.name {
+                    self.change(|scene| scene.name = None);
+                }
+                return vec![Effect::SaveFile { path, overwrite: true }];
+            }
             Action::ClearRecent => {
                 self.recent_files.clear();
                 return vec![Effect::SaveSettings];
@@ -816,8 +859,19 @@ impl Lab {
             Action::SelectPrevious => self.step_selection(-1),
             Action::AddLight(kind) => self.add_light(&kind, registry),
             Action::AddObject(kind) => self.add_object(&kind, registry),
-            Action::Duplicate(part) => self.duplicate(part),
-            Action::Remove(part) => self.remove(part),
+            Action::Duplicate(part) => self.duplicate(part, registry),
+            Action::Remove(part) => self.remove(part, registry),
+            Action::Toggle(part) => match part {
+                Selection::Light(i) if self.exists(part) => {
+                    let on = !self.scene.lights[i].enabled;
+                    self.edit(Edit::Light(i, LightField::Enabled(on)), registry);
+                }
+                Selection::Object(i) if self.exists(part) => {
+                    let on = !self.scene.objects[i].visible;
+                    self.edit(Edit::Object(i, ObjectField::Visible(on)), registry);
+                }
+                _ => self.say(Severity::Info, "Select an object to hide it, or a light to switch it off."),
+            },
             Action::BeginRename(part) => {
                 self.select(part);
                 self.renaming = Some(part);
@@ -836,9 +890,18 @@ impl Lab {
                 }
             }
             Action::NextTerms => {
-                let all = TermSelection::ALL;
-                let at = all.iter().position(|t| *t == self.view.terms).unwrap_or(0);
-                self.view.terms = all[(at + 1) % all.len()];
+                let offered = self.offered_terms(registry);
+                let next = match offered.iter().position(|t| *t == self.view.terms) {
+                    Some(at) => offered[(at + 1) % offered.len()],
+                    None => TermSelection::All,
+                };
+                if offered.len() == 1 && self.view.terms == next {
+                    self.say(
+                        Severity::Info,
+                        "The equation has one term here: there is nothing to take apart.",
+                    );
+                }
+                self.view.terms = next;
             }
             Action::View(change) => return self.change_view(change),
             Action::HomeView => return vec![Effect::HomeView],
@@ -1068,8 +1131,12 @@ impl Lab {
             intensity: d.default_intensity,
             ..Light::default()
         };
-        self.change(|scene| scene.lights.push(light));
-        self.select(Selection::Light(self.scene.lights.len() - 1));
+        let at = self.scene.lights.len();
+        self.change_parts(registry, |scene, names| {
+            scene.lights.push(light);
+            names.lights.push(None);
+        });
+        self.select(Selection::Light(at));
     }
 
     fn add_object(&mut self, kind: &str, registry: &Registry) {
@@ -1084,11 +1151,15 @@ impl Lab {
         let size = crate::scene::DEFAULT_SIZE.min(0.5 * corner.min_element());
         let position = self.free_place(corner * 0.5);
         let object = Object { kind: kind.to_owned(), position, size, ..Object::default() };
-        self.change(|scene| scene.objects.push(object));
-        self.select(Selection::Object(self.scene.objects.len() - 1));
+        let at = self.scene.objects.len();
+        self.change_parts(registry, |scene, names| {
+            scene.objects.push(object);
+            names.objects.push(None);
+        });
+        self.select(Selection::Object(at));
     }
 
-    fn duplicate(&mut self, part: Selection) {
+    fn duplicate(&mut self, part: Selection, registry: &Registry) {
         match part {
             Selection::Light(i) if i < self.scene.lights.len() => {
                 if self.scene.lights.len() >= MAX_LIGHTS {
@@ -1097,8 +1168,11 @@ impl Lab {
                 }
                 let mut copy = self.scene.lights[i].clone();
                 copy.position = copy.position.map(|p| self.free_place(p));
-                copy.name = copy.name.map(|n| self.free_name(&n));
-                self.change(|scene| scene.lights.insert(i + 1, copy));
+                copy.name = copy.name.map(|n| free_name(&self.scene, &n));
+                self.change_parts(registry, |scene, names| {
+                    scene.lights.insert(i + 1, copy);
+                    names.lights.insert(i + 1, None);
+                });
                 self.select(Selection::Light(i + 1));
             }
             Selection::Object(i) if i < self.scene.objects.len() => {
@@ -1108,8 +1182,11 @@ impl Lab {
                 }
                 let mut copy = self.scene.objects[i].clone();
                 copy.position = self.free_place(copy.position);
-                copy.name = copy.name.map(|n| self.free_name(&n));
-                self.change(|scene| scene.objects.insert(i + 1, copy));
+                copy.name = copy.name.map(|n| free_name(&self.scene, &n));
+                self.change_parts(registry, |scene, names| {
+                    scene.objects.insert(i + 1, copy);
+                    names.objects.insert(i + 1, None);
+                });
                 self.aside.object_copied(i);
                 self.select(Selection::Object(i + 1));
             }
@@ -1117,7 +1194,7 @@ impl Lab {
         }
     }
 
-    fn remove(&mut self, part: Selection) {
+    fn remove(&mut self, part: Selection, registry: &Registry) {
         match part {
             Selection::Light(_) if self.scene.lights.len() <= 1 => {
                 self.say(
@@ -1129,12 +1206,18 @@ impl Lab {
                 self.say(Severity::Info, "Can’t delete the last object: a scene needs at least one.");
             }
             Selection::Light(i) if i < self.scene.lights.len() => {
-                self.change(|scene| drop(scene.lights.remove(i)));
+                self.change_parts(registry, |scene, names| {
+                    scene.lights.remove(i);
+                    names.lights.remove(i);
+                });
                 self.selection = Selection::Light(i.min(self.scene.lights.len() - 1));
                 self.renaming = None;
             }
             Selection::Object(i) if i < self.scene.objects.len() => {
-                self.change(|scene| drop(scene.objects.remove(i)));
+                self.change_parts(registry, |scene, names| {
+                    scene.objects.remove(i);
+                    names.objects.remove(i);
+                });
                 self.aside.object_removed(i);
                 self.selection = Selection::Object(i.min(self.scene.objects.len() - 1));
                 self.renaming = None;
@@ -1174,21 +1257,21 @@ impl Lab {
         if to_centre.length() > SAME_PLACE { round(to_centre.normalize()) } else { Vec3::NEG_Y }
     }
 
-    /// "lamp" → "lamp 2", "lamp 2" → "lamp 3": the next number that is free.
-    fn free_name(&self, name: &str) -> String {
-        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
-        let stem = if stem.is_empty() { name } else { stem };
-        let names: Vec<_> = (self.scene.lights.iter().filter_map(|l| l.name.as_deref()))
-            .chain(self.scene.objects.iter().filter_map(|o| o.name.as_deref()))
-            .collect();
-        (2..).map(|n| format!("{stem} {n}")).find(|n| !names.contains(&n.as_str())).unwrap_or_default()
-    }
-
     // ── changing the scene ──
 
     /// The one place where the scene changes: where a stack of snapshots for undoing would be fed.
     fn change(&mut self, f: impl FnOnce(&mut Scene)) {
         f(&mut self.scene);
+    }
+
+    /// Changes which parts there are, or of which types: those that stay keep what they are called. `f` makes the same
+    /// change in both; a part without a name there is new.
+    fn change_parts(&mut self, registry: &Registry, f: impl FnOnce(&mut Scene, &mut Names)) {
+        let mut names = Names::of(&self.scene, registry);
+        self.change(|scene| {
+            f(scene, &mut names);
+            names.keep(scene, registry);
+        });
     }
 
     fn edit(&mut self, edit: Edit, registry: &Registry) {
@@ -1221,6 +1304,7 @@ impl Lab {
                     // What is not given has the value that it has when the file is read again.
                     match field {
                         LightField::Name(name) => light.name = named(name),
+                        LightField::Enabled(on) => light.enabled = on,
                         LightField::Kind(kind) => light.kind = kind,
                         LightField::Position(p) => light.position = Some(p),
                         LightField::Direction(d) => light.direction = Some(d),
@@ -1244,10 +1328,14 @@ impl Lab {
                 if let ObjectField::Name(_) = field {
                     self.renaming = None;
                 }
+                // Others keep their numbers; calculated only where there may be others.
+                let names = matches!(field, ObjectField::Name(_) | ObjectField::Kind(_))
+                    .then(|| Names::of(&self.scene, registry));
                 self.change(|s| {
                     let o = &mut s.objects[i];
                     match field {
                         ObjectField::Name(name) => o.name = named(name),
+                        ObjectField::Visible(on) => o.visible = on,
                         ObjectField::Kind(kind) => {
                             // What the number counts differs from type to type.
                             o.tessellation = None;
@@ -1264,6 +1352,10 @@ impl Lab {
                             all.into_iter().for_each(|(name, value)| o.material.set(name, value));
                         }
                     }
+                    if let Some(mut names) = names {
+                        names.objects[i] = None;
+                        names.keep(s, registry);
+                    }
                 });
             }
         }
@@ -1276,7 +1368,8 @@ impl Lab {
             None => self.free_place(self.scene.scene_size.corner() * Vec3::new(0.75, 0.8, 0.9)),
         };
         let direction = self.scene.lights[i].direction.unwrap_or_else(|| self.towards_centre(position));
-        self.change(|s| {
+        self.change_parts(registry, |s, names| {
+            names.lights[i] = None;
             let room = s.scene_size;
             let light = &mut s.lights[i];
             (light.position, light.direction) = (Some(position), Some(direction));
@@ -1348,7 +1441,7 @@ impl Lab {
                 let entry = registry.light(&light.kind);
                 let declaration = entry.map(|e| e.declaration);
                 match field {
-                    LightField::Name(_) | LightField::Colour(_) => Ok(()),
+                    LightField::Name(_) | LightField::Enabled(_) | LightField::Colour(_) => Ok(()),
                     LightField::Kind(id) => known(registry.light(id).is_some(), "light type", id),
                     LightField::Position(p) => place(part, *p),
                     LightField::Direction(d) => direction(part, *d),
@@ -1384,7 +1477,7 @@ impl Lab {
                 let object = object(*i)?;
                 let part = Selection::Object(*i);
                 match field {
-                    ObjectField::Name(_) => Ok(()),
+                    ObjectField::Name(_) | ObjectField::Visible(_) => Ok(()),
                     ObjectField::Kind(id) => known(registry.shape(id).is_some(), "object type", id),
                     ObjectField::Position(p) => place(part, *p),
                     ObjectField::Size(v) => legal(
@@ -1454,27 +1547,6 @@ impl Lab {
             ViewChange::Chooser(open) => view.chooser_open = open,
         }
         if before == self.settings() { Vec::new() } else { vec![Effect::SaveSettings] }
-    }
-}
-
-/// What people call a part of the scene: its name, or its type and its number among its type.
-#[must_use]
-pub fn name_of(scene: &Scene, part: Selection, registry: &Registry) -> String {
-    match part {
-        Selection::Room => "Room".to_owned(),
-        Selection::Observer => "Observer".to_owned(),
-        Selection::Light(i) => {
-            let Some(light) = scene.lights.get(i) else { return "light".to_owned() };
-            let kind = registry.light(&light.kind).map_or(light.kind.as_str(), |e| e.declaration.name);
-            let number = scene.lights[..=i].iter().filter(|l| l.kind == light.kind).count();
-            light.name.clone().unwrap_or_else(|| format!("{kind} {number}"))
-        }
-        Selection::Object(i) => {
-            let Some(object) = scene.objects.get(i) else { return "object".to_owned() };
-            let kind = registry.shape(&object.kind).map_or(object.kind.as_str(), |e| e.declaration.name);
-            let number = scene.objects[..=i].iter().filter(|o| o.kind == object.kind).count();
-            object.name.clone().unwrap_or_else(|| format!("{kind} {number}"))
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The line at the bottom: what is selected, what is in progress, what needs attention.
 
 use bevy_egui::egui::{
-    self, Align, Button, Layout, ProgressBar, RichText, Sense, Ui, WidgetInfo, WidgetType, vec2,
+    self, Align, Button, Layout, ProgressBar, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
 };
 
 use super::{
@@ -60,6 +60,7 @@ impl Panel for StatusLine {
                 actions.push(Action::View(lab.strip_change()));
             }
             shader_errors(ui, lab, &mut actions);
+            latest(ui, lab, &mut actions);
             let (words, help) = match lab.status.shaders {
                 Shaders::Ready => ("", ""),
                 Shaders::Compiling => (
@@ -85,6 +86,24 @@ impl Panel for StatusLine {
             });
         });
         actions
+    }
+}
+
+/// The last message, if it is good news and still true.
+fn latest(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
+    let Some(message) = lab.messages.last().filter(|m| m.severity == Severity::Info) else { return };
+    if lab.view.bottom_open || lab.is_dirty() {
+        return;
+    }
+    let room = (ui.available_width() - 360.0 * theme::scale_here(ui)).max(80.0);
+    let colour = Palette::here(ui).text;
+    let galley = theme::elided(ui, &message.text, TextStyle::Small, colour, room);
+    let label = ui.add(egui::Label::new(galley));
+    label.on_hover_text(&message.text);
+    if let Some((text, action)) = &message.offer
+        && ui.add(Button::new(theme::small(ui, *text).color(colour)).small()).clicked()
+    {
+        actions.push((**action).clone());
     }
 }
 

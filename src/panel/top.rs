@@ -173,7 +173,8 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             ui.add_enabled_ui(part, |ui| {
                 item(ui, "Rename", Action::BeginRename(lab.selection), actions);
                 item(ui, "Duplicate", Action::Duplicate(lab.selection), actions);
-                item(ui, "Remove", Action::Remove(lab.selection), actions);
+                item(ui, "Hide or switch off", Action::Toggle(lab.selection), actions);
+                item(ui, "Delete", Action::Remove(lab.selection), actions);
             });
             ui.separator();
             item(ui, "New reflection model…", Action::Author(Ask::New), actions);
@@ -187,7 +188,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             item(ui, "Focus selection", Action::FocusSelection, actions);
             item(ui, "Set observer to this view", Action::ObserverFromView, actions);
             ui.separator();
-            for terms in TermSelection::ALL {
+            for terms in lab.offered_terms(registry) {
                 let name = match terms {
                     TermSelection::All => "All terms of the equation".to_owned(),
                     other => format!("The {} term alone", other.id()),

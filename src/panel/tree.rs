@@ -11,7 +11,11 @@ use super::{
     state::{Action, Edit, Lab, LightField, ObjectField, Selection},
     theme::{self, Palette},
 };
-use crate::{optics::colour::Encoding, reflection::parameter::BASE_COLOUR, registry::Registry};
+use crate::{
+    optics::colour::Encoding,
+    reflection::parameter::{BASE_COLOUR, Value},
+    registry::Registry,
+};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -217,32 +221,16 @@ fn part_row(
         rename(ui, lab, part, &name, place, actions);
         return;
     }
-    let buttons = nested && (hovered || response.has_focus() || response.context_menu_opened());
-    let right = ground.right() - if buttons { 50.0 * scale } else { 22.0 * scale };
-    let galley = elided(ui, &name, body, palette.text, right - text_left);
+    let right = ground.right() - if nested { 48.0 * scale } else { 8.0 * scale };
+    let there = is_there(lab, part);
+    let colour = if there { palette.text } else { palette.weak };
+    let galley = elided(ui, &name, body, colour, right - text_left);
     let cut = galley.elided;
-    painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, palette.text);
-    if buttons {
-        let place = Rect::from_min_max(
-            pos2(ground.right() - 48.0 * scale, rect.top() + 2.0 * scale),
-            pos2(ground.right(), rect.bottom()),
-        );
-        let mut child = ui.new_child(
-            egui::UiBuilder::new()
-                .id_salt(("buttons", part))
-                .max_rect(place)
-                .layout(egui::Layout::left_to_right(egui::Align::Min)),
-        );
-        child.spacing_mut().item_spacing.x = 2.0;
-        if icon::button(&mut child, Icon::Duplicate, &format!("Duplicate {name}")).clicked() {
-            actions.push(Action::Duplicate(part));
-        }
-        if icon::button(&mut child, Icon::Bin, &format!("Remove {name}")).clicked() {
-            actions.push(Action::Remove(part));
-        }
-    } else if let Some([r, g, b]) = dot {
-        let at = pos2(ground.right() - 12.0 * scale, rect.center().y);
-        painter.circle(at, 4.0 * scale, egui::Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
+    painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
+    if let Some(rgb) = dot {
+        let centre = |from_right: f32| pos2(ground.right() - from_right * scale, rect.center().y);
+        toggle(ui, centre(36.0), hovered, part, there, &name, actions);
+        colour_dot(ui, centre(12.0), rgb, part, &name, actions);
     }
     if response.clicked() {
         actions.push(Action::Select(part));
@@ -263,17 +251,107 @@ fn part_row(
         if nested {
             item(ui, "Rename", Action::BeginRename(part));
             item(ui, "Duplicate", Action::Duplicate(part));
-            item(ui, "Remove", Action::Remove(part));
+            item(ui, toggle_words(part, is_there(lab, part)), Action::Toggle(part));
+            ui.separator();
+            item(ui, "Delete", Action::Remove(part));
         } else {
-            item(ui, "Show in the inspector", Action::Select(part));
+            item(ui, "Show properties", Action::Select(part));
         }
         if part == Selection::Observer {
-            item(ui, "Put the observer where the camera is", Action::ObserverFromView);
+            item(ui, "Set observer to this view", Action::ObserverFromView);
         }
     });
     if cut {
         response.on_hover_text(name);
     }
+}
+
+/// True unless it is hidden or switched off.
+fn is_there(lab: &Lab, part: Selection) -> bool {
+    match part {
+        Selection::Light(i) => lab.scene.lights.get(i).is_none_or(|light| light.enabled),
+        Selection::Object(i) => lab.scene.objects.get(i).is_none_or(|object| object.visible),
+        Selection::Room | Selection::Observer => true,
+    }
+}
+
+fn toggle_words(part: Selection, there: bool) -> &'static str {
+    match (part, there) {
+        (Selection::Light(_), true) => "Switch off",
+        (Selection::Light(_), false) => "Switch on",
+        (_, true) => "Hide",
+        (_, false) => "Show",
+    }
+}
+
+/// A small place in a row that can be clicked. Keys reach what it does through the row, so Tab passes it by.
+fn spot(ui: &Ui, centre: egui::Pos2, id: egui::Id, says: &str) -> egui::Response {
+    let rect = Rect::from_center_size(centre, vec2(22.0, 22.0) * theme::scale_here(ui));
+    let response = ui.interact(rect, id, Sense::CLICK);
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, says));
+    if response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, Palette::here(ui).hovered);
+    }
+    response
+}
+
+/// The eye of an object, or the lamp of a light.
+fn toggle(
+    ui: &mut Ui,
+    centre: egui::Pos2,
+    row_hovered: bool,
+    part: Selection,
+    there: bool,
+    name: &str,
+    actions: &mut Vec<Action>,
+) {
+    let palette = Palette::here(ui);
+    let says = format!("{} {name}", toggle_words(part, there));
+    let response = spot(ui, centre, ui.id().with(("toggle", part)), &says);
+    let icon = match (part, there) {
+        (Selection::Light(_), true) => Icon::Lamp,
+        (Selection::Light(_), false) => Icon::LampOff,
+        (_, true) => Icon::Eye,
+        (_, false) => Icon::EyeOff,
+    };
+    let strong = row_hovered || !there || response.hovered();
+    let colour = if strong { palette.text } else { palette.weak };
+    let square = Rect::from_center_size(centre, vec2(13.0, 13.0) * theme::scale_here(ui));
+    icon::paint(ui.painter(), square, icon, colour);
+    if response.on_hover_text(format!("{says} (V for what is selected)")).clicked() {
+        actions.push(Action::Toggle(part));
+    }
+}
+
+/// The colour of a part, which a click changes.
+fn colour_dot(
+    ui: &mut Ui,
+    centre: egui::Pos2,
+    [r, g, b]: [u8; 3],
+    part: Selection,
+    name: &str,
+    actions: &mut Vec<Action>,
+) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let response = spot(ui, centre, ui.id().with(("dot", part)), &format!("Colour of {name}"));
+    let mut colour = egui::Color32::from_rgb(r, g, b);
+    ui.painter().circle(centre, 4.5 * scale, colour, Stroke::new(1.0, palette.weak));
+    egui::Popup::menu(&response).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
+        ui.spacing_mut().slider_width = 220.0 * scale;
+        if egui::color_picker::color_picker_color32(ui, &mut colour, egui::color_picker::Alpha::Opaque) {
+            let rgb = [colour.r(), colour.g(), colour.b()];
+            actions.extend(match part {
+                Selection::Light(i) => Some(Action::Edit(Edit::Light(i, LightField::Colour(rgb)))),
+                Selection::Object(i) => {
+                    let field = ObjectField::Material(BASE_COLOUR.name, Value::Colour(rgb));
+                    Some(Action::Edit(Edit::Object(i, field)))
+                }
+                Selection::Room | Selection::Observer => None,
+            });
+        }
+    });
+    response.on_hover_text(format!("Colour of {name}"));
 }
 
 fn elided(

@@ -25,8 +25,7 @@ pub(super) struct Lights {
 impl Lights {
     pub(super) fn new(scene: &Scene, registry: &Registry, terms: TermSelection) -> Self {
         let lights = scene
-            .lights
-            .iter()
+            .shining()
             .filter_map(|light| {
                 let incident = registry.light(&light.kind)?.incident;
                 Some((incident, record(light, registry, scene.display.encoding)))

@@ -197,8 +197,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     let frustum = raster::frustum(&clip_from_room);
 
     let seen: Vec<_> = scene
-        .objects
-        .iter()
+        .shown()
         .filter_map(|object| {
             let shape = shapes.get(&key(object, registry)?)?;
             let radius = shape.radius * object.size;
@@ -283,7 +282,7 @@ fn key(object: &Object, registry: &Registry) -> Option<(&'static str, u32)> {
 
 /// The meshes that a scene needs, each once.
 fn prepare(scene: &Scene, registry: &Registry) -> HashMap<(&'static str, u32), Prepared> {
-    let mut wanted: Vec<_> = scene.objects.iter().filter_map(|object| key(object, registry)).collect();
+    let mut wanted: Vec<_> = scene.shown().filter_map(|object| key(object, registry)).collect();
     wanted.sort_unstable();
     wanted.dedup();
     wanted

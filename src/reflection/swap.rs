@@ -190,8 +190,8 @@ impl Drawn {
 }
 
 /// Whether some light of a scene shines from everywhere alike, so that albedos are asked for.
-fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
-    scene.lights.iter().any(|light| {
+pub(crate) fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
+    scene.shining().any(|light| {
         registry.light(&light.kind).is_some_and(|entry| {
             let record = record(light, registry, scene.display.encoding);
             matches!((entry.incident)(&record, glam::Vec3::ZERO), Incident::Everywhere { .. })

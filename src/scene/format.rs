@@ -68,6 +68,10 @@ struct LightFile<'a> {
     /// What you call it.
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<&'a str>,
+    /// False switches it off.
+    #[schemars(extend("default" = true))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    enabled: Option<bool>,
     /// Where it stands: [x, y, z] in metres, inside the room, not where the observer or an object is.
     #[serde(skip_serializing_if = "Option::is_none")]
     position: Option<[f32; 3]>,
@@ -122,6 +126,10 @@ struct ObjectFile<'a> {
     /// What you call it.
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<&'a str>,
+    /// False hides it.
+    #[schemars(extend("default" = true))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    visible: Option<bool>,
     /// Where its centre is: [x, y, z] in metres, inside the room, not where a light or the observer is.
     position: [f32; 3],
     /// Its largest extent, metres.
@@ -227,6 +235,7 @@ impl<'a> LightFile<'a> {
         Self {
             kind: &light.kind,
             name: light.name.as_deref(),
+            enabled: (!light.enabled).then_some(false),
             position: light.position.map(Into::into),
             direction: light.direction.map(Into::into),
             colour: light.colour_temperature.is_none().then_some(light.colour),
@@ -253,6 +262,7 @@ impl<'a> ObjectFile<'a> {
         Self {
             kind: &object.kind,
             name: object.name.as_deref(),
+            visible: (!object.visible).then_some(false),
             position: object.position.into(),
             size: Some(object.size),
             rotation: (object.rotation != glam::Vec3::ZERO).then(|| object.rotation.into()),

@@ -104,6 +104,8 @@ pub struct Light {
     pub kind: String,
     /// What the user calls it.
     pub name: Option<String>,
+    /// False while it is switched off.
+    pub enabled: bool,
     /// Where it stands; `None` for types without a position.
     pub position: Option<Vec3>,
     /// Where it shines, not normalised; `None` for types without a direction.
@@ -138,6 +140,8 @@ pub struct Object {
     pub kind: String,
     /// What the user calls it.
     pub name: Option<String>,
+    /// False while it is hidden.
+    pub visible: bool,
     /// Where its centre is.
     pub position: Vec3,
     /// Largest extent in metres.
@@ -171,6 +175,7 @@ impl Default for Light {
         Self {
             kind: "point".to_owned(),
             name: None,
+            enabled: true,
             position: Some(Vec3::new(7.5, 8.0, 9.0)),
             direction: None,
             colour: [255; 3],
@@ -228,6 +233,7 @@ impl Default for Object {
         Self {
             kind: "sphere".to_owned(),
             name: None,
+            visible: true,
             position: Vec3::splat(5.0),
             size: DEFAULT_SIZE,
             rotation: Vec3::ZERO,
@@ -263,6 +269,16 @@ impl Scene {
     pub fn models(&self) -> BTreeSet<&str> {
         let own = self.objects.iter().filter_map(|o| o.reflection_model.as_deref());
         own.chain([self.reflection_model.as_str()]).collect()
+    }
+
+    /// The lights that shine.
+    pub fn shining(&self) -> impl Iterator<Item = &Light> {
+        self.lights.iter().filter(|light| light.enabled)
+    }
+
+    /// The objects that can be seen.
+    pub fn shown(&self) -> impl Iterator<Item = &Object> {
+        self.objects.iter().filter(|object| object.visible)
     }
 
     /// The reflection model of an object: its own, or the scene's.

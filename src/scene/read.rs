@@ -43,8 +43,17 @@ pub(super) const SCENE_KEYS: &[&str] = &[
 /// The keys of `scene_size`.
 pub(super) const SIZE_KEYS: &[&str] = &["height", "width", "depth"];
 /// The keys that lights of every type may have.
-pub(super) const LIGHT_KEYS: &[&str] =
-    &["type", "name", "position", "direction", "colour", "colour_temperature", "intensity", "luminous_flux"];
+pub(super) const LIGHT_KEYS: &[&str] = &[
+    "type",
+    "name",
+    "enabled",
+    "position",
+    "direction",
+    "colour",
+    "colour_temperature",
+    "intensity",
+    "luminous_flux",
+];
 /// Keys of a light of which it has one or the other; the first counts where neither is given.
 pub(super) const LIGHT_ALTERNATIVES: [[&str; 2]; 2] =
     [["intensity", "luminous_flux"], ["colour", "colour_temperature"]];
@@ -54,6 +63,7 @@ pub(super) const OBSERVER_KEYS: &[&str] = &["position", "direction", "field_of_v
 pub(super) const OBJECT_KEYS: &[&str] = &[
     "type",
     "name",
+    "visible",
     "position",
     "size",
     "rotation",
@@ -92,6 +102,10 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("segments", "tessellation"),
     ("subdivisions", "tessellation"),
     ("title", "name"),
+    ("on", "enabled"),
+    ("off", "enabled"),
+    ("hidden", "visible"),
+    ("visibility", "visible"),
     ("gamma", "encoding"),
     ("angle", "cone_angle"),
     ("shininess", "alpha"),
@@ -315,6 +329,7 @@ impl Reader<'_> {
         }
         let entry = self.registry.light(&light.kind);
         light.name = self.text_field(&fields, "name", "the name must be text");
+        light.enabled = self.flag(&fields, "enabled");
         if let Some(value) = fields.get("position") {
             light.position = Some(self.vector(value, &path, "position", "a position"));
         }
@@ -394,6 +409,7 @@ impl Reader<'_> {
             }
         }
         object.name = self.text_field(&fields, "name", "the name must be text");
+        object.visible = self.flag(&fields, "visible");
         match fields.get("position") {
             None => self.lacking(&fields, "position", "an object needs one"),
             Some(value) => object.position = self.vector(value, &path, "position", "a position"),
@@ -575,6 +591,18 @@ impl Reader<'_> {
 
     fn text_field(&mut self, fields: &Fields, key: &'static str, rule: &str) -> Option<String> {
         fields.get(key).and_then(|value| self.string(value, &fields.path, key, rule))
+    }
+
+    /// Yes or no; yes where it is not given.
+    fn flag(&mut self, fields: &Fields, key: &'static str) -> bool {
+        match fields.get(key) {
+            None => true,
+            Some(Ast::BooleanLit(flag)) => flag.value,
+            Some(value) => {
+                self.wrong(value, &fields.path, key, &format!("{key} must be true or false"));
+                true
+            }
+        }
     }
 
     fn choice(

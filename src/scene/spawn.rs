@@ -145,6 +145,7 @@ pub fn reconcile(
         let parts = (
             LitObject(object.clone()),
             object_transform(object),
+            if object.visible { Visibility::Inherited } else { Visibility::Hidden },
             label(object.name.as_ref(), &object.kind, i),
         );
         match entities.objects.get_mut(i) {

@@ -128,11 +128,12 @@ fn keep_at_observer(
     }
 }
 
-fn tell_lab(mut lab: ResMut<Lab>, cameras: Query<&Transform, With<PictureCamera>>) {
-    if let Some(transform) = cameras.iter().next()
-        && lab.camera != transform.rotation
+fn tell_lab(mut lab: ResMut<Lab>, cameras: Query<(&Transform, &PictureCamera)>) {
+    if let Some((transform, picture)) = cameras.iter().next()
+        && (lab.camera != transform.rotation || lab.camera_left == picture.follows_observer)
     {
         lab.camera = transform.rotation;
+        lab.camera_left = !picture.follows_observer;
     }
 }
 

@@ -23,6 +23,7 @@ mod reference_renderer;
 mod reload;
 mod saving;
 mod scene_errors;
+mod scene_list;
 mod scene_reload;
 mod scene_roundtrip;
 mod schema;

@@ -393,7 +393,7 @@ fn parameters_that_the_model_does_not_use_are_disabled_and_kept() {
     scene.objects[0].material.set("alpha", Value::Integer(64));
     let mut bench = Bench::new(Lab::new(scene));
     assert!(bench.field("shininess").disabled);
-    assert!(bench.says("not used by Lambert"));
+    assert!(bench.says("Not used by Lambert"));
     bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
     assert!(!bench.field("shininess").disabled);
     assert_eq!(bench.lab.scene.objects[0].material.0.get("alpha"), Some(&Value::Integer(64)));
@@ -502,7 +502,7 @@ fn a_slider_that_ends_before_the_range_does_says_that_more_can_be_typed() {
     };
     let end = pos2(slider.rect.right() + 12.0, slider.rect.center().y);
     bench.hover(end);
-    assert!(bench.says("More can be typed"));
+    assert!(bench.says("Larger values can be typed"));
 }
 
 #[test]
@@ -583,7 +583,7 @@ fn what_the_top_shows_is_what_the_selected_object_has() {
     let mut bench = Bench::new(Lab::default());
     bench.apply(Action::AddObject("cube".to_owned()));
     bench.apply(Action::Edit(Edit::Object(1, ObjectField::Model(Some("phong".to_owned())))));
-    assert!(bench.says("Reflection model: Phong") && bench.says("Cube 1’s own reflection"));
+    assert!(bench.says("Reflection model: Phong") && bench.says("Cube 1 overrides reflection"));
     bench.key(Key::R, Modifiers::NONE);
     bench.frame(vec![Event::Text("1977".to_owned())]);
     bench.settle();
@@ -593,7 +593,7 @@ fn what_the_top_shows_is_what_the_selected_object_has() {
     bench.key(Key::F, Modifiers::NONE);
     assert_eq!(bench.lab.scene.shading_model, "flat", "the shading of the cube is that of the scene");
     bench.apply(Action::Select(Selection::Object(0)));
-    assert!(bench.says("Reflection model: Lambert") && !bench.says("own reflection"));
+    assert!(bench.says("Reflection model: Lambert") && !bench.says("overrides reflection"));
 }
 
 // ── the document ──

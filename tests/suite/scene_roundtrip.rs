@@ -133,10 +133,11 @@ fn light() -> impl Strategy<Value = Light> {
         let flux = prop::option::of(brightness()).prop_map(move |flux| flux.filter(|_| entry.has_flux()));
         let colour = (any::<[u8; 3]>(), prop::option::of(number(1000.0, 40_000.0)));
         let parameters = values(d.parameters.iter().collect());
-        (name, position(), direction(), colour, (brightness(), flux), parameters).prop_map(
-            move |(name, p, direction, (colour, kelvin), (intensity, flux), parameters)| Light {
+        (name, position(), direction(), colour, (brightness(), flux, any::<bool>()), parameters).prop_map(
+            move |(name, p, direction, (colour, kelvin), (intensity, flux, enabled), parameters)| Light {
                 kind: d.id.to_owned(),
                 name,
+                enabled,
                 // Apart from where objects and the observer are.
                 position: d.has_position.then_some(p + Vec3::X * 4.0),
                 direction: d.has_direction.then_some(direction),
@@ -159,7 +160,7 @@ fn object() -> impl Strategy<Value = Object> {
     let material: Vec<_> = registry.material_parameters().collect();
     prop::sample::select(shapes).prop_flat_map(move |shape| {
         (
-            prop::option::of("\\PC{0,20}"),
+            (prop::option::of("\\PC{0,20}"), any::<bool>()),
             position(),
             prop_oneof![number(1e-30, 1e3), Just(1e9), Just(f32::MIN_POSITIVE)],
             vector(),
@@ -170,7 +171,7 @@ fn object() -> impl Strategy<Value = Object> {
         )
             .prop_map(
                 move |(
-                    name,
+                    (name, visible),
                     position,
                     size,
                     rotation,
@@ -181,6 +182,7 @@ fn object() -> impl Strategy<Value = Object> {
                 )| Object {
                     kind: shape.declaration.id.to_owned(),
                     name,
+                    visible,
                     position,
                     size,
                     rotation,

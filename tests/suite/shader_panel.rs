@@ -327,7 +327,7 @@ fn what_was_taken_over_last_is_told_while_all_is_well() {
     let mut bench = bench_with(Vec::new());
     bench.lab.shaders.last = Some(Reloaded { file: "loop.wgsl".to_owned(), milliseconds: 34.4 });
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
-    assert!(bench.says("No errors") && bench.says("loop.wgsl taken over in 34 ms"));
+    assert!(bench.says("No errors") && bench.says("loop.wgsl loaded in 34 ms"));
     assert!(!bench.says("shader error"));
 }
 

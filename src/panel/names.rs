@@ -1,0 +1,102 @@
+//! What the window calls the parts of a scene. A part without a name of its own is called by its type and number, and
+//! keeps that for life: when others come and go, it is written down.
+
+use std::collections::{HashMap, HashSet};
+
+use super::state::Selection;
+use crate::{registry::Registry, scene::Scene};
+
+/// The name of a part: its own, or its type and its number among its type.
+#[must_use]
+pub fn name_of(scene: &Scene, part: Selection, registry: &Registry) -> String {
+    match part {
+        Selection::Room => "Room".to_owned(),
+        Selection::Observer => "Observer".to_owned(),
+        Selection::Light(i) => {
+            let Some(light) = scene.lights.get(i) else { return "light".to_owned() };
+            let number = || scene.lights[..=i].iter().filter(|l| l.kind == light.kind).count();
+            light
+                .name
+                .clone()
+                .unwrap_or_else(|| format!("{} {}", light_type(&light.kind, registry), number()))
+        }
+        Selection::Object(i) => {
+            let Some(object) = scene.objects.get(i) else { return "object".to_owned() };
+            let number = || scene.objects[..=i].iter().filter(|o| o.kind == object.kind).count();
+            object
+                .name
+                .clone()
+                .unwrap_or_else(|| format!("{} {}", object_type(&object.kind, registry), number()))
+        }
+    }
+}
+
+fn light_type<'a>(kind: &'a str, registry: &Registry) -> &'a str {
+    registry.light(kind).map_or(kind, |entry| entry.declaration.name)
+}
+
+fn object_type<'a>(kind: &'a str, registry: &Registry) -> &'a str {
+    registry.shape(kind).map_or(kind, |entry| entry.declaration.name)
+}
+
+/// "lamp" → "lamp 2", "lamp 2" → "lamp 3": the next number that is free.
+pub(super) fn free_name(scene: &Scene, name: &str) -> String {
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+    let stem = if stem.is_empty() { name } else { stem };
+    let names: HashSet<_> = (scene.lights.iter().filter_map(|l| l.name.as_deref()))
+        .chain(scene.objects.iter().filter_map(|o| o.name.as_deref()))
+        .collect();
+    next(stem, 2, |name| names.contains(name))
+}
+
+fn next(stem: &str, first: usize, taken: impl Fn(&str) -> bool) -> String {
+    (first..).map(|n| format!("{stem} {n}")).find(|name| !taken(name)).unwrap_or_default()
+}
+
+/// The names of all lights and objects; none for one that is to get a new name.
+pub(super) struct Names {
+    pub(super) lights: Vec<Option<String>>,
+    pub(super) objects: Vec<Option<String>>,
+}
+
+impl Names {
+    pub(super) fn of(scene: &Scene, registry: &Registry) -> Self {
+        let lights = scene.lights.iter().map(|l| (&l.name, light_type(&l.kind, registry)));
+        let objects = scene.objects.iter().map(|o| (&o.name, object_type(&o.kind, registry)));
+        Self { lights: numbered(lights), objects: numbered(objects) }
+    }
+
+    /// Writes down what would change otherwise, and gives a new part a number that no other has.
+    pub(super) fn keep(self, scene: &mut Scene, registry: &Registry) {
+        let now = Self::of(scene, registry);
+        let known = self.lights.iter().chain(&self.objects).flatten();
+        let mut taken: HashSet<String> = known.cloned().collect();
+        let lights = scene.lights.iter_mut().map(|l| &mut l.name).zip(self.lights).zip(now.lights);
+        let objects = scene.objects.iter_mut().map(|o| &mut o.name).zip(self.objects).zip(now.objects);
+        for ((name, before), now) in lights.chain(objects) {
+            let now = now.unwrap_or_default();
+            match before {
+                _ if name.is_some() => {}
+                Some(before) if before == now => {}
+                Some(before) => *name = Some(before),
+                None if taken.insert(now.clone()) => {}
+                None => {
+                    let (stem, number) = now.rsplit_once(' ').unwrap_or((&now, ""));
+                    let free = next(stem, number.parse().unwrap_or(2), |name| taken.contains(name));
+                    taken.insert(free.clone());
+                    *name = Some(free);
+                }
+            }
+        }
+    }
+}
+
+fn numbered<'a>(parts: impl Iterator<Item = (&'a Option<String>, &'a str)>) -> Vec<Option<String>> {
+    let mut numbers: HashMap<&str, usize> = HashMap::new();
+    let name = |(own, kind): (&Option<String>, &'a str)| {
+        let number = numbers.entry(kind).or_default();
+        *number += 1;
+        own.clone().unwrap_or_else(|| format!("{kind} {number}"))
+    };
+    parts.map(name).map(Some).collect()
+}

@@ -1,0 +1,94 @@
+//! The terms of the equation that a picture has: showing one that is empty alone would show nothing.
+
+use std::{
+    collections::HashMap,
+    f32::consts::TAU,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use glam::Vec3;
+
+use crate::{
+    optics::{Frame, TermSelection},
+    reflection::{ModelEntry, parameter::Values, swap::shines_from_everywhere},
+    registry::Registry,
+    scene::Scene,
+};
+
+/// So many objects are looked at; in most scenes the first one has all terms.
+const OBJECTS: usize = 256;
+/// As many answers are kept: a slider makes one for each of its values.
+const KEPT: usize = 256;
+
+/// True for each term that is not 0: ambient, diffuse, specular.
+type Present = [bool; 3];
+
+/// Answers that were calculated before, by model and material.
+#[derive(Clone, Debug, Default)]
+pub(super) struct KnownTerms(Arc<Mutex<HashMap<String, Present>>>);
+
+impl KnownTerms {
+    /// What the picture of a scene may show: all terms, and each that is there if there are others beside it.
+    pub(super) fn offered(&self, scene: &Scene, registry: &Registry) -> Vec<TermSelection> {
+        let mut present = [false; 3];
+        let everywhere = shines_from_everywhere(scene, registry);
+        let mut last = None;
+        for object in scene.shown().take(OBJECTS) {
+            let key = (scene.model_of(object), &object.material);
+            if last.replace(key) == Some(key) {
+                continue;
+            }
+            let Some(model) = registry.model(key.0) else { continue };
+            for (all, this) in present.iter_mut().zip(self.of(model, &object.material, scene, everywhere)) {
+                *all |= this;
+            }
+            if present == [true; 3] {
+                break;
+            }
+        }
+        let single = [TermSelection::Ambient, TermSelection::Diffuse, TermSelection::Specular];
+        let there: Vec<_> = single.into_iter().zip(present).filter(|(_, p)| *p).map(|(t, _)| t).collect();
+        let several = there.len() > 1;
+        [TermSelection::All].into_iter().chain(there.into_iter().filter(|_| several)).collect()
+    }
+
+    fn of(&self, model: &ModelEntry, material: &Values, scene: &Scene, everywhere: bool) -> Present {
+        let encoding = scene.display.encoding;
+        let version = model.version();
+        let key = format!("{} {version} {encoding:?} {everywhere} {material:?}", model.declaration.id);
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(present) = known.get(&key) {
+            return *present;
+        }
+        let surface = model.instantiate(material, encoding);
+        let mut present = [false; 3];
+        for (l, v) in directions() {
+            let terms = surface.response(l, v, &Frame::LOCAL);
+            let values = [terms.ambient, terms.diffuse, terms.specular];
+            for (present, value) in present.iter_mut().zip(values) {
+                *present |= value != Vec3::ZERO;
+            }
+        }
+        present[0] |=
+            everywhere && surface.ambient_response(Vec3::new(0.6, 0.0, 0.8), &Frame::LOCAL) != Vec3::ZERO;
+        if known.len() >= KEPT {
+            known.clear();
+        }
+        known.insert(key, present);
+        present
+    }
+}
+
+/// Directions of light and view above the surface, near the mirror direction and far from it.
+fn directions() -> impl Iterator<Item = (Vec3, Vec3)> {
+    let at = |tilt: f32, turn: f32| {
+        let (s, c) = tilt.to_radians().sin_cos();
+        Vec3::new(s * turn.cos(), s * turn.sin(), c)
+    };
+    [5.0, 35.0, 65.0].into_iter().flat_map(move |tilt| {
+        (0..6).flat_map(move |i| {
+            let turn = i as f32 / 6.0 * TAU + 0.1;
+            [(at(tilt, 0.0), at(tilt, turn)), (at(tilt, 0.0), at(40.0, turn))]
+        })
+    })
+}

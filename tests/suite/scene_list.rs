@@ -1,0 +1,261 @@
+//! The scene list: hiding, colours, deleting, names for life; and what the picture and the messages say of it.
+
+use std::path::PathBuf;
+
+use bevy_egui::egui::{Key, Modifiers, PointerButton};
+use lights_camera_models::{
+    capture::gpu::{GpuRenderer, Output},
+    optics::TermSelection,
+    panel::{
+        caption::caption_text,
+        names::name_of,
+        state::{Action, Edit, Effect, Lab, LightField, ObjectField, Selection, ViewChange},
+    },
+    reference,
+    reflection::parameter::{BASE_COLOUR, Value},
+    registry::Registry,
+    scene::{Light, Object, Scene, spawn::CurrentScene},
+};
+
+use crate::{
+    panels::Bench,
+    support::{changed, read, said, written},
+};
+
+fn with_objects(kinds: &[&str]) -> Lab {
+    let objects = kinds.iter().enumerate().map(|(i, kind)| Object {
+        kind: (*kind).to_owned(),
+        position: glam::Vec3::new(1.0 + i as f32, 5.0, 5.0),
+        size: 0.8,
+        ..Object::default()
+    });
+    Lab::new(Scene { objects: objects.collect(), ..Scene::default() })
+}
+
+fn names(bench: &Bench) -> Vec<String> {
+    let scene = &bench.lab.scene;
+    (0..scene.objects.len()).map(|i| name_of(scene, Selection::Object(i), &bench.registry)).collect()
+}
+
+#[test]
+fn a_click_in_a_row_never_deletes() {
+    let mut bench = Bench::new(with_objects(&["sphere", "sphere"]));
+    let row = bench.find("Sphere 1").expect("there").rect;
+    bench.hover(row.center());
+    assert!(
+        bench.find("Delete Sphere 1").is_none_or(|s| s.rect.left() > 900.0),
+        "only the properties have a bin"
+    );
+    // Everywhere along the row, however the pointer got there.
+    for x in (row.left() as i32..row.right() as i32).step_by(6) {
+        bench.click_at(bevy_egui::egui::pos2(x as f32, row.center().y), PointerButton::Primary);
+        bench.key(Key::Escape, Modifiers::NONE);
+        assert_eq!(bench.lab.scene.objects.len(), 2, "a click at {x}");
+    }
+}
+
+#[test]
+fn the_dot_changes_the_colour() {
+    let mut bench = Bench::new(with_objects(&["sphere"]));
+    for (dot, colour) in [("Colour of Sphere 1", "object"), ("Colour of Point 1", "light")] {
+        let before = bench.lab.scene.clone();
+        bench.click(dot);
+        // The field of saturation and value is the largest slider of the picker, below the dot.
+        let place = bench.find(dot).expect("there").rect.center();
+        bench.click_at(place + bevy_egui::egui::vec2(60.0, 150.0), PointerButton::Primary);
+        assert_ne!(bench.lab.scene, before, "the colour of the {colour} did not change");
+        bench.key(Key::Escape, Modifiers::NONE);
+        bench.click_at(bevy_egui::egui::pos2(640.0, 800.0), PointerButton::Primary);
+    }
+    let material = &bench.lab.scene.objects[0].material;
+    assert!(matches!(material.get(&BASE_COLOUR), Value::Colour(rgb) if rgb != [255; 3]));
+    assert_ne!(bench.lab.scene.lights[0].colour, [255; 3]);
+}
+
+#[test]
+fn objects_are_hidden_and_lights_switched_off_by_click_key_and_menu() {
+    let mut bench = Bench::new(with_objects(&["sphere", "cube"]));
+    bench.click("Hide Cube 1");
+    assert!(bench.lab.scene.objects[0].visible && !bench.lab.scene.objects[1].visible);
+    bench.click("Show Cube 1");
+    assert!(bench.lab.scene.objects[1].visible);
+    bench.click("Switch off Point 1");
+    assert!(!bench.lab.scene.lights[0].enabled);
+    bench.click("Switch on Point 1");
+    assert!(bench.lab.scene.lights[0].enabled);
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.key(Key::V, Modifiers::NONE);
+    assert!(!bench.lab.scene.objects[0].visible && bench.lab.is_dirty());
+    let row = bench.find("Sphere 1").expect("there").rect.center();
+    bench.click_at(row, PointerButton::Secondary);
+    bench.click("Show");
+    assert!(bench.lab.scene.objects[0].visible);
+    bench.click_at(row, PointerButton::Secondary);
+    bench.click("Delete");
+    assert_eq!(names(&bench), ["Cube 1"]);
+}
+
+#[test]
+fn what_is_hidden_is_saved_and_read() {
+    let mut scene = Scene::default();
+    scene.objects[0].visible = false;
+    scene.lights[0].enabled = false;
+    let text = written(&scene);
+    assert!(text.contains("\"visible\": false") && text.contains("\"enabled\": false"), "{text}");
+    assert_eq!(read(&text), scene);
+    assert!(!written(&Scene::default()).contains("visible"), "what is as usual is not written");
+    let wrong = said(&changed(|s| s["objects"][0]["visible"] = 1.into()));
+    assert!(wrong.contains("objects[0].visible is 1, but visible must be true or false"), "{wrong}");
+    let other = said(&changed(|s| s["lights"][0]["on"] = false.into()));
+    assert!(other.contains("enabled"), "{other}");
+}
+
+#[test]
+fn neither_renderer_draws_what_is_hidden_or_lights_what_is_dark() {
+    const SIDE: u32 = 48;
+    let registry = Registry::builtin();
+    let mut gpu = GpuRenderer::new(SIDE, SIDE, 1, Output::Linear).expect("software Vulkan is installed");
+    let mut brightest = |scene: &Scene| {
+        let settings =
+            reference::Settings { width: SIDE, height: SIDE, samples: 1, terms: TermSelection::All };
+        let cpu = reference::render(scene, &registry, &settings);
+        let covered = cpu.pixels.iter().filter(|p| p.w > 0.0).count();
+        let on_cpu = cpu.pixels.iter().fold(0.0_f32, |m, p| m.max(p.x));
+        gpu.set_scene(scene.clone());
+        gpu.settle().expect("the GPU draws");
+        let on_gpu = gpu.read_linear().expect("readable").iter().fold(0.0_f32, |m, p| m.max(p.x));
+        (covered, on_cpu, on_gpu)
+    };
+    let scene = Scene::default();
+    let (covered, on_cpu, on_gpu) = brightest(&scene);
+    assert!(covered > 100 && on_cpu > 0.1 && on_gpu > 0.1, "{covered} {on_cpu} {on_gpu}");
+    let mut dark = scene.clone();
+    dark.lights[0].enabled = false;
+    let (covered, on_cpu, on_gpu) = brightest(&dark);
+    let background = on_gpu;
+    assert!(covered > 100 && on_cpu == 0.0 && on_gpu < 0.1, "{covered} {on_cpu} {on_gpu}");
+    let mut hidden = scene.clone();
+    hidden.objects[0].visible = false;
+    let (covered, on_cpu, on_gpu) = brightest(&hidden);
+    assert!(covered == 0 && on_cpu == 0.0 && on_gpu <= background, "{covered} {on_cpu} {on_gpu}");
+    // And back again, in the same window.
+    assert!(brightest(&scene).2 > 0.1);
+    assert!(gpu.app().world().resource::<CurrentScene>().0.objects[0].visible);
+}
+
+#[test]
+fn a_part_keeps_its_name_for_life() {
+    let mut bench = Bench::new(with_objects(&["sphere", "sphere", "cube", "sphere"]));
+    assert_eq!(names(&bench), ["Sphere 1", "Sphere 2", "Cube 1", "Sphere 3"]);
+    bench.apply(Action::Remove(Selection::Object(0)));
+    assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Sphere 3"]);
+    bench.apply(Action::AddObject("sphere".to_owned()));
+    assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Sphere 3", "Sphere 4"]);
+    bench.apply(Action::Duplicate(Selection::Object(1)));
+    assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Cube 2", "Sphere 3", "Sphere 4"]);
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Kind("cube".to_owned()))));
+    assert_eq!(names(&bench)[1..], ["Cube 1", "Cube 2", "Sphere 3", "Sphere 4"]);
+    let all = names(&bench);
+    assert_eq!(all.iter().collect::<std::collections::BTreeSet<_>>().len(), all.len(), "{all:?}");
+    // The file has them too.
+    let again = Bench::new(Lab::new(read(&written(&bench.lab.scene))));
+    assert_eq!(names(&again), all);
+    // Lights as well.
+    bench.apply(Action::AddLight("point".to_owned()));
+    bench.apply(Action::AddLight("spot".to_owned()));
+    bench.apply(Action::Remove(Selection::Light(0)));
+    let lights: Vec<_> =
+        (0..2).map(|i| name_of(&bench.lab.scene, Selection::Light(i), &bench.registry)).collect();
+    assert_eq!(lights, ["Point 2", "Spot 1"]);
+}
+
+#[test]
+fn the_caption_says_what_the_picture_shows() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::new(Scene {
+        reflection_model: "phong".to_owned(),
+        shading_model: "phong".to_owned(),
+        ..Scene::default()
+    });
+    assert_eq!(
+        caption_text(&lab, &registry),
+        "Phong · Phong shading · computed per pixel · α 32 · k_s 0.5 · k_d 0.8 · k_a 0.1"
+    );
+    // The scene's shading reaches no object that has its own.
+    lab.scene.objects[0].shading_model = Some("gouraud".to_owned());
+    lab.scene.shading_model = "flat".to_owned();
+    lab.selection = Selection::Room;
+    assert!(caption_text(&lab, &registry).contains("Gouraud shading · computed per vertex"));
+    let mut lab = with_objects(&["sphere", "sphere", "sphere"]);
+    lab.scene.objects[1].reflection_model = Some("phong".to_owned());
+    lab.scene.objects[2].shading_model = Some("flat".to_owned());
+    assert_eq!(caption_text(&lab, &registry), "2 models · 2 shading models");
+    lab.scene.objects[1].visible = false;
+    lab.scene.objects[2].visible = false;
+    assert!(caption_text(&lab, &registry).starts_with("Lambert · Gouraud shading"));
+    lab.scene.objects[0].visible = false;
+    assert_eq!(caption_text(&lab, &registry), "nothing visible");
+}
+
+#[test]
+fn terms_that_are_empty_are_passed_over() {
+    let press = |bench: &mut Bench| {
+        bench.key(Key::T, Modifiers::NONE);
+        bench.lab.view.terms
+    };
+    // One term: there is nothing to take apart.
+    let mut bench = Bench::new(Lab::default());
+    assert_eq!(press(&mut bench), TermSelection::All);
+    assert!(bench.lab.messages.iter().any(|m| m.text.contains("one term")));
+    assert!(!bench.says("Terms:"), "no row for one term");
+    let mut bench = Bench::with_model("phong");
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("k_a", Value::Number(0.0)))));
+    assert!(bench.says("Terms: all"));
+    assert_eq!(press(&mut bench), TermSelection::Diffuse, "k_a is 0: there is no ambient term");
+    assert!(bench.says("Only the diffuse term"), "a badge while terms are hidden");
+    assert_eq!(press(&mut bench), TermSelection::Specular);
+    // The model changes: what is left is one term, which is not the one that is shown.
+    bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
+    assert!(bench.says("Terms: specular"), "the way back is there");
+    assert_eq!(press(&mut bench), TermSelection::All);
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::All)));
+    assert!(!bench.says("Only the"));
+}
+
+#[test]
+fn saving_says_where_and_offers_to_keep_the_view() {
+    let path = PathBuf::from("/somewhere/lecture.json");
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::SaveAs(path.clone()));
+    assert!(bench.effects.contains(&Effect::SaveFile { path: path.clone(), overwrite: true }));
+    bench.lab.saved(path.clone(), &bench.registry);
+    bench.settle();
+    assert_eq!(bench.lab.title(), "lecture", "the scene has the name of its file");
+    assert!(!bench.lab.is_dirty());
+    assert!(bench.says("Saved to /somewhere/lecture.json"), "in sight without unfolding anything");
+    assert!(bench.find("Set observer to this view").is_none(), "the view is the observer's");
+    bench.lab.camera_left = true;
+    bench.lab.saved(path.clone(), &bench.registry);
+    bench.settle();
+    assert_eq!(bench.lab.messages.len(), 1, "the last time counts");
+    assert!(bench.says("The view you turned to is not in the file"));
+    bench.effects.clear();
+    bench.click("Set observer to this view");
+    assert_eq!(bench.effects, [Effect::ObserverFromView]);
+    // A name that the user gave stays.
+    bench.apply(Action::Edit(Edit::SceneName("My lecture".to_owned())));
+    bench.apply(Action::SaveAs(PathBuf::from("/somewhere/other.json")));
+    assert_eq!(bench.lab.title(), "My lecture");
+}
+
+#[test]
+fn a_light_that_is_off_is_no_light_from_everywhere() {
+    let mut scene = Scene::default();
+    scene.lights.push(Light { kind: "ambient".to_owned(), position: None, ..Light::default() });
+    scene.lights[0].enabled = false;
+    assert_eq!(scene.shining().map(|l| l.kind.as_str()).collect::<Vec<_>>(), ["ambient"]);
+    let edit = Edit::Light(1, LightField::Enabled(false));
+    let mut bench = Bench::new(Lab::new(scene));
+    bench.apply(Action::Edit(edit));
+    assert_eq!(bench.lab.scene.shining().count(), 0);
+}
