@@ -4,9 +4,15 @@ use bevy_egui::egui::{self, Key, Modifiers};
 
 use super::{
     author::{Ask, SHADER_TAB},
-    state::{Action, Lab, ViewChange},
+    focus,
+    state::{Action, Lab, Steer, ViewChange},
 };
 use crate::registry::Registry;
+
+/// The heading of the keys that steer the camera; with the focus in a panel they are the panel's.
+const CAMERA: &str = "Camera";
+/// One press turns by so much, degrees.
+const TURN: f32 = 5.0;
 
 /// A key and what it does.
 #[derive(Clone, Debug)]
@@ -108,6 +114,20 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
     add("Picture", false, false, Key::C, "Focus selection", Action::FocusSelection);
     add("Picture", false, false, Key::Plus, "Brighter by ½ EV", Action::Expose(0.5));
     add("Picture", false, false, Key::Minus, "Darker by ½ EV", Action::Expose(-0.5));
+    for (shift, key, label, steer) in [
+        (false, Key::ArrowLeft, "Turn left about what is looked at", Steer::Turn(-TURN, 0.0)),
+        (false, Key::ArrowRight, "Turn right", Steer::Turn(TURN, 0.0)),
+        (false, Key::ArrowUp, "Turn up", Steer::Turn(0.0, TURN)),
+        (false, Key::ArrowDown, "Turn down", Steer::Turn(0.0, -TURN)),
+        (true, Key::ArrowLeft, "Move left", Steer::Move(-1.0, 0.0)),
+        (true, Key::ArrowRight, "Move right", Steer::Move(1.0, 0.0)),
+        (true, Key::ArrowUp, "Move up", Steer::Move(0.0, 1.0)),
+        (true, Key::ArrowDown, "Move down", Steer::Move(0.0, -1.0)),
+        (false, Key::PageUp, "Nearer", Steer::Zoom(0.9)),
+        (false, Key::PageDown, "Farther", Steer::Zoom(1.0 / 0.9)),
+    ] {
+        add(CAMERA, false, shift, key, label, Action::Steer(steer));
+    }
     add("Window", false, false, Key::F1, "This list", Action::View(ViewChange::Keys(!lab.view.keys_open)));
     add("Window", false, false, Key::F8, "Messages", Action::View(lab.strip_change()));
     let shader = if lab.view.bottom_open && lab.view.bottom_tab == SHADER_TAB {
@@ -121,7 +141,8 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
 
 /// What the mouse does, and keys that belong to a widget: for the list.
 pub const ELSEWHERE: &[(&str, &str, &str)] = &[
-    ("Window", "F6", "Into the panels; then Tab moves on, Esc leaves"),
+    ("Window", "F6, Shift+F6", "To the next panel, to the one before; Tab moves on within it, Esc leaves"),
+    ("Window", "F10, Alt and a letter", "The menus; arrows and Enter choose"),
     ("In a field", "↑ ↓", "A little more, a little less; with Shift ten times that"),
     ("In a field", "Enter, Esc", "Keep the value; go back to the one before"),
     ("On a slider", "← →", "A little less, a little more; Home and End: the ends"),
@@ -150,12 +171,12 @@ pub fn pressed(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Actio
     let table = bindings(lab, registry);
     let mut actions = Vec::new();
     let mut stop_tab = false;
-    let mut into_panels = false;
+    let mut panels = None;
     ctx.input_mut(|input| {
         input.events.retain(|event| {
             let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
-            if *key == Key::F6 && !typing {
-                into_panels = true;
+            if *key == Key::F6 {
+                panels = Some(modifiers.shift);
                 return false;
             }
             let Some(binding) = table.iter().find(|b| b.matches(*key, *modifiers)) else { return true };
@@ -164,7 +185,7 @@ pub fn pressed(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Actio
             }
             // With the focus in a panel, Delete is the panel's: nobody means to remove the object that
             // a slider belongs to.
-            if *key == Key::Delete && focused.is_some() {
+            if (*key == Key::Delete || binding.group == CAMERA) && focused.is_some() {
                 return true;
             }
             // With the focus in a panel, Tab moves it on.
@@ -185,8 +206,8 @@ pub fn pressed(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Actio
     if stop_tab {
         ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
     }
-    if into_panels {
-        ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::Next));
+    if let Some(back) = panels {
+        focus::next_region(ctx, back);
     }
     actions
 }

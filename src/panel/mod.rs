@@ -32,6 +32,7 @@ pub mod author;
 pub mod caption;
 pub mod chooser;
 pub mod files;
+mod focus;
 pub mod follow;
 pub mod help;
 pub mod icon;
@@ -65,8 +66,8 @@ pub fn register_builtin(to: &mut Panels) {
     to.add(inspector::Inspector);
 }
 
-/// Where a panel is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// Where a panel is, in the order in which F6 goes through them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Place {
     /// Across the top.
     Top,
@@ -277,6 +278,8 @@ pub fn show(
     lab.notice_shaders(registry);
     let palette = Palette::of(&lab.view);
     let scale = theme::scale(&lab.view);
+    focus::walk_menus(&ctx);
+    focus::forget_regions(&ctx);
     let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, lab, registry) };
     actions.extend(help::show(&ctx, lab, registry));
     actions.extend(author::show(&ctx, lab, registry));
@@ -284,15 +287,17 @@ pub fn show(
 
     for panel in panels.at(Place::Top) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 4.0));
-        egui::Panel::top(panel.id())
+        let shown = egui::Panel::top(panel.id())
             .frame(frame)
             .show(ui, |ui| actions.extend(panel.show(ui, lab, registry)));
+        focus::region(&ctx, Place::Top, shown.response.rect);
     }
     for panel in panels.at(Place::Status) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 2.0));
-        egui::Panel::bottom(panel.id())
+        let shown = egui::Panel::bottom(panel.id())
             .frame(frame)
             .show(ui, |ui| actions.extend(panel.show(ui, lab, registry)));
+        focus::region(&ctx, Place::Status, shown.response.rect);
     }
     let mut sizes = (lab.view.left_width, lab.view.right_width, lab.view.bottom_height);
     if lab.view.bottom_open {
@@ -309,6 +314,7 @@ pub fn show(
                 actions.extend(panel.show(ui, lab, registry));
             }
         });
+        focus::region(&ctx, Place::Left, response.response.rect);
         sizes.0 = response.response.rect.width() / scale;
     }
     if lab.view.right_open {
@@ -327,6 +333,7 @@ pub fn show(
                 actions.extend(panel.show(ui, lab, registry));
             }
         });
+        focus::region(&ctx, Place::Right, response.response.rect);
         sizes.1 = response.response.rect.width() / scale;
     }
     remember_sizes(&ctx, lab, sizes, &mut actions);
@@ -338,6 +345,8 @@ pub fn show(
     actions.extend(question::show(&ctx, lab));
     actions.extend(dialogs.update(&ctx, lab));
     steering(&ctx, lab, rect, covered, dialogs.is_open());
+    focus::remember_regions(&ctx);
+    focus::show(&ctx, &palette);
 
     let mut effects = Vec::new();
     for action in actions {
@@ -404,6 +413,7 @@ fn bottom(
         }
         ui.take_available_height();
     });
+    focus::region(ui.ctx(), Place::Bottom, response.response.rect);
     *height = response.response.rect.height() / scale;
 }
 

@@ -184,6 +184,7 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, scale: f32) {
             &palette,
         );
         let response = ui.interact(place, ui.id().with(("badge", i)), Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &badge.text));
         if !badge.help.is_empty() {
             response.on_hover_text(&badge.help);
         }

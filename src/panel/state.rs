@@ -401,6 +401,8 @@ pub enum Action {
     FocusSelection,
     /// Make the place of the camera that of the observer.
     ObserverFromView,
+    /// Move the camera a little.
+    Steer(Steer),
     /// Put text on the clipboard.
     Copy(String),
     /// Something about models and shaders of one's own.
@@ -411,6 +413,17 @@ pub enum Action {
     Dismiss(usize),
     /// Remove all messages.
     DismissAll,
+}
+
+/// A small movement of the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steer {
+    /// Around what is looked at: to the right and up, degrees.
+    Turn(f32, f32),
+    /// To the right and up, in steps of a twentieth of the distance.
+    Move(f32, f32),
+    /// The distance to what is looked at times this.
+    Zoom(f32),
 }
 
 /// A change of what is shown.
@@ -570,6 +583,8 @@ pub enum Effect {
     FocusSelection,
     /// Write the place of the camera into the observer.
     ObserverFromView,
+    /// Move the camera a little.
+    Steer(Steer),
     /// Put text on the clipboard.
     CopyText(String),
     /// Write the settings.
@@ -907,6 +922,7 @@ impl Lab {
             Action::HomeView => return vec![Effect::HomeView],
             Action::FocusSelection => return vec![Effect::FocusSelection],
             Action::ObserverFromView => return vec![Effect::ObserverFromView],
+            Action::Steer(steer) => return vec![Effect::Steer(steer)],
             Action::Copy(text) => return vec![Effect::CopyText(text)],
             Action::Author(ask) => return self.author(ask, registry),
             Action::Say(severity, text) => self.say(severity, text),

@@ -385,6 +385,14 @@ fn rename(ui: &mut Ui, lab: &Lab, part: Selection, name: &str, place: Rect, acti
     });
     if first {
         response.request_focus();
+        // What is typed takes the place of the old name.
+        let mut state = egui::text_edit::TextEditState::load(ui.ctx(), response.id).unwrap_or_default();
+        let all = egui::text::CCursorRange::two(
+            egui::text::CCursor::new(0),
+            egui::text::CCursor::new(text.chars().count()),
+        );
+        state.cursor.set_char_range(Some(all));
+        state.store(ui.ctx(), response.id);
     }
     let done = response.lost_focus();
     if done || (!first && !response.has_focus()) {

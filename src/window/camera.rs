@@ -11,17 +11,20 @@ use bevy::{
     transform::components::Transform,
 };
 use bevy_panorbit_camera::PanOrbitCamera;
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use crate::{
     observer::{camera::PictureCamera, rotation},
-    panel::state::{Action, Edit, Lab, Selection, Severity},
+    panel::state::{Action, Edit, Lab, Selection, Severity, Steer},
     registry::Registry,
     scene::{Observer, Scene, check, spawn::CurrentScene},
 };
 
 /// The nearest that the camera comes to what it turns around, metres.
 const NEAREST: f32 = 0.05;
+
+/// How steeply the camera may look down or up, radians.
+const HIGHEST: f32 = 89.9 / 180.0 * std::f32::consts::PI;
 
 /// The controls of the camera.
 pub(super) fn orbit() -> PanOrbitCamera {
@@ -137,6 +140,31 @@ fn tell_lab(mut lab: ResMut<Lab>, cameras: Query<(&Transform, &PictureCamera)>) 
     }
 }
 
+/// Where the camera and what it looks at are after a movement.
+fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
+    let offset = camera.translation - focus;
+    match steer {
+        Steer::Turn(right, up) => {
+            let turn = Quat::from_rotation_y(right.to_radians());
+            let axis = turn * camera.rotation * Vec3::X;
+            let turned = turn * offset;
+            let elevation = (turned.y / turned.length().max(NEAREST)).clamp(-1.0, 1.0).asin();
+            let wanted = (elevation + up.to_radians()).clamp(-HIGHEST, HIGHEST);
+            let turn = Quat::from_axis_angle(axis, elevation - wanted) * turn;
+            let place = camera.with_translation(focus + turn * offset).with_rotation(turn * camera.rotation);
+            (place, focus)
+        }
+        Steer::Move(right, up) => {
+            let step = camera.rotation * Vec3::new(right, up, 0.0) * 0.05 * offset.length().max(NEAREST);
+            (camera.with_translation(camera.translation + step), focus + step)
+        }
+        Steer::Zoom(factor) => {
+            let distance = (offset.length() * factor).max(NEAREST);
+            (camera.with_translation(focus + offset.normalize_or(Vec3::Z) * distance), focus)
+        }
+    }
+}
+
 /// What the panels may ask of the camera.
 #[derive(SystemParam)]
 pub(super) struct CameraControl<'w, 's> {
@@ -176,6 +204,15 @@ impl CameraControl<'_, '_> {
         }
     }
 
+    /// Moves the camera a little.
+    pub(super) fn steer(&mut self, steer: Steer) {
+        for (mut orbit, mut transform, mut picture) in &mut self.cameras {
+            picture.follows_observer = false;
+            let (place, focus) = steered(*transform, orbit.focus, steer);
+            put_at(&mut orbit, &mut transform, place, focus);
+        }
+    }
+
     /// Makes the camera's place the observer's, if the rules of scenes allow it.
     pub(super) fn place_observer(&mut self, lab: &mut Lab, registry: &Registry) {
         let Some((_, transform, _)) = self.cameras.iter().next() else { return };
@@ -195,5 +232,38 @@ impl CameraControl<'_, '_> {
                 self.home();
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_turn_about_what_is_looked_at_and_keep_the_distance() {
+        let focus = Vec3::new(5.0, 5.0, 5.0);
+        let camera = Transform::from_translation(Vec3::new(5.0, 5.0, 9.5));
+        let looks_at = |camera: Transform, focus: Vec3| {
+            (camera.rotation * Vec3::NEG_Z).dot((focus - camera.translation).normalize())
+        };
+        let (right, same) = steered(camera, focus, Steer::Turn(90.0, 0.0));
+        assert_eq!(same, focus);
+        assert!(right.translation.abs_diff_eq(Vec3::new(9.5, 5.0, 5.0), 1e-4), "{right:?}");
+        assert!(looks_at(right, focus) > 0.999);
+        let (up, _) = steered(camera, focus, Steer::Turn(0.0, 30.0));
+        assert!(up.translation.y > 7.0 && (up.translation - focus).length() - 4.5 < 1e-4, "{up:?}");
+        assert!(looks_at(up, focus) > 0.999);
+        // Never over the pole.
+        let mut above = camera;
+        for _ in 0..100 {
+            above = steered(above, focus, Steer::Turn(0.0, 5.0)).0;
+        }
+        assert!(above.translation.y > 9.4 && (above.rotation * Vec3::Y).y > 0.0, "{above:?}");
+        assert!(looks_at(above, focus) > 0.999);
+        let (moved, ahead) = steered(camera, focus, Steer::Move(1.0, 0.0));
+        assert_eq!(moved.translation - camera.translation, ahead - focus);
+        assert!(ahead.x > focus.x);
+        let (near, _) = steered(camera, focus, Steer::Zoom(0.5));
+        assert!((near.translation - focus).length() - 2.25 < 1e-5);
     }
 }

@@ -353,6 +353,7 @@ fn carry_out(
         match effect {
             Effect::HomeView => camera.home(),
             Effect::FocusSelection => camera.focus(&lab),
+            Effect::Steer(steer) => camera.steer(steer),
             Effect::ObserverFromView => camera.place_observer(&mut lab, &registry),
             Effect::DocumentChanged => {
                 files.document_changed(lab.path.as_deref());

@@ -6,6 +6,7 @@ mod assets;
 mod command_line;
 mod extension;
 mod files;
+mod focus;
 mod golden;
 mod gpu_parity;
 mod hostile;
