@@ -15,6 +15,7 @@ mod interpret;
 mod keyboard;
 mod laws;
 mod memory;
+mod missing_size;
 mod own_folder;
 mod own_models;
 mod panels;
