@@ -34,6 +34,7 @@ mod shader_panel;
 mod signals;
 mod study;
 mod support;
+mod swallowed;
 mod tangents;
 #[cfg(unix)]
 mod trial;
