@@ -9,6 +9,7 @@ use super::{
     author::Ask,
     icon::{self, Icon},
     inspector::plural,
+    laws,
     state::{Action, Lab, Severity},
     theme::{self, Palette},
 };
@@ -446,14 +447,24 @@ fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     };
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, heading));
-        if let Some(last) = &lab.shaders.last {
-            let text = format!("{} loaded in {:.0} ms", last.file, last.milliseconds.max(0.0));
-            ui.add(egui::Label::new(theme::small(ui, text)).truncate());
-        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            laws::button(ui, lab, registry, actions);
+            let last = lab.shaders.last.as_ref();
+            let text =
+                last.map(|last| format!("{} loaded in {:.0} ms", last.file, last.milliseconds.max(0.0)));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                text.map(|text| ui.add(egui::Label::new(theme::small(ui, text)).truncate()));
+            });
+        });
     });
-    ui.add(egui::Label::new(how).wrap());
-    ui.add_space(4.0 * scale);
-    actions.extend(author::buttons(ui, lab, registry));
+    ScrollArea::vertical().id_salt("well").auto_shrink(false).show(ui, |ui| {
+        // The scroll bar floats over this margin.
+        ui.set_width(ui.available_width() - 8.0 * scale);
+        laws::findings(ui, lab);
+        ui.add(egui::Label::new(how).wrap());
+        ui.add_space(4.0 * scale);
+        actions.extend(author::buttons(ui, lab, registry));
+    });
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 mod albedo;
 mod assets;
 mod command_line;
+mod editors;
 mod extension;
 mod files;
 mod focus;
@@ -13,6 +14,7 @@ mod hostile;
 mod hot_swap;
 mod interpret;
 mod keyboard;
+mod law_check;
 mod laws;
 mod memory;
 mod missing_size;

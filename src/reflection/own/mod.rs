@@ -51,7 +51,7 @@ mod write;
 
 pub use surface::OnCpu;
 pub use text::MARKER;
-pub use write::{NotDuplicated, duplicate, id_of_name, template};
+pub use write::{BadName, NotDuplicated, duplicate, id_of_name, template};
 
 /// The ending of the files.
 pub const EXTENSION: &str = "wgsl";
