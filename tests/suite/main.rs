@@ -6,6 +6,7 @@ mod assets;
 mod command_line;
 mod editors;
 mod extension;
+mod features;
 mod files;
 mod focus;
 mod golden;
