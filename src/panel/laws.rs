@@ -38,6 +38,12 @@ fn of_shown(lab: &Lab) -> Option<&LawCheck> {
     lab.laws.as_ref().filter(|check| check.model == lab.model_shown())
 }
 
+/// True if the shown model was found to break a law that it claims, or to give values that are no numbers.
+pub fn are_broken(lab: &Lab) -> bool {
+    let outcome = of_shown(lab).and_then(|check| check.outcome.as_ref());
+    outcome.is_some_and(|found| found.as_ref().is_ok_and(|r| !r.broken().is_empty() || !r.is_finite()))
+}
+
 /// The findings about the shown model, if there are any.
 pub fn findings(ui: &mut Ui, lab: &Lab) {
     match of_shown(lab).and_then(|check| check.outcome.as_ref()) {

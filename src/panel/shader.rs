@@ -435,15 +435,14 @@ fn source_line(ui: &mut Ui, trouble: &Trouble) {
 /// Nothing is wrong: what was last taken over, and how to begin.
 fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
     let scale = theme::scale_here(ui);
-    let (heading, how) = match &lab.shaders.shaders {
-        Some(_) => (
-            "No errors",
-            "Open a file at the left, change it and save it: the picture follows. Errors appear here, and the picture keeps the last version that worked.",
-        ),
-        None => (
-            "No errors",
-            "To change how the picture is computed: export the shaders, open one in an editor, save it. The picture follows. Or write a custom model:",
-        ),
+    let heading = if laws::are_broken(lab) { "No errors, but broken laws" } else { "No errors" };
+    let how = match &lab.shaders.shaders {
+        Some(_) => {
+            "Open a file at the left, change it and save it: the picture follows. Errors appear here, and the picture keeps the last version that worked."
+        }
+        None => {
+            "To change how the picture is computed: export the shaders, open one in an editor, save it. The picture follows. Or write a custom model:"
+        }
     };
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, heading));

@@ -22,7 +22,9 @@ use crate::{
 fn outcome(id: &str, folders: &Folders, program: Option<PathBuf>) -> Result<LawReport, String> {
     let checks = LawChecks::by(program);
     let (done, woken) = mpsc::channel();
-    checks.begin(id, folders, move || drop(done.send(())));
+    checks.begin(id, folders, move || {
+        let _ = done.send(());
+    });
     woken.recv_timeout(Duration::from_secs(200)).expect("there is an outcome");
     let (model, outcome) = checks.take().expect("it waits");
     assert_eq!(model, id);
@@ -48,8 +50,14 @@ fn laws_are_checked_in_another_process_and_shown() {
     assert_eq!(found.as_ref().map(|r| r.laws.len()), Ok(3), "{found:?}");
     bench.lab.laws_checked("phong", found.clone());
     assert!(bench.lab.laws.as_ref().is_some_and(|check| check.outcome.is_none()), "another model");
+    let mut broken = found.clone().expect("was checked");
+    broken.laws[1].kept = false;
+    bench.lab.laws_checked("lambert", Ok(broken));
+    bench.settle();
+    assert!(bench.says("Energy conserving: claimed and broken") && bench.says("No errors, but broken laws"));
     bench.lab.laws_checked("lambert", found);
     bench.settle();
+    assert!(!bench.says("broken laws"));
     for law in ["Reciprocal", "Energy conserving", "Non-negative"] {
         assert!(bench.says(&format!("{law}: claimed and kept")), "{law}");
     }
