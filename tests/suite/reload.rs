@@ -443,7 +443,7 @@ fn a_deleted_or_renamed_file_leaves_the_picture_and_is_missed() {
         assert!(lab.settled() == before);
         let troubles = lab.troubles();
         assert_eq!(troubles.len(), 1, "{troubles:?}");
-        assert!(troubles[0].problem.message.contains("gone"), "{troubles:?}");
+        assert!(troubles[0].problem.message.contains("missing"), "{troubles:?}");
         assert_eq!(troubles[0].stale, ["Phong"]);
         lab.save("reflection/phong.wgsl", original("reflection/phong.wgsl"));
         assert!(lab.settled() == before);
