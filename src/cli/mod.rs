@@ -27,6 +27,8 @@ mod new;
 mod outputs;
 mod own;
 mod render;
+#[cfg(target_os = "linux")]
+mod runtime_folder;
 mod scenes;
 mod study;
 mod trial;
@@ -49,6 +51,15 @@ struct Cli {
     options: Options,
     #[command(flatten)]
     places: Places,
+}
+
+#[cfg(target_os = "linux")]
+impl Cli {
+    /// True for commands that may ask for a graphics card or a window.
+    fn may_draw(&self) -> bool {
+        use Command::{Albedo, Evaluate, Models, Render, View};
+        matches!(self.command, None | Some(View(_) | Render(_) | Evaluate(_) | Albedo(_) | Models(_)))
+    }
 }
 
 /// With or without a command.
@@ -195,6 +206,10 @@ pub fn main() -> ExitCode {
             };
         }
     };
+    #[cfg(target_os = "linux")]
+    if cli.may_draw() {
+        runtime_folder::provide();
+    }
     ended(run(cli))
 }
 

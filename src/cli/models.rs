@@ -44,6 +44,9 @@ enum Command {
     Check {
         /// The id of the model, as `lcm models` lists it
         id: String,
+        /// Print the result as JSON
+        #[arg(long)]
+        json: bool,
     },
 }
 
@@ -51,7 +54,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
     match arguments.command {
         Some(Command::New { name }) => own::new(&name, options, places),
         Some(Command::Duplicate { id, name }) => own::duplicate(&id, name.as_deref(), options, places),
-        Some(Command::Check { id }) => own::check(&id, options, &mut places.open(options)?),
+        Some(Command::Check { id, json }) => own::check(&id, json, options, &mut places.open(options)?),
         None => list(arguments.json, places.open(options)?.list()),
     }
 }

@@ -1,13 +1,11 @@
 //! `lcm models new`, `duplicate` and `check`: own models, from the first line to their laws.
 
-use std::{fmt::Write as _, io, path::PathBuf};
-
-use glam::Vec3;
+use std::{io, path::PathBuf};
 
 use super::{
     Failure, Options, Outcome, complain,
     evaluate::find,
-    print_paths, print_text,
+    print, print_paths, print_text,
     workshop::{Places, Workshop, valid},
 };
 use crate::{
@@ -15,10 +13,9 @@ use crate::{
     capture::evaluate::Evaluator,
     optics::colour::Encoding,
     reflection::{
-        ModelEntry,
-        laws::{self, Case, Effort, Findings},
+        law_report::LawReport,
+        laws::{self, Effort},
         own,
-        parameter::Values,
     },
     registry::Registry,
     scene::error::quoted,
@@ -40,7 +37,9 @@ pub(super) fn duplicate(id: &str, name: Option<&str>, options: Options, places: 
         Some(name) => id_of(name)?,
         None => format!("{id}_copy"),
     };
-    let text = own::duplicate(model, registry.sources(), &copy).map_err(|e| Failure::Usage(e.to_string()))?;
+    let name = name.map_or(copy.as_str(), str::trim);
+    let text =
+        own::duplicate(model, registry.sources(), &copy, name).map_err(|e| Failure::Usage(e.to_string()))?;
     write(&copy, &text, options, places)
 }
 
@@ -76,7 +75,7 @@ fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
 }
 
 /// `lcm models check ID`.
-pub(super) fn check(id: &str, options: Options, workshop: &mut Workshop) -> Outcome {
+pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Workshop) -> Outcome {
     workshop.need(id);
     let registry = &workshop.registry;
     if registry.broken_model(id).is_some() {
@@ -98,121 +97,21 @@ pub(super) fn check(id: &str, options: Options, workshop: &mut Workshop) -> Outc
         evaluator.evaluate(pairs)
     })?;
     bar.finish_and_clear();
-    print_text(&report(model, &findings))?;
-    let broken: Vec<_> = claims(model, &findings).filter(|c| c.claimed && !c.kept).map(|c| c.law).collect();
-    if findings.not_finite > 0 {
+    let report = LawReport::new(model, &findings);
+    if as_json {
+        print(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()))?;
+    } else {
+        print_text(&report.to_string())?;
+    }
+    if !report.is_finite() {
         complain(format_args!("{id} gives values that are no numbers"));
     }
-    match broken.as_slice() {
-        [] if findings.not_finite == 0 => Ok(()),
+    match report.broken().as_slice() {
+        [] if report.is_finite() => Ok(()),
         [] => Err(Failure::Invalid(String::new())),
         laws => Err(Failure::Invalid(format!(
             "{id} claims to be {}, but is not",
             crate::scene::check::listed(laws, "and")
         ))),
-    }
-}
-
-/// A law, and what became of it.
-struct Claim {
-    law: &'static str,
-    claimed: bool,
-    kept: bool,
-}
-
-impl Claim {
-    /// What is said of it. Where some values are no numbers nothing is kept, but what is broken is broken.
-    fn verdict(&self, finite: bool) -> &'static str {
-        match (self.claimed, self.kept) {
-            (_, true) if !finite => "cannot be judged: some values are no numbers",
-            (true, true) => "claimed and kept",
-            (true, false) => "claimed and BROKEN",
-            (false, true) => "not claimed and not found broken: claim it?",
-            (false, false) => "not claimed and broken",
-        }
-    }
-}
-
-fn claims(model: &ModelEntry, findings: &Findings) -> impl Iterator<Item = Claim> + use<> {
-    let kept = findings.kept().list();
-    let claimed = model.declaration.laws.list();
-    claimed.into_iter().zip(kept).map(|((law, claimed), (_, kept))| Claim { law, claimed, kept })
-}
-
-/// What was found, for people.
-fn report(model: &ModelEntry, findings: &Findings) -> String {
-    let Effort { sets, .. } = Effort::default();
-    let mut text = format!(
-        "{}: {} responses with {sets} sets of parameters, and 6 directional albedos with each\n",
-        model.declaration.id, findings.responses
-    );
-    let evidence = [
-        ("largest relative difference of f(l, v) and f(v, l)", &findings.reciprocity),
-        ("largest directional albedo", &findings.albedo),
-        ("smallest value", &findings.smallest),
-    ];
-    for (claim, (what, extreme)) in claims(model, findings).zip(evidence) {
-        let verdict = claim.verdict(findings.not_finite == 0);
-        // Writing to a String cannot fail; here and below.
-        let _ = writeln!(text, "{}: {verdict}", claim.law);
-        let _ = writeln!(text, "  {what}: {}{}", number(extreme.size), place(model, extreme.case.as_ref()));
-    }
-    let verdict = if findings.not_finite == 0 { "everywhere" } else { "NOT everywhere" };
-    let _ = writeln!(text, "finite: {verdict}");
-    let _ = writeln!(
-        text,
-        "  NaN or infinite: {} of {} responses{}",
-        findings.not_finite,
-        findings.responses,
-        place(model, findings.first_not_finite.as_ref())
-    );
-    text
-}
-
-/// A number with as many digits as say something.
-fn number(v: f32) -> String {
-    if v == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e4).contains(&v.abs()) {
-        format!("{v:.4}")
-    } else {
-        format!("{v:.2e}")
-    }
-}
-
-/// Where something was found: directions in degrees, and the parameters as `--set` takes them.
-fn place(model: &ModelEntry, case: Option<&Case>) -> String {
-    let Some(case) = case else { return String::new() };
-    let angles = |d: Vec3| {
-        let theta = d.z.clamp(-1.0, 1.0).acos().to_degrees();
-        let phi = d.y.atan2(d.x).to_degrees();
-        format!("θ {theta:.2}°, φ {phi:.1}°")
-    };
-    let l = case.l.map_or_else(String::new, |l| format!("l ({}), ", angles(l)));
-    format!("\n  at {l}v ({}){}", angles(case.v), settings(model, &case.values))
-}
-
-/// Parameters as `--set` takes them.
-fn settings(model: &ModelEntry, values: &Values) -> String {
-    let set: Vec<_> = model.parameters.iter().map(|p| format!("{}={}", p.name, values.get(p))).collect();
-    if set.is_empty() { String::new() } else { format!("\n  {}", set.join(" ")) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_law_is_said_to_be_kept_where_values_are_no_numbers() {
-        let registry = Registry::builtin();
-        let lambert = registry.model("lambert").expect("built in");
-        let mut findings = Findings { responses: 4, ..Findings::default() };
-        assert_eq!(report(lambert, &findings).matches("claimed and kept").count(), 3);
-        findings.not_finite = 1;
-        findings.albedo.size = 2.0;
-        let text = report(lambert, &findings);
-        assert!(!text.contains("kept"), "{text}");
-        assert_eq!(text.matches("cannot be judged: some values are no numbers").count(), 2, "{text}");
-        assert!(text.contains("energy conserving: claimed and BROKEN"), "{text}");
     }
 }

@@ -12,12 +12,17 @@ use super::{
     state::{Action, Effect, Lab, Severity},
     theme::{self, Palette},
 };
-use crate::{reflection::own::source_path, registry::Registry, shader::status::ShaderStatus};
+use crate::{
+    reflection::{
+        law_report::LawReport,
+        own::{id_of_name, source_path},
+    },
+    registry::Registry,
+    shader::status::{Reloaded, ShaderStatus},
+};
 
 /// Id of the panel that shows the shaders.
 pub const SHADER_TAB: &str = "shader";
-/// The most characters that the id of a model may have.
-const LONGEST_ID: usize = 40;
 
 /// What can be asked about models and shaders of one's own.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,7 +31,7 @@ pub enum Ask {
     New,
     /// Begin a copy of the shown model: ask what it shall be called.
     Duplicate,
-    /// What was typed as the id of the model.
+    /// What was typed as the name of the model.
     Type(String),
     /// Write the file of the model.
     Create,
@@ -41,6 +46,8 @@ pub enum Ask {
         /// The line to go to, from 1.
         line: usize,
     },
+    /// Try to find the laws of the shown model broken.
+    CheckLaws,
     /// Choose a folder and write the shaders into it.
     ExportDialog,
     /// Write the shaders into a folder.
@@ -52,54 +59,40 @@ pub enum Ask {
 pub struct ModelDraft {
     /// Id of the model that is copied; none for a new one.
     pub of: Option<String>,
-    /// Its id, as typed.
-    pub id: String,
+    /// What it is to be called, as typed; its identifier follows.
+    pub name: String,
 }
 
-/// Whether an id is good for a new model.
+/// A check of the laws of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LawCheck {
+    /// The id of the model.
+    pub model: String,
+    /// The change that the picture showed when the check began: a later one makes it out of date.
+    pub since: Option<Reloaded>,
+    /// The findings, or why there are none; nothing while the check runs.
+    pub outcome: Option<Result<LawReport, String>>,
+}
+
+/// The identifier for a new model that is to be called by a name.
 ///
 /// # Errors
-/// A sentence that says what an id must be, with one that would do.
-pub fn check_id(id: &str, registry: &Registry) -> Result<(), String> {
-    if id.is_empty() {
-        return Err("Type a name, such as my_velvet.".to_owned());
+/// A sentence with the rule that the name breaks, and a name that would do.
+pub fn check_name(name: &str, registry: &Registry) -> Result<String, String> {
+    if name.trim().is_empty() {
+        return Err("Type a name, such as My velvet.".to_owned());
     }
-    if !is_plain(id) {
-        return Err(match plain(id) {
-            Some(better) => format!(
-                "Only lower-case letters a–z, digits and _, beginning with a letter: {better} would do."
-            ),
-            None => "Only lower-case letters a–z, digits and _, beginning with a letter.".to_owned(),
-        });
-    }
-    if id.len() > LONGEST_ID {
-        return Err(format!("At most {LONGEST_ID} characters; these are {}.", id.len()));
-    }
+    let id = id_of_name(name).map_err(|bad| {
+        let instead = bad.instead.map_or_else(String::new, |id| format!(": {id} would do"));
+        format!("Only letters a–z, digits and spaces, beginning with a letter, at most 40{instead}.")
+    })?;
     // A file that gives no model is a file too.
-    let broken = registry.broken_model(id).map(|_| source_path(id));
-    let taken = registry.model(id).map(|m| m.declaration.name.to_owned()).or(broken);
+    let broken = registry.broken_model(&id).map(|_| source_path(&id));
+    let taken = registry.model(&id).map(|m| m.declaration.name.to_owned()).or(broken);
     match taken {
-        Some(by) => Err(format!("{by} has this name already; {} is free.", free_id(id, registry))),
-        None => Ok(()),
+        Some(by) => Err(format!("{by} is called {id} already; {} is free.", free_id(&id, registry))),
+        None => Ok(id),
     }
-}
-
-fn is_plain(id: &str) -> bool {
-    let rest = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-    id.starts_with(|c: char| c.is_ascii_lowercase()) && id.chars().all(rest)
-}
-
-/// What was typed, as an id: `My Velvet!` becomes `my_velvet`.
-fn plain(text: &str) -> Option<String> {
-    let joined: String = text
-        .to_lowercase()
-        .chars()
-        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
-        .skip_while(|c| !c.is_ascii_lowercase())
-        .collect();
-    let id: String = joined.split('_').filter(|s| !s.is_empty()).collect::<Vec<_>>().join("_");
-    let id: String = id.chars().take(LONGEST_ID).collect();
-    (!id.is_empty()).then_some(id)
 }
 
 /// An id that no model has: the one given, or that with a number.
@@ -144,25 +137,26 @@ impl Lab {
     /// Carries out what is asked about models and shaders of one's own.
     pub(super) fn author(&mut self, ask: Ask, registry: &Registry) -> Vec<Effect> {
         match ask {
-            Ask::New => self.draft = Some(ModelDraft { of: None, id: free_id("my_model", registry) }),
+            Ask::New => self.draft = Some(ModelDraft { of: None, name: free_id("my_model", registry) }),
             Ask::Duplicate => {
                 let of = self.model_shown().to_owned();
                 if registry.model(&of).is_none() {
                     self.say(Severity::Warning, format!("The model “{of}” is not there to be copied."));
                     return Vec::new();
                 }
-                let id = free_id(&format!("my_{}", of.trim_start_matches("my_")), registry);
-                self.draft = Some(ModelDraft { of: Some(of), id });
+                let name = free_id(&format!("my_{}", of.trim_start_matches("my_")), registry);
+                self.draft = Some(ModelDraft { of: Some(of), name });
             }
             Ask::Type(text) => {
                 if let Some(draft) = &mut self.draft {
-                    draft.id = text;
+                    draft.name = text;
                 }
             }
             Ask::Create => return self.create(registry),
             Ask::Cancel => self.draft = None,
             Ask::EditShown => return self.edit_shown(registry),
             Ask::Edit { path, line } => return vec![Effect::OpenInEditor { path, line }],
+            Ask::CheckLaws => return self.check_laws(),
             Ask::ExportDialog => return vec![Effect::PickShaderFolder],
             Ask::Export(folder) => return vec![Effect::ExportShaders(folder)],
         }
@@ -171,15 +165,33 @@ impl Lab {
 
     fn create(&mut self, registry: &Registry) -> Vec<Effect> {
         // What is wrong stands beside the field.
-        let Some(draft) = self.draft.take_if(|draft| check_id(&draft.id, registry).is_ok()) else {
+        let checked = self.draft.as_ref().and_then(|draft| check_name(&draft.name, registry).ok());
+        let Some((id, draft)) = checked.and_then(|id| Some((id, self.draft.take()?))) else {
             return Vec::new();
         };
-        let ModelDraft { of, id } = draft;
+        let ModelDraft { of, name } = draft;
+        let name = name.trim().to_owned();
         vec![match of {
-            Some(model) => Effect::DuplicateModel { model, id },
-            // Its file will say what people call it.
-            None => Effect::NewModel { name: id.clone(), id },
+            Some(model) => Effect::DuplicateModel { model, id, name },
+            None => Effect::NewModel { id, name },
         }]
+    }
+
+    fn check_laws(&mut self) -> Vec<Effect> {
+        let running = self.laws.as_ref().is_some_and(|check| check.outcome.is_none());
+        if running {
+            return Vec::new();
+        }
+        let model = self.model_shown().to_owned();
+        self.laws = Some(LawCheck { model: model.clone(), since: self.shaders.last.clone(), outcome: None });
+        vec![Effect::CheckLaws(model)]
+    }
+
+    /// Takes what a check of the laws of a model found.
+    pub fn laws_checked(&mut self, model: &str, outcome: Result<LawReport, String>) {
+        if let Some(check) = self.laws.as_mut().filter(|check| check.model == model) {
+            check.outcome = Some(outcome);
+        }
     }
 
     fn edit_shown(&mut self, registry: &Registry) -> Vec<Effect> {
@@ -278,17 +290,16 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
     let mut actions = Vec::new();
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
-    let checked = check_id(&draft.id, registry);
-    ui.label("Identifier (also the file name)");
-    let mut text = draft.id.clone();
+    let checked = check_name(&draft.name, registry);
+    ui.label("Name");
+    let mut text = draft.name.clone();
     let stroke = match &checked {
-        Ok(()) => egui::Stroke::new(1.5, palette.accent),
+        Ok(_) => egui::Stroke::new(1.5, palette.accent),
         Err(_) => egui::Stroke::new(1.5, palette.error),
     };
     let id = Id::new("model draft id");
     let edit = TextEdit::singleline(&mut text)
         .id(id)
-        .font(egui::TextStyle::Monospace)
         .desired_width(f32::INFINITY)
         .frame(
             egui::Frame::new()
@@ -300,7 +311,7 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
         .show(ui);
     let response = edit.response.response;
     response.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(true, &draft.id, &text, "");
+        let mut info = WidgetInfo::text_edit(true, &draft.name, &text, "");
         info.label = Some("Name of the model".to_owned());
         info
     });
@@ -310,7 +321,7 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
         let mut state = edit.state;
         let all = egui::text::CCursorRange::two(
             egui::text::CCursor::new(0),
-            egui::text::CCursor::new(draft.id.chars().count()),
+            egui::text::CCursor::new(draft.name.chars().count()),
         );
         state.cursor.set_char_range(Some(all));
         state.store(ui.ctx(), id);
@@ -320,9 +331,12 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
     }
     ui.add_space(2.0 * scale);
     match &checked {
-        Ok(()) => {
-            let path = on_disk(&lab.shaders, &source_path(&draft.id));
-            let path = path.map_or_else(|| source_path(&draft.id), |p| p.display().to_string());
+        Ok(id) => {
+            let path = on_disk(&lab.shaders, &source_path(id));
+            let path = path.map_or_else(|| source_path(id), |p| p.display().to_string());
+            ui.label(
+                RichText::new(format!("Identifier (also the file name): {id}")).small().color(palette.text),
+            );
             ui.add(egui::Label::new(theme::small(ui, format!("Will be written to {path}"))).wrap());
         }
         Err(why) => {
@@ -363,38 +377,40 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ids_are_lower_case_and_free_and_the_message_says_one_that_would_do() {
+    fn names_are_taken_as_the_command_line_takes_them_and_the_message_says_one_that_would_do() {
         let registry = Registry::builtin();
-        for good in ["my_velvet", "x", "ggx2", "a_1_b"] {
-            assert_eq!(check_id(good, &registry), Ok(()), "{good}");
+        for (good, id) in [
+            ("my_velvet", "my_velvet"),
+            ("x", "x"),
+            ("Student toon", "student_toon"),
+            ("  My  GGX-2 (test)! ", "my_ggx_2_test"),
+            ("a__b", "a__b"),
+        ] {
+            assert_eq!(check_name(good, &registry).as_deref(), Ok(id), "{good}");
+            assert_eq!(id_of_name(good).as_deref(), Ok(id), "{good}");
         }
         for (bad, word) in [
-            ("", "such as my_velvet"),
-            ("My Velvet", "my_velvet would do"),
-            ("velvet!", "velvet would do"),
-            ("2fast", "fast would do"),
-            ("_x", "x would do"),
+            ("", "such as My velvet"),
+            ("2 fast", "fast would do"),
             ("../evil", "evil would do"),
+            ("velvet.wgsl", "velvet_wgsl would do"),
             ("größe", "gr_e would do"),
-            ("漢字", "beginning with a letter."),
-            ("phong", "Phong has this name already; phong_2 is free"),
+            ("漢字", "at most 40."),
+            (&"x".repeat(41), &format!("{} would do", "x".repeat(40))),
         ] {
-            let said = check_id(bad, &registry).expect_err(bad);
+            let said = check_name(bad, &registry).expect_err(bad);
             assert!(said.contains(word), "{bad}: {said}");
+            assert!(id_of_name(bad).is_err(), "{bad}");
         }
-        assert!(check_id(&"x".repeat(LONGEST_ID), &registry).is_ok());
-        assert!(check_id(&"x".repeat(LONGEST_ID + 1), &registry).is_err());
-    }
-
-    #[test]
-    fn what_is_proposed_is_an_id() {
-        for text in ["My Velvet", "a--b", "  x  ", "Ö1z9", "__a__", &"Long ".repeat(30)] {
-            let better = plain(text).expect("a letter");
-            assert!(is_plain(&better) && better.len() <= LONGEST_ID, "{text}: {better}");
-        }
+        let said = check_name("Phong", &registry).expect_err("there is one");
+        assert!(said.contains("Phong is called phong already; phong_2 is free"), "{said}");
+        assert!(check_name(&"x".repeat(40), &registry).is_ok());
         let mut registry = Registry::builtin();
         registry.mark_broken("my_velvet", "why".to_owned());
-        let said = check_id("my_velvet", &registry).expect_err("there is a file");
-        assert!(said.contains("models/my_velvet.wgsl has this name already; my_velvet_2 is free"), "{said}");
+        let said = check_name("My velvet", &registry).expect_err("there is a file");
+        assert!(
+            said.contains("models/my_velvet.wgsl is called my_velvet already; my_velvet_2 is free"),
+            "{said}"
+        );
     }
 }

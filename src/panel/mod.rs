@@ -39,6 +39,7 @@ pub mod icon;
 pub mod inspector;
 pub mod keys;
 pub mod knob;
+pub mod laws;
 pub mod limits;
 pub mod maths;
 pub mod messages;

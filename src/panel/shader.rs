@@ -9,6 +9,7 @@ use super::{
     author::Ask,
     icon::{self, Icon},
     inspector::plural,
+    laws,
     state::{Action, Lab, Severity},
     theme::{self, Palette},
 };
@@ -434,26 +435,35 @@ fn source_line(ui: &mut Ui, trouble: &Trouble) {
 /// Nothing is wrong: what was last taken over, and how to begin.
 fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
     let scale = theme::scale_here(ui);
-    let (heading, how) = match &lab.shaders.shaders {
-        Some(_) => (
-            "No errors",
-            "Open a file at the left, change it and save it: the picture follows. Errors appear here, and the picture keeps the last version that worked.",
-        ),
-        None => (
-            "No errors",
-            "To change how the picture is computed: export the shaders, open one in an editor, save it. The picture follows. Or write a custom model:",
-        ),
+    let heading = if laws::are_broken(lab) { "No errors, but broken laws" } else { "No errors" };
+    let how = match &lab.shaders.shaders {
+        Some(_) => {
+            "Open a file at the left, change it and save it: the picture follows. Errors appear here, and the picture keeps the last version that worked."
+        }
+        None => {
+            "To change how the picture is computed: export the shaders, open one in an editor, save it. The picture follows. Or write a custom model:"
+        }
     };
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, heading));
-        if let Some(last) = &lab.shaders.last {
-            let text = format!("{} loaded in {:.0} ms", last.file, last.milliseconds.max(0.0));
-            ui.add(egui::Label::new(theme::small(ui, text)).truncate());
-        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            laws::button(ui, lab, registry, actions);
+            let last = lab.shaders.last.as_ref();
+            let text =
+                last.map(|last| format!("{} loaded in {:.0} ms", last.file, last.milliseconds.max(0.0)));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                text.map(|text| ui.add(egui::Label::new(theme::small(ui, text)).truncate()));
+            });
+        });
     });
-    ui.add(egui::Label::new(how).wrap());
-    ui.add_space(4.0 * scale);
-    actions.extend(author::buttons(ui, lab, registry));
+    ScrollArea::vertical().id_salt("well").auto_shrink(false).show(ui, |ui| {
+        // The scroll bar floats over this margin.
+        ui.set_width(ui.available_width() - 8.0 * scale);
+        laws::findings(ui, lab);
+        ui.add(egui::Label::new(how).wrap());
+        ui.add_space(4.0 * scale);
+        actions.extend(author::buttons(ui, lab, registry));
+    });
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use glam::{Quat, Vec3};
 
 use super::{
     PanelInfo,
-    author::{Ask, ModelDraft},
+    author::{Ask, LawCheck, ModelDraft},
     follow::Aside,
     limits,
     names::{Names, free_name, name_of},
@@ -82,6 +82,8 @@ pub struct Lab {
     pub shaders: ShaderStatus,
     /// The model of one's own that is about to be written.
     pub draft: Option<ModelDraft>,
+    /// The last check of the laws of a model.
+    pub laws: Option<LawCheck>,
     /// The model that is chosen as soon as it is known: one whose file was just written.
     pub wanted_model: Option<String>,
     /// The orientation of the camera, fed by the app; turns the axes in the corner of the picture.
@@ -602,6 +604,8 @@ pub enum Effect {
         model: String,
         /// Id of the copy, which is also the name of the file.
         id: String,
+        /// What people call it.
+        name: String,
     },
     /// Open a file in an editor.
     OpenInEditor {
@@ -610,6 +614,8 @@ pub enum Effect {
         /// The line to go to, from 1.
         line: usize,
     },
+    /// Try to find the laws of a model broken.
+    CheckLaws(String),
     /// Show the dialog that chooses a folder for the shaders.
     PickShaderFolder,
     /// Write the shaders into a folder, to be edited there.
@@ -644,6 +650,7 @@ impl Lab {
             disk: OnDisk::default(),
             shaders: ShaderStatus::default(),
             draft: None,
+            laws: None,
             wanted_model: None,
             camera: Quat::IDENTITY,
             question: None,

@@ -23,6 +23,7 @@ use crate::{
     shader::Source,
 };
 
+pub mod law_report;
 pub mod laws;
 pub mod material;
 pub mod own;

@@ -369,7 +369,7 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
 
 /// The room to judge positions by: an extent that is itself wrong is as large as may be, so that one
 /// mistake is not reported once more for everything in the room.
-fn plausible(mut room: SceneSize) -> SceneSize {
+pub(super) fn plausible(mut room: SceneSize) -> SceneSize {
     for extent in [&mut room.height, &mut room.width, &mut room.depth] {
         if dimension("", *extent).is_err() {
             *extent = MAX_DIMENSION;

@@ -21,6 +21,7 @@ use crate::{
 pub mod check;
 pub mod error;
 mod format;
+mod lacking_size;
 pub mod load;
 mod read;
 pub mod save;

@@ -18,6 +18,7 @@ use super::{
     DEFAULT_DIMENSION, DEFAULT_REFLECTION_MODEL, DEFAULT_SHADING_MODEL, Display, Light, MAX_DIMENSION,
     Object, Observer, Scene, SceneSize, check,
     error::{LoadError, Path, Problem, Segment, quoted, shortened},
+    lacking_size,
     load::{Defaults, Lines, Missing},
 };
 use crate::{
@@ -148,7 +149,10 @@ pub(super) fn scene(
         return Ok((scene, missing));
     }
     if defaults == Defaults::Refuse {
-        problems.extend(missing.iter().map(|m| (0, m.problem())));
+        // A missing size may be told already.
+        let told = |m: &&Missing| problems.iter().any(|(_, p)| p.path == m.path);
+        let more: Vec<_> = missing.iter().filter(|m| !told(m)).map(|m| (0, m.problem())).collect();
+        problems.extend(more);
     }
     problems.sort_by_key(|(at, _)| *at);
     if unlisted > 0 {
@@ -779,10 +783,11 @@ impl Reader<'_> {
 
     /// Applies [`check`] and finds the places of what it finds.
     fn check(&mut self, scene: &Scene, root: &Ast) {
-        for mut problem in check::scene(scene, self.registry) {
-            if !self.reported.is_empty() && problem.path.ancestors().any(|p| self.reported.contains(&p)) {
-                continue;
-            }
+        let mut problems = check::scene(scene, self.registry);
+        if !self.reported.is_empty() {
+            problems.retain(|problem| !problem.path.ancestors().any(|p| self.reported.contains(&p)));
+        }
+        for mut problem in lacking_size::explain(problems, scene, &self.missing) {
             let (at, value) = locate(root, &problem.path);
             if let (Some(value), Some(found)) = (value, &mut problem.found) {
                 *found = self.describe(value);

@@ -8,7 +8,7 @@ use naga::{
     valid::{Capabilities, ValidationFlags, Validator},
 };
 
-use super::{compose::Composed, limits, pitfall};
+use super::{compose::Composed, field, limits, pitfall};
 
 /// What is wrong with a shader, located in the author's file.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -23,6 +23,26 @@ pub struct ShaderProblem {
     pub source: String,
     /// What is wrong.
     pub message: String,
+}
+
+impl ShaderProblem {
+    /// A problem at a byte of the text of a file.
+    #[must_use]
+    pub fn at(file: &str, text: &str, at: usize, message: String) -> Self {
+        let mut at = at.min(text.len());
+        while !text.is_char_boundary(at) {
+            at -= 1;
+        }
+        let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
+        Self {
+            file: file.to_owned(),
+            line: text[..start].matches('\n').count() + 1,
+            // Columns count characters.
+            column: text[start..at].chars().count() + 1,
+            source: text[start..].lines().next().unwrap_or_default().to_owned(),
+            message,
+        }
+    }
 }
 
 impl fmt::Display for ShaderProblem {
@@ -105,7 +125,7 @@ pub(crate) fn locate(
         // naga counts bytes.
         column: source.char_indices().take_while(|(at, _)| at + 1 < column).count() + 1,
         source: source.to_owned(),
-        message,
+        message: field::explain(&composed.text, source, column, &message).unwrap_or(message),
     })
 }
 

@@ -229,7 +229,19 @@ impl<'a> Composer<'a> {
 
     /// Puts in a source, after the files that it asks for.
     fn source(&mut self, source: &Source) {
-        self.file(source.path, self.sources.text(source));
+        let text = self.sources.text(source);
+        if text != source.text {
+            self.check_end(source.path, text);
+        }
+        self.file(source.path, text);
+    }
+
+    /// Complains of what would swallow the file behind.
+    fn check_end(&mut self, path: &str, text: &str) {
+        if let Some((at, what)) = super::limits::unfinished(text) {
+            let problem = || Box::new(ShaderProblem::at(path, text, at, what));
+            self.composed.problem.get_or_insert_with(problem);
+        }
     }
 
     fn file(&mut self, path: &str, text: &str) {
@@ -292,7 +304,10 @@ impl<'a> Composer<'a> {
                         super::limits::LIMITS.bytes
                     ),
                 ),
-            Some(text) => self.file(&path, text),
+            Some(text) => {
+                self.check_end(&path, text);
+                self.file(&path, text);
+            }
             None => self.complain(from, at, line, &format!("there is no file `{path}` to import")),
         }
     }

@@ -10,20 +10,20 @@
 
 use std::thread;
 
-use naga::{
-    Module, Span,
-    front::wgsl::{self, ParseError},
-};
+use naga::{Module, Span};
 
 use super::{
     check::{ShaderProblem, locate},
     compose::{Composed, EVALUATE, WRAPPER},
 };
 
+mod closed;
 mod expansion;
 mod module;
 mod text;
 mod token;
+
+pub use closed::{is_empty, unfinished};
 
 /// What may be written.
 #[derive(Clone, Copy, Debug)]
@@ -116,13 +116,6 @@ pub fn check_module(module: &Module) -> Option<(Span, String)> {
     module::check(module, &LIMITS).err()
 }
 
-/// Parses a text by itself that may be anything; none if it goes beyond a limit.
-#[must_use]
-pub fn parse(text: &str) -> Option<Result<Module, ParseError>> {
-    text::check(text, &LIMITS, |_| true).ok()?;
-    on_stack(|| wgsl::parse_str(text))
-}
-
 /// Calls a function on a stack that is large enough for what is within the limits; none if it panics, or if there is
 /// no memory for a stack.
 pub(super) fn on_stack<T: Send>(call: impl FnOnce() -> T + Send) -> Option<T> {
@@ -134,6 +127,8 @@ pub(super) fn on_stack<T: Send>(call: impl FnOnce() -> T + Send) -> Option<T> {
 
 #[cfg(test)]
 mod tests {
+    use naga::front::wgsl;
+
     use super::*;
     use crate::{
         reflection::own,

@@ -25,6 +25,7 @@ use bevy::{
 use super::{
     check::ShaderProblem,
     compose::{Composed, Sources, WRAPPER, compose, compose_evaluation, slim},
+    limits,
     reading::{Done, Job, Reader},
     status::{Reloaded, ShaderStatus, Trouble},
     trial::{Bench, COMPOSED, Tools, TrialPlugin, Verdict},
@@ -754,8 +755,8 @@ impl LiveShaders {
         self.stale_status = true;
     }
 
-    /// Names the file that was edited where a problem shows in another one: behind a file that ends in the middle
-    /// of something, or where something is used that is not there any more.
+    /// Names the file that was edited where a problem shows in another one: one that is empty, or where something is
+    /// used that is not there any more.
     fn blamed(&self, mut problem: Box<ShaderProblem>, composed: &Composed) -> Box<ShaderProblem> {
         if self.current.get(&problem.file).is_some() {
             return problem;
@@ -763,16 +764,15 @@ impl LiveShaders {
         let changed = self.change.as_ref().map(|(file, _)| file.as_str());
         let text = |path: &str| self.current.get(path).or_else(|| Some(&*self.own.get(path)?.1));
         let edited = || composed.map.files().filter(|path| text(path).is_some());
-        let unfinished = || edited().find(|path| text(path).is_some_and(ends_too_early));
-        let Some(cause) = unfinished()
-            .or_else(|| changed.filter(|path| composed.depends_on(path)))
-            .or_else(|| edited().next())
+        let empty = || edited().find(|path| text(path).is_some_and(limits::is_empty));
+        let Some(cause) =
+            empty().or_else(|| changed.filter(|path| composed.depends_on(path))).or_else(|| edited().next())
         else {
             return problem;
         };
         let text = text(cause).unwrap_or_default();
         let generated = problem.file.starts_with('(');
-        if !generated && !ends_too_early(text) {
+        if !generated && !limits::is_empty(text) {
             problem.message.push_str(&format!("; introduced by the change in {cause}"));
             return problem;
         }
@@ -981,16 +981,4 @@ fn take_back(error: &RenderError, main: &mut World, render: &mut World) -> Rende
 /// The built-in text of a path.
 fn built_in(registry: &Registry, path: &str) -> Option<&'static str> {
     built_in_sources(registry).into_iter().find(|s| s.path == path).map(|s| s.text)
-}
-
-/// Whether a text ends in the middle of a function, or is empty.
-fn ends_too_early(text: &str) -> bool {
-    let end = text.trim_end().len();
-    match super::limits::parse(text) {
-        None => false,
-        Some(Ok(_)) => end == 0,
-        Some(Err(error)) => {
-            error.labels().any(|(span, _)| span.to_range().is_some_and(|range| range.start >= end))
-        }
-    }
 }

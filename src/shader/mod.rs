@@ -3,6 +3,7 @@
 
 pub mod check;
 pub mod compose;
+mod field;
 pub mod file;
 pub mod interpret;
 pub mod limits;

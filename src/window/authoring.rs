@@ -1,16 +1,9 @@
-//! Files of one's own: writing new models, writing the shaders out, opening files in an editor. Nothing
-//! here waits for another program.
+//! Files of one's own: writing new models and writing the shaders out.
 
 use std::{
     io,
     path::{Path, PathBuf},
-    process::{Command, Stdio},
-    sync::{Arc, Mutex, PoisonError},
-    thread,
-    time::{Duration, Instant},
 };
-
-use bevy::ecs::prelude::*;
 
 pub use crate::assets::write_new;
 use crate::{
@@ -23,99 +16,12 @@ use crate::{
     registry::Registry,
 };
 
-/// The environment variable that names the editor: a command, split at spaces. `{file}` and `{line}` stand
-/// for the file and the line; without `{file}` the file comes last.
-pub const EDITOR_VARIABLE: &str = "LCM_EDITOR";
-/// A command that fails within this time is told of.
-const PATIENCE: Duration = Duration::from_secs(5);
-
-/// The command that opens a file at a line, program and arguments. None when the variable says nothing: then
-/// the operating system chooses.
-#[must_use]
-pub fn editor_command(variable: Option<&str>, file: &Path, line: usize) -> Option<(String, Vec<String>)> {
-    let variable = variable?;
-    let named = variable.contains("{file}");
-    let name = file.to_string_lossy();
-    // Split first: a file name may hold spaces.
-    let mut words = variable
-        .split_whitespace()
-        .map(|word| word.replace("{line}", &line.to_string()).replace("{file}", &name))
-        .collect::<Vec<_>>();
-    if words.is_empty() {
-        return None;
-    }
-    if !named {
-        words.push(name.into_owned());
-    }
-    let program = words.remove(0);
-    Some((program, words))
-}
-
-/// What went wrong with editors that were started, told by the threads that wait for them.
-#[derive(Clone, Debug, Default, Resource)]
-pub struct Editors {
-    complaints: Arc<Mutex<Vec<String>>>,
-}
-
-impl Editors {
-    /// Opens a file in an editor, as `variable` (the value of [`EDITOR_VARIABLE`]) says, and comes back at
-    /// once. `wake` is called when there is a complaint.
-    pub fn open(
-        &self,
-        variable: Option<&str>,
-        file: &Path,
-        line: usize,
-        wake: impl FnOnce() + Send + 'static,
-    ) {
-        let command = editor_command(variable, file, line);
-        let complaints = self.complaints.clone();
-        let file = file.to_owned();
-        thread::spawn(move || {
-            let Err(why) = start(command, &file) else { return };
-            let text = format!(
-                "{} could not be opened in an editor: {why}. Open it by hand, or name an editor in the environment \
-                 variable {EDITOR_VARIABLE}, such as \"code --goto {{file}}:{{line}}\".",
-                file.display()
-            );
-            complaints.lock().unwrap_or_else(PoisonError::into_inner).push(text);
-            wake();
-        });
-    }
-
-    /// The complaints since the last call.
-    #[must_use]
-    pub fn take(&self) -> Vec<String> {
-        std::mem::take(&mut *self.complaints.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-}
-
-/// Starts the editor. Waits a little, since many programs that cannot open a file say so by their exit status.
-fn start(command: Option<(String, Vec<String>)>, file: &Path) -> Result<(), String> {
-    let Some((program, arguments)) = command else {
-        return open::that_detached(file).map_err(|e| e.to_string());
-    };
-    let mut child = Command::new(&program)
-        .args(arguments)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(|e| format!("the command {program} of {EDITOR_VARIABLE} does not start ({e})"))?;
-    let started = Instant::now();
-    match child.wait() {
-        Ok(status) if !status.success() && started.elapsed() < PATIENCE => {
-            Err(format!("the command {program} of {EDITOR_VARIABLE} ended with {status}"))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Carries out an effect that writes a file of one's own: says what became of it, and wishes for a new model to be
 /// chosen. Returns the folder whose shaders are to be read from now on, if there is a new one.
 pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<PathBuf> {
     match effect {
-        Effect::NewModel { id, name } => new_file(lab, registry, id, None, &own::template(id, name)),
-        Effect::DuplicateModel { model, id } => {
+        Effect::NewModel { id, name } => new_file(lab, registry, id, name, None, &own::template(id, name)),
+        Effect::DuplicateModel { model, id, name } => {
             let Some(entry) = registry.model(model) else {
                 lab.say(Severity::Error, format!("There is no reflection model “{model}” to copy."));
                 return None;
@@ -123,13 +29,13 @@ pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<Path
             let sources = match own::folder::sources_with(model, registry) {
                 Ok(sources) => sources,
                 Err(why) => {
-                    let name = entry.declaration.name;
-                    lab.say(Severity::Error, format!("{name} was not copied: {}.", why.message));
+                    let copied = entry.declaration.name;
+                    lab.say(Severity::Error, format!("{copied} was not copied: {}.", why.message));
                     return None;
                 }
             };
-            match own::duplicate(entry, &sources, id) {
-                Ok(text) => new_file(lab, registry, id, Some(model), &text),
+            match own::duplicate(entry, &sources, id, name) {
+                Ok(text) => new_file(lab, registry, id, name, Some(model), &text),
                 Err(why) => {
                     lab.say(Severity::Error, format!("{} was not copied: {why}.", entry.declaration.name));
                 }
@@ -153,7 +59,7 @@ fn models_folder(lab: &Lab, registry: &Registry) -> Option<PathBuf> {
     known.or_else(|| Folders::find(None, None).ok()?.models)
 }
 
-fn new_file(lab: &mut Lab, registry: &Registry, id: &str, of: Option<&str>, text: &str) {
+fn new_file(lab: &mut Lab, registry: &Registry, id: &str, name: &str, of: Option<&str>, text: &str) {
     let Some(folder) = models_folder(lab, registry) else {
         let why = "There is no folder for custom models: name one with `lcm --models FOLDER`.";
         return lab.say(Severity::Error, why);
@@ -172,7 +78,7 @@ fn new_file(lab: &mut Lab, registry: &Registry, id: &str, of: Option<&str>, text
         }
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
             // Asked again, with what was typed.
-            lab.draft = Some(ModelDraft { of: of.map(str::to_owned), id: id.to_owned() });
+            lab.draft = Some(ModelDraft { of: of.map(str::to_owned), name: name.to_owned() });
             lab.say(
                 Severity::Error,
                 format!("{} exists already and was left as it is; choose another name.", path.display()),

@@ -41,6 +41,7 @@ use glam::UVec2;
 
 use crate::{
     app::{LabFrame, LabSystems, ScenePlugin, ShownTerms},
+    assets::Folders,
     capture::gpu::{find_adapter, wgpu_settings},
     cli::{Failure, ViewOptions},
     observer::camera::{PictureCamera, picture_camera},
@@ -66,9 +67,11 @@ use crate::{
 pub mod authoring;
 mod camera;
 mod capture;
+pub mod editor;
 mod ending;
 pub mod files;
 mod gizmos;
+pub mod laws;
 mod pick;
 mod recovery;
 mod shaders;
@@ -131,6 +134,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     );
     add_with_display(&mut app, plugins)?;
     app.insert_resource(options.registry.clone());
+    app.insert_resource(laws::LawChecks::by(options.trial_program.clone()));
     let mut lab = Lab::new(options.scene.clone());
     lab.path.clone_from(&options.file);
     lab.disk.use_defaults = options.use_defaults;
@@ -246,7 +250,8 @@ impl Plugin for WindowSystemsPlugin {
             unfocused_mode: UpdateMode::reactive_low_power(SLEEP),
         })
         .init_resource::<Settling>()
-        .init_resource::<authoring::Editors>()
+        .init_resource::<editor::Editors>()
+        .init_resource::<laws::LawChecks>()
         .init_resource::<FrameClock>()
         .add_plugins((
             gizmos::GizmosPlugin,
@@ -339,13 +344,17 @@ fn carry_out(
     mut camera: camera::CameraControl,
     watch: Res<watching::FileWatch>,
     mut exit: MessageWriter<AppExit>,
-    editors: Res<authoring::Editors>,
+    editors: Res<editor::Editors>,
+    laws: Res<laws::LawChecks>,
     proxy: Option<Res<EventLoopProxyWrapper>>,
     mut recovery: ResMut<recovery::Recovery>,
     mut commands: Commands,
 ) {
     for complaint in editors.take() {
         lab.say(Severity::Error, complaint);
+    }
+    if let Some((model, outcome)) = laws.take() {
+        lab.laws_checked(&model, outcome);
     }
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
     pending.reverse();
@@ -378,9 +387,17 @@ fn carry_out(
             }
             Effect::OpenInEditor { path, line } => {
                 let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
-                let variable = std::env::var(authoring::EDITOR_VARIABLE).ok();
+                let variable = std::env::var(editor::EDITOR_VARIABLE).ok();
                 editors.open(variable.as_deref(), &path, line, move || {
                     // The window sleeps; without it there is nobody to tell.
+                    proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
+                });
+            }
+            Effect::CheckLaws(model) => {
+                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
+                let folders =
+                    Folders { shaders: lab.shaders.shaders.clone(), models: lab.shaders.models.clone() };
+                laws.begin(&model, &folders, move || {
                     proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
                 });
             }

@@ -60,7 +60,7 @@ fn a_new_model_is_written_listed_evaluated_and_checked() {
 
     let table = run(at, "models --models made/here", "").out;
     assert!(
-        table.contains("Own files\n  velvet_rim") && table.contains("made/here/velvet_rim.wgsl\n"),
+        table.contains("Custom models\n  velvet_rim") && table.contains("made/here/velvet_rim.wgsl\n"),
         "{table}"
     );
     let json: Json = serde_json::from_str(&run(at, "--models made/here models --json", "").out).unwrap();

@@ -8,7 +8,7 @@ use std::{
 
 use serde_json::Value;
 
-use crate::support::{Run, changed, full_scene, lcm, lcm_in, root};
+use crate::support::{Run, changed, command_in, full_scene, lcm, lcm_in, root};
 
 /// Asserts the status and one line on standard error that contains a text.
 fn refused(run: &Run, status: i32, expected: &str) {
@@ -277,5 +277,19 @@ fn a_closed_pipe_is_no_error() {
         let mut said = String::new();
         child.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
         assert_eq!((child.wait().expect("ended").code(), said.as_str()), (Some(0), ""), "{arguments:?}");
+    }
+}
+
+/// Mesa looks for a Wayland display where nobody said that there is one, and a library of it complains.
+#[cfg(target_os = "linux")]
+#[test]
+fn nothing_is_printed_about_a_runtime_folder_that_is_not_set() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for value in [None, Some(""), Some("relative")] {
+        let arguments = ["render", "--renderer", "gpu", "--size", "16x16", "-o", "x.png"];
+        let mut command = command_in(folder.path(), arguments);
+        command.env_remove("XDG_RUNTIME_DIR").envs(value.map(|v| ("XDG_RUNTIME_DIR", v)));
+        let run = Run::from(command.output().expect("the program starts"));
+        assert!(run.status == Some(0) && !run.err.contains("XDG_RUNTIME_DIR"), "{value:?}: {}", run.err);
     }
 }

@@ -4,7 +4,9 @@
 mod albedo;
 mod assets;
 mod command_line;
+mod editors;
 mod extension;
+mod features;
 mod files;
 mod focus;
 mod golden;
@@ -13,8 +15,10 @@ mod hostile;
 mod hot_swap;
 mod interpret;
 mod keyboard;
+mod law_check;
 mod laws;
 mod memory;
+mod missing_size;
 mod own_folder;
 mod own_models;
 mod panels;
@@ -33,6 +37,7 @@ mod shader_panel;
 mod signals;
 mod study;
 mod support;
+mod swallowed;
 mod tangents;
 #[cfg(unix)]
 mod trial;

@@ -371,7 +371,7 @@ fn on_cpu(registry: &Registry, scene: &Scene) -> reference::Picture {
 fn duplicated(model: &ModelEntry) -> (Registry, OwnModel) {
     let registry = Registry::builtin();
     let id = format!("{}_copy", model.declaration.id);
-    let text = own::duplicate(model, registry.sources(), &id).expect("can be duplicated");
+    let text = own::duplicate(model, registry.sources(), &id, &id).expect("can be duplicated");
     let copy = own::read(&path(&id), &text, &registry).unwrap_or_else(|p| panic!("{id}: {p:?}\n{text}"));
     let mut registry = registry;
     registry.put_own_model(copy.clone());

@@ -6,10 +6,16 @@ use glam::Vec3;
 use lights_camera_models::{
     capture::{evaluate::evaluate, png},
     optics::{Frame, colour::Encoding},
-    reference,
-    reflection::{ModelEntry, parameter::Values},
+    reference::{self, Settings},
+    reflection::{
+        ModelEntry,
+        parameter::{Value, Values},
+    },
     registry::Registry,
-    scene::load::{self, Defaults},
+    scene::{
+        Scene,
+        load::{self, Defaults},
+    },
     shader::compose::Sources,
 };
 
@@ -21,6 +27,32 @@ use crate::{
 #[path = "../../examples/toon.rs"]
 #[allow(dead_code)]
 mod example;
+
+#[test]
+fn gouraud_shading_loses_the_highlight_as_the_tour_says() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("there");
+    let number = |after: &str| {
+        let digits: String = readme.split(after).nth(1)?.chars().take_while(char::is_ascii_digit).collect();
+        digits.parse::<u32>().ok()
+    };
+    let tessellation = number("set the tessellation to ").expect("says it");
+    let alpha = number("and α to ").expect("says it");
+    // The brightest pixel of the sphere of the default scene.
+    let brightest = |mode: &str| {
+        let mut scene = Scene {
+            reflection_model: "blinn_phong".to_owned(),
+            shading_model: mode.to_owned(),
+            ..Scene::default()
+        };
+        scene.objects[0].tessellation = Some(tessellation);
+        scene.objects[0].material.set("alpha", Value::Integer(alpha.into()));
+        let settings = Settings { width: 640, height: 360, ..Settings::default() };
+        let picture = reference::render_rgb8(&scene, &Registry::builtin(), &settings);
+        picture.into_iter().max().expect("has pixels")
+    };
+    assert_eq!(brightest("phong"), 255, "there is a highlight");
+    assert!(brightest("gouraud") < 240, "it is lost");
+}
 
 /// Portraits side by side in the gallery.
 const GALLERY_COLUMNS: usize = 4;

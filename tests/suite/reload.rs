@@ -301,8 +301,38 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "an unfinished comment",
         file: "terms.wgsl",
         change: |t| format!("/* {t}").into_bytes(),
-        said: "",
-        line: "",
+        said: "the comment is not closed",
+        line: "/* ",
+    },
+    Breakage {
+        name: "an unfinished comment at the end",
+        file: "reflection/phong.wgsl",
+        change: |t| format!("{t}\n  /* and so on\n").into_bytes(),
+        said: "the comment is not closed",
+        line: "/* and so on",
+    },
+    Breakage {
+        name: "a bracket that is not closed",
+        file: "shading/phong.wgsl",
+        change: |t| {
+            format!("{}\n", t.trim_end().strip_suffix('}').expect("ends with a bracket")).into_bytes()
+        },
+        said: "this { is not closed",
+        line: "fn ",
+    },
+    Breakage {
+        name: "an unfinished declaration",
+        file: "light/point.wgsl",
+        change: |t| format!("{t}\nconst half = 0.5\n").into_bytes(),
+        said: "a ; is missing",
+        line: "const half",
+    },
+    Breakage {
+        name: "a parameter as it is spelt elsewhere",
+        file: "reflection/phong.wgsl",
+        change: |t| replaced(t, "m.k_a * m.base_colour,", "m.k_a * m.base_color,"),
+        said: "no parameter base_color; did you mean base_colour?",
+        line: "m.base_color,",
     },
     Breakage {
         name: "a broken shading mode",
@@ -413,7 +443,7 @@ fn a_deleted_or_renamed_file_leaves_the_picture_and_is_missed() {
         assert!(lab.settled() == before);
         let troubles = lab.troubles();
         assert_eq!(troubles.len(), 1, "{troubles:?}");
-        assert!(troubles[0].problem.message.contains("gone"), "{troubles:?}");
+        assert!(troubles[0].problem.message.contains("missing"), "{troubles:?}");
         assert_eq!(troubles[0].stale, ["Phong"]);
         lab.save("reflection/phong.wgsl", original("reflection/phong.wgsl"));
         assert!(lab.settled() == before);

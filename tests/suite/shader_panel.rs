@@ -24,7 +24,10 @@ use lights_camera_models::{
         check::ShaderProblem,
         status::{Reloaded, ShaderStatus, Trouble},
     },
-    window::authoring::{Editors, editor_command, write, write_new},
+    window::{
+        authoring::{write, write_new},
+        editor::{Editors, editor_command},
+    },
 };
 
 use super::panels::Bench;
@@ -337,21 +340,22 @@ fn what_was_taken_over_last_is_told_while_all_is_well() {
 fn a_new_model_is_named_and_written() {
     let mut bench = bench_with(Vec::new());
     bench.key(Key::N, Modifiers::COMMAND | Modifiers::CTRL | Modifiers::SHIFT);
-    assert_eq!(bench.lab.draft, Some(ModelDraft { of: None, id: "my_model".to_owned() }));
+    assert_eq!(bench.lab.draft, Some(ModelDraft { of: None, name: "my_model".to_owned() }));
     // The field has the focus, and typing replaces the proposal.
-    bench.frame(vec![Event::Text("My Velvet".to_owned())]);
+    bench.frame(vec![Event::Text("größe".to_owned())]);
     bench.settle();
-    assert!(bench.says("my_velvet would do"), "what would be right");
+    assert!(bench.says("gr_e would do"), "what would be right");
     assert!(bench.find("Create").expect("there").disabled);
     bench.key(Key::Enter, Modifiers::NONE);
     assert!(bench.lab.draft.is_some() && bench.effects.is_empty(), "nothing is written under a wrong name");
     bench.type_into("Name of the model", "phong");
-    assert!(bench.says("Phong has this name already"));
-    bench.type_into("Name of the model", "my_velvet");
-    assert!(bench.says("/home/mira/lab/models/my_velvet.wgsl"), "says where");
+    assert!(bench.says("Phong is called phong already"));
+    bench.type_into("Name of the model", "Student toon");
+    assert!(bench.says("student_toon"), "says what it becomes");
+    assert!(bench.says("/home/mira/lab/models/student_toon.wgsl"), "says where");
     bench.key(Key::Enter, Modifiers::NONE);
-    let id = "my_velvet".to_owned();
-    assert_eq!(bench.effects, [Effect::NewModel { name: id.clone(), id }]);
+    let new = Effect::NewModel { name: "Student toon".to_owned(), id: "student_toon".to_owned() };
+    assert_eq!(bench.effects, [new]);
     assert_eq!(bench.lab.draft, None);
 }
 
@@ -361,10 +365,13 @@ fn the_shown_model_is_copied() {
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Model(Some("phong".to_owned())))));
     bench.click("Edit");
     bench.click("Duplicate the model as a file… Ctrl+Shift+D");
-    assert_eq!(bench.lab.draft, Some(ModelDraft { of: Some("phong".to_owned()), id: "my_phong".to_owned() }));
+    assert_eq!(
+        bench.lab.draft,
+        Some(ModelDraft { of: Some("phong".to_owned()), name: "my_phong".to_owned() })
+    );
     bench.click("Create");
     let (model, id) = ("phong".to_owned(), "my_phong".to_owned());
-    assert_eq!(bench.effects, [Effect::DuplicateModel { model, id }]);
+    assert_eq!(bench.effects, [Effect::DuplicateModel { model, name: id.clone(), id }]);
     bench.key(Key::D, Modifiers::COMMAND | Modifiers::CTRL | Modifiers::SHIFT);
     assert!(bench.lab.draft.is_some());
     bench.key(Key::Escape, Modifiers::NONE);
@@ -543,18 +550,24 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
 
     // The same once more is refused, and asked again.
     fs::write(&file, "mine")?;
-    let copy = Effect::DuplicateModel { model: "phong".to_owned(), id: name() };
-    write(&copy, &mut bench.lab, &bench.registry);
+    let copy = |id: &str, name: &str| Effect::DuplicateModel {
+        model: "phong".to_owned(),
+        id: id.to_owned(),
+        name: name.to_owned(),
+    };
+    write(&copy("my_velvet", "My velvet"), &mut bench.lab, &bench.registry);
     assert_eq!(fs::read_to_string(&file)?, "mine");
-    assert_eq!(bench.lab.draft, Some(ModelDraft { of: Some("phong".to_owned()), id: name() }));
+    let asked_again = ModelDraft { of: Some("phong".to_owned()), name: "My velvet".to_owned() };
+    assert_eq!(bench.lab.draft, Some(asked_again));
     assert!(bench.lab.messages.last().is_some_and(|m| m.text.contains("exists already")));
-    let copy = Effect::DuplicateModel { model: "phong".to_owned(), id: "my_phong".to_owned() };
-    write(&copy, &mut bench.lab, &bench.registry);
+    write(&copy("my_phong", "My Phong"), &mut bench.lab, &bench.registry);
     let file = models.join("my_phong.wgsl");
     let model =
         own::read(&file, &fs::read_to_string(&file)?, &bench.registry).map_err(|all| all[0].to_string())?;
     assert!(model.entry.declaration.equation.len() > 1, "equation and all");
-    let gone = Effect::DuplicateModel { model: "gone".to_owned(), id: "x".to_owned() };
+    assert_eq!(model.entry.declaration.name, "My Phong", "as it was typed");
+    let name = "x".to_owned();
+    let gone = Effect::DuplicateModel { model: "gone".to_owned(), id: name.clone(), name };
     write(&gone, &mut bench.lab, &bench.registry);
     assert!(bench.lab.messages.last().is_some_and(|m| m.text.contains("no reflection model “gone”")));
     // A folder that cannot be one.

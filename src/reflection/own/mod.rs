@@ -35,6 +35,7 @@ use crate::{
         Source,
         check::{self, ShaderProblem},
         compose::{compose, compose_evaluation},
+        limits,
         whole::validate_drawing,
     },
     shading::Stage,
@@ -50,7 +51,7 @@ mod write;
 
 pub use surface::OnCpu;
 pub use text::MARKER;
-pub use write::{NotDuplicated, duplicate, id_of_name, template};
+pub use write::{BadName, NotDuplicated, duplicate, id_of_name, template};
 
 /// The ending of the files.
 pub const EXTENSION: &str = "wgsl";
@@ -107,8 +108,7 @@ fn named(path: &Path) -> String {
 
 /// A problem at a byte of a model's file.
 fn problem(path: &Path, text: &str, (at, message): text::Mistake) -> ShaderProblem {
-    let (line, column, source) = text::place(text, at);
-    ShaderProblem { file: named(path), line, column, source: source.to_owned(), message }
+    ShaderProblem::at(&named(path), text, at, message)
 }
 
 /// Reads a model: its declaration, and its WGSL as far as one can tell without drawing. A registry that knows
@@ -119,6 +119,10 @@ fn problem(path: &Path, text: &str, (at, message): text::Mistake) -> ShaderProbl
 pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<OwnModel, Vec<ShaderProblem>> {
     let (model, lobe) = declared(path, text, registry)?;
     let problem_at = |at, message: String| vec![problem(path, text, (at, message))];
+    // It may hide the function.
+    if let Some((at, what)) = limits::unfinished(text) {
+        return Err(problem_at(at, what));
+    }
     if text::definition(text, "response").is_none() {
         let end = text::comment(text).map_or(0, |c| c.end);
         return Err(problem_at(end, format!("the function response is missing; it is {RESPONSE}")));

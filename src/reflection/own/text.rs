@@ -1,7 +1,7 @@
 //! The text of a model's file: where its declaration is, what it defines, and which names are allowed.
 
 /// The longest id or name of a parameter, characters.
-const LONGEST_ID: usize = 40;
+pub(super) const LONGEST_ID: usize = 40;
 /// The word behind `/*` that makes a comment the declaration.
 pub const MARKER: &str = "lcm";
 
@@ -56,7 +56,7 @@ pub(super) fn comment(text: &str) -> Result<Comment<'_>, Mistake> {
             return Err((at.min(text.len()), what));
         }
         let Some(end) = block_comment(text, at) else {
-            return Err((at, "the comment is not closed; write */ behind it".to_owned()));
+            return Err((at, "the comment is not closed; its */ is missing".to_owned()));
         };
         let inside = &text[at + 2..end - 2];
         let word = inside.trim_start();
@@ -112,11 +112,16 @@ pub(super) fn identifier(id: &str) -> Result<(), String> {
     let legal = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     let starts = id.starts_with(|c: char| c.is_ascii_lowercase());
     if !starts || !id.chars().all(legal) || id.len() > LONGEST_ID {
-        return Err(format!(
-            "must be lower-case letters, digits and underscores, begin with a letter and have at most {LONGEST_ID} characters"
-        ));
+        return Err(identifier_rule());
     }
     Ok(())
+}
+
+/// The rule of [`identifier`].
+pub(super) fn identifier_rule() -> String {
+    format!(
+        "must be lower-case letters, digits and underscores, begin with a letter and have at most {LONGEST_ID} characters"
+    )
 }
 
 /// Whether WGSL allows a name: it has many reserved words.
@@ -129,17 +134,6 @@ pub(super) fn humanised(id: &str) -> String {
     let spaced = id.replace('_', " ");
     let mut letters = spaced.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// Line and column of a byte, both from 1, and the line; columns count characters.
-pub(super) fn place(text: &str, at: usize) -> (usize, usize, &str) {
-    let mut at = at.min(text.len());
-    while !text.is_char_boundary(at) {
-        at -= 1;
-    }
-    let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
-    let line = text[..start].matches('\n').count() + 1;
-    (line, text[start..at].chars().count() + 1, text[start..].lines().next().unwrap_or_default())
 }
 
 /// The byte where a text defines something of that name.

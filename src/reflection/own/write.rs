@@ -7,7 +7,7 @@ use serde_json::{Value as Json, json};
 use super::{
     knobs::type_name,
     source_path,
-    text::{MARKER, comment, humanised, identifier},
+    text::{LONGEST_ID, MARKER, comment, humanised, identifier, identifier_rule},
 };
 use crate::{
     reflection::{
@@ -32,17 +32,44 @@ pub enum NotDuplicated {
     },
 }
 
-/// The id for a model that people call by a name: `My velvet` is `my_velvet`.
+/// A name from which no identifier follows.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the id of a model {rule}{}", .instead.as_ref().map_or_else(String::new, |id| format!("; {id} would do")))]
+pub struct BadName {
+    /// The rule that it breaks.
+    pub rule: String,
+    /// An identifier that is near to it.
+    pub instead: Option<String>,
+}
+
+/// The identifier of a model that people call by a name: `Student toon (2)` is `student_toon_2`. Spaces and signs
+/// become underscores; letters beyond a–z, dots and slashes are not guessed at.
 ///
 /// # Errors
-/// What is wrong with the name.
-pub fn id_of_name(name: &str) -> Result<String, String> {
-    let id: String = name
-        .trim()
-        .chars()
-        .map(|c| if c == ' ' || c == '-' { '_' } else { c.to_ascii_lowercase() })
-        .collect();
-    identifier(&id).map(|()| id).map_err(|rule| format!("the id of a model {rule}"))
+/// The rule that the name breaks, and a name that would do.
+pub fn id_of_name(name: &str) -> Result<String, BadName> {
+    let name = name.trim();
+    if identifier(name).is_ok() {
+        return Ok(name.to_owned());
+    }
+    let id = joined(name);
+    let plain =
+        |c: char| c.is_ascii_alphanumeric() || c == ' ' || c.is_ascii_punctuation() && !"./\\".contains(c);
+    identifier(&id)
+        .and_then(|()| if name.chars().all(plain) { Ok(id) } else { Err(identifier_rule()) })
+        .map_err(|rule| {
+            let near: String = joined(name).chars().skip_while(|c| !c.is_ascii_lowercase()).collect();
+            let near: String = near.chars().take(LONGEST_ID).collect();
+            let near = near.trim_end_matches('_');
+            BadName { rule, instead: identifier(near).is_ok().then(|| near.to_owned()) }
+        })
+}
+
+/// Lower case, with one underscore for whatever stands between letters and digits.
+fn joined(name: &str) -> String {
+    let lower = name.to_lowercase();
+    let words = lower.split(|c: char| !c.is_ascii_alphanumeric());
+    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join("_")
 }
 
 /// A commented file to start from, valid as it is: a matt body under a soft gloss that keeps all laws.
@@ -108,17 +135,27 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
 // fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> { … }
 "#;
 
-/// A model as a file of that id: the same picture, the same knobs.
+/// A model as a file of that id: the same picture, the same knobs. `name` is what people call the copy; where that is
+/// the id, one follows from it.
 ///
 /// # Errors
 /// When the id cannot be one.
-pub fn duplicate(entry: &ModelEntry, sources: &Sources, id: &str) -> Result<String, NotDuplicated> {
+pub fn duplicate(
+    entry: &ModelEntry,
+    sources: &Sources,
+    id: &str,
+    name: &str,
+) -> Result<String, NotDuplicated> {
     identifier(id).map_err(|rule| NotDuplicated::Id { id: id.to_owned(), rule })?;
     let d = entry.declaration;
     let source = sources.text(&d.wgsl);
     // Of a model from a file everything but the declaration is copied; that is written anew.
     let body = comment(source).map_or(source, |c| &source[c.end..]).trim_start();
-    let name = if id == format!("{}_copy", d.id) { format!("{} (copy)", d.name) } else { humanised(id) };
+    let name = match name {
+        name if name != id => name.to_owned(),
+        _ if id == format!("{}_copy", d.id) => format!("{} (copy)", d.name),
+        _ => humanised(id),
+    };
     // Writing to a String cannot fail; here and below.
     let mut out = format!("/* {MARKER}\n{{\n");
     for (key, value) in

@@ -32,7 +32,7 @@ pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) 
         );
         return Err(Refusal::Whole(what));
     }
-    let tokens = tokens(text, limits.tokens)?;
+    let tokens = tokens(text, limits.tokens)?.list;
     if tokens.len() > limits.tokens {
         let what = format!(
             "the shader has more than {} words and signs when everything is joined that it is made of, which none needs",

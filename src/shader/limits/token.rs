@@ -44,6 +44,13 @@ const LONGEST_WORD: usize = 256;
 /// What is wrong at a byte.
 pub(super) type Finding = (usize, String);
 
+/// The tokens of a text.
+pub(super) struct Tokens<'a> {
+    pub list: Vec<Token<'a>>,
+    /// Where a comment begins that is not closed.
+    pub open_comment: Option<usize>,
+}
+
 struct Scanner<'a> {
     text: &'a str,
     at: usize,
@@ -55,10 +62,11 @@ struct Scanner<'a> {
     line_begins: bool,
     /// The rest of the line belongs to the preprocessor.
     directive: bool,
+    open_comment: Option<usize>,
 }
 
 /// The tokens of a text, at most so many and one.
-pub(super) fn tokens(text: &str, most: usize) -> Result<Vec<Token<'_>>, Finding> {
+pub(super) fn tokens(text: &str, most: usize) -> Result<Tokens<'_>, Finding> {
     let mut scanner = Scanner {
         text,
         at: 0,
@@ -67,13 +75,14 @@ pub(super) fn tokens(text: &str, most: usize) -> Result<Vec<Token<'_>>, Finding>
         brackets: 0,
         line_begins: true,
         directive: false,
+        open_comment: None,
     };
     while scanner.at < text.len() && scanner.tokens.len() <= most {
         if let ControlFlow::Break(finding) = scanner.step() {
             return Err(finding);
         }
     }
-    Ok(scanner.tokens)
+    Ok(Tokens { list: scanner.tokens, open_comment: scanner.open_comment })
 }
 
 impl<'a> Scanner<'a> {
@@ -242,11 +251,13 @@ impl<'a> Scanner<'a> {
     /// Comments nest. One that is not closed hides the rest.
     fn block_comment(&mut self) {
         let bytes = self.text.as_bytes();
+        let start = self.at;
         let mut depth = 1;
         self.at += 2;
         while depth > 0 {
             match bytes.get(self.at..self.at + 2) {
                 None => {
+                    self.open_comment = Some(start);
                     self.at = bytes.len();
                     return;
                 }

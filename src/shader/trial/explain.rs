@@ -91,7 +91,7 @@ pub(super) fn located(
         .map(|at| {
             let before = &text[..at];
             let line_start = before.rfind('\n').map_or(0, |i| i + 1);
-            (before.matches('\n').count() + 1, text[line_start..at].chars().count() + 1)
+            (before.matches('\n').count() + 1, at - line_start + 1)
         });
     Refusal::Problem(locate(composed, place, message))
 }

@@ -1,0 +1,104 @@
+//! The law check in the panel of the shaders: its button, and what it found.
+
+use bevy_egui::egui::{self, RichText, Sense, Ui, vec2};
+
+use super::{
+    author::{Ask, LawCheck},
+    icon,
+    state::{Action, Lab, Severity},
+    theme::{self, Palette},
+};
+use crate::{reflection::law_report::LawReport, registry::Registry};
+
+/// The button, with what there is to say of a check that runs or is out of date; from the right to the left.
+pub fn button(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+    let name = |id: &str| registry.model(id).map(|m| m.declaration.name);
+    let Some(shown) = name(lab.model_shown()) else { return };
+    let running = lab.laws.as_ref().filter(|check| check.outcome.is_none());
+    let button = ui
+        .add_enabled(running.is_none(), egui::Button::new("Check laws"))
+        .on_hover_text(format!(
+            "Tries to find the laws broken that {shown} claims to keep: reciprocity, conservation of energy, no negative \
+             values. Random directions and parameters, on the graphics card, in a process of its own."
+        ))
+        .on_disabled_hover_text("A check is running.");
+    if button.clicked() {
+        actions.push(Action::Author(Ask::CheckLaws));
+    }
+    if let Some(check) = running {
+        let name = name(&check.model).unwrap_or(&check.model);
+        ui.label(theme::small(ui, format!("Checking {name}…")));
+    } else if of_shown(lab).is_some_and(|check| check.since != lab.shaders.last) {
+        ui.label(theme::small(ui, "Findings from before the last change"));
+    }
+}
+
+/// The check of the shown model.
+fn of_shown(lab: &Lab) -> Option<&LawCheck> {
+    lab.laws.as_ref().filter(|check| check.model == lab.model_shown())
+}
+
+/// True if the shown model was found to break a law that it claims, or to give values that are no numbers.
+pub fn are_broken(lab: &Lab) -> bool {
+    let outcome = of_shown(lab).and_then(|check| check.outcome.as_ref());
+    outcome.is_some_and(|found| found.as_ref().is_ok_and(|r| !r.broken().is_empty() || !r.is_finite()))
+}
+
+/// The findings about the shown model, if there are any.
+pub fn findings(ui: &mut Ui, lab: &Lab) {
+    match of_shown(lab).and_then(|check| check.outcome.as_ref()) {
+        None => {}
+        Some(Err(why)) => {
+            line(ui, Some(Severity::Error), &format!("The laws were not checked: {why}"), "", &[])
+        }
+        Some(Ok(report)) => laws(ui, report),
+    }
+}
+
+fn laws(ui: &mut Ui, report: &LawReport) {
+    for law in &report.laws {
+        let severity = match (law.claimed, law.kept) {
+            (true, true) if report.is_finite() => None,
+            (true, false) => Some(Severity::Error),
+            _ => Some(Severity::Info),
+        };
+        let verdict = report.verdict(law).replace("BROKEN", "broken");
+        let how = format!("{}: {}", law.measure, law.size);
+        line(ui, severity, &format!("{}: {verdict}", law.law), &how, &law.at);
+    }
+    if !report.is_finite() {
+        let what = format!("NaN or infinite: {} of {} responses", report.not_finite, report.responses);
+        line(ui, Some(Severity::Error), &what, "", &report.first_not_finite);
+    }
+}
+
+/// A finding with its sign; a tick where there is nothing to say against it.
+fn line(ui: &mut Ui, severity: Option<Severity>, what: &str, how: &str, at: &[String]) {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let bad = severity == Some(Severity::Error);
+    let row = ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(6.0, 1.0) * scale;
+        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 18.0) * scale, Sense::hover());
+        match severity {
+            Some(severity) => icon::severity(ui.painter(), sign.center(), 5.5 * scale, severity, &palette),
+            None => {
+                let (c, r) = (sign.center(), 4.5 * scale);
+                let tick = vec![c + vec2(-r, 0.0), c + vec2(-0.3 * r, 0.7 * r), c + vec2(r, -0.7 * r)];
+                ui.painter().line(tick, egui::Stroke::new(1.6 * scale, palette.accent));
+            }
+        }
+        let mut rest = what.chars();
+        let what: String = rest.next().into_iter().flat_map(char::to_uppercase).chain(rest).collect();
+        let colour = if bad { palette.error } else { palette.text };
+        ui.add(egui::Label::new(RichText::new(what).color(colour)).wrap().selectable(true));
+        if !how.is_empty() {
+            ui.add(egui::Label::new(theme::small(ui, how)).wrap().selectable(true));
+        }
+    });
+    row.response.on_hover_text(at.join("\n"));
+    // The place of a mistake must be seen to mend it.
+    for place in at.iter().filter(|_| bad) {
+        ui.indent(place, |ui| ui.add(egui::Label::new(theme::small(ui, place)).wrap().selectable(true)));
+    }
+}

@@ -1,0 +1,181 @@
+//! The findings about the laws of a model as people read them, and as data.
+
+use std::fmt;
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    ModelEntry,
+    laws::{Case, Effort, Extreme, Findings},
+};
+
+/// What was found about a model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LawReport {
+    /// The id of the model.
+    pub model: String,
+    /// How many responses were looked at.
+    pub responses: usize,
+    /// How many of them are NaN or infinite.
+    pub not_finite: usize,
+    /// Where the first of those was found.
+    pub first_not_finite: Vec<String>,
+    /// The laws.
+    pub laws: Vec<LawVerdict>,
+}
+
+/// What became of a law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LawVerdict {
+    /// Its name.
+    pub law: String,
+    /// The model claims to keep it.
+    pub claimed: bool,
+    /// It was not found broken.
+    pub kept: bool,
+    /// What it was judged by: `largest directional albedo`.
+    pub measure: String,
+    /// How large that is.
+    pub size: String,
+    /// Where that was found: directions in degrees, and the parameters as `--set` takes them.
+    pub at: Vec<String>,
+}
+
+impl LawVerdict {
+    /// What is said of it. Where some values are no numbers nothing is kept, but what is broken is broken.
+    fn verdict(&self, finite: bool) -> &'static str {
+        match (self.claimed, self.kept) {
+            (_, true) if !finite => "cannot be judged: some values are no numbers",
+            (true, true) => "claimed and kept",
+            (true, false) => "claimed and BROKEN",
+            (false, true) => "not claimed and not found broken: claim it?",
+            (false, false) => "not claimed and broken",
+        }
+    }
+}
+
+impl LawReport {
+    /// What an examination found.
+    #[must_use]
+    pub fn new(model: &ModelEntry, findings: &Findings) -> Self {
+        let evidence = [
+            ("largest relative difference of f(l, v) and f(v, l)", &findings.reciprocity),
+            ("largest directional albedo", &findings.albedo),
+            ("smallest value", &findings.smallest),
+        ];
+        let kept = findings.kept().list();
+        let claimed = model.declaration.laws.list();
+        let verdict = |((law, claimed), (_, kept)): ((&str, bool), (&str, bool)),
+                       (measure, extreme): (&str, &Extreme)| LawVerdict {
+            law: law.to_owned(),
+            claimed,
+            kept,
+            measure: measure.to_owned(),
+            size: number(extreme.size),
+            at: place(model, extreme.case.as_ref()),
+        };
+        Self {
+            model: model.declaration.id.to_owned(),
+            responses: findings.responses,
+            not_finite: findings.not_finite,
+            first_not_finite: place(model, findings.first_not_finite.as_ref()),
+            laws: claimed
+                .into_iter()
+                .zip(kept)
+                .zip(evidence)
+                .map(|(law, found)| verdict(law, found))
+                .collect(),
+        }
+    }
+
+    /// True if all responses are numbers.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.not_finite == 0
+    }
+
+    /// The laws that are claimed and broken.
+    #[must_use]
+    pub fn broken(&self) -> Vec<&str> {
+        self.laws.iter().filter(|law| law.claimed && !law.kept).map(|law| law.law.as_str()).collect()
+    }
+
+    /// What is said of a law.
+    #[must_use]
+    pub fn verdict(&self, law: &LawVerdict) -> &'static str {
+        law.verdict(self.is_finite())
+    }
+}
+
+impl fmt::Display for LawReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Effort { sets, .. } = Effort::default();
+        writeln!(
+            f,
+            "{}: {} responses with {sets} sets of parameters, and 6 directional albedos with each",
+            self.model, self.responses
+        )?;
+        let places = |at: &[String]| at.iter().map(|line| format!("\n  {line}")).collect::<String>();
+        for law in &self.laws {
+            writeln!(f, "{}: {}", law.law, self.verdict(law))?;
+            writeln!(f, "  {}: {}{}", law.measure, law.size, places(&law.at))?;
+        }
+        let verdict = if self.is_finite() { "everywhere" } else { "NOT everywhere" };
+        writeln!(f, "finite: {verdict}")?;
+        writeln!(
+            f,
+            "  NaN or infinite: {} of {} responses{}",
+            self.not_finite,
+            self.responses,
+            places(&self.first_not_finite)
+        )
+    }
+}
+
+/// A number with as many digits as say something.
+fn number(v: f32) -> String {
+    if v == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e4).contains(&v.abs()) {
+        format!("{v:.4}")
+    } else {
+        format!("{v:.2e}")
+    }
+}
+
+/// Where something was found: directions in degrees, and the parameters as `--set` takes them.
+fn place(model: &ModelEntry, case: Option<&Case>) -> Vec<String> {
+    let Some(case) = case else { return Vec::new() };
+    let angles = |d: Vec3| {
+        let theta = d.z.clamp(-1.0, 1.0).acos().to_degrees();
+        let phi = d.y.atan2(d.x).to_degrees();
+        format!("θ {theta:.2}°, φ {phi:.1}°")
+    };
+    let l = case.l.map_or_else(String::new, |l| format!("l ({}), ", angles(l)));
+    let set: Vec<_> = model.parameters.iter().map(|p| format!("{}={}", p.name, case.values.get(p))).collect();
+    let settings = (!set.is_empty()).then(|| set.join(" "));
+    [format!("at {l}v ({})", angles(case.v))].into_iter().chain(settings).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::Registry;
+
+    #[test]
+    fn no_law_is_said_to_be_kept_where_values_are_no_numbers() {
+        let registry = Registry::builtin();
+        let lambert = registry.model("lambert").expect("built in");
+        let mut findings = Findings { responses: 4, ..Findings::default() };
+        let report = |findings: &Findings| LawReport::new(lambert, findings).to_string();
+        assert_eq!(report(&findings).matches("claimed and kept").count(), 3);
+        findings.not_finite = 1;
+        findings.albedo.size = 2.0;
+        let text = report(&findings);
+        assert!(!text.contains("kept"), "{text}");
+        assert_eq!(text.matches("cannot be judged: some values are no numbers").count(), 2, "{text}");
+        assert!(text.contains("energy conserving: claimed and BROKEN"), "{text}");
+        assert_eq!(LawReport::new(lambert, &findings).broken(), ["energy conserving"]);
+    }
+}

@@ -1,0 +1,334 @@
+//! Which editor opens a file: the one that is named, else what the desktop opens text with, else one that is known to
+//! have a window. An editor that needs a terminal is only taken if its user named it, since others find no way out.
+
+use std::{
+    env,
+    ffi::OsString,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::{Arc, Mutex, PoisonError},
+    thread,
+    time::{Duration, Instant},
+};
+
+use bevy::ecs::prelude::*;
+
+use crate::files;
+
+/// The environment variable that names the editor: a command, split at spaces. `{file}` and `{line}` stand
+/// for the file and the line; without `{file}` the file comes last.
+pub const EDITOR_VARIABLE: &str = "LCM_EDITOR";
+/// A command that fails within this time is told of.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Editors with a window of their own, the best to learn with first, and how they are called.
+const KNOWN: [(&str, &str); 16] = [
+    ("code", "--goto {file}:{line}"),
+    ("codium", "--goto {file}:{line}"),
+    ("code-insiders", "--goto {file}:{line}"),
+    ("zed", "{file}:{line}"),
+    ("zeditor", "{file}:{line}"),
+    ("subl", "{file}:{line}"),
+    ("kate", "--line {line} {file}"),
+    ("gnome-text-editor", "+{line} {file}"),
+    ("gedit", "+{line} {file}"),
+    ("kwrite", "--line {line} {file}"),
+    ("xed", "+{line} {file}"),
+    ("pluma", "+{line} {file}"),
+    ("geany", "--line {line} {file}"),
+    ("mousepad", "--line={line} {file}"),
+    ("featherpad", "{file}"),
+    ("l3afpad", "{file}"),
+];
+
+/// Terminals, and what comes between them and a command.
+const TERMINALS: [(&str, &[&str]); 10] = [
+    ("x-terminal-emulator", &["-e"]),
+    ("gnome-terminal", &["--"]),
+    ("konsole", &["-e"]),
+    ("xfce4-terminal", &["-x"]),
+    ("mate-terminal", &["-x"]),
+    ("alacritty", &["-e"]),
+    ("kitty", &[]),
+    ("foot", &[]),
+    ("wezterm", &["start"]),
+    ("xterm", &["-e"]),
+];
+
+/// Editors in terminals that take the line as `+12`.
+const TAKE_A_PLUS: [&str; 8] = ["vi", "vim", "nvim", "nano", "pico", "emacs", "joe", "micro"];
+
+/// A command: program and arguments.
+type Called = (String, Vec<String>);
+
+/// The command that opens a file at a line, as a variable names it. None when that says nothing.
+#[must_use]
+pub fn editor_command(variable: Option<&str>, file: &Path, line: usize) -> Option<Called> {
+    let variable = variable?;
+    let named = variable.contains("{file}");
+    let name = file.to_string_lossy();
+    // Split first: a file name may hold spaces.
+    let mut words = variable
+        .split_whitespace()
+        .map(|word| word.replace("{line}", &line.to_string()).replace("{file}", &name))
+        .collect::<Vec<_>>();
+    if words.is_empty() {
+        return None;
+    }
+    if !named {
+        words.push(name.into_owned());
+    }
+    let program = words.remove(0);
+    Some((program, words))
+}
+
+/// An application of the desktop.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Application {
+    /// Its command, with the fields of the specification.
+    pub exec: String,
+    /// It runs in a terminal.
+    pub terminal: bool,
+}
+
+impl Application {
+    /// Reads a desktop entry.
+    #[must_use]
+    pub fn read(text: &str) -> Option<Self> {
+        let entry = text.lines().skip_while(|l| l.trim() != "[Desktop Entry]").skip(1);
+        let mut entry = entry.take_while(|line| !line.starts_with('[')).filter_map(|l| l.split_once('='));
+        let mut found = Self::default();
+        for (key, value) in entry.by_ref() {
+            match key.trim() {
+                "Exec" => value.trim().clone_into(&mut found.exec),
+                "Terminal" => found.terminal = value.trim() == "true",
+                _ => {}
+            }
+        }
+        (!found.exec.is_empty()).then_some(found)
+    }
+
+    /// The command that opens a file.
+    fn opens(&self, file: &Path, line: usize) -> Option<Called> {
+        let mut words = unquoted(&self.exec);
+        let program = (!words.is_empty()).then(|| words.remove(0))?;
+        if let Some(known) = known(&program) {
+            return Some((program, filled(known, file, line)));
+        }
+        let name = file.to_string_lossy().into_owned();
+        let mut arguments: Vec<String> = Vec::new();
+        let mut named = false;
+        for word in words {
+            match &*word {
+                "%f" | "%F" | "%u" | "%U" => {
+                    named = true;
+                    arguments.push(name.clone());
+                }
+                field if field.len() == 2 && field.starts_with('%') => {}
+                _ => arguments.push(word.replace("%%", "%")),
+            }
+        }
+        if !named {
+            arguments.push(name);
+        }
+        Some((program, arguments))
+    }
+}
+
+/// The words of a command in a desktop entry.
+fn unquoted(exec: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut quoted = false;
+    let mut characters = exec.chars();
+    while let Some(c) = characters.next() {
+        let last = words.len() - 1;
+        match c {
+            '"' => quoted = !quoted,
+            '\\' if quoted => words[last].extend(characters.next()),
+            c if c.is_whitespace() && !quoted => words.push(String::new()),
+            c => words[last].push(c),
+        }
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// How a known editor is called, by its name or path.
+fn known(program: &str) -> Option<&'static str> {
+    let name = Path::new(program).file_name()?.to_str()?;
+    KNOWN.iter().find(|(known, _)| *known == name).map(|(_, how)| *how)
+}
+
+fn filled(how: &str, file: &Path, line: usize) -> Vec<String> {
+    let filled = |word: &str| word.replace("{line}", &line.to_string());
+    how.split(' ').map(|word| filled(word).replace("{file}", &file.to_string_lossy())).collect()
+}
+
+/// What there is to choose from.
+#[derive(Clone, Debug, Default)]
+pub struct Surroundings {
+    /// The value of [`EDITOR_VARIABLE`].
+    pub named: Option<String>,
+    /// The values of `VISUAL` and `EDITOR`, as far as they are set.
+    pub usual: Vec<String>,
+    /// What the desktop opens text files with.
+    pub default: Option<Application>,
+    /// The folders that programs are looked for in.
+    pub path: Vec<PathBuf>,
+}
+
+impl Surroundings {
+    /// Those of this process; `named` is the value of [`EDITOR_VARIABLE`]. Asks the desktop, so it may take a moment.
+    #[must_use]
+    pub fn of_process(named: Option<String>) -> Self {
+        let given = |name: &str| env::var(name).ok().filter(|value| !value.trim().is_empty());
+        let path = env::var_os("PATH").unwrap_or_default();
+        Self {
+            default: if named.is_some() { None } else { default_application() },
+            named,
+            usual: ["VISUAL", "EDITOR"].into_iter().filter_map(given).collect(),
+            path: env::split_paths(&path).collect(),
+        }
+    }
+
+    fn has(&self, program: &str) -> bool {
+        Path::new(program).is_absolute() && Path::new(program).is_file()
+            || self.path.iter().any(|folder| folder.join(program).is_file())
+    }
+
+    /// The command that opens a file at a line.
+    #[must_use]
+    pub fn editor(&self, file: &Path, line: usize) -> Option<Called> {
+        editor_command(self.named.as_deref(), file, line)
+            .or_else(|| self.of_system(file))
+            .or_else(|| {
+                let default = self.default.as_ref().filter(|default| !default.terminal)?;
+                default.opens(file, line).filter(|(program, _)| self.has(program))
+            })
+            .or_else(|| self.usual.iter().find_map(|usual| self.with_window(usual, file, line)))
+            .or_else(|| KNOWN.iter().find_map(|(name, _)| self.with_window(name, file, line)))
+            .or_else(|| self.usual.iter().find_map(|usual| self.in_terminal(usual, file, line)))
+    }
+
+    /// What opens text where the system has one way for all.
+    fn of_system(&self, file: &Path) -> Option<Called> {
+        let arguments = || vec!["-t".to_owned(), file.to_string_lossy().into_owned()];
+        cfg!(target_os = "macos").then(|| ("open".to_owned(), arguments()))
+    }
+
+    /// A command if it is that of a known editor with a window, and is there.
+    fn with_window(&self, command: &str, file: &Path, line: usize) -> Option<Called> {
+        let mut words = command.split_whitespace().map(str::to_owned);
+        let program = words.next().filter(|program| self.has(program))?;
+        let how = known(&program)?;
+        Some((program, words.chain(filled(how, file, line)).collect()))
+    }
+
+    /// A command in a terminal, if both are there.
+    fn in_terminal(&self, command: &str, file: &Path, line: usize) -> Option<Called> {
+        let words: Vec<_> = command.split_whitespace().map(str::to_owned).collect();
+        let program = words.first().filter(|program| self.has(program))?;
+        let (terminal, between) = TERMINALS.iter().find(|(terminal, _)| self.has(terminal))?;
+        let mut arguments: Vec<_> = between.iter().map(|word| (*word).to_owned()).collect();
+        let name = Path::new(program).file_name().unwrap_or_default();
+        let plus = TAKE_A_PLUS.iter().any(|known| name == *known);
+        arguments.extend(words.iter().cloned());
+        arguments.extend(plus.then(|| format!("+{line}")));
+        arguments.push(file.to_string_lossy().into_owned());
+        Some(((*terminal).to_owned(), arguments))
+    }
+}
+
+/// The application that the desktop opens plain text with.
+fn default_application() -> Option<Application> {
+    if !cfg!(target_os = "linux") {
+        return None;
+    }
+    let asked = Command::new("xdg-mime")
+        .args(["query", "default", "text/plain"])
+        .stdin(Stdio::null())
+        .stderr(Stdio::null())
+        .output()
+        .ok()?;
+    let id = String::from_utf8(asked.stdout).ok()?;
+    let id = id.trim().split(';').next().filter(|id| !id.is_empty() && !id.contains('/'))?.to_owned();
+    let own = directories::BaseDirs::new().map(|dirs| dirs.data_dir().to_owned());
+    let shared = env::var_os("XDG_DATA_DIRS").filter(|dirs| !dirs.is_empty());
+    let shared = shared.unwrap_or_else(|| OsString::from("/usr/local/share:/usr/share"));
+    let folders: Vec<_> = own.into_iter().chain(env::split_paths(&shared)).collect();
+    // A dash may stand for a folder.
+    [id.clone(), id.replacen('-', "/", 1)].iter().find_map(|id| {
+        folders.iter().find_map(|folder| {
+            let bytes = files::read(&folder.join("applications").join(id), 1 << 20).ok()?;
+            Application::read(&String::from_utf8_lossy(&bytes))
+        })
+    })
+}
+
+/// What went wrong with editors that were started, told by the threads that wait for them.
+#[derive(Clone, Debug, Default, Resource)]
+pub struct Editors {
+    complaints: Arc<Mutex<Vec<String>>>,
+}
+
+impl Editors {
+    /// Opens a file in an editor and comes back at once; `variable` is the value of [`EDITOR_VARIABLE`]. `wake` is
+    /// called when there is a complaint.
+    pub fn open(
+        &self,
+        variable: Option<&str>,
+        file: &Path,
+        line: usize,
+        wake: impl FnOnce() + Send + 'static,
+    ) {
+        let named = variable.filter(|variable| !variable.trim().is_empty()).map(str::to_owned);
+        let complaints = self.complaints.clone();
+        let file = file.to_owned();
+        thread::spawn(move || {
+            let Err(why) = start(named, &file, line) else { return };
+            let text = format!(
+                "{} could not be opened in an editor: {why}. Open it by hand, or name an editor in the environment \
+                 variable {EDITOR_VARIABLE}, such as \"code --goto {{file}}:{{line}}\".",
+                file.display()
+            );
+            complaints.lock().unwrap_or_else(PoisonError::into_inner).push(text);
+            wake();
+        });
+    }
+
+    /// The complaints since the last call.
+    #[must_use]
+    pub fn take(&self) -> Vec<String> {
+        std::mem::take(&mut *self.complaints.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+/// Starts the editor. Waits a little, since many programs that cannot open a file say so by their exit status.
+fn start(named: Option<String>, file: &Path, line: usize) -> Result<(), String> {
+    let of = if named.is_some() { format!(" of {EDITOR_VARIABLE}") } else { String::new() };
+    let Some((program, arguments)) = Surroundings::of_process(named).editor(file, line) else {
+        return otherwise(file);
+    };
+    let mut child = Command::new(&program)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .map_err(|e| format!("the command {program}{of} does not start ({e})"))?;
+    let started = Instant::now();
+    match child.wait() {
+        Ok(status) if !status.success() && started.elapsed() < PATIENCE => {
+            Err(format!("the command {program}{of} ended with {status}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Where no editor is found.
+fn otherwise(file: &Path) -> Result<(), String> {
+    if cfg!(target_os = "linux") {
+        return Err("no editor with a window was found".to_owned());
+    }
+    open::that_detached(file).map_err(|e| e.to_string())
+}

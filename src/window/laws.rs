@@ -1,0 +1,98 @@
+//! The law check of the window: `lcm models check` in a process of its own, so that neither a slow driver nor one that
+//! crashes holds the window up.
+
+use std::{
+    io::Read as _,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::{Arc, Mutex, PoisonError},
+    thread,
+    time::{Duration, Instant},
+};
+
+use bevy::ecs::prelude::*;
+
+use crate::{assets::Folders, reflection::law_report::LawReport};
+
+/// The longest that a check may take: software Vulkan needs seconds for a model at the limits.
+const LONGEST: Duration = Duration::from_secs(120);
+
+/// What became of a check: the findings, or why there are none.
+pub type Outcome = Result<LawReport, String>;
+
+/// Checks laws, one model at a time.
+#[derive(Clone, Debug, Default, Resource)]
+pub struct LawChecks {
+    program: Option<PathBuf>,
+    done: Arc<Mutex<Option<(String, Outcome)>>>,
+}
+
+impl LawChecks {
+    /// Checks by a program: this one.
+    #[must_use]
+    pub fn by(program: Option<PathBuf>) -> Self {
+        Self { program, done: Arc::default() }
+    }
+
+    /// Begins a check and comes back at once. `wake` is called when there is an outcome.
+    pub fn begin(&self, id: &str, folders: &Folders, wake: impl FnOnce() + Send + 'static) {
+        let (program, done) = (self.program.clone(), self.done.clone());
+        let (id, folders) = (id.to_owned(), folders.clone());
+        thread::spawn(move || {
+            let outcome = match program {
+                Some(program) => checked(&program, &id, &folders),
+                None => Err("this program cannot be started again".to_owned()),
+            };
+            *done.lock().unwrap_or_else(PoisonError::into_inner) = Some((id, outcome));
+            wake();
+        });
+    }
+
+    /// The outcome that came since the last call, with the model that it is about.
+    #[must_use]
+    pub fn take(&self) -> Option<(String, Outcome)> {
+        self.done.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+/// Runs the check to its end.
+fn checked(program: &Path, id: &str, folders: &Folders) -> Outcome {
+    let mut command = Command::new(program);
+    command.args(["models", "check", id, "--json", "--quiet"]);
+    if let Some(assets) = folders.shaders.as_ref().and_then(|shaders| shaders.parent()) {
+        command.arg("--assets").arg(assets);
+    }
+    if let Some(models) = &folders.models {
+        command.arg("--models").arg(models);
+    }
+    let streams = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = streams.spawn().map_err(|e| format!("the check did not start: {e}"))?;
+    let read = |stream: Option<Box<dyn std::io::Read + Send>>| {
+        thread::spawn(move || {
+            let mut text = String::new();
+            // What is no text is no report either.
+            let _ = stream.map(|mut stream| stream.read_to_string(&mut text));
+            text
+        })
+    };
+    let out = read(child.stdout.take().map(|s| Box::new(s) as _));
+    let err = read(child.stderr.take().map(|s| Box::new(s) as _));
+    let started = Instant::now();
+    let status = loop {
+        match child.try_wait() {
+            Ok(Some(status)) => break status,
+            Ok(None) if started.elapsed() < LONGEST => thread::sleep(Duration::from_millis(20)),
+            _ => {
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(format!("the check took longer than {} s", LONGEST.as_secs()));
+            }
+        }
+    };
+    let out = out.join().unwrap_or_default();
+    let err = err.join().unwrap_or_default();
+    serde_json::from_str(&out).map_err(|_| match err.trim() {
+        "" => format!("the check ended with {status}"),
+        why => why.to_owned(),
+    })
+}

@@ -1,0 +1,97 @@
+//! The law check of the window: its button, the process behind it, and what it shows.
+
+use std::{path::PathBuf, sync::mpsc, time::Duration};
+
+use lights_camera_models::{
+    assets::Folders,
+    panel::{
+        author::Ask,
+        state::{Action, Effect, Lab, ViewChange},
+    },
+    reflection::law_report::LawReport,
+    shader::status::Reloaded,
+    window::laws::LawChecks,
+};
+
+use crate::{
+    panels::Bench,
+    support::{lcm, root},
+};
+
+/// The outcome for a model of a folder.
+fn outcome(id: &str, folders: &Folders, program: Option<PathBuf>) -> Result<LawReport, String> {
+    let checks = LawChecks::by(program);
+    let (done, woken) = mpsc::channel();
+    checks.begin(id, folders, move || {
+        let _ = done.send(());
+    });
+    woken.recv_timeout(Duration::from_secs(200)).expect("there is an outcome");
+    let (model, outcome) = checks.take().expect("it waits");
+    assert_eq!(model, id);
+    outcome
+}
+
+fn program() -> Option<PathBuf> {
+    Some(PathBuf::from(env!("CARGO_BIN_EXE_lcm")))
+}
+
+#[test]
+fn laws_are_checked_in_another_process_and_shown() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
+    bench.click("Check laws");
+    assert_eq!(bench.effects, [Effect::CheckLaws("lambert".to_owned())]);
+    bench.settle();
+    assert!(bench.find("Check laws").expect("there").disabled && bench.says("Checking Lambert…"));
+    bench.apply(Action::Author(Ask::CheckLaws));
+    assert_eq!(bench.effects.len(), 1, "one at a time");
+
+    let found = outcome("lambert", &Folders::default(), program());
+    assert_eq!(found.as_ref().map(|r| r.laws.len()), Ok(3), "{found:?}");
+    bench.lab.laws_checked("phong", found.clone());
+    assert!(bench.lab.laws.as_ref().is_some_and(|check| check.outcome.is_none()), "another model");
+    let mut broken = found.clone().expect("was checked");
+    broken.laws[1].kept = false;
+    bench.lab.laws_checked("lambert", Ok(broken));
+    bench.settle();
+    assert!(bench.says("Energy conserving: claimed and broken") && bench.says("No errors, but broken laws"));
+    bench.lab.laws_checked("lambert", found);
+    bench.settle();
+    assert!(!bench.says("broken laws"));
+    for law in ["Reciprocal", "Energy conserving", "Non-negative"] {
+        assert!(bench.says(&format!("{law}: claimed and kept")), "{law}");
+    }
+    assert!(!bench.find("Check laws").expect("there").disabled);
+    bench.lab.shaders.last = Some(Reloaded { file: "terms.wgsl".to_owned(), milliseconds: 1.0 });
+    bench.settle();
+    assert!(bench.says("Findings from before the last change"));
+    bench.lab.laws_checked("lambert", Err("the check took longer than 120 s".to_owned()));
+    bench.settle();
+    assert!(bench.says("The laws were not checked: the check took longer"));
+}
+
+#[test]
+fn a_model_of_the_folder_that_breaks_a_law_is_shown_with_the_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = std::fs::read_to_string(root().join("assets/models/gooch.wgsl")).expect("there");
+    let text = text.replace("\"laws\": [", "\"laws\": [\"reciprocal\", ");
+    std::fs::write(folder.path().join("mine.wgsl"), text).expect("writable");
+    let folders = Folders { shaders: None, models: Some(folder.path().to_owned()) };
+    let report = outcome("mine", &folders, program()).expect("was checked");
+    assert_eq!(report.broken(), ["reciprocal"]);
+    assert!(report.laws[0].at[0].starts_with("at l (θ "), "{:?}", report.laws[0].at);
+    // What cannot be checked says why.
+    std::fs::write(folder.path().join("mine.wgsl"), "/* lcm { } */\nfn response(").expect("writable");
+    let why = outcome("mine", &folders, program()).expect_err("is broken");
+    assert!(why.contains("this ( is not closed"), "{why}");
+    let why = outcome("mine", &folders, Some("/nonexistent/lcm".into())).expect_err("is not there");
+    assert!(why.contains("did not start"), "{why}");
+    assert!(outcome("mine", &folders, None).is_err());
+}
+
+#[test]
+fn the_command_gives_the_same_as_data() {
+    let run = lcm(&["models", "check", "lambert", "--json"], "");
+    let report: LawReport = serde_json::from_str(&run.out).expect("is a report");
+    assert_eq!((run.status, report.model.as_str(), report.broken().len()), (Some(0), "lambert", 0));
+}
