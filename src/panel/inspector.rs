@@ -640,7 +640,7 @@ fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightFiel
     let as_flux = light.luminous_flux.is_some();
     let rounded = |v: f64| limits::number(limits::significant(v, 4));
     let conversion = if as_flux {
-        format!("I = Φ / {} sr = {} cd", rounded(solid_angle), rounded(intensity))
+        format!("I = Φ / ({} sr) = {} cd", rounded(solid_angle), rounded(intensity))
     } else {
         format!("Φ = I · {} sr = {} lm", rounded(solid_angle), rounded(flux))
     };

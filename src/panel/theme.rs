@@ -156,17 +156,6 @@ impl Palette {
     }
 }
 
-/// How a term's line is drawn beside its colour, as lengths of dash and gap; empty for a solid line.
-#[must_use]
-pub fn term_dash(term: Term) -> &'static [f32] {
-    match term {
-        Term::Total => &[],
-        Term::Ambient => &[1.5, 2.5],
-        Term::Diffuse => &[6.0, 0.0],
-        Term::Specular => &[5.0, 3.0],
-    }
-}
-
 /// The factor of everything that is measured in points.
 #[must_use]
 pub fn scale(view: &View) -> f32 {

@@ -124,10 +124,8 @@ impl ReflectionModel for Strauss {
             EquationPart {
                 term: Term::Diffuse, text: "I_d = (1 − s^3)(1 − t)(1 − m s) C_b max(0, N·L)"
             },
-            EquationPart {
-                term: Term::Specular,
-                text: "I_s = r_j (1 + m (1 − F(α))(C_b − 1)) max(0, R·V)^{3/(1 − s)}",
-            },
+            EquationPart { term: Term::Specular, text: "I_s = r_j C_s max(0, R·V)^{3/(1 − s)}" },
+            EquationPart { term: Term::Specular, text: "C_s = 1 + m (1 − F(α))(C_b − 1)" },
             EquationPart {
                 term: Term::Specular,
                 text: "r_j = min(1, r_n + (r_n + 0.1) F(α) G(α) G(γ)), r_n = s^3 (1 − t)",

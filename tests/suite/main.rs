@@ -4,6 +4,7 @@
 mod albedo;
 mod assets;
 mod command_line;
+mod equations;
 mod extension;
 mod files;
 mod focus;
