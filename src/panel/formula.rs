@@ -1,4 +1,4 @@
-//! What an equation is made of: brackets, roots, fractions, and where a line of it may be broken.
+//! The parts of an equation: brackets, roots, fractions, and the places at which a line may be broken.
 
 use super::maths::{self, Atom};
 
@@ -7,9 +7,9 @@ use super::maths::{self, Atom};
 pub enum Node {
     /// A symbol, a word, a number or a sign.
     Atom(Atom),
-    /// What stands in brackets; the closing one may have a power.
+    /// Something in brackets; the closing one may have a power.
     Group(Atom, Vec<Node>, Atom),
-    /// What stands under a root.
+    /// Something under a root.
     Root(Vec<Node>),
     /// One over the other.
     Fraction(Vec<Node>, Vec<Node>),

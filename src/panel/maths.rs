@@ -60,7 +60,7 @@ impl Atom {
         }
     }
 
-    /// What stands below the line; often nothing.
+    /// The index; often empty.
     #[must_use]
     pub fn sub(&self) -> &str {
         match self {
@@ -69,7 +69,7 @@ impl Atom {
         }
     }
 
-    /// What stands above the line; often nothing.
+    /// The power; often empty.
     #[must_use]
     pub fn sup(&self) -> &str {
         match self {

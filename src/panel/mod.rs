@@ -43,6 +43,7 @@ pub mod knob;
 pub mod limits;
 pub mod maths;
 pub mod messages;
+pub mod model_override;
 pub mod names;
 pub mod picture;
 pub mod question;

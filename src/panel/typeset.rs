@@ -1,4 +1,4 @@
-//! How an equation is set: fractions stacked, roots under a bar, brackets as tall as what they hold, lines
+//! Setting of equations: fractions stacked, roots under a bar, brackets as tall as what they hold, lines
 //! broken before + and −.
 
 use bevy_egui::egui::{
@@ -12,7 +12,7 @@ use super::{
     maths::{self, Atom, Laid},
 };
 
-/// What is painted at a place, relative to the left end of the baseline.
+/// One thing that is painted, relative to the left end of the baseline.
 #[derive(Clone)]
 enum Ink {
     /// An atom.
@@ -25,7 +25,7 @@ enum Ink {
     Root(f32, f32),
 }
 
-/// Something set: what is painted where, and how much room it takes above and below the baseline.
+/// A piece as it is set: everything that is painted, and the room above and below the baseline.
 #[derive(Clone, Default)]
 pub struct Set {
     ink: Vec<(Vec2, f32, Ink)>,
@@ -133,13 +133,13 @@ fn bracket(ui: &Ui, at: Pos2, which: char, size: f32, up: f32, down: f32, colour
 /// Sets equations in one size and one colour.
 #[derive(Clone, Copy)]
 pub struct Setter<'a> {
-    /// Where the fonts are.
+    /// The panel, which has the fonts.
     pub ui: &'a Ui,
     /// The size of letters, points.
     pub size: f32,
     /// The colour.
     pub colour: Color32,
-    /// Whether fractions are stacked; else they have a slash.
+    /// True if fractions are stacked; else they have a slash.
     pub stacked: bool,
 }
 

@@ -14,6 +14,7 @@ mod hostile;
 mod hot_swap;
 mod interpret;
 mod keyboard;
+mod knobs;
 mod laws;
 mod memory;
 mod own_folder;

@@ -500,8 +500,7 @@ fn a_slider_that_ends_before_the_range_does_says_that_more_can_be_typed() {
     else {
         panic!("no slider")
     };
-    let end = pos2(slider.rect.right() + 12.0, slider.rect.center().y);
-    bench.hover(end);
+    bench.hover(slider.rect.center());
     assert!(bench.says("Larger values can be typed"));
 }
 
