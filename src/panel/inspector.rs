@@ -19,7 +19,7 @@ use super::{
 use crate::{
     light::LightEntry,
     optics::{TermSelection, colour::Encoding, temperature, tone::ToneMapping},
-    reflection::{EquationPart, Measured, ModelEntry, Term, parameter::Value, preset},
+    reflection::{EquationPart, Measured, ModelEntry, Term, parameter::Value, preset, usage},
     registry::Registry,
     scene::{Display, Light, Object, Observer, SceneSize},
     shading::ModeEntry,
@@ -221,7 +221,8 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             actions.push(set(ObjectField::Preset(values)));
         }
         for p in model.parameters {
-            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), None) {
+            let unused = usage::unused(model.parameters, p, &object.material);
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref()) {
                 actions.push(set(ObjectField::Material(p.name, v)));
             }
         }
@@ -554,7 +555,9 @@ fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Ve
         actions.extend(brightness(ui, light, kind).map(set));
         actions.extend(light_colour(ui, light).map(set));
         for p in d.parameters {
-            if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), None) {
+            let unused = usage::unused(d.parameters, p, &light.parameters);
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), unused.as_deref())
+            {
                 actions.push(set(LightField::Parameter(p.name, v)));
             }
         }

@@ -168,7 +168,7 @@ pub fn scale_here(ui: &egui::Ui) -> f32 {
     ui.style().text_styles.get(&TextStyle::Body).map_or(1.0, |f| f.size / BODY)
 }
 
-/// How much of the text's colour the bars of what scrolls have while the pointer is elsewhere.
+/// The share of the text's colour in scroll bars while the pointer is elsewhere.
 const SCROLL_BAR: f32 = 0.55;
 const SMALL: f32 = 11.5;
 const BODY: f32 = 13.0;

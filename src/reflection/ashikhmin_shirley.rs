@@ -19,6 +19,7 @@ const EXPONENT_U: Parameter = Parameter {
     unit: "",
     help: "How sharp the highlight is along the brushing: the larger, the smaller it is in that direction.",
     kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 10 },
+    used_when: None,
 };
 
 /// The exponent of the highlight along the bitangent.
@@ -29,6 +30,7 @@ const EXPONENT_V: Parameter = Parameter {
     unit: "",
     help: "How sharp the highlight is across the brushing. Equal to the exponent along it, the surface looks the same from all sides.",
     kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 200 },
+    used_when: None,
 };
 
 parameters! {

@@ -30,7 +30,7 @@ const fn fraction(
     help: &'static str,
 ) -> Parameter {
     let kind = ParameterKind::Number { min: 0.0, max: 1.0, default };
-    Parameter { name, symbol, label, unit: "", help, kind }
+    Parameter { name, symbol, label, unit: "", help, kind, used_when: None }
 }
 
 const SUBSURFACE: Parameter = fraction(

@@ -24,6 +24,7 @@ const OREN_NAYAR_FORM: Parameter = Parameter {
         options: &[("full", "full, with interreflection"), ("qualitative", "qualitative")],
         default: 0,
     },
+    used_when: None,
 };
 
 parameters! {

@@ -24,6 +24,7 @@ const SMOOTHNESS: Parameter = Parameter {
     unit: "",
     help: "0 is dull, 1 is a mirror. It sharpens the highlight and takes light from the diffuse part: both follow from the one number.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.6 },
+    used_when: None,
 };
 
 /// Strauss's transparency.
@@ -34,6 +35,7 @@ const TRANSPARENCY: Parameter = Parameter {
     unit: "",
     help: "The share of the light that would pass through and is lost here: what lies behind is not shown.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.0 },
+    used_when: None,
 };
 
 /// Shape of F, the stand-in for Fresnel's equations, as published.

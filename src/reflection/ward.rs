@@ -18,6 +18,7 @@ const WARD_FORM: Parameter = Parameter {
     unit: "",
     help: "As Ward published it, the highlight fades at grazing angles; Dür's division by both cosines brightens it there, beyond what arrives.",
     kind: ParameterKind::Choice { options: &[("ward", "Ward 1992"), ("duer", "Dür 2006")], default: 0 },
+    used_when: None,
 };
 
 parameters! {

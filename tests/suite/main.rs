@@ -38,6 +38,7 @@ mod support;
 mod tangents;
 #[cfg(unix)]
 mod trial;
+mod usage;
 mod window;
 mod window_reload;
 mod witness;

@@ -40,6 +40,7 @@ use crate::{
     shading::Stage,
 };
 
+mod condition;
 mod declaration;
 pub mod folder;
 mod intern;
