@@ -4,7 +4,10 @@ use std::path::Path;
 
 use bevy_egui::egui::{PointerButton, accesskit::Role};
 use lights_camera_models::{
-    panel::state::{Action, Edit, ObjectField},
+    panel::{
+        caption::caption_text,
+        state::{Action, Edit, ObjectField},
+    },
     reflection::{
         own,
         parameter::{UsedWhen, Value},
@@ -28,8 +31,10 @@ fn a_knob_without_effect_is_disabled_and_says_why() {
     let value = bench.lab.scene.objects[0].material.clone();
     bench.click_at(gamma.rect.center(), PointerButton::Primary);
     assert_eq!(bench.lab.scene.objects[0].material, value);
+    assert!(!caption_text(&bench.lab, &bench.registry).contains('γ'), "nor does the caption show it");
     choose(&mut bench, "distribution", "gtr");
     assert!(!bench.field("exponent of GTR").disabled);
+    assert!(caption_text(&bench.lab, &bench.registry).contains("γ 2"));
     // A chain: without Fresnel term there is no diffuse base, and without that no colour.
     choose(&mut bench, "fresnel", "none");
     assert!(bench.field("base colour in hexadecimal").disabled);
