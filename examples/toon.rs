@@ -30,6 +30,7 @@ const TONES: Parameter = Parameter {
     unit: "",
     help: "How many tones there are between black and the base colour.",
     kind: ParameterKind::Integer { min: 1, max: Some(16), slider_max: 8, default: 4 },
+    used_when: None,
 };
 
 parameters! {

@@ -26,6 +26,7 @@ use crate::{
         material::MaterialApp,
         own::OwnModel,
         parameter::{BLOCK_BYTES, Parameter, layout},
+        usage,
     },
     shader::compose::Sources,
     shading::{self, ModeEntry, ShadingMode},
@@ -330,8 +331,9 @@ fn put<T>(list: &mut Vec<T>, entry: T, id: impl Fn(&T) -> &'static str) {
 
 impl Register for Registry {
     /// # Panics
-    /// If the parameters take more bytes than a model may have, or one shares its name, but not its type, with a
-    /// parameter of another model: mistakes of the author of the model, found at the first start.
+    /// If the parameters take more bytes than a model may have, one shares its name, but not its type, with a
+    /// parameter of another model, or is used under choices that the model does not have: mistakes of the author
+    /// of the model, found at the first start.
     fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self {
         let entry = ModelEntry::of::<M>();
         let id = entry.declaration.id;
@@ -341,6 +343,9 @@ impl Register for Registry {
             "reflection model `{id}`: its parameters take {end} bytes, at most {BLOCK_BYTES} fit"
         );
         for p in entry.parameters {
+            if let Some(problem) = usage::problem(entry.parameters, p) {
+                panic!("reflection model `{id}`: used_when of parameter `{}`: {problem}", p.name);
+            }
             if let Some(other) = self.material_parameter(p.name) {
                 assert!(
                     std::mem::discriminant(&other.kind) == std::mem::discriminant(&p.kind),

@@ -10,7 +10,7 @@ use super::{Options, Outcome, own, print, print_text, workshop::Places};
 use crate::{
     reflection::{
         ModelEntry, Term,
-        parameter::{ABOVE_ZERO, Parameter, ParameterKind},
+        parameter::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen},
     },
     registry::Registry,
     scene::schema::{number, value},
@@ -109,6 +109,9 @@ fn parameter(p: &Parameter) -> Json {
         "default": value(&p.default_value()),
         "range": p.rule(),
     });
+    if let Some(UsedWhen { parameter, choices }) = p.used_when {
+        json["used_when"] = json!({ parameter: choices });
+    }
     match &p.kind {
         ParameterKind::Number { min, max, .. } => {
             json["type"] = "number".into();
@@ -163,9 +166,12 @@ fn table(registry: &Registry) -> String {
         }
         for p in m.parameters {
             let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
+            let used = p.used_when.map_or_else(String::new, |u| {
+                format!("; used with {} {}", u.parameter, u.choices.join(", "))
+            });
             let _ = writeln!(
                 text,
-                "  {:ids$}    {} ({}){unit}: {}, default {}",
+                "  {:ids$}    {} ({}){unit}: {}, default {}{used}",
                 "",
                 p.name,
                 p.label,

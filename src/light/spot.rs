@@ -16,6 +16,7 @@ const CONE_ANGLE: Parameter = Parameter {
     unit: "°",
     help: "Half the opening of the cone: the angle between its axis and its edge.",
     kind: ParameterKind::Number { min: ABOVE_ZERO, max: 90.0, default: 30.0 },
+    used_when: None,
 };
 
 /// How soft the edge is.
@@ -26,6 +27,7 @@ const PENUMBRA: Parameter = Parameter {
     unit: "",
     help: "How much of the cone the soft edge takes: 0 is a hard edge, 1 fades from the axis on.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.1 },
+    used_when: None,
 };
 
 /// **Spotlight**: a point light within a cone; `I(p) = I · cone(θ) / |p − p₀|²`

@@ -5,7 +5,10 @@ use std::collections::BTreeSet;
 use super::{limits::number, state::Lab};
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    reflection::parameter::{Parameter, Value},
+    reflection::{
+        parameter::{Parameter, Value},
+        usage,
+    },
     registry::Registry,
     scene::Object,
 };
@@ -72,7 +75,9 @@ fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<String> 
         Value::Integer(v) => Some(v.to_string()),
         _ => None,
     };
-    let numbers: Vec<_> = model.parameters.iter().rev().filter_map(|p| Some((p, value(p)?))).collect();
+    let used = |p: &&Parameter| usage::unused(model.parameters, p, &object.material).is_none();
+    let numbers: Vec<_> =
+        model.parameters.iter().rev().filter(used).filter_map(|p| Some((p, value(p)?))).collect();
     let few = numbers.len() <= VALUES;
     numbers
         .into_iter()

@@ -1,7 +1,8 @@
 //! The inspector at the right: everything that can be set about what is selected.
 
 use bevy_egui::egui::{
-    self, Align, CollapsingHeader, Key, Layout, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2,
+    self, Align, CollapsingHeader, Key, Layout, RichText, ScrollArea, Sense, TextEdit, TextStyle, Ui,
+    WidgetInfo, vec2,
 };
 use glam::Vec3;
 
@@ -10,7 +11,7 @@ use super::{
     icon::{self, Icon},
     knob::{self, Caption},
     limits::{self, Limits},
-    maths, shader,
+    maths, model_override, shader,
     state::{Action, Edit, Lab, LightField, ObjectField, Selection, Severity, ViewChange},
     theme::{self, Palette},
     top::segmented,
@@ -18,7 +19,7 @@ use super::{
 use crate::{
     light::LightEntry,
     optics::{TermSelection, colour::Encoding, temperature, tone::ToneMapping},
-    reflection::{EquationPart, Measured, ModelEntry, Term, parameter::Value, preset},
+    reflection::{EquationPart, Measured, ModelEntry, Term, parameter::Value, preset, usage},
     registry::Registry,
     scene::{Display, Light, Object, Observer, SceneSize},
     shading::ModeEntry,
@@ -186,32 +187,21 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
     let set = |field: ObjectField| Action::Edit(Edit::Object(i, field));
     header(ui, lab, registry, Selection::Object(i), object.name.as_deref(), actions);
 
-    let caption = Caption {
-        label: "position",
-        unit: "m",
-        help: "Position of the centre; y is up, the origin is a corner of the room.",
-        ..Caption::default()
-    };
-    if let Some(p) =
-        knob::vector_knob(ui, "position", &caption, object.position, &position_limits(lab.scene.scene_size))
-    {
-        actions.push(set(ObjectField::Position(p)));
-    }
-    let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
-    let size_limits = limits::object_size(lab.scene.scene_size);
-    let default = f64::from(crate::scene::DEFAULT_SIZE);
-    if let Some(v) =
-        knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
-    {
-        actions.push(set(ObjectField::Size(v as f32)));
-    }
-
     let model = registry.model(lab.scene.model_of(object));
     let mode = registry.mode(lab.scene.mode_of(object));
     section(ui, "Reflection", true, |ui| {
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                actions.extend(model_override::control(ui, lab, registry, object).map(set));
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    if let Some(model) = model {
+                        model_header(ui, model);
+                    }
+                });
+            });
+        });
         match model {
             Some(model) => {
-                model_header(ui, model);
                 equation(ui, model);
                 terms(ui, lab, registry, actions);
             }
@@ -231,7 +221,8 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             actions.push(set(ObjectField::Preset(values)));
         }
         for p in model.parameters {
-            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), None) {
+            let unused = usage::unused(model.parameters, p, &object.material);
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref()) {
                 actions.push(set(ObjectField::Material(p.name, v)));
             }
         }
@@ -254,7 +245,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
         }
     });
 
-    section(ui, "Shape", true, |ui| {
+    section(ui, "Shape and position", true, |ui| {
         let kinds: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
         let names: Vec<_> = kinds.iter().map(|d| d.name).collect();
         let chosen = kinds.iter().position(|d| d.id == object.kind);
@@ -262,6 +253,29 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
         let caption = Caption { label: "type", help, ..Caption::default() };
         if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
             actions.push(set(ObjectField::Kind(kinds[k].id.to_owned())));
+        }
+        let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
+        let size_limits = limits::object_size(lab.scene.scene_size);
+        let default = f64::from(crate::scene::DEFAULT_SIZE);
+        if let Some(v) =
+            knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
+        {
+            actions.push(set(ObjectField::Size(v as f32)));
+        }
+        let caption = Caption {
+            label: "position",
+            unit: "m",
+            help: "Position of the centre; y is up, the origin is a corner of the room.",
+            ..Caption::default()
+        };
+        if let Some(p) = knob::vector_knob(
+            ui,
+            "position",
+            &caption,
+            object.position,
+            &position_limits(lab.scene.scene_size),
+        ) {
+            actions.push(set(ObjectField::Position(p)));
         }
         let caption = Caption {
             label: "rotation",
@@ -293,49 +307,6 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             }
         }
     });
-
-    section(
-        ui,
-        "Override model and shading",
-        object.reflection_model.is_some() || object.shading_model.is_some(),
-        |ui| {
-            let scene_model =
-                registry.model(&lab.scene.reflection_model).map_or("–", |m| m.declaration.name);
-            let of_scene = format!("Scene default ({scene_model})");
-            let own = object.reflection_model.as_deref();
-            let shown =
-                own.map_or(of_scene.as_str(), |id| registry.model(id).map_or(id, |m| m.declaration.name));
-            let caption = Caption {
-                label: "reflection",
-                help: "The reflection model of this object: the scene’s, or an override.",
-                ..Caption::default()
-            };
-            let chosen = knob::list_knob(ui, "model", &caption, shown, |ui, id| {
-                let height = 0.45 * ui.ctx().content_rect().height();
-                chooser::models(ui, id, height, lab, registry, own, Some(&of_scene))
-            });
-            if let Some(model) = chosen {
-                actions.push(set(ObjectField::Model(model.map(|m| m.declaration.id.to_owned()))));
-            }
-            let scene_mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
-            let of_scene = format!("Scene default ({scene_mode})");
-            let options: Vec<&str> = std::iter::once(of_scene.as_str())
-                .chain(registry.modes().iter().map(|m| m.declaration.name))
-                .collect();
-            let chosen = object.shading_model.as_ref().map_or(Some(0), |id| {
-                registry.modes().iter().position(|m| m.declaration.id == id).map(|k| k + 1)
-            });
-            let caption = Caption {
-                label: "shading",
-                help: "The shading of this object: the scene’s, or an override.",
-                ..Caption::default()
-            };
-            if let Some(k) = knob::choice_knob(ui, "mode", &caption, chosen.unwrap_or(usize::MAX), &options) {
-                let id = k.checked_sub(1).map(|k| registry.modes()[k].declaration.id.to_owned());
-                actions.push(set(ObjectField::Mode(id)));
-            }
-        },
-    );
 }
 
 /// The chooser of measured materials, for models that can be one. Returns the parameters of the chosen.
@@ -439,10 +410,13 @@ fn readouts(ui: &mut Ui, lab: &Lab, model: &ModelEntry, object: &Object) {
 /// Name, author and year of a model; the whole story is the tooltip.
 fn model_header(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
-    ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new(d.name).heading());
-        if !d.author.is_empty() {
-            ui.label(theme::small(ui, d.author));
+    let palette = Palette::here(ui);
+    let name = theme::elided(ui, d.name, TextStyle::Heading, palette.text, ui.available_width());
+    ui.horizontal(|ui| {
+        ui.label(name);
+        // What does not fit is in the tooltip.
+        if !d.author.is_empty() && ui.available_width() > 48.0 * theme::scale_here(ui) {
+            ui.add(egui::Label::new(theme::small(ui, d.author)).truncate());
         }
     })
     .response
@@ -581,7 +555,9 @@ fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Ve
         actions.extend(brightness(ui, light, kind).map(set));
         actions.extend(light_colour(ui, light).map(set));
         for p in d.parameters {
-            if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), None) {
+            let unused = usage::unused(d.parameters, p, &light.parameters);
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), unused.as_deref())
+            {
                 actions.push(set(LightField::Parameter(p.name, v)));
             }
         }
@@ -640,7 +616,7 @@ fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightFiel
     let as_flux = light.luminous_flux.is_some();
     let rounded = |v: f64| limits::number(limits::significant(v, 4));
     let conversion = if as_flux {
-        format!("I = Φ / {} sr = {} cd", rounded(solid_angle), rounded(intensity))
+        format!("I = Φ / ({} sr) = {} cd", rounded(solid_angle), rounded(intensity))
     } else {
         format!("Φ = I · {} sr = {} lm", rounded(solid_angle), rounded(flux))
     };

@@ -4,9 +4,9 @@
 //! style and with the rule beside it, until it is corrected or given up with Escape.
 
 use bevy_egui::egui::{
-    self, Align, Align2, Area, Button, Color32, CursorIcon, FontId, Id, Key, Order, Popup,
-    PopupCloseBehavior, Rect, RectAlign, Response, RichText, Sense, Stroke, TextEdit, TextStyle, Ui,
-    WidgetInfo, WidgetType, pos2, vec2,
+    self, Align, Align2, Area, Button, Color32, CursorIcon, Id, Key, Order, Popup, PopupCloseBehavior, Rect,
+    RectAlign, Response, RichText, Sense, Stroke, TextEdit, TextStyle, Ui, WidgetInfo, WidgetType, pos2,
+    vec2,
 };
 use glam::Vec3;
 
@@ -300,9 +300,17 @@ fn slider(
     (response, out.filter(|v| limits.allows(*v) && *v as f32 != value as f32))
 }
 
-/// The first line of a knob: symbol and word at the left, what `right` adds at the right, which has
-/// `reserved` points for itself.
-fn head<R>(ui: &mut Ui, caption: &Caption, reserved: f32, right: impl FnOnce(&mut Ui) -> R) -> (Response, R) {
+/// The room of symbol and word in the line of a knob.
+#[derive(Clone, Copy, Debug)]
+enum Words {
+    /// As much as they need; these points are left for the rest.
+    Leave(f32),
+    /// A column as wide in every knob, so that sliders begin in line.
+    Column,
+}
+
+/// The line of a knob: symbol and word at the left, the widgets of `right` at the right.
+fn head<R>(ui: &mut Ui, caption: &Caption, words: Words, right: impl FnOnce(&mut Ui) -> R) -> (Response, R) {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let marked = !caption.symbol.is_empty()
@@ -314,15 +322,21 @@ fn head<R>(ui: &mut Ui, caption: &Caption, reserved: f32, right: impl FnOnce(&mu
         let symbol_column = if caption.symbol.is_empty() {
             0.0
         } else {
-            (maths::symbol_width(ui, caption.symbol, symbol_size) + 6.0 * scale).max(30.0 * scale)
+            (maths::symbol_width(ui, caption.symbol, symbol_size) + 6.0 * scale).max(28.0 * scale)
         };
         let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
-        let room = (ui.available_width() - reserved * scale).max(symbol_column + 40.0 * scale);
+        let room = match words {
+            Words::Leave(points) => (ui.available_width() - points * scale).max(symbol_column + 40.0 * scale),
+            Words::Column => (COLUMN * ui.available_width()).max(symbol_column + 40.0 * scale).floor(),
+        };
         // A parameter without a symbol of its own has its name for one, and need not say it twice.
         let word = if caption.symbol == caption.label { "" } else { caption.label };
         let galley = theme::elided(ui, word, TextStyle::Body, colour, room - symbol_column);
-        let size = vec2(symbol_column + galley.size().x, height);
-        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+        let width = match words {
+            Words::Leave(_) => symbol_column + galley.size().x,
+            Words::Column => room,
+        };
+        let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
         if marked {
             ui.painter().rect_filled(rect.expand2(vec2(4.0, 0.0)), 3.0, palette.chosen);
         }
@@ -337,24 +351,46 @@ fn head<R>(ui: &mut Ui, caption: &Caption, reserved: f32, right: impl FnOnce(&mu
     row.inner
 }
 
+/// The part of the line that symbol and word take in knobs with a slider.
+const COLUMN: f32 = 0.49;
 /// The points that a number and its unit take at the right of a knob.
 const NUMBER: f32 = 96.0;
 /// The points that a choice takes at the right of a knob.
 const CHOICE: f32 = 150.0;
 
-/// The tooltip of a knob: what it does, what is legal, the default.
+/// The tooltip of a knob: its name, what it does, what is legal, the default.
 fn tooltip(ui: &mut Ui, caption: &Caption, rule: &str, default: &str) {
     ui.set_max_width(300.0 * theme::scale_here(ui));
+    ui.label(theme::strong(ui, capitalised(caption.label)));
     if let Some(reason) = caption.disabled {
-        ui.label(theme::strong(ui, reason));
+        ui.label(RichText::new(format!("{}.", capitalised(reason))).color(Palette::here(ui).warning));
     }
-    ui.label(caption.help);
+    if !caption.help.is_empty() {
+        ui.label(caption.help);
+    }
     if !rule.is_empty() {
         ui.label(theme::small(ui, format!("{}.", capitalised(rule))));
     }
     if !default.is_empty() {
         ui.label(theme::small(ui, format!("Default {default}: double-click the slider.")));
     }
+}
+
+/// The range as the tooltip says it: the rule, and the ends of the slider if more can be typed.
+fn range(limits: &Limits) -> String {
+    let rule = limits.rule();
+    let (left, right) = (number(limits.slider_min), number(limits.slider_max));
+    match (limits.min < limits.slider_min, limits.max > limits.slider_max) {
+        (false, false) => rule,
+        (false, true) => format!("{rule}. Slider: {left} to {right}. Larger values can be typed"),
+        (true, false) => format!("{rule}. Slider: {left} to {right}. Smaller values can be typed"),
+        (true, true) => format!("{rule}. Slider: {left} to {right}. Other values can be typed"),
+    }
+}
+
+/// Shows this where the pointer rests on a widget, also on a disabled one, which has a reason to say.
+fn explain(response: Response, tip: impl Fn(&mut Ui)) {
+    response.on_hover_ui(&tip).on_disabled_hover_ui(&tip);
 }
 
 fn capitalised(text: &str) -> String {
@@ -453,65 +489,39 @@ pub fn number_knob_beside(
 ) -> Option<f64> {
     let id = ui.make_persistent_id(salt);
     let mut out = None;
-    let response = ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let scale = theme::scale_here(ui);
-        let (label, field) = head(ui, caption, NUMBER, |ui| {
+        let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
+        let words = if finite { Words::Column } else { Words::Leave(NUMBER) };
+        let (label, (field, slider)) = head(ui, caption, words, |ui| {
             beside(ui);
-            field(ui, id, caption.label, value, limits, 64.0 * scale)
+            let field = field(ui, id, caption.label, value, limits, 56.0 * scale);
+            let width = (ui.available_width() - 2.0 * scale).max(24.0);
+            (field, finite.then(|| slider(ui, caption.label, value, default, limits, width)))
         });
         out = field.value;
-        if (label.hovered() || field.response.hovered()) && !caption.symbol.is_empty() {
+        let mut hot = label.hovered() || field.response.hovered();
+        let (rule, default_text) = (range(limits), default.map(number).unwrap_or_default());
+        let tip = |ui: &mut Ui| tooltip(ui, caption, &rule, &default_text);
+        explain(label, tip);
+        if let Some((slider, new)) = slider {
+            out = new.or(out);
+            hot |= slider.hovered() || slider.dragged() || slider.has_focus();
+            explain(slider, tip);
+        }
+        if hot && !caption.symbol.is_empty() {
             maths::highlight(ui.ctx(), caption.symbol);
         }
-        let (rule, default_text) = (limits.rule(), default.map(number).unwrap_or_default());
-        label.on_hover_ui(|ui| tooltip(ui, caption, &rule, &default_text));
-        let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
-        if finite {
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = 4.0 * scale;
-                let (left, right) = (number(limits.slider_min), number(limits.slider_max));
-                let left = if limits.is_above_zero() { format!(">{left}") } else { left };
-                let right = if limits.max > limits.slider_max { format!("{right}+") } else { right };
-                let end = 30.0 * scale;
-                let more = |there: bool| there.then(|| format!("Larger values can be typed: {rule}."));
-                range_end(ui, &left, end, Align::Max, more(limits.min < limits.slider_min));
-                let width = (ui.available_width() - end - 26.0 * scale).max(24.0);
-                let (slider, new) = slider(ui, caption.label, value, default, limits, width);
-                out = new.or(out);
-                if (slider.hovered() || slider.dragged() || slider.has_focus()) && !caption.symbol.is_empty()
-                {
-                    maths::highlight(ui.ctx(), caption.symbol);
-                }
-                slider
-                    .on_hover_ui(|ui| tooltip(ui, caption, &rule, &default_text))
-                    .on_disabled_hover_ui(|ui| tooltip(ui, caption, &rule, &default_text));
-                range_end(ui, &right, end, Align::Min, more(limits.max > limits.slider_max));
-            });
+        match &field.error {
+            Some(error) => complaint(ui, &field.response, &capitalised(error), &number(value)),
+            // While one types it would hide what is below.
+            None if field.response.has_focus() => {}
+            None => explain(field.response, tip),
         }
-        if let Some(error) = &field.error {
-            complaint(ui, &field.response, &capitalised(error), &number(value));
-        }
-        ui.add_space(6.0 * scale);
+        ui.add_space(3.0 * scale);
     });
-    if let Some(reason) = caption.disabled {
-        response.response.on_hover_text(reason);
-    }
     out
-}
-
-/// The number at an end of a slider; `more` says that the field takes what lies beyond.
-fn range_end(ui: &mut Ui, text: &str, width: f32, align: Align, more: Option<String>) {
-    let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let font = FontId::proportional(10.5 * scale);
-    let (rect, response) = ui.allocate_exact_size(vec2(width, 16.0 * scale), Sense::hover());
-    let anchor = if align == Align::Max { Align2::RIGHT_CENTER } else { Align2::LEFT_CENTER };
-    let at = if align == Align::Max { rect.right_center() } else { rect.left_center() };
-    ui.painter().text(at, anchor, text, font, palette.weak);
-    if let Some(more) = more {
-        response.on_hover_text(more);
-    }
 }
 
 /// A knob for a whole colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
@@ -530,7 +540,7 @@ pub fn colour_knob(
         let rule = "three whole numbers from 0 to 255: red, green, blue";
         let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
         let [r, g, b] = value;
-        let (label, hex) = head(ui, caption, NUMBER, |ui| {
+        let (label, hex) = head(ui, caption, Words::Leave(NUMBER), |ui| {
             unit(ui, "");
             let name = format!("{} in hexadecimal", caption.label);
             let shown = format!("#{r:02x}{g:02x}{b:02x}");
@@ -542,17 +552,8 @@ pub fn colour_knob(
         });
         out = hex.value;
         let mut hot = label.hovered();
-        label.on_hover_ui(|ui| {
-            ui.set_max_width(300.0 * scale);
-            if let Some(reason) = caption.disabled {
-                ui.label(theme::strong(ui, reason));
-            }
-            ui.label(caption.help);
-            ui.label(theme::small(
-                ui,
-                format!("{}, encoded as sRGB. Default {default_text}.", capitalised(rule)),
-            ));
-        });
+        let rule = format!("{rule}, encoded as sRGB. Default {default_text}");
+        explain(label, |ui| tooltip(ui, caption, &rule, ""));
         let mut wrong = hex.error.map(|e| (e, hex.response));
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0 * scale;
@@ -841,7 +842,7 @@ pub fn triple_knob(
         let plain = |v: f32| number(f64::from(v));
         let list = |v: [f32; 3]| v.map(plain).join(", ");
         let same = value[0] == value[1] && value[1] == value[2];
-        let (label, all) = head(ui, caption, NUMBER, |ui| {
+        let (label, all) = head(ui, caption, Words::Leave(NUMBER), |ui| {
             unit(ui, "");
             let shown = if same { plain(value[0]) } else { String::new() };
             let read = |text: &str| match parse(text) {
@@ -856,15 +857,8 @@ pub fn triple_knob(
         if (label.hovered() || all.response.hovered()) && !caption.symbol.is_empty() {
             maths::highlight(ui.ctx(), caption.symbol);
         }
-        label.on_hover_ui(|ui| {
-            ui.set_max_width(300.0 * scale);
-            if let Some(reason) = caption.disabled {
-                ui.label(theme::strong(ui, reason));
-            }
-            ui.label(caption.help);
-            let rule = format!("Each {}. Default {}.", limits.rule(), list(default));
-            ui.label(theme::small(ui, rule));
-        });
+        let rule = format!("each {}. Default {}", limits.rule(), list(default));
+        explain(label, |ui| tooltip(ui, caption, &rule, ""));
         let mut wrong = all.error.map(|e| (capitalised(&e), list(value), all.response));
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0 * scale;
@@ -909,11 +903,11 @@ pub fn readout(ui: &mut Ui, readout: &Readout) {
         ui.label(readout.help);
     };
     let (label, value) = match readout.value {
-        ReadoutValue::Number(_) => head(ui, &caption, NUMBER, value),
+        ReadoutValue::Number(_) => head(ui, &caption, Words::Leave(NUMBER), value),
         // Three numbers and the sample have a line of their own.
         ReadoutValue::Reflectance(_) => {
             let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-            let (label, ()) = head(ui, &caption, 0.0, |_| ());
+            let (label, ()) = head(ui, &caption, Words::Leave(0.0), |_| ());
             let row = vec2(ui.available_width(), 20.0 * scale);
             let layout = egui::Layout::right_to_left(Align::Center);
             let value = ui.allocate_ui_with_layout(row, layout, value).inner;
@@ -937,7 +931,7 @@ pub fn list_knob<R>(
     let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
     let id = ui.make_persistent_id(salt);
-    let (label, button) = head(ui, caption, CHOICE, |ui| {
+    let (label, button) = head(ui, caption, Words::Leave(CHOICE), |ui| {
         ui.add_space(22.0 * scale);
         let width = (ui.available_width() - 4.0 * scale).clamp(80.0 * scale, 190.0 * scale);
         let button = Button::new(shown).right_text(RichText::new("▾").color(palette.weak)).truncate();
@@ -947,7 +941,7 @@ pub fn list_knob<R>(
         });
         button
     });
-    label.on_hover_ui(|ui| tooltip(ui, caption, "", ""));
+    explain(label, |ui| tooltip(ui, caption, "", ""));
     let width = 352.0 * scale;
     let mut out = None;
     let popup = Popup::from_toggle_button_response(&button)
@@ -1001,7 +995,7 @@ pub fn told_choice_knob(
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         let scale = theme::scale_here(ui);
         let id = ui.make_persistent_id(salt);
-        let (label, ()) = head(ui, caption, CHOICE, |ui| {
+        let (label, ()) = head(ui, caption, Words::Leave(CHOICE), |ui| {
             ui.add_space(22.0 * scale);
             let width = (ui.available_width() - 4.0 * scale).clamp(80.0 * scale, 190.0 * scale);
             let now = options.get(chosen).copied();
@@ -1024,14 +1018,16 @@ pub fn told_choice_knob(
             combo.response.widget_info(|| {
                 WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
             });
-            if !told.is_empty() {
+            if caption.disabled.is_some() {
+                explain(combo.response, |ui| tooltip(ui, caption, "", ""));
+            } else if !told.is_empty() {
                 combo.response.on_hover_ui(|ui| now.into_iter().for_each(|now| tip(ui, now)));
             }
         });
         if label.hovered() && !caption.symbol.is_empty() {
             maths::highlight(ui.ctx(), caption.symbol);
         }
-        label.on_hover_ui(|ui| tooltip(ui, caption, "", ""));
+        explain(label, |ui| tooltip(ui, caption, "", ""));
         ui.add_space(4.0 * scale);
     });
     out

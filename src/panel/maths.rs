@@ -1,14 +1,18 @@
 //! Equations in readable mathematics: variables slanted, words upright, subscripts and superscripts
-//! in their places, broken into lines where they are too long.
+//! in their places. [`typeset`](super::typeset) sets fractions and breaks lines.
 //!
 //! The source is that of [`EquationPart`]: `_x` is a subscript, `^x` a superscript, braces group.
 
 use bevy_egui::egui::{
-    self, Color32, FontId, Id, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, WidgetType,
-    pos2, vec2,
+    self, Color32, FontId, Id, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType, pos2,
+    vec2,
 };
 
-use super::theme::{self, Palette};
+use super::{
+    formula,
+    theme::{self, Palette},
+    typeset::{Set, Setter},
+};
 use crate::reflection::{EquationPart, Term};
 
 /// A piece of an equation that is not broken.
@@ -44,6 +48,33 @@ impl Atom {
             Self::Symbol { base, sub, .. } if sub.is_empty() => Some(base.clone()),
             Self::Symbol { base, sub, .. } => Some(format!("{base}_{sub}")),
             _ => None,
+        }
+    }
+
+    /// The letter, the word or the sign; empty for a space.
+    #[must_use]
+    pub fn base(&self) -> &str {
+        match self {
+            Self::Symbol { base, .. } | Self::Upright { base, .. } => base,
+            Self::Space => "",
+        }
+    }
+
+    /// The index; often empty.
+    #[must_use]
+    pub fn sub(&self) -> &str {
+        match self {
+            Self::Symbol { sub, .. } | Self::Upright { sub, .. } => sub,
+            Self::Space => "",
+        }
+    }
+
+    /// The power; often empty.
+    #[must_use]
+    pub fn sup(&self) -> &str {
+        match self {
+            Self::Symbol { sup, .. } | Self::Upright { sup, .. } => sup,
+            Self::Space => "",
         }
     }
 
@@ -216,18 +247,22 @@ pub fn definition(parts: &[EquationPart], symbol: &str) -> Option<&'static str> 
     parts.iter().find(defines).map(|p| p.text)
 }
 
-struct Piece {
-    galley: std::sync::Arc<egui::Galley>,
-    offset: Vec2,
+/// A run of characters, and where it stands.
+#[derive(Clone)]
+pub(super) struct Piece {
+    pub(super) galley: std::sync::Arc<egui::Galley>,
+    pub(super) offset: Vec2,
 }
 
-struct Laid {
-    pieces: Vec<Piece>,
-    width: f32,
+/// An atom as it is set.
+#[derive(Clone)]
+pub(super) struct Laid {
+    pub(super) pieces: Vec<Piece>,
+    pub(super) width: f32,
 }
 
 /// Lays an atom out with its baseline at y = 0.
-fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
+pub(super) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
     let (base, sub, sup, family) = match atom {
         // Capital Greek letters are upright by custom; N·L and the like are slanted.
         Atom::Symbol { base, sub, sup } if base.starts_with(|c| ('Α'..='Ω').contains(&c)) => {
@@ -312,19 +347,6 @@ pub fn highlighted(ctx: &egui::Context) -> Option<String> {
     stored.filter(|(pass, _)| now.saturating_sub(*pass) <= 1).map(|(_, symbol)| symbol)
 }
 
-/// A sample of the line that stands for a term in equations and plots: colour and dash.
-pub fn term_sample(painter: &egui::Painter, from: Pos2, to: Pos2, term: Term, palette: &Palette) {
-    let stroke = Stroke::new(2.0, palette.term(term));
-    match theme::term_dash(term) {
-        [dash, gap, ..] if *gap > 0.0 => {
-            painter.extend(Shape::dashed_line(&[from, to], stroke, *dash, *gap));
-        }
-        _ => {
-            painter.line_segment([from, to], stroke);
-        }
-    }
-}
-
 /// An equation, a line for each part, coloured by term. `name` says what a symbol means; it is the
 /// tooltip. Hovering a symbol highlights it; so does [`highlight`].
 pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
@@ -336,144 +358,57 @@ pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Opti
 pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> Option<String>) -> Response {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
-    let size = 17.0 * scale;
-    let line_height = 26.0 * scale;
-    let sample = if parts.len() > 1 { 20.0 * scale } else { 0.0 };
     let width = ui.available_width();
     let marked = highlighted(ui.ctx());
-
-    struct Placed {
-        laid: Laid,
-        symbol: Option<String>,
-        power: Option<String>,
-        x: f32,
-        line: usize,
-        part: usize,
-    }
-    let mut placed: Vec<Placed> = Vec::new();
-    let mut line = 0;
-    let mut firsts = Vec::new();
-    for (part, (term, text)) in parts.iter().enumerate() {
-        firsts.push(line);
-        let colour = palette.term_text(*term);
-        let atoms = parse(text);
-        // A continued line begins under what follows the equals sign.
-        let mut x = sample;
-        let mut hang = sample + 24.0 * scale;
-        let mut word: Vec<Placed> = Vec::new();
-        let mut word_width = 0.0;
-        let mut depth = 0i32;
-        let mut indented = false;
-        let mut listed = false;
-        let mut flush =
-            |word: &mut Vec<Placed>, word_width: &mut f32, x: &mut f32, line: &mut usize, hang: f32| {
-                if *x + *word_width > width && *x > hang {
-                    *line += 1;
-                    *x = hang;
-                }
-                // What is longer than a line is broken at the spaces within brackets, else anywhere.
-                let long = *x + *word_width > width;
-                while !word.is_empty() {
-                    let space = |w: &Placed| w.laid.pieces.is_empty();
-                    let end = word.iter().skip(1).position(space).map_or(word.len(), |n| n + 1);
-                    let end = if long { end } else { word.len() };
-                    let run: f32 = word[..end].iter().map(|w| w.laid.width).sum();
-                    let mut fresh = *x + run > width && *x > hang;
-                    for mut w in word.drain(..end) {
-                        if fresh || *x + w.laid.width > width && *x > hang {
-                            *line += 1;
-                            *x = hang;
-                            // The space before what moved to a new line has done its work.
-                            if std::mem::take(&mut fresh) && space(&w) {
-                                continue;
-                            }
-                        }
-                        (w.x, w.line) = (*x, *line);
-                        *x += w.laid.width;
-                        placed.push(w);
-                    }
-                }
-                *word_width = 0.0;
-            };
-        for (i, atom) in atoms.iter().enumerate() {
-            let laid = lay_out(ui, atom, size, colour);
-            // A line is broken before an operator rather than after it.
-            let operator = i > 0
-                && matches!(&atoms[i - 1], Atom::Upright { base, .. } if "=≈≤≥<>+−/×·".contains(base.as_str()));
-            // What is defined after a comma stays with its equals sign.
-            let sign = |i: usize, text: &str| matches!(atoms.get(i), Some(Atom::Upright { base, .. }) if base == text);
-            listed |= depth == 0 && sign(i, ",");
-            let glue = matches!(atom, Atom::Space) && (depth > 0 || operator || listed && sign(i + 1, "="));
-            if matches!(atom, Atom::Space) && !glue {
-                flush(&mut word, &mut word_width, &mut x, &mut line, hang);
-                x += laid.width;
-                continue;
-            }
-            if let Atom::Upright { base, .. } = atom {
-                let is = |any: &str| i32::from(any.contains(base.as_str()));
-                depth += is("([⟨") - is(")]⟩");
-                if base == "=" && !std::mem::replace(&mut indented, true) && line == firsts[part] {
-                    hang = (x + word_width + laid.width + 0.28 * size).min(width * 0.4);
-                }
-            }
-            let advance = laid.width;
-            word.push(Placed { laid, symbol: atom.symbol(), power: atom.power(), x: 0.0, line: 0, part });
-            word_width += advance;
+    let mut lines: Vec<(Set, f32, Color32)> = Vec::new();
+    let mut height = 0.0;
+    for (term, text) in parts {
+        let size = if parts.len() > 1 { size_of(*term, text) } else { SIZE };
+        let helper = size < SIZE;
+        let leading = if helper { 6.0 } else { 8.0 };
+        let colour = if helper { palette.text } else { palette.term_text(*term) };
+        let setter = Setter { ui, size: size * scale, colour, stacked: true };
+        for line in setter.lines(&formula::tree(text), width) {
+            let baseline = height + line.ascent + 0.5 * leading * scale;
+            height = baseline + line.descent + 0.5 * leading * scale;
+            lines.push((line, baseline, colour));
         }
-        flush(&mut word, &mut word_width, &mut x, &mut line, hang);
-        line += 1;
     }
 
-    let (rect, response) = ui.allocate_exact_size(vec2(width, line_height * line as f32), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let spoken: Vec<_> = parts.iter().map(|(_, text)| *text).collect();
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, spoken.join("; ")));
     if !ui.is_rect_visible(rect) {
         return response;
     }
-    let painter = ui.painter_at(rect.expand(2.0));
-    for ((term, _), first) in parts.iter().zip(&firsts) {
-        if sample > 0.0 {
-            let y = rect.top() + line_height * (*first as f32 + 0.52);
-            let x = rect.left();
-            term_sample(&painter, pos2(x, y), pos2(x + sample - 6.0 * scale, y), *term, &palette);
-        }
-    }
-    for (i, p) in placed.iter().enumerate() {
-        let baseline = pos2(rect.left() + p.x, rect.top() + line_height * (p.line as f32 + 0.68));
-        let colour = palette.term_text(parts[p.part].0);
-        let line = rect.top() + line_height * p.line as f32;
-        let raised = p.laid.pieces.last().filter(|_| p.power.is_some());
-        let base_width = raised.map_or(p.laid.width, |piece| piece.offset.x);
-        let base = Rect::from_min_size(
-            pos2(baseline.x - 1.0, line + 2.0),
-            vec2(base_width + 2.0, line_height - 4.0),
-        );
-        let power = raised.map(|piece| {
-            let width = piece.galley.size().x + 3.0;
-            Rect::from_min_size(
-                pos2(baseline.x + piece.offset.x - 1.0, line + 1.0),
-                vec2(width, 0.62 * line_height),
-            )
-        });
-        let cells = [(p.symbol.as_ref(), Some(base)), (p.power.as_ref(), power)];
-        for (k, (symbol, cell)) in cells.into_iter().enumerate() {
-            let (Some(symbol), Some(cell)) = (symbol, cell) else { continue };
+    for (i, (line, baseline, colour)) in lines.iter().enumerate() {
+        let at = pos2(rect.left(), rect.top() + baseline);
+        for (k, (symbol, corner, size)) in line.symbols().enumerate() {
             let Some(meaning) = name(symbol) else { continue };
+            let cell = Rect::from_min_size(at + corner, size);
             let here = ui.interact(cell, response.id.with((i, k)), Sense::hover());
             if here.hovered() {
                 highlight(ui.ctx(), symbol);
             }
             here.on_hover_text(meaning);
             if marked.as_ref().is_some_and(|m| same_symbol(m, symbol)) {
-                painter.rect_filled(cell, 3.0, palette.chosen);
-                painter.hline(cell.x_range(), cell.bottom() - 1.0, Stroke::new(1.5, palette.accent));
+                ui.painter().rect_filled(cell, 3.0, palette.chosen);
+                ui.painter().hline(cell.x_range(), cell.bottom() - 1.0, Stroke::new(1.5, palette.accent));
             }
         }
-        for piece in &p.laid.pieces {
-            painter.galley(baseline + piece.offset, piece.galley.clone(), colour);
-        }
+        line.paint(ui, at, *colour);
     }
     response
+}
+
+/// The size of letters in the terms of an equation.
+pub(super) const SIZE: f32 = 17.0;
+
+/// The size of letters in a part of an equation: smaller where it defines what another part uses.
+pub(super) fn size_of(term: Term, text: &str) -> f32 {
+    let first = parse(text).first().and_then(Atom::symbol);
+    let helper = term != Term::Total && first.is_none_or(|s| s != "I" && !s.starts_with("I_"));
+    if helper { 14.5 } else { SIZE }
 }
 
 #[cfg(test)]
@@ -570,7 +505,7 @@ mod tests {
                     shapes = output.shapes;
                 }
                 for clipped in &shapes {
-                    if let Shape::Text(text) = &clipped.shape {
+                    if let egui::Shape::Text(text) = &clipped.shape {
                         let right = text.pos.x + text.galley.size().x;
                         assert!(right < clipped.clip_rect.right() + 1.0, "{width}: {:?}", text.galley.text());
                     }

@@ -34,6 +34,7 @@ pub mod chooser;
 pub mod files;
 mod focus;
 pub mod follow;
+pub mod formula;
 pub mod help;
 pub mod icon;
 pub mod inspector;
@@ -43,6 +44,7 @@ pub mod laws;
 pub mod limits;
 pub mod maths;
 pub mod messages;
+pub mod model_override;
 pub mod names;
 pub mod picture;
 pub mod question;
@@ -56,6 +58,7 @@ mod terms;
 pub mod theme;
 pub mod top;
 pub mod tree;
+pub mod typeset;
 
 /// The built-in panels, in the order in which they are laid out. The one list.
 pub fn register_builtin(to: &mut Panels) {

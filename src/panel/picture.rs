@@ -11,7 +11,7 @@ use super::{
     caption::caption_text,
     icon,
     inspector::plural,
-    maths, shader,
+    shader,
     state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
@@ -203,7 +203,7 @@ fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) {
     };
     let font = TextStyle::Small.resolve(ui.style());
     let at = rect.left_bottom() + vec2(8.0, -8.0);
-    let left = if term.is_some() { 28.0 * scale } else { 0.0 };
+    let left = if term.is_some() { 14.0 * scale } else { 0.0 };
     let place = plate(
         &painter,
         &palette,
@@ -216,12 +216,11 @@ fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) {
     );
     if let Some(term) = term {
         let y = place.center().y;
-        maths::term_sample(
-            &painter,
-            pos2(place.left() + 8.0, y),
-            pos2(place.left() + 4.0 + left, y),
-            term,
-            &palette,
+        // The colour of the term in the equation.
+        painter.circle_filled(
+            pos2(place.left() + 8.0 + 4.0 * scale, y),
+            4.0 * scale,
+            palette.term_text(term),
         );
     }
 }

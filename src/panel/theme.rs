@@ -156,17 +156,6 @@ impl Palette {
     }
 }
 
-/// How a term's line is drawn beside its colour, as lengths of dash and gap; empty for a solid line.
-#[must_use]
-pub fn term_dash(term: Term) -> &'static [f32] {
-    match term {
-        Term::Total => &[],
-        Term::Ambient => &[1.5, 2.5],
-        Term::Diffuse => &[6.0, 0.0],
-        Term::Specular => &[5.0, 3.0],
-    }
-}
-
 /// The factor of everything that is measured in points.
 #[must_use]
 pub fn scale(view: &View) -> f32 {
@@ -179,6 +168,8 @@ pub fn scale_here(ui: &egui::Ui) -> f32 {
     ui.style().text_styles.get(&TextStyle::Body).map_or(1.0, |f| f.size / BODY)
 }
 
+/// The share of the text's colour in scroll bars while the pointer is elsewhere.
+const SCROLL_BAR: f32 = 0.55;
 const SMALL: f32 = 11.5;
 const BODY: f32 = 13.0;
 const HEADING: f32 = 16.0;
@@ -285,6 +276,11 @@ fn style(p: &Palette, scale: f32) -> egui::Style {
     s.tooltip_width = 40.0 * unit;
     s.menu_width = 36.0 * unit;
     s.scroll = egui::style::ScrollStyle::thin();
+    // A bar that shows only under the pointer hides that there is more.
+    s.scroll.foreground_color = true;
+    s.scroll.dormant_handle_opacity = SCROLL_BAR;
+    s.scroll.dormant_background_opacity = 0.0;
+    s.scroll.floating_width = 5.0;
     // Fading the edges would falsify the colours of what lies there.
     s.scroll.fade.strength = 0.0;
     style.interaction.tooltip_delay = 0.35;
@@ -371,6 +367,19 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn scroll_bars_are_seen_before_the_pointer_finds_them() {
+        for p in [DARK, LIGHT] {
+            for ground in [p.panel, p.raised] {
+                let bar = ground.lerp_to_gamma(p.text, SCROLL_BAR);
+                assert!(contrast(bar, ground) >= 3.0, "on {ground:?}: {}", contrast(bar, ground));
+            }
+        }
+        let style = style(&DARK, 1.0);
+        assert!(style.spacing.scroll.dormant_handle_opacity >= SCROLL_BAR);
+        assert!(style.spacing.scroll.foreground_color);
     }
 
     #[test]

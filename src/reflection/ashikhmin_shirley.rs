@@ -19,6 +19,7 @@ const EXPONENT_U: Parameter = Parameter {
     unit: "",
     help: "How sharp the highlight is along the brushing: the larger, the smaller it is in that direction.",
     kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 10 },
+    used_when: None,
 };
 
 /// The exponent of the highlight along the bitangent.
@@ -29,6 +30,7 @@ const EXPONENT_V: Parameter = Parameter {
     unit: "",
     help: "How sharp the highlight is across the brushing. Equal to the exponent along it, the surface looks the same from all sides.",
     kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 200 },
+    used_when: None,
 };
 
 parameters! {
@@ -80,9 +82,9 @@ impl ReflectionModel for AshikhminShirley {
         summary: "A highlight with a Fresnel factor, stretched where the surface is brushed, over a base that gives way to it: lacquer, polished wood.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+            EquationPart { term: Term::Diffuse, text: "I_d = 28/23 C_b (1 − F_0) P_L P_V N·L" },
             EquationPart {
-                term: Term::Diffuse,
-                text: "I_d = 28/23 C_b (1 − F_0) (1 − (1 − N·L/2)^5) (1 − (1 − N·V/2)^5) N·L",
+                term: Term::Diffuse, text: "P_L = 1 − (1 − N·L/2)^5, P_V = 1 − (1 − N·V/2)^5"
             },
             EquationPart {
                 term: Term::Specular,
@@ -92,7 +94,7 @@ impl ReflectionModel for AshikhminShirley {
                 term: Term::Specular, text: "n = (n_u (H·T)^2 + n_v (H·B)^2) / (1 − (N·H)^2)"
             },
             EquationPart {
-                term: Term::Specular, text: "F = F_0 + (1 − F_0) (1 − H·L)^5 ,  F_0 = k_s C_s"
+                term: Term::Specular, text: "F = F_0 + (1 − F_0) (1 − H·L)^5, F_0 = k_s C_s"
             },
         ],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },

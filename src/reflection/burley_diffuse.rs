@@ -50,9 +50,10 @@ impl ReflectionModel for BurleyDiffuse {
         source: "B. Burley (2012), Physically-Based Shading at Disney, SIGGRAPH course Practical Physically-Based Shading in Film and Game Production",
         summary: "The base of Disney's model, fitted to measured materials: smooth surfaces darken at the edge, rough ones brighten.",
         equation: &[
+            EquationPart { term: Term::Diffuse, text: "I_d = C_b N·L f_L f_V" },
             EquationPart {
                 term: Term::Diffuse,
-                text: "I_d = C_b N·L (1 + (F_{90} − 1)(1 − N·L)^5) (1 + (F_{90} − 1)(1 − N·V)^5)",
+                text: "f_L = 1 + (F_{90} − 1)(1 − N·L)^5, f_V = 1 + (F_{90} − 1)(1 − N·V)^5",
             },
             EquationPart { term: Term::Diffuse, text: "F_{90} = 1/2 + 2 r (H·L)^2" },
         ],

@@ -27,6 +27,7 @@ pub(super) const SPECULAR_WEIGHT: Parameter = Parameter {
     unit: "",
     help: "How much of the surface mirrors; the rest scatters. 1 for metals, about 0.1 to 0.5 for plastics and paints.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
+    used_when: None,
 };
 
 const SLOPE: Parameter = Parameter {
@@ -36,6 +37,7 @@ const SLOPE: Parameter = Parameter {
     unit: "",
     help: "Root mean square slope of the microfacets: the smaller, the sharper the highlight. 0.2 is shiny, 0.6 nearly matt.",
     kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.2 },
+    used_when: None,
 };
 
 parameters! {

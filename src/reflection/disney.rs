@@ -30,7 +30,7 @@ const fn fraction(
     help: &'static str,
 ) -> Parameter {
     let kind = ParameterKind::Number { min: 0.0, max: 1.0, default };
-    Parameter { name, symbol, label, unit: "", help, kind }
+    Parameter { name, symbol, label, unit: "", help, kind, used_when: None }
 }
 
 const SUBSURFACE: Parameter = fraction(
@@ -199,10 +199,8 @@ impl ReflectionModel for Disney {
         summary: "Everything an artist may want from 0 to 1: cloth by sheen, car paint by a clear coat, brushed metal by anisotropy, skin by a touch of subsurface.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart {
-                term: Term::Diffuse,
-                text: "I_d = (1 − m)(((1 − s_s) f_d + s_s f_s) C_b + π h F_H C_h)(N·L)",
-            },
+            EquationPart { term: Term::Diffuse, text: "I_d = (1 − m)(f C_b + π h F_H C_h)(N·L)" },
+            EquationPart { term: Term::Diffuse, text: "f = (1 − s_s) f_d + s_s f_s" },
             EquationPart {
                 term: Term::Diffuse, text: "f_d = (1 + (F_{90} − 1) F_L)(1 + (F_{90} − 1) F_V)"
             },

@@ -56,11 +56,11 @@ impl ReflectionModel for Eon {
         equation: &[
             EquationPart {
                 term: Term::Diffuse,
-                text: "I_d = N·L (C_b A (1 + r s/t) + ρ_m (1 − E_L) (1 − E_V) / (1 − E_m))",
+                text: "I_d = N·L C_b A (1 + r s/t) + N·L ρ_m (1 − E_L) (1 − E_V) / (1 − E_m)",
             },
             EquationPart {
                 term: Term::Diffuse,
-                text: "s = L·V − N·L N·V ,  t = max(N·L, N·V) , or 1 where s < 0",
+                text: "s = L·V − N·L N·V, t = max(N·L, N·V), or 1 where s < 0",
             },
             EquationPart { term: Term::Diffuse, text: "A = 1 / (1 + (1/2 − 2/(3π)) r)" },
             EquationPart { term: Term::Diffuse, text: "ρ_m = C_b^2 E_m / (1 − C_b (1 − E_m))" },

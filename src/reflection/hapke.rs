@@ -20,6 +20,7 @@ const SINGLE_SCATTERING_ALBEDO: Parameter = Parameter {
     unit: "",
     help: "The fraction of light that one grain scatters and does not swallow; times the base colour for red, green and blue. The Moon's dark plains about 0.2, snow nearly 1.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.52 },
+    used_when: None,
 };
 
 /// Width of the lobes of the phase function.
@@ -30,6 +31,7 @@ const GRAIN_ASYMMETRY: Parameter = Parameter {
     unit: "",
     help: "How narrow the lobes are into which one grain scatters: 0 is evenly in all directions.",
     kind: ParameterKind::Number { min: 0.0, max: 0.9, default: 0.213 },
+    used_when: None,
 };
 
 /// Balance of the lobes of the phase function.
@@ -40,6 +42,7 @@ const BACKSCATTER: Parameter = Parameter {
     unit: "",
     help: "1: grains scatter back to the light, as rough opaque ones do; −1: onward, as clear ones do.",
     kind: ParameterKind::Number { min: -1.0, max: 1.0, default: 1.0 },
+    used_when: None,
 };
 
 /// Height of the opposition surge.
@@ -50,6 +53,7 @@ const OPPOSITION_AMPLITUDE: Parameter = Parameter {
     unit: "",
     help: "How much brighter once-scattered light is with the light behind the observer, where every grain hides its own shadow.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 1.0 },
+    used_when: None,
 };
 
 /// Width of the opposition surge.
@@ -60,6 +64,7 @@ const OPPOSITION_WIDTH: Parameter = Parameter {
     unit: "",
     help: "At a phase angle of 2 arctan h the surge has half its height: 0.05 is 6°. Small for loose powder.",
     kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.05 },
+    used_when: None,
 };
 
 /// Macroscopic roughness.
@@ -70,6 +75,7 @@ const MEAN_SLOPE: Parameter = Parameter {
     unit: "°",
     help: "How rugged the ground is at scales above that of the grains: the mean slope of its faces, which shade and hide each other.",
     kind: ParameterKind::Number { min: 0.0, max: 45.0, default: 30.0 },
+    used_when: None,
 };
 
 parameters! {
@@ -211,10 +217,8 @@ impl ReflectionModel for Hapke {
         source: "B. Hapke (1981), Bidirectional Reflectance Spectroscopy 1. Theory, Journal of Geophysical Research 86(B4); (1984), 3. Correction for Macroscopic Roughness, Icarus 59; (1986), 4. The Extinction Coefficient and the Opposition Effect, Icarus 67",
         summary: "Regolith: the flat disc of the full Moon, and the surge of brightness when the light is behind the observer.",
         equation: &[
-            EquationPart {
-                term: Term::Diffuse,
-                text: "I_d = w C_b/4 μ_l/(μ_l + μ_v) ((1 + B) P + H(μ_l) H(μ_v) − 1) S(θ_m)",
-            },
+            EquationPart { term: Term::Diffuse, text: "I_d = w C_b/4 μ_l/(μ_l + μ_v) M S(θ_m)" },
+            EquationPart { term: Term::Diffuse, text: "M = (1 + B) P + H(μ_l) H(μ_v) − 1" },
             EquationPart { term: Term::Diffuse, text: "B = B_0/(1 + tan(g/2)/h), cos g = L·V" },
             EquationPart { term: Term::Diffuse, text: "H(μ) = (1 + 2 μ)/(1 + 2 μ √(1 − w C_b))" },
             EquationPart {

@@ -30,6 +30,7 @@ const DISTRIBUTION: Parameter = Parameter {
         options: &[("blinn_phong", "Blinn–Phong"), ("beckmann", "Beckmann"), ("ggx", "GGX"), ("gtr", "GTR")],
         default: 2,
     },
+    used_when: None,
 };
 
 const GAMMA: Parameter = Parameter {
@@ -37,8 +38,9 @@ const GAMMA: Parameter = Parameter {
     symbol: "γ",
     label: "exponent of GTR",
     unit: "",
-    help: "How fast the tails of the GTR distribution fall: 2 is GGX, 1 is Berry's with longer tails. Other distributions do not use it.",
+    help: "How fast the tails of the GTR distribution fall: 2 is GGX, 1 is Berry's with longer tails.",
     kind: ParameterKind::Number { min: 1.0, max: 10.0, default: 2.0 },
+    used_when: None,
 };
 
 const MASKING: Parameter = Parameter {
@@ -59,6 +61,7 @@ const MASKING: Parameter = Parameter {
         ],
         default: 6,
     },
+    used_when: None,
 };
 
 const FRESNEL: Parameter = Parameter {
@@ -76,6 +79,7 @@ const FRESNEL: Parameter = Parameter {
         ],
         default: 2,
     },
+    used_when: None,
 };
 
 const DIFFUSE: Parameter = Parameter {
@@ -93,6 +97,7 @@ const DIFFUSE: Parameter = Parameter {
         ],
         default: 1,
     },
+    used_when: None,
 };
 
 const MULTIPLE_SCATTERING: Parameter = Parameter {
@@ -105,6 +110,7 @@ const MULTIPLE_SCATTERING: Parameter = Parameter {
         options: &[("none", "None"), ("kulla_conty", "Kulla–Conty"), ("turquin", "Turquin")],
         default: 0,
     },
+    used_when: None,
 };
 
 parameters! {
@@ -127,15 +133,15 @@ parameters! {
     ///
     /// | parameter | symbol | unit | range | default |
     /// |---|---|---|---|---|
-    /// | `base_colour` | C_b | sRGB | 0–255 | white |
+    /// | `base_colour` | C_b | sRGB | 0–255; used with a `diffuse` base | white |
     /// | `distribution` | D | – | `blinn_phong`, `beckmann`, `ggx`, `gtr` | `ggx` |
-    /// | `gamma` | γ | – | 1–10 | 2 |
+    /// | `gamma` | γ | – | 1–10; used with `gtr` | 2 |
     /// | `alpha_x`, `alpha_y` | α_x, α_y | – | 0.001–1 | 0.3 |
     /// | `masking` | G | – | `implicit`, `v_cavity`, `neumann`, `kelemen`, `schlick_ggx`, `smith_separable`, `smith_height_correlated` | `smith_height_correlated` |
     /// | `fresnel` | F | – | `none`, `schlick`, `dielectric`, `conductor` | `dielectric` |
-    /// | `ior` | n | – | 0.01–6 per channel | 1.5 |
-    /// | `extinction` | k | – | 0–12 per channel | 0 |
-    /// | `diffuse` | f_d | – | `none`, `lambert`, `burley`, `oren_nayar` | `lambert` |
+    /// | `ior` | n | – | 0.01–6 per channel; not used with `fresnel` `none` | 1.5 |
+    /// | `extinction` | k | – | 0–12 per channel; used with `schlick` and `conductor` | 0 |
+    /// | `diffuse` | f_d | – | `none`, `lambert`, `burley`, `oren_nayar`; not used with `fresnel` `none`, which reflects everything | `lambert` |
     /// | `multiple_scattering` | f_ms | – | `none`, `kulla_conty`, `turquin` | `none` |
     ///
     /// Sources: the form is that of K. E. Torrance, E. M. Sparrow (1967), *Theory for Off-Specular
@@ -155,11 +161,11 @@ parameters! {
     /// laws.
     pub struct Microfacet {
         /// `C_b`, linear.
-        base_colour: colour = BASE_COLOUR,
+        base_colour: colour = BASE_COLOUR.used_when("diffuse", &["lambert", "burley", "oren_nayar"]),
         /// `D`: index of the choice.
         distribution: choice = DISTRIBUTION,
         /// `γ`.
-        gamma: number = GAMMA,
+        gamma: number = GAMMA.used_when("distribution", &["gtr"]),
         /// `α_x`.
         alpha_x: number = ALPHA_X,
         /// `α_y`.
@@ -169,11 +175,11 @@ parameters! {
         /// `F`: index of the choice.
         fresnel: choice = FRESNEL,
         /// `n`.
-        ior: triple = IOR,
+        ior: triple = IOR.used_when("fresnel", &["schlick", "dielectric", "conductor"]),
         /// `k`.
-        extinction: triple = EXTINCTION,
+        extinction: triple = EXTINCTION.used_when("fresnel", &["schlick", "conductor"]),
         /// The diffuse base: index of the choice.
-        diffuse: choice = DIFFUSE,
+        diffuse: choice = DIFFUSE.used_when("fresnel", &["schlick", "dielectric", "conductor"]),
         /// `f_ms`: index of the choice.
         multiple_scattering: choice = MULTIPLE_SCATTERING,
     }

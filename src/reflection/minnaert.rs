@@ -18,6 +18,7 @@ const LIMB_DARKENING: Parameter = Parameter {
     unit: "",
     help: "1 is Lambert. Below 1 the rim of a ball brightens: at 0.5 the full moon is a flat disc. Above 1 it darkens, as on velvet lit from the front.",
     kind: ParameterKind::Number { min: 0.5, max: 2.0, default: 0.6 },
+    used_when: None,
 };
 
 /// The smallest cosine that is raised to a power, within 0.06° of the horizon: for k < 1 the formula has no

@@ -30,6 +30,7 @@ pub mod own;
 pub mod parameter;
 pub mod preset;
 pub mod swap;
+pub mod usage;
 
 mod ashikhmin_shirley;
 mod blinn_phong;

@@ -19,6 +19,7 @@ const WRAP_EXPONENT: Parameter = Parameter {
     unit: "",
     help: "The power of the wrapped cosine: 2 is the equation as written and, with k_d = 0.5, Valve's Half-Lambert; 1 with k_d = 1 is Lambert.",
     kind: ParameterKind::Number { min: 1.0, max: 4.0, default: 2.0 },
+    used_when: None,
 };
 
 parameters! {

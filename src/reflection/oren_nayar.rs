@@ -24,6 +24,7 @@ const OREN_NAYAR_FORM: Parameter = Parameter {
         options: &[("full", "full, with interreflection"), ("qualitative", "qualitative")],
         default: 0,
     },
+    used_when: None,
 };
 
 parameters! {
@@ -72,14 +73,15 @@ impl ReflectionModel for OrenNayar {
         source: "M. Oren, S. K. Nayar (1994), Generalization of Lambert's Reflectance Model, SIGGRAPH '94, 239–246",
         summary: "Rough matt surfaces such as plaster and the moon: they shine back to where the light comes from, so spheres look flat.",
         equation: &[
+            EquationPart { term: Term::Diffuse, text: "I_d = C_b N·L S" },
             EquationPart {
                 term: Term::Diffuse,
-                text: "I_d = C_b N·L (C_1 + cos φ C_2 tan β + (1 − |cos φ|) C_3 tan((α + β)/2) + 0.17 C_b C_4)",
+                text: "S = C_1 + cos φ C_2 tan β + (1 − |cos φ|) C_3 tan((α + β)/2) + 0.17 C_b C_4",
             },
             EquationPart { term: Term::Diffuse, text: "C_1 = 1 − 0.5 σ^2/(σ^2 + 0.33)" },
             EquationPart {
                 term: Term::Diffuse,
-                text: "C_2 = 0.45 σ^2/(σ^2 + 0.09) (sin α − (2β/π)^3) ,  (2β/π)^3 only where cos φ < 0",
+                text: "C_2 = 0.45 σ^2/(σ^2 + 0.09) (sin α − (2β/π)^3), (2β/π)^3 only where cos φ < 0",
             },
             EquationPart { term: Term::Diffuse, text: "C_3 = 0.125 σ^2/(σ^2 + 0.09) (4 α β/π^2)^2" },
             EquationPart { term: Term::Diffuse, text: "C_4 = σ^2/(σ^2 + 0.13) (1 − cos φ (2β/π)^2)" },

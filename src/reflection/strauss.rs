@@ -24,6 +24,7 @@ const SMOOTHNESS: Parameter = Parameter {
     unit: "",
     help: "0 is dull, 1 is a mirror. It sharpens the highlight and takes light from the diffuse part: both follow from the one number.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.6 },
+    used_when: None,
 };
 
 /// Strauss's transparency.
@@ -34,6 +35,7 @@ const TRANSPARENCY: Parameter = Parameter {
     unit: "",
     help: "The share of the light that would pass through and is lost here: what lies behind is not shown.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.0 },
+    used_when: None,
 };
 
 /// Shape of F, the stand-in for Fresnel's equations, as published.
@@ -124,10 +126,8 @@ impl ReflectionModel for Strauss {
             EquationPart {
                 term: Term::Diffuse, text: "I_d = (1 − s^3)(1 − t)(1 − m s) C_b max(0, N·L)"
             },
-            EquationPart {
-                term: Term::Specular,
-                text: "I_s = r_j (1 + m (1 − F(α))(C_b − 1)) max(0, R·V)^{3/(1 − s)}",
-            },
+            EquationPart { term: Term::Specular, text: "I_s = r_j C_s max(0, R·V)^{3/(1 − s)}" },
+            EquationPart { term: Term::Specular, text: "C_s = 1 + m (1 − F(α))(C_b − 1)" },
             EquationPart {
                 term: Term::Specular,
                 text: "r_j = min(1, r_n + (r_n + 0.1) F(α) G(α) G(γ)), r_n = s^3 (1 − t)",

@@ -25,6 +25,7 @@ const FACET_SPREAD: Parameter = Parameter {
     unit: "°",
     help: "The angle from the normal at which facets have become rarer by the factor e: the smaller, the sharper the highlight. 5° is shiny, 30° nearly matt.",
     kind: ParameterKind::Number { min: 0.1, max: 60.0, default: 12.0 },
+    used_when: None,
 };
 
 parameters! {

@@ -18,6 +18,7 @@ const WARD_FORM: Parameter = Parameter {
     unit: "",
     help: "As Ward published it, the highlight fades at grazing angles; Dür's division by both cosines brightens it there, beyond what arrives.",
     kind: ParameterKind::Choice { options: &[("ward", "Ward 1992"), ("duer", "Dür 2006")], default: 0 },
+    used_when: None,
 };
 
 parameters! {
@@ -79,7 +80,7 @@ impl ReflectionModel for Ward {
                 term: Term::Specular,
                 text: "I_s = k_s C_s exp(−(x^2/α_x^2 + y^2/α_y^2)) / (4 α_x α_y) √(N·L / N·V)",
             },
-            EquationPart { term: Term::Specular, text: "x = H·T / H·N ,  y = H·B / H·N" },
+            EquationPart { term: Term::Specular, text: "x = H·T / H·N, y = H·B / H·N" },
         ],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,

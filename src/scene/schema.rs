@@ -8,7 +8,10 @@ use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile, read};
 use crate::{
     light::MAX_LIGHTS,
     optics::{colour::Encoding, tone::ToneMapping},
-    reflection::parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
+    reflection::{
+        ModelEntry,
+        parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
+    },
     registry::Registry,
 };
 
@@ -169,8 +172,14 @@ fn objects(list: &mut Json, registry: &Registry) {
     let mut parameters = Map::new();
     for p in registry.material_parameters() {
         let mut field = parameter(p);
-        let models = registry.models().iter().filter(|m| m.parameter(p.name).is_some());
-        let names: Vec<_> = models.map(|m| m.declaration.name).collect();
+        let user = |m: &ModelEntry| {
+            let name = m.declaration.name;
+            Some(match m.parameter(p.name)?.used_when {
+                Some(u) => format!("{name} (with {} {})", u.parameter, u.choices.join(", ")),
+                None => name.to_owned(),
+            })
+        };
+        let names: Vec<_> = registry.models().iter().filter_map(user).collect();
         let help = format!("{} Used by: {}.", p.help, names.join(", "));
         field["description"] = help.into();
         parameters.insert(p.name.to_owned(), field);

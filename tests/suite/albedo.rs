@@ -38,6 +38,7 @@ const fn number(name: &'static str, default: f32) -> Parameter {
         unit: "",
         help: "A number.",
         kind: ParameterKind::Number { min: 0.0, max: 1.0, default },
+        used_when: None,
     }
 }
 

@@ -30,6 +30,7 @@ const BANDS: Parameter = Parameter {
     unit: "",
     help: "How many tones there are.",
     kind: ParameterKind::Integer { min: 1, max: Some(16), slider_max: 16, default: 4 },
+    used_when: None,
 };
 
 parameters! {

@@ -9,7 +9,7 @@ use lights_camera_models::{
     reference::{self, Settings},
     reflection::{
         ModelEntry,
-        parameter::{Value, Values},
+        parameter::{Parameter, Value, Values},
     },
     registry::Registry,
     scene::{
@@ -74,7 +74,15 @@ fn sections() -> Vec<(&'static str, String)> {
     let registry = Registry::builtin();
     let models = registry.models().iter().map(|m| {
         let d = m.declaration;
-        let parameters: Vec<_> = m.parameters.iter().map(|p| code(p.name)).collect();
+        let parameter = |p: &Parameter| match p.used_when {
+            Some(u) => format!(
+                "{} (with {})",
+                code(p.name),
+                u.choices.iter().map(|c| code(c)).collect::<Vec<_>>().join("/")
+            ),
+            None => code(p.name),
+        };
+        let parameters: Vec<_> = m.parameters.iter().map(parameter).collect();
         let kept: Vec<_> = d.laws.list().iter().filter(|(_, kept)| *kept).map(|(law, _)| *law).collect();
         vec![
             code(d.id),

@@ -393,6 +393,9 @@ impl Reader<'_> {
                 break;
             }
         }
+        if self.mistakes.is_empty() {
+            self.check_conditions(&list.elements, &parameters);
+        }
         intern::parameters(parameters)
     }
 
@@ -405,7 +408,8 @@ impl Reader<'_> {
 
     fn shared(&mut self, value: &Ast, path: &str, name: &str) -> Option<Parameter> {
         if let Some(parameter) = self.built_in(name) {
-            return Some(parameter.clone());
+            // Its condition is about the parameters of that model.
+            return Some(Parameter { used_when: None, ..parameter.clone() });
         }
         let known: Vec<_> = self
             .registry

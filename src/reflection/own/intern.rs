@@ -44,6 +44,12 @@ pub(super) fn options(options: Vec<(&'static str, &'static str)>) -> &'static [(
     kept(&ALL, options, |new| new.leak())
 }
 
+/// The names of choices.
+pub(super) fn names(names: Vec<&'static str>) -> &'static [&'static str] {
+    static ALL: Kept<[&str]> = Mutex::new(Vec::new());
+    kept(&ALL, names, |new| new.leak())
+}
+
 /// The parts of an equation.
 pub(super) fn equation(parts: Vec<EquationPart>) -> &'static [EquationPart] {
     static ALL: Kept<[EquationPart]> = Mutex::new(Vec::new());

@@ -27,6 +27,7 @@ const PARAMETER_KEYS: &[&str] = &[
     "slider_max",
     "default",
     "choices",
+    "used_when",
 ];
 /// The types of parameters.
 const TYPES: &[&str] = &["number", "integer", "colour", "triple", "choice"];
@@ -108,6 +109,7 @@ impl Reader<'_> {
                 .or(shared.map(|s| s.help))
                 .unwrap_or_else(|| intern::text(&format!("The {label}."))),
             kind: kind?,
+            used_when: self.used_when(&fields),
         };
         (self.mistakes.len() == before).then_some(parameter)
     }
@@ -256,7 +258,15 @@ impl Reader<'_> {
 
     /// A default that lies in the range.
     fn within(&mut self, fields: &Fields, parameter: ParameterKind) -> Option<ParameterKind> {
-        let probe = Parameter { name: "", symbol: "", label: "", unit: "", help: "", kind: parameter };
+        let probe = Parameter {
+            name: "",
+            symbol: "",
+            label: "",
+            unit: "",
+            help: "",
+            kind: parameter,
+            used_when: None,
+        };
         if !probe.allows(&probe.default_value()) {
             match fields.get("default") {
                 Some(value) => {

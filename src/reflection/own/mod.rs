@@ -41,6 +41,7 @@ use crate::{
     shading::Stage,
 };
 
+mod condition;
 mod declaration;
 pub mod folder;
 mod intern;

@@ -189,7 +189,8 @@ pub fn duplicate(
     let built_in = Registry::builtin();
     for p in entry.parameters {
         let users = built_in.models().iter().filter(|m| m.parameter(p.name).is_some()).count();
-        if users > 1 && built_in.material_parameter(p.name) == Some(p) {
+        let same = |shared: &Parameter| Parameter { used_when: None, ..shared.clone() } == *p;
+        if users > 1 && built_in.material_parameter(p.name).is_some_and(same) {
             let _ = writeln!(out, "        \"{}\",", p.name);
         } else {
             declare(&mut out, p);
@@ -253,6 +254,10 @@ fn declare(out: &mut String, p: &Parameter) {
             format!("\"choices\": {{\n{}            }},\n            ", options.concat())
         }
     };
+    if let Some(condition) = p.used_when {
+        let choices = spaced(&json!(condition.choices));
+        let _ = writeln!(out, "            \"used_when\": {{ \"{}\": {choices} }},", condition.parameter);
+    }
     let _ = writeln!(out, "            {range}\"default\": {},", spaced(&value(&p.default_value())));
     let _ = writeln!(out, "            \"help\": {},\n        }},", text(p.help));
 }

@@ -1,0 +1,234 @@
+//! The parts of an equation: brackets, roots, fractions, and the places at which a line may be broken.
+
+use super::maths::{self, Atom};
+
+/// A piece of an equation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Node {
+    /// A symbol, a word, a number or a sign.
+    Atom(Atom),
+    /// Something in brackets; the closing one may have a power.
+    Group(Atom, Vec<Node>, Atom),
+    /// Something under a root.
+    Root(Vec<Node>),
+    /// One over the other.
+    Fraction(Vec<Node>, Vec<Node>),
+}
+
+/// True for one of these signs.
+pub(super) fn is_sign(node: &Node, signs: &str) -> bool {
+    matches!(node, Node::Atom(Atom::Upright { base, .. }) if signs.contains(base.as_str()))
+}
+
+pub(super) fn is_space(node: &Node) -> bool {
+    matches!(node, Node::Atom(Atom::Space))
+}
+
+/// The tree of an equation.
+#[must_use]
+pub fn tree(text: &str) -> Vec<Node> {
+    let mut stack: Vec<(Atom, Vec<Node>)> = Vec::new();
+    let mut here: Vec<Node> = Vec::new();
+    let bracket = |atom: &Atom, any: &str| !atom.base().is_empty() && any.contains(atom.base());
+    for atom in maths::parse(text) {
+        // Of two bars the second closes, and a bar between other brackets closes before they do.
+        let bar = |stack: &[(Atom, Vec<Node>)]| stack.last().is_some_and(|(open, _)| open.base() == "|");
+        while bracket(&atom, ")]⟩") && bar(&stack) {
+            unopen(&mut stack, &mut here);
+        }
+        let closes = bracket(&atom, ")]⟩") || atom.base() == "|" && bar(&stack);
+        if bracket(&atom, "([⟨|") && !closes {
+            stack.push((atom, std::mem::take(&mut here)));
+        } else if closes && let Some((open, before)) = stack.pop() {
+            let body = fractions(std::mem::replace(&mut here, before));
+            let root = matches!(here.last(), Some(Node::Atom(Atom::Upright { base, sub, sup }))
+                if base == "√" && sub.is_empty() && sup.is_empty());
+            let plain = matches!(&atom, Atom::Upright { sub, sup, .. } if sub.is_empty() && sup.is_empty());
+            if root && plain {
+                here.pop();
+                here.push(Node::Root(body));
+            } else {
+                here.push(Node::Group(open, body, atom));
+            }
+        } else {
+            here.push(Node::Atom(atom));
+        }
+    }
+    while !stack.is_empty() {
+        unopen(&mut stack, &mut here);
+    }
+    fractions(here)
+}
+
+/// Makes the last bracket, which nothing closes, a sign like others.
+fn unopen(stack: &mut Vec<(Atom, Vec<Node>)>, here: &mut Vec<Node>) {
+    if let Some((open, mut before)) = stack.pop() {
+        before.push(Node::Atom(open));
+        before.append(here);
+        *here = before;
+    }
+}
+
+/// Makes fractions of what has a slash. Without spaces, `a b/c` is a times b over c; with spaces, `a b / c` is
+/// all of the product over c.
+fn fractions(nodes: Vec<Node>) -> Vec<Node> {
+    let mut out: Vec<Node> = Vec::new();
+    let mut rest = nodes.into_iter().peekable();
+    while let Some(node) = rest.next() {
+        if !is_sign(&node, "/") {
+            out.push(node);
+            continue;
+        }
+        let spaced = out.last().is_some_and(is_space);
+        if spaced {
+            out.pop();
+        }
+        let ends = |n: &Node| {
+            matches!(n, Node::Fraction(..)) || is_sign(n, "=≈≤≥<>+−×,;∫∈") || !spaced && is_space(n)
+        };
+        let start = out.iter().rposition(ends).map_or(0, |i| i + 1);
+        let mut over = out.split_off(start);
+        // The space between what stands before and the fraction stays outside.
+        let lead = over.iter().take_while(|n| is_space(n)).count();
+        out.extend(over.drain(..lead));
+        while rest.peek().is_some_and(is_space) {
+            rest.next();
+        }
+        let mut under = Vec::new();
+        while let Some(next) = rest
+            .next_if(|n| !is_space(n) && !is_sign(n, "=≈≤≥<>+×,;/") && (!is_sign(n, "−") || under.is_empty()))
+        {
+            under.push(next);
+        }
+        if over.is_empty() || under.is_empty() {
+            // Nothing to stack: as it was written.
+            out.extend(over);
+            out.push(node);
+            out.extend(under);
+        } else {
+            out.push(Node::Fraction(over, under));
+        }
+    }
+    out
+}
+
+/// Without the brackets around all of it: above and below a bar they say nothing.
+pub(super) fn bare(nodes: &[Node]) -> &[Node] {
+    match nodes {
+        [Node::Group(open, body, close)]
+            if open.base() == "(" && close.sup().is_empty() && close.sub().is_empty() =>
+        {
+            body
+        }
+        nodes => nodes,
+    }
+}
+
+/// The pieces between which a line is broken at best: before + and − with spaces about them, and before what
+/// follows a comma.
+pub(super) fn terms(nodes: &[Node]) -> Vec<&[Node]> {
+    split(nodes, |i| {
+        let before = i.checked_sub(1).map(|k| &nodes[k]);
+        let sign = nodes.get(i + 1).is_some_and(|n| is_sign(n, "+−"));
+        let behind_sign = before.is_some_and(|n| is_sign(n, "=≈≤≥<>+−×·,"));
+        is_space(&nodes[i]) && (sign && !behind_sign || before.is_some_and(|n| is_sign(n, ",")))
+    })
+}
+
+/// The pieces between factors as well.
+pub(super) fn factors(nodes: &[Node]) -> Vec<&[Node]> {
+    split(nodes, |i| {
+        let after = nodes.get(i + 1).is_some_and(|n| is_sign(n, "=≈≤≥<>×·,"));
+        let before = i.checked_sub(1).is_some_and(|k| is_sign(&nodes[k], "=≈≤≥<>+−×·"));
+        is_space(&nodes[i]) && !before && !after
+    })
+}
+
+fn split(nodes: &[Node], at: impl Fn(usize) -> bool) -> Vec<&[Node]> {
+    let mut pieces = Vec::new();
+    let mut start = 0;
+    for i in 1..nodes.len() {
+        if at(i) {
+            pieces.push(&nodes[start..i]);
+            start = i;
+        }
+    }
+    pieces.push(&nodes[start..]);
+    pieces
+}
+
+/// The same in single signs: for what fits no line.
+pub(super) fn flattened(nodes: &[Node]) -> Vec<Node> {
+    let upright = |base: &str| {
+        Node::Atom(Atom::Upright { base: base.to_owned(), sub: String::new(), sup: String::new() })
+    };
+    let mut out = Vec::new();
+    for node in nodes {
+        match node {
+            Node::Atom(_) => out.push(node.clone()),
+            Node::Group(open, body, close) => {
+                out.push(Node::Atom(open.clone()));
+                out.extend(flattened(body));
+                out.push(Node::Atom(close.clone()));
+            }
+            Node::Root(body) => {
+                out.extend([upright("√"), upright("(")]);
+                out.extend(flattened(body));
+                out.push(upright(")"));
+            }
+            Node::Fraction(over, under) => {
+                out.extend(flattened(over));
+                out.push(upright("/"));
+                out.extend(flattened(under));
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fractions_take_the_operands_that_are_meant() {
+        let parts = |text: &str| -> Vec<(String, String)> {
+            fn plain(nodes: &[Node]) -> String {
+                flattened(nodes)
+                    .iter()
+                    .map(|n| match n {
+                        Node::Atom(Atom::Space) => " ".to_owned(),
+                        Node::Atom(a) => [a.base(), a.sub(), a.sup()].concat(),
+                        _ => String::new(),
+                    })
+                    .collect()
+            }
+            fn all(nodes: &[Node], out: &mut Vec<(String, String)>) {
+                for node in nodes {
+                    match node {
+                        Node::Fraction(over, under) => out.push((plain(bare(over)), plain(bare(under)))),
+                        Node::Group(_, body, _) | Node::Root(body) => all(body, out),
+                        Node::Atom(_) => {}
+                    }
+                }
+            }
+            let mut out = Vec::new();
+            all(&tree(text), &mut out);
+            out
+        };
+        let one = |over: &str, under: &str| vec![(over.to_owned(), under.to_owned())];
+        assert_eq!(parts("I_s = s π D F G / (4 (N·V))"), one("s π D F G", "4 (N·V)"));
+        assert_eq!(parts("I_d = C_b/2 + x"), one("Cb", "2"));
+        assert_eq!(parts("1 − a b/c d"), one("b", "c"));
+        assert_eq!(parts("√(N·L / N·V)"), one("N·L", "N·V"));
+        assert_eq!(parts("exp(−x^2 / m^2)"), one("x2", "m2"));
+        assert_eq!(parts("a |L + V|^2 / b^4"), one("a |L + V|2", "b4"));
+        assert_eq!(parts("a / b, c = 2"), one("a", "b"));
+        assert_eq!(parts("tan((α + β)/2)"), one("α + β", "2"));
+        assert_eq!(parts("2^{−α/2}"), []);
+        assert_eq!(parts("/ a"), []);
+        for text in ["", "(", ")", "((a / b", "|a (b| c)", "√", "√(", "a /", "a // b", "/"] {
+            let _ = tree(text);
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! The model and the shading that one object has in place of the scene's: one button beside the model's name.
+
+use bevy_egui::egui::{Button, Popup, PopupCloseBehavior, RectAlign, RichText, Ui, WidgetInfo, WidgetType};
+
+use super::{
+    chooser,
+    state::{Lab, ObjectField},
+    theme::{self, Palette},
+    top::segmented,
+};
+use crate::{registry::Registry, scene::Object};
+
+/// The button, and what it opens. Returns the change that was asked for.
+pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> Option<ObjectField> {
+    let scale = theme::scale_here(ui);
+    let palette = Palette::here(ui);
+    let model_name =
+        |id: &str| registry.model(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned());
+    let mode_name =
+        |id: &str| registry.mode(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned());
+    let own: Vec<String> = object
+        .reflection_model
+        .as_deref()
+        .map(model_name)
+        .into_iter()
+        .chain(object.shading_model.as_deref().map(|id| format!("{} shading", mode_name(id))))
+        .collect();
+    let (word, colour) =
+        if own.is_empty() { ("Override", palette.weak) } else { ("Overridden", palette.accent) };
+    let button = Button::new(RichText::new(word).small().color(colour))
+        .right_text(RichText::new("▾").small().color(colour));
+    let button = ui.add(button);
+    let said = if own.is_empty() { "none".to_owned() } else { own.join(", ") };
+    button.widget_info(|| {
+        WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Override model and shading: {said}"))
+    });
+
+    let id = ui.make_persistent_id("model override");
+    let width = 352.0 * scale;
+    let scene_model = model_name(&lab.scene.reflection_model);
+    let scene_mode = mode_name(&lab.scene.shading_model);
+    let mut out = None;
+    let popup = Popup::from_toggle_button_response(&button)
+        .id(id)
+        .align(RectAlign::BOTTOM_END)
+        .width(width)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.set_width(width);
+            ui.label(theme::strong(ui, "Override model and shading"));
+            ui.label(theme::small(
+                ui,
+                format!("Of this object alone; the scene has {scene_model} and {scene_mode} shading."),
+            ));
+            ui.add_space(4.0 * scale);
+            let modes = registry.modes();
+            let mut names = vec!["Scene default"];
+            names.extend(modes.iter().map(|m| m.declaration.name));
+            let chosen = object
+                .shading_model
+                .as_ref()
+                .map_or(Some(0), |id| modes.iter().position(|m| m.declaration.id == id).map(|k| k + 1));
+            let tip = |ui: &mut Ui, i: usize| {
+                ui.set_max_width(300.0 * scale);
+                match i.checked_sub(1).map(|k| modes[k].declaration) {
+                    Some(d) => ui.label(d.summary),
+                    None => ui.label(format!("The shading of the scene: {scene_mode}.")),
+                };
+            };
+            if let Some(i) = segmented(ui, "Shading of this object", &names, chosen, tip) {
+                out = Some(ObjectField::Mode(i.checked_sub(1).map(|k| modes[k].declaration.id.to_owned())));
+            }
+            ui.add_space(6.0 * scale);
+            let own = object.reflection_model.as_deref();
+            let height = 0.45 * ui.ctx().content_rect().height();
+            let first = format!("Scene default ({scene_model})");
+            if let Some(model) =
+                chooser::models(ui, id.with("list"), height, lab, registry, own, Some(&first))
+            {
+                out = Some(ObjectField::Model(model.map(|m| m.declaration.id.to_owned())));
+                Popup::close_id(ui.ctx(), id);
+            }
+        });
+    if popup.is_none() {
+        chooser::forget(ui.ctx(), id.with("list"));
+    }
+    button.on_hover_ui(|ui| {
+        ui.set_max_width(300.0 * scale);
+        ui.label(theme::strong(ui, "Override model and shading"));
+        ui.label(if own.is_empty() {
+            "Give this object a reflection model or a shading of its own, whatever the scene has.".to_owned()
+        } else {
+            format!("This object has {}, not what the scene has.", own.join(" and "))
+        });
+    });
+    out
+}

@@ -1,0 +1,400 @@
+//! Setting of equations: fractions stacked, roots under a bar, brackets as tall as what they hold, lines
+//! broken before + and −.
+
+use bevy_egui::egui::{
+    Color32, Pos2, Shape, Stroke, Ui, Vec2,
+    epaint::{CubicBezierShape, PathShape},
+    vec2,
+};
+
+use super::{
+    formula::{Node, bare, factors, flattened, is_sign, is_space, terms},
+    maths::{self, Atom, Laid},
+};
+
+/// One thing that is painted, relative to the left end of the baseline.
+#[derive(Clone)]
+enum Ink {
+    /// An atom.
+    Atom(Laid, Option<String>, Option<String>),
+    /// A horizontal line of this length: of a fraction or a root.
+    Rule(f32),
+    /// A bracket that opens or closes, from the baseline up and down.
+    Bracket(char, f32, f32),
+    /// A root sign, from the baseline up and down.
+    Root(f32, f32),
+}
+
+/// A piece as it is set: everything that is painted, and the room above and below the baseline.
+#[derive(Clone, Default)]
+pub struct Set {
+    ink: Vec<(Vec2, f32, Ink)>,
+    /// The width.
+    pub width: f32,
+    /// The room above the baseline.
+    pub ascent: f32,
+    /// The room below.
+    pub descent: f32,
+}
+
+impl Set {
+    fn put(&mut self, other: Set, at: Vec2) {
+        self.ascent = self.ascent.max(other.ascent - at.y);
+        self.descent = self.descent.max(other.descent + at.y);
+        self.width = self.width.max(at.x + other.width);
+        self.ink.extend(other.ink.into_iter().map(|(place, size, ink)| (place + at, size, ink)));
+    }
+
+    fn append(&mut self, other: Set) {
+        let at = vec2(self.width, 0.0);
+        self.put(other, at);
+    }
+
+    /// The symbols and powers: what they are called, and where their cells are.
+    pub fn symbols(&self) -> impl Iterator<Item = (&str, Vec2, Vec2)> {
+        self.ink.iter().flat_map(|(place, size, ink)| {
+            let mut cells = Vec::new();
+            if let Ink::Atom(laid, symbol, power) = ink {
+                let raised = laid.pieces.last().filter(|_| power.is_some());
+                let base = raised.map_or(laid.width, |piece| piece.offset.x);
+                if let Some(symbol) = symbol {
+                    let corner = *place + vec2(-1.0, -0.86 * size);
+                    cells.push((symbol.as_str(), corner, vec2(base + 2.0, 1.24 * size)));
+                }
+                if let (Some(power), Some(piece)) = (power, raised) {
+                    let corner = *place + vec2(piece.offset.x - 1.0, -1.1 * size);
+                    cells.push((power.as_str(), corner, vec2(piece.galley.size().x + 3.0, 0.86 * size)));
+                }
+            }
+            cells
+        })
+    }
+
+    /// Paints it with the left end of its baseline here.
+    pub fn paint(&self, ui: &Ui, at: Pos2, colour: Color32) {
+        let painter = ui.painter();
+        for (place, size, ink) in &self.ink {
+            let at = at + *place;
+            let stroke = Stroke::new(size / 15.0, colour);
+            match ink {
+                Ink::Atom(laid, ..) => {
+                    for piece in &laid.pieces {
+                        painter.galley(at + piece.offset, piece.galley.clone(), colour);
+                    }
+                }
+                Ink::Rule(length) => {
+                    painter.hline(at.x..=at.x + length, at.y, stroke);
+                }
+                Ink::Bracket(which, up, down) => bracket(ui, at, *which, *size, *up, *down, colour),
+                Ink::Root(up, down) => {
+                    let foot = at + vec2(0.36 * size, *down);
+                    let points = vec![
+                        at + vec2(0.02 * size, -0.2 * size),
+                        at + vec2(0.14 * size, -0.28 * size),
+                        foot,
+                        at + vec2(0.58 * size, -up),
+                    ];
+                    painter.add(Shape::Path(PathShape::line(points, stroke)));
+                }
+            }
+        }
+    }
+}
+
+/// The width of a tall bracket and of a root sign, in sizes.
+const BRACKET: f32 = 0.36;
+const ROOT: f32 = 0.62;
+
+fn bracket(ui: &Ui, at: Pos2, which: char, size: f32, up: f32, down: f32, colour: Color32) {
+    let stroke = Stroke::new(size / 13.0, colour);
+    let width = BRACKET * size;
+    // Mirrored where it closes.
+    let x = |t: f32| if ")]⟩".contains(which) { at.x + (1.0 - t) * width } else { at.x + t * width };
+    let (top, bottom) = (at.y - up, at.y + down);
+    let line = |points: Vec<Pos2>| Shape::Path(PathShape::line(points, stroke));
+    let p = |t: f32, y: f32| Pos2::new(x(t), y);
+    ui.painter().add(match which {
+        '|' => line(vec![p(0.5, top), p(0.5, bottom)]),
+        '[' | ']' => line(vec![p(0.7, top), p(0.3, top), p(0.3, bottom), p(0.7, bottom)]),
+        '⟨' | '⟩' => line(vec![p(0.75, top), p(0.2, (top + bottom) / 2.0), p(0.75, bottom)]),
+        _ => {
+            let bow = 0.3 * (bottom - top);
+            let points = [p(0.85, top), p(0.12, top + bow), p(0.12, bottom - bow), p(0.85, bottom)];
+            Shape::CubicBezier(CubicBezierShape::from_points_stroke(
+                points,
+                false,
+                Color32::TRANSPARENT,
+                stroke,
+            ))
+        }
+    });
+}
+
+/// Sets equations in one size and one colour.
+#[derive(Clone, Copy)]
+pub struct Setter<'a> {
+    /// The panel, which has the fonts.
+    pub ui: &'a Ui,
+    /// The size of letters, points.
+    pub size: f32,
+    /// The colour.
+    pub colour: Color32,
+    /// True if fractions are stacked; else they have a slash.
+    pub stacked: bool,
+}
+
+impl Setter<'_> {
+    fn with_size(self, size: f32) -> Self {
+        Self { size, ..self }
+    }
+
+    fn atom(self, atom: &Atom) -> Set {
+        let laid = maths::lay_out(self.ui, atom, self.size, self.colour);
+        let scripts = |which: fn(&Atom) -> &str| !which(atom).is_empty();
+        let up = if scripts(Atom::sup) { 1.0 } else { 0.78 };
+        let down = if scripts(Atom::sub) { 0.42 } else { 0.24 };
+        let width = laid.width;
+        let ink = Ink::Atom(laid, atom.symbol(), atom.power());
+        Set {
+            ink: vec![(Vec2::ZERO, self.size, ink)],
+            width,
+            ascent: up * self.size,
+            descent: down * self.size,
+        }
+    }
+
+    /// Sets nodes beside each other.
+    #[must_use]
+    pub fn row(self, nodes: &[Node]) -> Set {
+        let mut set = Set { ascent: 0.78 * self.size, descent: 0.24 * self.size, ..Set::default() };
+        for node in nodes {
+            set.append(self.node(node));
+        }
+        set
+    }
+
+    fn node(self, node: &Node) -> Set {
+        match node {
+            Node::Atom(atom) => self.atom(atom),
+            Node::Group(open, body, close) => self.group(open, body, close),
+            Node::Root(body) => self.root(body),
+            Node::Fraction(over, under) if self.stacked => self.fraction(over, under),
+            Node::Fraction(over, under) => {
+                let mut set = self.row(over);
+                set.append(self.atom(&Atom::Upright {
+                    base: "/".to_owned(),
+                    sub: String::new(),
+                    sup: String::new(),
+                }));
+                set.append(self.row(under));
+                set
+            }
+        }
+    }
+
+    fn group(self, open: &Atom, body: &[Node], close: &Atom) -> Set {
+        let inside = self.row(body);
+        let (up, down) = (inside.ascent, inside.descent);
+        if up < 1.1 * self.size && down < 0.5 * self.size {
+            let mut set = self.atom(open);
+            set.append(inside);
+            set.append(self.atom(close));
+            return set;
+        }
+        let sign = |atom: &Atom| atom.base().chars().next().unwrap_or('(');
+        let tall = |which: char| Set {
+            ink: vec![(Vec2::ZERO, self.size, Ink::Bracket(which, up, down))],
+            width: BRACKET * self.size,
+            ascent: up,
+            descent: down,
+        };
+        let mut set = tall(sign(open));
+        set.append(inside);
+        set.append(tall(sign(close)));
+        // The scripts stand at the ends of the tall bracket.
+        for (script, shift) in [(close.sup(), 0.62 * self.size - up), (close.sub(), down - 0.1 * self.size)] {
+            if !script.is_empty() {
+                let (sub, sup) = (String::new(), script.to_owned());
+                let mut script = self.atom(&Atom::Upright { base: String::new(), sub, sup });
+                script.ascent = self.size;
+                let at = vec2(set.width, shift);
+                set.put(script, at);
+            }
+        }
+        set
+    }
+
+    fn root(self, body: &[Node]) -> Set {
+        let inside = self.row(body);
+        let up = inside.ascent + 0.1 * self.size;
+        let down = inside.descent;
+        let length = inside.width + 0.08 * self.size;
+        let mut set = Set {
+            ink: vec![
+                (Vec2::ZERO, self.size, Ink::Root(up, down)),
+                (vec2(0.58 * self.size, -up), self.size, Ink::Rule(length)),
+            ],
+            width: ROOT * self.size,
+            ascent: up + 0.08 * self.size,
+            descent: down,
+        };
+        set.append(inside);
+        set.width += 0.08 * self.size;
+        set
+    }
+
+    fn fraction(self, over: &[Node], under: &[Node]) -> Set {
+        // Within a fraction the others have a slash: three storeys are too many to read.
+        let inner = Self { stacked: false, ..self.with_size((0.88 * self.size).max(10.0)) };
+        let (over, under) = (inner.row(bare(over)), inner.row(bare(under)));
+        let width = over.width.max(under.width) + 0.2 * self.size;
+        let axis = -0.27 * self.size;
+        let gap = 0.12 * self.size;
+        let middle = |set: &Set| (width - set.width) / 2.0;
+        let mut set = Set {
+            ink: vec![(vec2(0.05 * self.size, axis), self.size, Ink::Rule(width - 0.1 * self.size))],
+            width,
+            ..Set::default()
+        };
+        let at =
+            [vec2(middle(&over), axis - gap - over.descent), vec2(middle(&under), axis + gap + under.ascent)];
+        set.put(over, at[0]);
+        set.put(under, at[1]);
+        set.width = width;
+        // Beside another fraction the bars must not touch.
+        set.width += 0.06 * self.size;
+        set
+    }
+
+    /// Sets an equation in lines of at most this width; those after the first begin under what follows the
+    /// equals sign. Lines are broken before + and − outside brackets, and where a new definition begins; what is
+    /// too long even so is set smaller, and what is too long then is broken between factors, then anywhere.
+    #[must_use]
+    pub fn lines(self, nodes: &[Node], width: f32) -> Vec<Set> {
+        const SIZES: [f32; 4] = [1.0, 0.94, 0.88, 0.82];
+        let fits = |lines: &[Set]| lines.iter().all(|line| line.width <= width);
+        let mut lines = Vec::new();
+        for factor in SIZES {
+            lines = self.with_size(factor * self.size).broken(&terms(nodes), width);
+            if fits(&lines) {
+                return lines;
+            }
+        }
+        let small = self.with_size(SIZES[SIZES.len() - 1] * self.size);
+        for flat in [false, true] {
+            let setter = Self { stacked: !flat, ..small };
+            let nodes = if flat { flattened(nodes) } else { nodes.to_vec() };
+            let pieces = if flat { nodes.chunks(1).collect() } else { factors(&nodes) };
+            lines = setter.broken(&pieces, width);
+            if fits(&lines) {
+                break;
+            }
+        }
+        lines
+    }
+
+    /// Lines of pieces that are not broken.
+    fn broken(self, pieces: &[&[Node]], width: f32) -> Vec<Set> {
+        let mut lines: Vec<Set> = Vec::new();
+        let mut hang = 1.4 * self.size;
+        for (i, piece) in pieces.iter().enumerate() {
+            let set = self.row(piece);
+            match lines.last_mut() {
+                Some(line) if line.width + set.width <= width || line.width <= hang => line.append(set),
+                _ => {
+                    // The space before what begins a line has done its work.
+                    let start = piece.iter().take_while(|n| is_space(n)).count();
+                    let indent = if i == 0 { 0.0 } else { hang };
+                    let mut line = Set { width: indent, ..Set::default() };
+                    line.append(self.row(&piece[start..]));
+                    lines.push(line);
+                }
+            }
+            if i == 0
+                && let Some(equals) = piece.iter().position(|n| is_sign(n, "="))
+            {
+                hang = hang.max((self.row(&piece[..equals]).width + 1.2 * self.size).min(0.3 * width));
+            }
+        }
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::panel::{formula::tree, theme};
+    use bevy_egui::egui;
+
+    /// Sets every part of every equation at this width; `see` gets the text and its lines.
+    fn set_all(width: f32, mut see: impl FnMut(&str, f32, &[Set])) {
+        let ctx = egui::Context::default();
+        theme::install_fonts(&ctx);
+        let registry = crate::registry::Registry::builtin();
+        let models = registry.models().iter().flat_map(|m| m.declaration.equation);
+        let parts = models.map(|p| (maths::size_of(p.term, p.text), p.text));
+        let lights = registry.lights().iter().map(|l| (maths::SIZE, l.declaration.equation));
+        let texts: Vec<_> = parts.chain(lights).collect();
+        for pass in 0..2 {
+            let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+                for (size, text) in texts.iter().filter(|_| pass == 1) {
+                    let setter = Setter { ui, size: *size, colour: Color32::WHITE, stacked: true };
+                    see(text, *size, &setter.lines(&tree(text), width));
+                }
+            });
+        }
+    }
+
+    /// The characters of a line from left to right as they were set.
+    fn words(line: &Set) -> String {
+        let piece = |(_, _, ink): &(Vec2, f32, Ink)| match ink {
+            Ink::Atom(laid, ..) if laid.pieces.is_empty() => " ".to_owned(),
+            Ink::Atom(laid, ..) => laid.pieces.iter().map(|p| p.galley.text().to_owned()).collect(),
+            Ink::Bracket(which, ..) => which.to_string(),
+            Ink::Root(..) | Ink::Rule(_) => String::new(),
+        };
+        line.ink.iter().map(piece).collect()
+    }
+
+    #[test]
+    fn lines_are_broken_before_plus_and_minus_outside_brackets() {
+        // The width of the panel at first, and the least.
+        for width in [320.0, 276.0] {
+            set_all(width, |text, size, lines| {
+                // The panel at first is wide enough to set everything in full size, or nearly.
+                let least = if width > 300.0 { 0.9 } else { 0.8 };
+                let largest = lines.iter().flat_map(|l| &l.ink).map(|(_, size, _)| *size).fold(0.0, f32::max);
+                assert!(largest >= least * size, "{width}: {text} is set in {largest}, not {size}");
+                let mut earlier = String::new();
+                for (i, line) in lines.iter().enumerate() {
+                    let words = words(line);
+                    let count = |any: &str| words.chars().filter(|c| any.contains(*c)).count();
+                    assert_eq!(count("([⟨"), count(")]⟩"), "{width}: “{words}” of {text} breaks a bracket");
+                    assert!(line.width <= width, "{width}: “{words}” of {text} is {} wide", line.width);
+                    let start = words.trim_start();
+                    let good = start.starts_with(['+', '−']) || earlier.trim_end().ends_with(',');
+                    assert!(i == 0 || good, "{width}: a line of {text} begins with “{start}”");
+                    earlier = words;
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn brackets_about_a_fraction_are_as_tall_as_it_is() {
+        let ctx = egui::Context::default();
+        theme::install_fonts(&ctx);
+        for _ in 0..2 {
+            let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+                let setter = Setter { ui, size: 17.0, colour: Color32::WHITE, stacked: true };
+                let tall = setter.row(&tree("(1 + a/b)"));
+                let flat = setter.row(&tree("(1 + a b)"));
+                let brackets =
+                    |set: &Set| set.ink.iter().filter(|(.., i)| matches!(i, Ink::Bracket(..))).count();
+                assert_eq!((brackets(&tall), brackets(&flat)), (2, 0));
+                assert!(tall.ascent + tall.descent > 1.5 * (flat.ascent + flat.descent));
+                assert!(tall.width < flat.width + 17.0);
+            });
+        }
+    }
+}
