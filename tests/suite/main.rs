@@ -4,6 +4,8 @@
 mod albedo;
 mod assets;
 mod command_line;
+mod dialogs;
+mod examples;
 mod extension;
 mod files;
 mod focus;
@@ -19,6 +21,7 @@ mod own_folder;
 mod own_models;
 mod panels;
 mod pictures;
+mod presentation;
 mod readme;
 mod reference_renderer;
 mod reload;
