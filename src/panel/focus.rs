@@ -1,7 +1,8 @@
 //! The keyboard focus: where it goes with F6 and within menus, and that it is seen wherever it is.
 
 use bevy_egui::egui::{
-    self, Context, Event, Id, Key, LayerId, Modifiers, Order, Popup, Rect, Stroke, StrokeKind, WidgetRect,
+    self, Context, Event, Id, Key, LayerId, Modifiers, Order, Popup, Rect, Response, Stroke, StrokeKind,
+    WidgetRect,
 };
 
 use super::{Place, theme::Palette};
@@ -84,6 +85,37 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
     });
 }
 
+fn opened() -> Id {
+    Id::new("menu opened by key")
+}
+
+/// Opens the menus of a bar: each with Alt and its letter, the first with F10, the one beside the open one with ← and →.
+pub(super) fn open_menus(ctx: &Context, bar: &[(Key, Response)]) {
+    let ids: Vec<Id> = bar.iter().map(|(_, button)| Popup::default_response_id(button)).collect();
+    let open = ids.iter().position(|id| Popup::is_id_open(ctx, *id));
+    let count = ids.len();
+    let wanted = ctx.input_mut(|input| {
+        let by_letter = bar.iter().position(|(key, _)| input.consume_key(Modifiers::ALT, *key));
+        let first = input.consume_key(Modifiers::NONE, Key::F10).then_some(0);
+        let beside = open.and_then(|at| {
+            let right = input.consume_key(Modifiers::NONE, Key::ArrowRight);
+            let left = input.consume_key(Modifiers::NONE, Key::ArrowLeft);
+            (right || left).then_some((at + if right { 1 } else { count - 1 }) % count)
+        });
+        by_letter.or(first).or(beside)
+    });
+    let Some(wanted) = wanted else { return };
+    ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
+    if open == Some(wanted) {
+        Popup::close_id(ctx, ids[wanted]);
+        return;
+    }
+    Popup::open_id(ctx, ids[wanted]);
+    // Its entries are there with the next frame.
+    ctx.data_mut(|d| d.insert_temp(opened(), true));
+    ctx.request_repaint();
+}
+
 /// Lets the arrow keys walk through an open menu or list, however it was opened. Call before the widgets see the keys.
 pub(super) fn walk_menus(ctx: &Context) {
     if !Popup::is_any_open(ctx) || ctx.text_edit_focused() {
@@ -108,12 +140,19 @@ pub(super) fn walk_menus(ctx: &Context) {
             false
         });
     });
+    let entering = now.is_none() && ctx.data_mut(|d| d.remove_temp::<bool>(opened())).unwrap_or(false);
+    if entering {
+        step = 1;
+    }
     if step == 0 {
         return;
     }
     let layer = now.map(|w| w.layer_id).or_else(|| top_menu(ctx));
     let stops = stops(ctx, |w| Some(w.layer_id) == layer && !w.sense.senses_drag());
     if stops.is_empty() {
+        if entering {
+            ctx.data_mut(|d| d.insert_temp(opened(), true));
+        }
         return;
     }
     let count = stops.len() as isize;

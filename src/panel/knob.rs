@@ -637,7 +637,8 @@ pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
 fn field_frame(palette: &Palette, stroke: Stroke, scale: f32) -> egui::Frame {
     egui::Frame::new()
         .fill(palette.field)
-        .stroke(stroke)
+        // A stroke of another width would move what stands below.
+        .stroke(Stroke::new(1.0, stroke.color))
         .corner_radius(4.0)
         .inner_margin(egui::Margin::symmetric((4.0 * scale) as i8, (2.0 * scale) as i8))
 }
@@ -717,7 +718,7 @@ pub fn parse_hex(text: &str) -> Option<[u8; 3]> {
 fn axis_letter(ui: &mut Ui, letter: &str, name: &str, limits: &Limits, value: f64, set: impl FnOnce(f64)) {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(14.0, 22.0) * scale, Sense::drag());
+    let (rect, response) = ui.allocate_exact_size(vec2(14.0, 22.0) * scale, Sense::DRAG);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, ui.is_enabled(), name));
     let colour = if response.hovered() || response.dragged() { palette.accent } else { palette.weak };
     let font = TextStyle::Small.resolve(ui.style());

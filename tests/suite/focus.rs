@@ -55,6 +55,14 @@ fn every_focus_is_seen() {
         let visible = Rect::from_min_size(egui::Pos2::ZERO, bench.size).intersect(rect);
         let ring = rings(&mut bench).into_iter().any(|r| r.expand(4.0).contains_rect(visible));
         assert!(ring, "nothing shows that {rect:?} has the focus");
+        let senses = bench
+            .ctx
+            .memory(egui::Memory::focused)
+            .and_then(|id| bench.ctx.viewport(|v| v.prev_pass.widgets.get(id).map(|w| w.sense)));
+        assert!(
+            senses.is_some_and(|s| s.senses_click()),
+            "Tab stops at what only the mouse can use: {rect:?}"
+        );
         seen += 1;
     }
     assert!(seen > 20, "{seen}");
@@ -106,4 +114,25 @@ fn a_new_name_takes_the_place_of_the_old_one() {
     bench.settle();
     bench.key(Key::Enter, Modifiers::NONE);
     assert_eq!(bench.lab.scene.objects[0].name.as_deref(), Some("ball"));
+}
+
+#[test]
+fn the_menus_open_with_alt_and_with_f10() {
+    let mut bench = Bench::new(Lab::default());
+    bench.key(Key::E, Modifiers::ALT);
+    assert!(bench.find("Add a light").is_some(), "Alt+E opens Edit");
+    let first = focused(&bench).expect("its first entry");
+    bench.key(Key::ArrowRight, Modifiers::NONE);
+    assert!(bench.find("Add a light").is_none() && bench.says("Focus selection"), "→: View");
+    bench.key(Key::ArrowLeft, Modifiers::NONE);
+    assert_eq!(focused(&bench), Some(first), "←: Edit again");
+    bench.key(Key::Escape, Modifiers::NONE);
+    bench.key(Key::F10, Modifiers::NONE);
+    assert!(bench.says("New default scene"), "F10 opens the first menu");
+    bench.key(Key::F10, Modifiers::NONE);
+    assert!(!bench.says("New default scene"), "and closes it");
+    // A letter with Alt is no command of the picture.
+    let mode = bench.lab.scene.shading_model.clone();
+    bench.key(Key::F, Modifiers::ALT);
+    assert_eq!(bench.lab.scene.shading_model, mode);
 }
