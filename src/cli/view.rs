@@ -52,6 +52,8 @@ pub struct ViewOptions {
     pub stamp: Option<Stamp>,
     /// A file that the window must open itself, since there is something to ask first.
     pub open: Option<PathBuf>,
+    /// True if the window shows the examples: it begins without a scene of the user's.
+    pub examples: bool,
     /// Whether the defaults are used when the file comes to lack parts.
     pub use_defaults: bool,
     /// The size of the window in pixels; else 1280×720 points.
@@ -97,6 +99,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         file: None,
         stamp: None,
         open: None,
+        examples: source == Source::Default,
         use_defaults: options.defaults() == Defaults::Use,
         size: size.map(|s| [s.width, s.height]),
         exit_after,

@@ -257,7 +257,6 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
         return Vec::new();
     };
     let mut actions = Vec::new();
-    let scale = theme::scale(&lab.view);
     let title = match &draft.of {
         Some(of) => {
             let name = registry.model(of).map_or(of.as_str(), |m| m.declaration.name);
@@ -271,11 +270,11 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_width(440.0 * scale)
+        .default_width(440.0)
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(lab.picture_rect.center())
         .show(ctx, |ui| {
-            ui.set_width(440.0 * scale);
+            ui.set_width(440.0);
             actions.extend(ask(ui, lab, registry, draft));
         });
     if !open || ctx.input(|i| i.key_pressed(Key::Escape)) {

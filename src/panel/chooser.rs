@@ -281,6 +281,9 @@ pub fn about(ui: &mut Ui, model: &ModelEntry) {
     }
 }
 
+/// How wide the button is, points.
+pub const WIDTH: f32 = 160.0;
+
 /// The button and, when it is open, the list. They are about the model that the selected object has of its
 /// own, else about that of the scene.
 pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
@@ -295,7 +298,7 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         .right_text(RichText::new("▾").color(palette.weak))
         .min_size(vec2(132.0, 24.0) * scale)
         .truncate();
-    let response = ui.add_sized(vec2(160.0, 24.0) * scale, button);
+    let response = ui.add_sized(vec2(WIDTH, 24.0), button);
     response
         .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Reflection model: {name}")));
     if response.clicked() {

@@ -12,7 +12,6 @@ use crate::registry::Registry;
 /// Shows the windows that are open.
 pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
-    let scale = theme::scale(&lab.view);
     let screen = ctx.content_rect();
     let mut open = lab.view.keys_open;
     Window::new(RichText::new("Keys and mouse").heading())
@@ -20,7 +19,7 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_width((720.0 * scale).min(screen.width() - 80.0))
+        .default_width(720f32.min(screen.width() - 80.0))
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(screen.center())
         .show(ctx, |ui| {
@@ -38,7 +37,7 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_width(440.0 * scale)
+        .default_width(440.0)
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(screen.center())
         .show(ctx, |ui| about(ui, lab, registry));
@@ -83,12 +82,12 @@ fn key_list(ui: &mut Ui, lab: &Lab, registry: &Registry) {
         }
         count += size;
     }
-    ui.spacing_mut().interact_size.y = 20.0 * theme::scale_here(ui);
+    ui.spacing_mut().interact_size.y = 20.0;
     ui.columns_const(|[a, b]| {
         for (ui, groups) in [(a, left), (b, right)] {
             for group in groups {
                 ui.label(theme::strong(ui, group));
-                Grid::new(group).num_columns(2).min_col_width(88.0 * theme::scale_here(ui)).show(ui, |ui| {
+                Grid::new(group).num_columns(2).min_col_width(88.0).show(ui, |ui| {
                     for (_, key, label) in rows.iter().filter(|r| r.0 == group) {
                         ui.label(RichText::new(key).color(theme::Palette::here(ui).accent));
                         ui.label(label);

@@ -134,8 +134,8 @@ fn text_field(
     let draft_id = id.with("draft");
     let mut text: String = ui.data(|d| d.get_temp(draft_id)).unwrap_or_else(|| value.to_owned());
     let focused = ui.memory(|m| m.has_focus(id));
-    let stroke =
-        if focused { egui::Stroke::new(1.5, palette.accent) } else { egui::Stroke::new(1.0, palette.line) };
+    // A stroke of another width would move what stands below.
+    let stroke = egui::Stroke::new(1.0, if focused { palette.accent } else { palette.line });
     let style = if heading { egui::TextStyle::Heading } else { egui::TextStyle::Body };
     let edit = TextEdit::singleline(&mut text)
         .id(id)

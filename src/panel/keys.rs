@@ -58,7 +58,8 @@ impl Binding {
 
     /// Whether it works while text is being typed.
     fn while_typing(&self) -> bool {
-        (self.ctrl && self.group == "File") || self.key == Key::F1
+        (self.ctrl && matches!(self.group, "File" | "Window"))
+            || matches!(self.key, Key::F1 | Key::F5 | Key::F11)
     }
 }
 
@@ -128,6 +129,18 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
     ] {
         add(CAMERA, false, shift, key, label, Action::Steer(steer));
     }
+    let size = [
+        (Key::Plus, "Everything larger", ViewChange::Larger),
+        (Key::Minus, "Everything smaller", ViewChange::Smaller),
+        (Key::Num0, "Everything at 100 %", ViewChange::Scale(100)),
+    ];
+    for (key, label, change) in size {
+        add("Window", true, false, key, label, Action::View(change));
+    }
+    let presenting = Action::View(ViewChange::Presenting(!lab.view.presenting));
+    add("Window", false, false, Key::F5, "Presentation; Esc leaves it", presenting);
+    let fullscreen = Action::View(ViewChange::Fullscreen(!lab.view.fullscreen));
+    add("Window", false, false, Key::F11, "Full screen", fullscreen);
     add("Window", false, false, Key::F1, "This list", Action::View(ViewChange::Keys(!lab.view.keys_open)));
     add("Window", false, false, Key::F8, "Messages", Action::View(lab.strip_change()));
     let shader = if lab.view.bottom_open && lab.view.bottom_tab == SHADER_TAB {

@@ -637,7 +637,8 @@ pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
 fn field_frame(palette: &Palette, stroke: Stroke, scale: f32) -> egui::Frame {
     egui::Frame::new()
         .fill(palette.field)
-        .stroke(stroke)
+        // A stroke of another width would move what stands below.
+        .stroke(Stroke::new(1.0, stroke.color))
         .corner_radius(4.0)
         .inner_margin(egui::Margin::symmetric((4.0 * scale) as i8, (2.0 * scale) as i8))
 }

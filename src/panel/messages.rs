@@ -6,7 +6,7 @@ use super::{
     Panel, Place,
     icon::{self, Icon},
     state::{Action, Lab},
-    theme::{self, Palette},
+    theme::Palette,
 };
 use crate::registry::Registry;
 
@@ -30,7 +30,6 @@ impl Panel for Messages {
     fn show(&self, ui: &mut Ui, lab: &Lab, _registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
         let palette = Palette::here(ui);
-        let scale = theme::scale_here(ui);
         if lab.messages.is_empty() {
             ui.add_space(8.0);
             ui.weak("No messages. Problems with files, values and shaders appear here and stay until you dismiss them.");
@@ -55,14 +54,14 @@ impl Panel for Messages {
             for (i, message) in lab.messages.iter().enumerate().rev() {
                 ui.push_id(i, |ui| {
                     ui.horizontal_top(|ui| {
-                        ui.spacing_mut().item_spacing.x = 6.0 * scale;
-                        let (rect, sign) = ui.allocate_exact_size(vec2(16.0, 20.0) * scale, Sense::hover());
-                        icon::severity(ui.painter(), rect.center(), 6.0 * scale, message.severity, &palette);
+                        ui.spacing_mut().item_spacing.x = 6.0;
+                        let (rect, sign) = ui.allocate_exact_size(vec2(16.0, 20.0), Sense::hover());
+                        icon::severity(ui.painter(), rect.center(), 6.0, message.severity, &palette);
                         sign.on_hover_text(message.severity.name());
-                        let width = ui.available_width() - 58.0 * scale;
+                        let width = ui.available_width() - 58.0;
                         ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
                             ui.set_width(width);
-                            ui.add_space(2.0 * scale);
+                            ui.add_space(2.0);
                             ui.add(egui::Label::new(RichText::new(&message.text)).wrap().selectable(true));
                             if let Some((label, action)) = &message.offer
                                 && ui.button(*label).clicked()

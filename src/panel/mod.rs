@@ -21,16 +21,16 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Button, Frame, Id, LayerId, Margin, Rect, Ui, UiBuilder, vec2},
 };
-use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
 use crate::registry::Registry;
-use author::Ask;
+pub use dialogs::Dialogs;
 use state::{Action, Effect, Lab, LabEffect, Severity, ViewChange};
 use theme::Palette;
 
 pub mod author;
 pub mod caption;
 pub mod chooser;
+pub mod dialogs;
 pub mod files;
 mod focus;
 pub mod follow;
@@ -47,6 +47,8 @@ pub mod messages;
 pub mod model_override;
 pub mod names;
 pub mod picture;
+pub mod presentation;
+pub mod preview;
 pub mod question;
 pub mod recovery;
 pub mod reload;
@@ -59,6 +61,7 @@ pub mod theme;
 pub mod top;
 pub mod tree;
 pub mod typeset;
+pub mod welcome;
 
 /// The built-in panels, in the order in which they are laid out. The one list.
 pub fn register_builtin(to: &mut Panels) {
@@ -164,106 +167,6 @@ impl PanelApp for App {
     }
 }
 
-/// The dialogs that choose files.
-#[derive(Debug)]
-pub struct Dialogs {
-    open: FileDialog,
-    save: FileDialog,
-    folder: FileDialog,
-}
-
-impl Default for Dialogs {
-    fn default() -> Self {
-        let dialog = |title: &str, id: &'static str| {
-            FileDialog::new()
-                .title(title)
-                .id(id)
-                .add_file_filter_extensions("Scenes (*.json)", vec!["json"])
-                .default_file_filter("Scenes (*.json)")
-                .add_save_extension("Scene (*.json)", "json")
-                .default_save_extension("Scene (*.json)")
-                .default_size(vec2(720.0, 440.0))
-                .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
-                .default_file_name("scene.json")
-        };
-        let folder = FileDialog::new()
-            .title("Export the shaders to which folder?")
-            .id("folder dialog")
-            .labels(FileDialogLabels { open_button: "Export here".to_owned(), ..FileDialogLabels::default() })
-            .default_size(vec2(720.0, 440.0))
-            .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
-        Self {
-            open: dialog("Open a scene", "open dialog"),
-            save: dialog("Save the scene as", "save dialog"),
-            folder,
-        }
-    }
-}
-
-impl Dialogs {
-    /// Whether one is open.
-    #[must_use]
-    pub fn is_open(&self) -> bool {
-        [&self.open, &self.save, &self.folder].into_iter().any(|d| *d.state() == DialogState::Open)
-    }
-
-    fn start(&mut self, effect: &Effect, lab: &Lab) -> bool {
-        let folder = lab.path.as_ref().and_then(|p| p.parent()).filter(|p| p.is_dir());
-        let (dialog, save) = match effect {
-            Effect::PickOpen => (&mut self.open, false),
-            Effect::PickSave => (&mut self.save, true),
-            Effect::PickShaderFolder => {
-                self.folder.pick_directory();
-                return true;
-            }
-            _ => return false,
-        };
-        if let Some(folder) = folder {
-            dialog.config_mut().initial_directory = folder.to_owned();
-        }
-        if save {
-            let name =
-                lab.path.as_ref().and_then(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned());
-            dialog.config_mut().default_file_name =
-                name.unwrap_or_else(|| format!("{}.json", file_name(&lab.title())));
-            dialog.save_file();
-        } else {
-            dialog.pick_file();
-        }
-        true
-    }
-
-    fn update(&mut self, ctx: &egui::Context, lab: &mut Lab) -> Vec<Action> {
-        let mut actions = Vec::new();
-        let was_open = *self.open.state() == DialogState::Open;
-        self.open.update(ctx);
-        if let Some(path) = self.open.take_picked() {
-            // Whoever got this far was asked about unsaved changes before.
-            actions.push(Action::Open(path));
-        } else if was_open && *self.open.state() == DialogState::Cancelled {
-            lab.not_opened();
-        }
-        let was_open = *self.save.state() == DialogState::Open;
-        self.save.update(ctx);
-        if let Some(path) = self.save.take_picked() {
-            actions.push(Action::SaveAs(path));
-        } else if was_open && *self.save.state() == DialogState::Cancelled {
-            lab.not_saved();
-        }
-        self.folder.update(ctx);
-        actions.extend(self.folder.take_picked().map(|folder| Action::Author(Ask::Export(folder))));
-        actions
-    }
-}
-
-/// A title as the name of a file.
-fn file_name(title: &str) -> String {
-    let plain: String =
-        title.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
-    let name = plain.split('-').filter(|s| !s.is_empty()).collect::<Vec<_>>().join("-");
-    if name.is_empty() { "scene".to_owned() } else { name }
-}
-
 /// Shows the window, applies what the user does, and returns the effects. `ui` covers the window.
 pub fn show(
     ui: &mut Ui,
@@ -281,22 +184,26 @@ pub fn show(
     lab.panels = panels.list();
     lab.notice_shaders(registry);
     let palette = Palette::of(&lab.view);
-    let scale = theme::scale(&lab.view);
     focus::walk_menus(&ctx);
     focus::forget_regions(&ctx);
+    lab.zoom = ctx.zoom_factor();
     let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, lab, registry) };
+    actions.extend(presentation::left(&ctx, lab));
+    actions.extend(welcome::left(&ctx, lab));
     actions.extend(help::show(&ctx, lab, registry));
     actions.extend(author::show(&ctx, lab, registry));
     let whole = ui.available_rect_before_wrap();
 
-    for panel in panels.at(Place::Top) {
+    // A presentation shows the bar only for the chooser that hangs on it.
+    let presenting = lab.view.presenting;
+    for panel in panels.at(Place::Top).filter(|_| !presenting || lab.view.chooser_open) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 4.0));
         let shown = egui::Panel::top(panel.id())
             .frame(frame)
             .show(ui, |ui| actions.extend(panel.show(ui, lab, registry)));
         focus::region(&ctx, Place::Top, shown.response.rect);
     }
-    for panel in panels.at(Place::Status) {
+    for panel in panels.at(Place::Status).filter(|_| !presenting) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 2.0));
         let shown = egui::Panel::bottom(panel.id())
             .frame(frame)
@@ -304,50 +211,53 @@ pub fn show(
         focus::region(&ctx, Place::Status, shown.response.rect);
     }
     let mut sizes = (lab.view.left_width, lab.view.right_width, lab.view.bottom_height);
-    if lab.view.bottom_open {
-        bottom(ui, lab, registry, panels, &palette, scale, whole, &mut sizes.2, &mut actions);
+    if lab.view.bottom_open && !presenting {
+        bottom(ui, lab, registry, panels, &palette, whole, &mut sizes.2, &mut actions);
     }
-    if lab.view.left_open {
-        let most = 0.35 * whole.width();
-        let panel = egui::Panel::left(Id::new(("left", lab.view.large_type)))
+    if lab.view.left_open && !presenting {
+        let most = 0.26 * whole.width();
+        let panel = egui::Panel::left(Id::new(("left", lab.view.scale)))
             .frame(theme::panel_frame(&palette, vec2(0.0, 4.0)))
-            .default_size((sizes.0 * scale).min(most))
-            .size_range((120.0 * scale).min(most)..=most);
+            .default_size(sizes.0.min(most))
+            .size_range(120f32.min(most)..=most);
         let response = panel.show(ui, |ui| {
             for panel in panels.at(Place::Left) {
                 actions.extend(panel.show(ui, lab, registry));
             }
         });
         focus::region(&ctx, Place::Left, response.response.rect);
-        sizes.0 = response.response.rect.width() / scale;
+        sizes.0 = response.response.rect.width();
     }
-    if lab.view.right_open {
+    if lab.view.right_open && !presenting {
         let most = 0.45 * whole.width();
-        let panel = egui::Panel::right(Id::new(("right", lab.view.large_type)))
+        let panel = egui::Panel::right(Id::new(("right", lab.view.scale)))
             .frame(Frame::new().fill(palette.panel).inner_margin(Margin {
                 left: 12,
                 right: 4,
                 top: 8,
                 bottom: 4,
             }))
-            .default_size((sizes.1 * scale).min(most))
-            .size_range((300.0 * scale).min(most)..=most);
+            .default_size(sizes.1.min(most))
+            .size_range(300f32.min(most)..=most);
         let response = panel.show(ui, |ui| {
             for panel in panels.at(Place::Right) {
                 actions.extend(panel.show(ui, lab, registry));
             }
         });
         focus::region(&ctx, Place::Right, response.response.rect);
-        sizes.1 = response.response.rect.width() / scale;
+        sizes.1 = response.response.rect.width();
     }
     remember_sizes(&ctx, lab, sizes, &mut actions);
 
+    if !presenting {
+        actions.extend(welcome::strip(ui, lab, registry));
+    }
     let rect = ui.available_rect_before_wrap();
     lab.picture_rect = rect;
     let (asked, covered) = picture::overlays(ui, rect, lab, registry);
     actions.extend(asked);
     actions.extend(question::show(&ctx, lab));
-    actions.extend(dialogs.update(&ctx, lab));
+    actions.extend(dialogs.update(&ctx, lab, registry));
     steering(&ctx, lab, rect, covered, dialogs.is_open());
     focus::remember_regions(&ctx);
     focus::show(&ctx, &palette);
@@ -357,7 +267,7 @@ pub fn show(
         effects.extend(lab.apply(action, registry));
     }
     effects.extend(lab.wanted_dialog.take());
-    effects.retain(|effect| !dialogs.start(effect, lab));
+    effects.retain(|effect| !dialogs.start(&ctx, effect, lab));
     for effect in &effects {
         if let Effect::CopyText(text) = effect {
             ctx.copy_text(text.clone());
@@ -375,17 +285,16 @@ fn bottom(
     registry: &Registry,
     panels: &Panels,
     palette: &Palette,
-    scale: f32,
     whole: Rect,
     height: &mut f32,
     actions: &mut Vec<Action>,
 ) {
     let most = 0.6 * whole.height();
-    let strip = egui::Panel::bottom(Id::new(("bottom", lab.view.large_type)))
+    let strip = egui::Panel::bottom(Id::new(("bottom", lab.view.scale)))
         .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
         .resizable(true)
-        .default_size((*height * scale).min(most))
-        .size_range((72.0 * scale).min(most)..=most);
+        .default_size(height.min(most))
+        .size_range(72f32.min(most)..=most);
     let response = strip.show(ui, |ui| {
         let tabs: Vec<_> = panels.at(Place::Bottom).collect();
         let shown = tabs.iter().find(|p| p.id() == lab.view.bottom_tab).or(tabs.first());
@@ -418,7 +327,7 @@ fn bottom(
         ui.take_available_height();
     });
     focus::region(ui.ctx(), Place::Bottom, response.response.rect);
-    *height = response.response.rect.height() / scale;
+    *height = response.response.rect.height();
 }
 
 /// Sizes that the user dragged are kept, once the dragging is over.

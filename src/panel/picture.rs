@@ -11,7 +11,7 @@ use super::{
     caption::caption_text,
     icon,
     inspector::plural,
-    shader,
+    presentation, shader,
     state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
@@ -23,12 +23,19 @@ pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec
     if rect.width() < 80.0 || rect.height() < 80.0 {
         return (Vec::new(), Rect::NOTHING);
     }
-    let scale = theme::scale(&lab.view);
-    let (actions, covered) = stale(ui, rect, lab, registry, scale);
-    let top = if covered.is_positive() { covered.bottom() + 4.0 } else { rect.top() + 8.0 };
-    badges(ui, rect, top, lab, scale);
-    caption(ui, rect, lab, registry, scale);
-    axes(ui, rect, lab, scale);
+    // In a presentation, what the picture says of itself stands below the equation.
+    let presenting = lab.view.presenting;
+    let free = if presenting { presentation::overlay(ui, rect, lab, registry) } else { rect };
+    let (actions, covered) = stale(ui, free, lab, registry);
+    let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
+    badges(ui, free, top, lab);
+    if !presenting {
+        caption(ui, rect, lab, registry);
+        // In a narrow picture they would hide more than they say.
+        if rect.width() >= 240.0 {
+            axes(ui, rect, lab);
+        }
+    }
     hint(ui, rect, lab);
     (actions, covered)
 }
@@ -60,18 +67,18 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
 
 /// Says that the picture is not what the shaders say, in a way that is not overlooked on any picture: a frame, and
 /// a filled plate that leads to the panel with the errors.
-fn stale(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) -> (Vec<Action>, Rect) {
+fn stale(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Rect) {
     let shown = registry.model(lab.model_shown()).map_or("", |m| m.declaration.name);
     let Some((heading, lines)) = stale_words(&lab.shaders, shown) else {
         return (Vec::new(), Rect::NOTHING);
     };
     let palette = Palette::here(ui);
     let painter = ui.painter_at(rect);
-    painter.rect_stroke(rect, 0.0, Stroke::new(3.0 * scale, palette.error), egui::StrokeKind::Inside);
-    let padding = vec2(10.0, 7.0) * scale;
-    let left = 26.0 * scale;
-    let margin = 10.0 * scale;
-    let room = (rect.width() - 2.0 * margin).min(560.0 * scale) - left - 2.0 * padding.x;
+    painter.rect_stroke(rect, 0.0, Stroke::new(3.0, palette.error), egui::StrokeKind::Inside);
+    let padding = vec2(10.0, 7.0);
+    let left = 26.0;
+    let margin = 10.0;
+    let room = (rect.width() - 2.0 * margin).min(560.0) - left - 2.0 * padding.x;
     let ink = palette.panel;
     let lay_out = |text: &str, font: FontId, rows: usize| {
         let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, ink, room.max(64.0));
@@ -81,7 +88,12 @@ fn stale(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) ->
     let body = TextStyle::Body.resolve(ui.style()).size;
     let mut galleys = vec![lay_out(&heading, FontId::new(1.12 * body, theme::semibold()), 3)];
     galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2)));
-    let height: f32 = galleys.iter().map(|g| g.size().y + 2.0 * scale).sum();
+    // Where there is little room, the heading is what counts.
+    let most = rect.height() - 2.0 * (margin + padding.y);
+    while galleys.len() > 1 && galleys.iter().map(|g| g.size().y + 2.0).sum::<f32>() > most {
+        galleys.pop();
+    }
+    let height: f32 = galleys.iter().map(|g| g.size().y + 2.0).sum();
     let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
     let size = vec2(width + left, height) + 2.0 * padding;
     let place = Rect::from_min_size(rect.min + vec2(margin, margin), size);
@@ -90,18 +102,18 @@ fn stale(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) ->
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
     // The rim stands out where the picture has the colour of the plate.
     let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.panel };
-    painter.rect(place, 5.0, palette.error, Stroke::new(2.0 * scale, rim), egui::StrokeKind::Outside);
+    painter.rect(place, 5.0, palette.error, Stroke::new(2.0, rim), egui::StrokeKind::Outside);
     let mut at = place.min + padding;
-    let sign = pos2(at.x + 8.0 * scale, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
-    icon::severity_in(&painter, sign, 8.0 * scale, Severity::Error, ink);
+    let sign = pos2(at.x + 8.0, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
+    icon::severity_in(&painter, sign, 8.0, Severity::Error, ink);
     at.x += left;
     for galley in galleys {
         let height = galley.size().y;
         painter.galley(at, galley, ink);
-        at.y += height + 2.0 * scale;
+        at.y += height + 2.0;
     }
     let response = response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_ui(|ui| {
-        ui.set_max_width(340.0 * scale);
+        ui.set_max_width(340.0);
         ui.label(
             "A shader has an error, so the picture shows these models as they were before the last change. Correct the \
              file and save it: the picture follows by itself.",
@@ -146,20 +158,21 @@ fn hidden_terms(lab: &Lab) -> Option<Badge> {
     Some(Badge {
         severity: Severity::Info,
         text: format!("Only the {shown} term"),
-        help: "The other terms of the equation are hidden. T goes on to the next; View › All terms of the equation \
+        help:
+            "The other terms of the equation are hidden. T goes on to the next; View › Terms of the equation \
                shows them all."
-            .to_owned(),
+                .to_owned(),
     })
 }
 
-fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, scale: f32) {
+fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab) {
     let palette = Palette::here(ui);
     let mut y = top;
     let hidden = hidden_terms(lab);
     for (i, badge) in hidden.iter().chain(&lab.disk.badge).chain(&lab.badges).enumerate() {
         let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
         let painter = ui.painter_at(rect);
-        let left = 18.0 * scale;
+        let left = 18.0;
         let place = plate(
             &painter,
             &palette,
@@ -176,13 +189,7 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, scale: f32) {
             Stroke::new(1.0, palette.severity(badge.severity)),
             egui::StrokeKind::Inside,
         );
-        icon::severity(
-            &painter,
-            pos2(place.left() + 14.0 * scale, place.center().y),
-            6.0 * scale,
-            badge.severity,
-            &palette,
-        );
+        icon::severity(&painter, pos2(place.left() + 14.0, place.center().y), 6.0, badge.severity, &palette);
         let response = ui.interact(place, ui.id().with(("badge", i)), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &badge.text));
         if !badge.help.is_empty() {
@@ -192,7 +199,7 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, scale: f32) {
     }
 }
 
-fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) {
+fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) {
     let palette = Palette::here(ui);
     let painter = ui.painter_at(rect);
     let term = match lab.view.terms {
@@ -203,7 +210,7 @@ fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) {
     };
     let font = TextStyle::Small.resolve(ui.style());
     let at = rect.left_bottom() + vec2(8.0, -8.0);
-    let left = if term.is_some() { 14.0 * scale } else { 0.0 };
+    let left = if term.is_some() { 14.0 } else { 0.0 };
     let place = plate(
         &painter,
         &palette,
@@ -217,19 +224,15 @@ fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry, scale: f32) {
     if let Some(term) = term {
         let y = place.center().y;
         // The colour of the term in the equation.
-        painter.circle_filled(
-            pos2(place.left() + 8.0 + 4.0 * scale, y),
-            4.0 * scale,
-            palette.term_text(term),
-        );
+        painter.circle_filled(pos2(place.left() + 8.0 + 4.0, y), 4.0, palette.term_text(term));
     }
 }
 
 /// The directions of the room as the camera sees them; the letters tell them apart.
-fn axes(ui: &Ui, rect: Rect, lab: &Lab, scale: f32) {
+fn axes(ui: &Ui, rect: Rect, lab: &Lab) {
     let palette = Palette::here(ui);
     let painter = ui.painter_at(rect);
-    let radius = 34.0 * scale;
+    let radius = 34.0;
     let centre = rect.right_bottom() - vec2(radius + 8.0, radius + 8.0);
     painter.circle_filled(centre, radius, palette.panel.gamma_multiply(0.72));
     let inverse = lab.camera.inverse();
@@ -243,18 +246,9 @@ fn axes(ui: &Ui, rect: Rect, lab: &Lab, scale: f32) {
         let colour = if direction.z < -0.2 { palette.weak } else { palette.text };
         painter.line_segment([centre, end], Stroke::new(1.5, colour));
         let outward = vec2(direction.x, -direction.y);
-        let place = if outward.length() > 0.2 {
-            end + outward.normalized() * 7.0 * scale
-        } else {
-            centre + vec2(8.0, 8.0) * scale
-        };
-        painter.text(
-            place,
-            Align2::CENTER_CENTER,
-            name,
-            FontId::new(12.0 * scale, theme::maths_italic()),
-            colour,
-        );
+        let place =
+            if outward.length() > 0.2 { end + outward.normalized() * 7.0 } else { centre + vec2(8.0, 8.0) };
+        painter.text(place, Align2::CENTER_CENTER, name, FontId::new(12.0, theme::maths_italic()), colour);
     }
 }
 

@@ -12,10 +12,9 @@ pub fn show(ctx: &egui::Context, lab: &Lab) -> Vec<Action> {
     let Some(question) = &lab.question else { return Vec::new() };
     let (title, text, details, answers) = words(lab, question);
     let mut out = None;
-    let scale = theme::scale(&lab.view);
     Modal::new(Id::new("question")).show(ctx, |ui: &mut Ui| {
         let palette = Palette::here(ui);
-        ui.set_width(420.0 * scale);
+        ui.set_width(420.0);
         egui::Frame::new().inner_margin(8.0).show(ui, |ui| {
             ui.label(RichText::new(title).heading());
             ui.add_space(8.0);
@@ -31,7 +30,7 @@ pub fn show(ctx: &egui::Context, lab: &Lab) -> Vec<Action> {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 for (i, (label, answer)) in answers.iter().enumerate() {
                     let label = if i == 0 { theme::strong(ui, *label) } else { RichText::new(*label) };
-                    let mut button = Button::new(label).min_size(vec2(80.0, 28.0) * scale);
+                    let mut button = Button::new(label).min_size(vec2(80.0, 28.0));
                     if i == 0 {
                         button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
                     }

@@ -1,11 +1,11 @@
-//! What survives a restart: theme, type size, panel sizes, recent files.
+//! What survives a restart: theme, scale, panel sizes, recent files.
 
 use std::{
     io,
     path::{Path, PathBuf},
 };
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::state::{ThemeChoice, View};
 use crate::files::{self, FileError};
@@ -17,14 +17,24 @@ const FILE: &str = "settings.json";
 /// Settings are not larger; long names of recent files included.
 const MAX_BYTES: u64 = 1 << 20;
 
+/// The sizes of everything, per cent.
+pub const SCALES: [u16; 6] = [100, 110, 125, 150, 175, 200];
+
+/// The nearest of [`SCALES`].
+#[must_use]
+pub fn nearest_scale(percent: u16) -> u16 {
+    SCALES.into_iter().min_by_key(|s| s.abs_diff(percent)).unwrap_or(100)
+}
+
 /// What survives a restart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
     /// Light or dark.
     pub theme: ThemeChoice,
-    /// Large type, for projectors.
-    pub large_type: bool,
+    /// The size of everything, per cent. Earlier versions had large type, or not.
+    #[serde(alias = "large_type", deserialize_with = "scale")]
+    pub scale: u16,
     /// Width of the tree, points.
     pub left_width: f32,
     /// Width of the inspector, points.
@@ -35,12 +45,31 @@ pub struct Settings {
     pub recent_files: Vec<PathBuf>,
 }
 
+fn scale<'de, D: Deserializer<'de>>(value: D) -> Result<u16, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Scale {
+        LargeType(bool),
+        Percent(u16),
+    }
+    Ok(nearest_scale(match Scale::deserialize(value)? {
+        Scale::LargeType(large) => {
+            if large {
+                150
+            } else {
+                100
+            }
+        }
+        Scale::Percent(percent) => percent,
+    }))
+}
+
 impl Default for Settings {
     fn default() -> Self {
         let view = View::default();
         Self {
             theme: view.theme,
-            large_type: view.large_type,
+            scale: view.scale,
             left_width: view.left_width,
             right_width: view.right_width,
             bottom_height: view.bottom_height,
@@ -121,7 +150,7 @@ mod tests {
         let folder = tempfile::tempdir()?;
         let settings = Settings {
             theme: ThemeChoice::Light,
-            large_type: true,
+            scale: 150,
             recent_files: vec![PathBuf::from("a.json")],
             ..Settings::default()
         };
@@ -147,7 +176,17 @@ mod tests {
         std::fs::write(folder.path().join(FILE), "{ \"left_width\": 1e9, \"large_type\": true }")?;
         let (settings, _) = load(folder.path());
         assert_eq!(settings.left_width, Settings::default().left_width);
-        assert!(settings.large_type);
+        assert_eq!(settings.scale, 150, "earlier versions had large type");
+        Ok(())
+    }
+
+    #[test]
+    fn a_scale_that_there_is_not_becomes_the_nearest() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        for (written, read) in [("130", 125), ("9000", 200), ("0", 100)] {
+            std::fs::write(folder.path().join(FILE), format!("{{ \"scale\": {written} }}"))?;
+            assert_eq!(load(folder.path()).0.scale, read);
+        }
         Ok(())
     }
 }

@@ -19,7 +19,7 @@ use super::{
     names::{Names, free_name, name_of},
     recovery::{Choice, Offer},
     reload::OnDisk,
-    settings::Settings,
+    settings::{SCALES, Settings, nearest_scale},
     terms::KnownTerms,
 };
 use crate::{
@@ -28,7 +28,9 @@ use crate::{
     optics::TermSelection,
     reflection::parameter::Value,
     registry::Registry,
-    scene::{Display, Light, MAX_OBJECTS, Object, Observer, Scene, SceneSize, load::Stamp},
+    scene::{
+        Display, Light, MAX_OBJECTS, Object, Observer, Scene, SceneSize, examples::EXAMPLES, load::Stamp,
+    },
     shader::status::ShaderStatus,
 };
 
@@ -92,6 +94,8 @@ pub struct Lab {
     pub question: Option<Question>,
     /// Where the picture is, in points; written by the panels.
     pub picture_rect: egui::Rect,
+    /// How many points of the window are a point of the panels; written by them.
+    pub zoom: f32,
     /// Whether the pointer is over the picture with no panel, menu or dialog between; written by the
     /// panels. What turns the camera must ask here first.
     pub pointer_in_picture: bool,
@@ -176,8 +180,16 @@ pub enum ThemeChoice {
 pub struct View {
     /// Light or dark.
     pub theme: ThemeChoice,
-    /// Large type, for projectors.
-    pub large_type: bool,
+    /// The size of everything, per cent: one of [`SCALES`].
+    pub scale: u16,
+    /// True if the strip of examples is below the picture.
+    pub examples_open: bool,
+    /// The picture fills the screen, with the equation over it; the panels are hidden.
+    pub presenting: bool,
+    /// True if the window fills the screen.
+    pub fullscreen: bool,
+    /// The same before the presentation began.
+    pub fullscreen_before: bool,
     /// Whether lights have gizmos in the picture.
     pub show_gizmos: bool,
     /// Whether the outline of the room is drawn.
@@ -210,7 +222,11 @@ impl Default for View {
     fn default() -> Self {
         Self {
             theme: ThemeChoice::Dark,
-            large_type: false,
+            scale: 100,
+            examples_open: false,
+            presenting: false,
+            fullscreen: false,
+            fullscreen_before: false,
             show_gizmos: true,
             show_room: true,
             terms: TermSelection::All,
@@ -353,6 +369,8 @@ pub enum Action {
     OpenDialog,
     /// Open a file.
     Open(PathBuf),
+    /// Open one of [`EXAMPLES`] as a document that is in no file.
+    OpenExample(usize),
     /// Read the file again.
     Reload,
     /// Save to the file of the document, or choose one.
@@ -433,8 +451,18 @@ pub enum Steer {
 pub enum ViewChange {
     /// See [`View::theme`].
     Theme(ThemeChoice),
-    /// See [`View::large_type`].
-    LargeType(bool),
+    /// See [`View::scale`]; the nearest of [`SCALES`] is taken.
+    Scale(u16),
+    /// The next of [`SCALES`].
+    Larger,
+    /// The one before.
+    Smaller,
+    /// See [`View::examples_open`].
+    Examples(bool),
+    /// See [`View::presenting`].
+    Presenting(bool),
+    /// See [`View::fullscreen`].
+    Fullscreen(bool),
     /// See [`View::show_gizmos`].
     Gizmos(bool),
     /// See [`View::show_room`].
@@ -655,6 +683,7 @@ impl Lab {
             camera: Quat::IDENTITY,
             question: None,
             picture_rect: egui::Rect::NOTHING,
+            zoom: 1.0,
             pointer_in_picture: false,
             keyboard_free: true,
             panels: Vec::new(),
@@ -790,6 +819,7 @@ impl Lab {
 
     /// The scene of a file has been read: it becomes the document.
     pub fn opened(&mut self, path: PathBuf, scene: Scene) -> Vec<Effect> {
+        self.view.examples_open = false;
         self.remember_file(&path);
         self.replace_document(Some(path), scene);
         vec![Effect::DocumentChanged, Effect::SaveSettings]
@@ -844,6 +874,9 @@ impl Lab {
             Action::Open(path) => {
                 let again = Action::Open(path.clone());
                 return self.unless_unsaved(again, |_| vec![Effect::OpenFile(path)]);
+            }
+            Action::OpenExample(i) => {
+                return self.unless_unsaved(Action::OpenExample(i), |lab| lab.open_example(i, registry));
             }
             Action::Reload => {
                 return match self.path.clone() {
@@ -948,7 +981,7 @@ impl Lab {
     pub fn settings(&self) -> Settings {
         Settings {
             theme: self.view.theme,
-            large_type: self.view.large_type,
+            scale: self.view.scale,
             left_width: self.view.left_width,
             right_width: self.view.right_width,
             bottom_height: self.view.bottom_height,
@@ -959,7 +992,7 @@ impl Lab {
     /// Takes over what survived a restart.
     pub fn adopt(&mut self, settings: Settings) {
         self.view.theme = settings.theme;
-        self.view.large_type = settings.large_type;
+        self.view.scale = settings.scale;
         self.view.left_width = settings.left_width;
         self.view.right_width = settings.right_width;
         self.view.bottom_height = settings.bottom_height;
@@ -990,6 +1023,7 @@ impl Lab {
             Action::New => self.start_new(),
             Action::Quit => vec![Effect::Quit],
             Action::Open(path) => vec![Effect::OpenFile(path)],
+            Action::OpenExample(i) => self.open_example(i, registry),
             Action::Reload => self.path.clone().map(Effect::OpenFile).into_iter().collect(),
             Action::OpenDialog => {
                 self.may_discard = true;
@@ -1020,6 +1054,20 @@ impl Lab {
     fn start_new(&mut self) -> Vec<Effect> {
         self.replace_document(None, Scene::default());
         vec![Effect::DocumentChanged]
+    }
+
+    fn open_example(&mut self, i: usize, registry: &Registry) -> Vec<Effect> {
+        match EXAMPLES.get(i).map(|example| example.scene(registry)) {
+            Some(Ok(scene)) => {
+                self.replace_document(None, scene);
+                vec![Effect::DocumentChanged]
+            }
+            Some(Err(error)) => {
+                self.say(Severity::Error, error.to_string());
+                Vec::new()
+            }
+            None => Vec::new(),
+        }
     }
 
     fn replace_document(&mut self, path: Option<PathBuf>, scene: Scene) {
@@ -1551,7 +1599,21 @@ impl Lab {
         let view = &mut self.view;
         match change {
             ViewChange::Theme(theme) => view.theme = theme,
-            ViewChange::LargeType(on) => view.large_type = on,
+            ViewChange::Scale(percent) => view.scale = nearest_scale(percent),
+            ViewChange::Larger => {
+                view.scale = SCALES.into_iter().find(|s| *s > view.scale).unwrap_or(view.scale)
+            }
+            ViewChange::Smaller => {
+                view.scale = SCALES.into_iter().rfind(|s| *s < view.scale).unwrap_or(view.scale);
+            }
+            ViewChange::Examples(on) => view.examples_open = on,
+            ViewChange::Presenting(on) if on != view.presenting => {
+                let before = std::mem::replace(&mut view.fullscreen_before, view.fullscreen);
+                view.fullscreen = on || before;
+                view.presenting = on;
+            }
+            ViewChange::Presenting(_) => {}
+            ViewChange::Fullscreen(on) => view.fullscreen = on,
             ViewChange::Gizmos(on) => view.show_gizmos = on,
             ViewChange::Room(on) => view.show_room = on,
             ViewChange::Terms(terms) => view.terms = terms,

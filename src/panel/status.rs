@@ -34,20 +34,19 @@ impl Panel for StatusLine {
     fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
         let palette = Palette::here(ui);
-        let scale = theme::scale_here(ui);
         ui.horizontal(|ui| {
-            ui.set_min_height(20.0 * scale);
+            ui.set_min_height(20.0);
             let count = lab.messages.len();
             let text = theme::small(
                 ui,
                 if count == 0 { "No messages".to_owned() } else { plural(count, "message") },
             );
-            let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0) * scale, Sense::hover());
+            let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
             match lab.worst() {
-                Some(worst) => icon::severity(ui.painter(), rect.center(), 5.5 * scale, worst, &palette),
+                Some(worst) => icon::severity(ui.painter(), rect.center(), 5.5, worst, &palette),
                 None => icon::paint(
                     ui.painter(),
-                    rect.shrink(3.0 * scale),
+                    rect.shrink(3.0),
                     if lab.view.bottom_open { Icon::Down } else { Icon::Up },
                     palette.weak,
                 ),
@@ -78,7 +77,7 @@ impl Panel for StatusLine {
             }
             if let Some((what, how_far)) = &lab.status.progress {
                 ui.label(theme::small(ui, what));
-                ui.add(ProgressBar::new(*how_far).desired_width(120.0 * scale).desired_height(6.0 * scale));
+                ui.add(ProgressBar::new(*how_far).desired_width(120.0).desired_height(6.0));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let name = lab.name_of(lab.selection, registry);
@@ -95,7 +94,7 @@ fn latest(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     if lab.view.bottom_open || lab.is_dirty() {
         return;
     }
-    let room = (ui.available_width() - 360.0 * theme::scale_here(ui)).max(80.0);
+    let room = (ui.available_width() - 360.0).max(80.0);
     let colour = Palette::here(ui).text;
     let galley = theme::elided(ui, &message.text, TextStyle::Small, colour, room);
     let label = ui.add(egui::Label::new(galley));
@@ -114,14 +113,13 @@ fn shader_errors(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
         return;
     }
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let stale = if lab.shaders.stale().is_empty() {
         "nothing on the picture depends on it"
     } else {
         "the picture shows the last good version"
     };
-    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0) * scale, Sense::hover());
-    icon::severity(ui.painter(), rect.center(), 5.5 * scale, Severity::Error, &palette);
+    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
+    icon::severity(ui.painter(), rect.center(), 5.5, Severity::Error, &palette);
     let text = format!("{}: {stale}", plural(count, "shader error"));
     let text = RichText::new(text).small().color(palette.error);
     let button = ui.add(Button::new(text).frame_when_inactive(false).small());

@@ -16,8 +16,6 @@ use crate::reflection::Term;
 
 /// The unit of space, points; halves are allowed.
 pub const UNIT: f32 = 8.0;
-/// How much larger everything is for projectors.
-const LARGE: f32 = 1.35;
 
 /// The family of the semibold text font.
 #[must_use]
@@ -156,12 +154,6 @@ impl Palette {
     }
 }
 
-/// The factor of everything that is measured in points.
-#[must_use]
-pub fn scale(view: &View) -> f32 {
-    if view.large_type { LARGE } else { 1.0 }
-}
-
 /// The factor in force where a widget stands.
 #[must_use]
 pub fn scale_here(ui: &egui::Ui) -> f32 {
@@ -180,6 +172,13 @@ pub fn small(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
     egui::RichText::new(text).small().color(Palette::here(ui).weak)
 }
 
+/// How wide a text in the smallest size is.
+#[must_use]
+pub fn small_width(ui: &egui::Ui, text: &str) -> f32 {
+    let font = TextStyle::Small.resolve(ui.style());
+    ui.painter().layout_no_wrap(text.to_owned(), font, Color32::WHITE).size().x
+}
+
 /// Text that names a group.
 #[must_use]
 pub fn strong(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
@@ -188,9 +187,15 @@ pub fn strong(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
 
 /// A line of text, cut off with … where it is wider than this.
 #[must_use]
-pub fn elided(ui: &egui::Ui, text: &str, style: TextStyle, colour: Color32, width: f32) -> Arc<egui::Galley> {
-    let mut job =
-        egui::text::LayoutJob::simple_singleline(text.to_owned(), style.resolve(ui.style()), colour);
+pub fn elided(
+    ui: &egui::Ui,
+    text: &str,
+    font: impl Into<egui::FontSelection>,
+    colour: Color32,
+    width: f32,
+) -> Arc<egui::Galley> {
+    let font = font.into().resolve(ui.style());
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, colour);
     job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(0.0));
     ui.painter().layout_job(job)
 }
@@ -231,50 +236,52 @@ pub fn install_fonts(ctx: &Context) {
 #[must_use]
 pub fn apply(ctx: &Context, view: &View) -> bool {
     let id = egui::Id::new("lab theme");
-    let wanted = (view.theme == ThemeChoice::Dark, view.large_type);
-    let before: Option<(bool, bool)> = ctx.data(|d| d.get_temp(id));
-    if before == Some(wanted) {
+    // Takes effect with the next pass; the same factor again does nothing.
+    ctx.set_zoom_factor(f32::from(view.scale) / 100.0);
+    let dark = view.theme == ThemeChoice::Dark;
+    let before: Option<bool> = ctx.data(|d| d.get_temp(id));
+    if before == Some(dark) {
         return true;
     }
     if before.is_none() {
         install_fonts(ctx);
+        // The keys are ours.
+        ctx.options_mut(|o| o.zoom_with_keyboard = false);
     }
-    ctx.data_mut(|d| d.insert_temp(id, wanted));
-    let theme = if wanted.0 { egui::Theme::Dark } else { egui::Theme::Light };
+    ctx.data_mut(|d| d.insert_temp(id, dark));
+    let theme = if dark { egui::Theme::Dark } else { egui::Theme::Light };
     ctx.set_theme(theme);
-    ctx.set_style_of(theme, style(&Palette::of(view), scale(view)));
+    ctx.set_style_of(theme, style(&Palette::of(view)));
     if before.is_none() {
         ctx.request_repaint();
     }
     before.is_some()
 }
 
-fn style(p: &Palette, scale: f32) -> egui::Style {
-    let mut style = egui::Style::default();
-    let font = |size: f32, family: FontFamily| FontId::new((size * scale * 2.0).round() / 2.0, family);
-    style.text_styles = [
-        (TextStyle::Small, font(SMALL, FontFamily::Proportional)),
-        (TextStyle::Body, FontId::new(BODY * scale, FontFamily::Proportional)),
-        (TextStyle::Button, FontId::new(BODY * scale, FontFamily::Proportional)),
-        (TextStyle::Monospace, font(SMALL, FontFamily::Monospace)),
-        (TextStyle::Heading, font(HEADING, semibold())),
+fn style(p: &Palette) -> egui::Style {
+    let text_styles = [
+        (TextStyle::Small, FontId::proportional(SMALL)),
+        (TextStyle::Body, FontId::proportional(BODY)),
+        (TextStyle::Button, FontId::proportional(BODY)),
+        (TextStyle::Monospace, FontId::monospace(SMALL)),
+        (TextStyle::Heading, FontId::new(HEADING, semibold())),
     ]
     .into();
-    let unit = UNIT * scale;
+    let mut style = egui::Style { text_styles, ..egui::Style::default() };
     let s = &mut style.spacing;
-    s.item_spacing = vec2(unit, unit / 2.0);
-    s.button_padding = vec2(unit, unit / 4.0);
-    s.interact_size = vec2(3.0 * unit, 3.0 * unit);
-    s.menu_margin = Margin::same((unit / 2.0) as i8);
-    s.window_margin = Margin::same((2.0 * unit) as i8);
-    s.indent = 2.0 * unit;
-    s.icon_width = 14.0 * scale;
-    s.icon_width_inner = 8.0 * scale;
-    s.icon_spacing = 6.0 * scale;
-    s.combo_width = 8.0 * unit;
-    s.combo_height = 40.0 * unit;
-    s.tooltip_width = 40.0 * unit;
-    s.menu_width = 36.0 * unit;
+    s.item_spacing = vec2(UNIT, UNIT / 2.0);
+    s.button_padding = vec2(UNIT, UNIT / 4.0);
+    s.interact_size = vec2(3.0 * UNIT, 3.0 * UNIT);
+    s.menu_margin = Margin::same((UNIT / 2.0) as i8);
+    s.window_margin = Margin::same((2.0 * UNIT) as i8);
+    s.indent = 2.0 * UNIT;
+    s.icon_width = 14.0;
+    s.icon_width_inner = 8.0;
+    s.icon_spacing = 6.0;
+    s.combo_width = 8.0 * UNIT;
+    s.combo_height = 40.0 * UNIT;
+    s.tooltip_width = 40.0 * UNIT;
+    s.menu_width = 36.0 * UNIT;
     s.scroll = egui::style::ScrollStyle::thin();
     // A bar that shows only under the pointer hides that there is more.
     s.scroll.foreground_color = true;

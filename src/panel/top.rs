@@ -9,6 +9,7 @@ use super::{
     keys::{self, Binding},
     state::{Action, Lab, Selection, ThemeChoice, ViewChange},
     theme::{self, Palette},
+    welcome,
 };
 use crate::{optics::TermSelection, registry::Registry};
 
@@ -32,19 +33,28 @@ impl Panel for TopBar {
     fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
         let table = keys::bindings(lab, registry);
-        let scale = theme::scale_here(ui);
         ui.horizontal(|ui| {
-            ui.set_min_height(28.0 * scale);
-            ui.spacing_mut().item_spacing.x = 4.0 * scale;
+            ui.set_min_height(28.0);
+            ui.spacing_mut().item_spacing.x = 4.0;
             document(ui, lab, &mut actions);
             divider(ui);
             menus(ui, lab, registry, &table, &mut actions);
             divider(ui);
-            caption(ui, "Reflection");
+            // Where there is little room, the captions go first, then the choices of shading fold up.
+            let names: Vec<_> = registry.modes().iter().map(|m| m.declaration.short_name).collect();
+            let buttons = names.iter().map(|n| segment_width(ui, n)).sum::<f32>() + 4.0;
+            let captions = CAPTIONS.iter().map(|c| theme::small_width(ui, c) + 4.0).sum::<f32>();
+            let left = ui.available_width() - chooser::WIDTH - 8.0 - 2.0 * 4.0;
+            let (captioned, apart) = (left >= captions + buttons, left >= buttons);
+            if captioned {
+                caption(ui, CAPTIONS[0]);
+            }
             actions.extend(chooser::show(ui, lab, registry));
-            ui.add_space(8.0 * scale);
-            caption(ui, "Shading");
-            shading(ui, lab, registry, &mut actions);
+            ui.add_space(8.0);
+            if captioned {
+                caption(ui, CAPTIONS[1]);
+            }
+            shading(ui, lab, registry, &names, apart, &mut actions);
             whose(ui, lab, registry);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, lab));
         });
@@ -53,9 +63,8 @@ impl Panel for TopBar {
 }
 
 fn divider(ui: &mut Ui) {
-    let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
-    let (rect, _) = ui.allocate_exact_size(vec2(9.0, 18.0) * scale, egui::Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(9.0, 18.0), egui::Sense::hover());
     ui.painter().vline(rect.center().x, rect.y_range(), egui::Stroke::new(1.0, palette.line));
 }
 
@@ -64,15 +73,23 @@ fn caption(ui: &mut Ui, text: &str) {
     ui.label(text);
 }
 
+/// The captions of the choices.
+const CAPTIONS: [&str; 2] = ["Reflection", "Shading"];
+
+/// The scene's name in a place whose size depends on the window alone, so that the menus stand still.
 fn document(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
-    let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
-    let mut title: String = lab.title();
-    const MOST: usize = 24;
-    if title.chars().count() > MOST {
-        title = title.chars().take(MOST - 1).chain(['…']).collect();
+    let width = (0.16 * ui.max_rect().width()).clamp(88.0, 208.0);
+    let (place, response) = ui.allocate_exact_size(vec2(width, 24.0), egui::Sense::click());
+    if response.hovered() || response.has_focus() {
+        let edge = if response.has_focus() { palette.accent } else { palette.hovered };
+        let stroke = egui::Stroke::new(1.0, edge);
+        ui.painter().rect(place, 4.0, palette.hovered, stroke, egui::StrokeKind::Inside);
     }
-    let response = ui.add(Button::new(theme::strong(ui, &title)).frame_when_inactive(false));
+    let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+    let galley = theme::elided(ui, &lab.title(), font, palette.text, width - 8.0);
+    let at = egui::Align2::LEFT_CENTER.anchor_size(place.left_center() + vec2(4.0, 0.0), galley.size());
+    ui.painter().galley(at.min, galley, palette.text);
     let state = if lab.is_dirty() { "has unsaved changes" } else { "has no unsaved changes" };
     response
         .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("{} {state}", lab.title())));
@@ -88,9 +105,9 @@ fn document(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
         ui.label(theme::small(ui, format!("{file}; {state}")));
     });
     // The place of the dot is kept, so that nothing moves when it comes and goes.
-    let (rect, dot) = ui.allocate_exact_size(vec2(10.0, 18.0) * scale, egui::Sense::hover());
+    let (rect, dot) = ui.allocate_exact_size(vec2(10.0, 18.0), egui::Sense::hover());
     if lab.is_dirty() {
-        ui.painter().circle_filled(rect.center(), 3.5 * scale, palette.accent);
+        ui.painter().circle_filled(rect.center(), 3.5, palette.accent);
         dot.on_hover_text("Unsaved changes");
     }
 }
@@ -117,11 +134,10 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
     };
     ui.scope(|ui| {
         egui::containers::menu::menu_style(ui.style_mut());
-        let scale = theme::scale_here(ui);
         ui.spacing_mut().item_spacing.x = 0.0;
-        ui.spacing_mut().button_padding = vec2(7.0, 3.0) * scale;
+        ui.spacing_mut().button_padding = vec2(7.0, 3.0);
         ui.menu_button("File", |ui| {
-            ui.set_width(MENU_WIDTH * scale);
+            ui.set_width(MENU_WIDTH);
             item(ui, "New default scene", Action::New, actions);
             item(ui, "Open…", Action::OpenDialog, actions);
             ui.menu_button("Open recent", |ui| {
@@ -141,6 +157,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                 ui.separator();
                 item(ui, "Clear the list", Action::ClearRecent, actions);
             });
+            ui.menu_button("Examples", |ui| welcome::menu(ui, registry, actions));
             ui.separator();
             item(ui, "Save", Action::Save, actions);
             item(ui, "Save as…", Action::SaveAsDialog, actions);
@@ -149,7 +166,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             item(ui, "Quit", Action::Quit, actions);
         });
         ui.menu_button("Edit", |ui| {
-            ui.set_width(1.3 * MENU_WIDTH * scale);
+            ui.set_width(1.3 * MENU_WIDTH);
             ui.menu_button("Add a light", |ui| {
                 for light in registry.lights() {
                     let d = light.declaration;
@@ -183,66 +200,94 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             item(ui, "Export shaders for editing…", Action::Author(Ask::ExportDialog), actions);
         });
         ui.menu_button("View", |ui| {
-            ui.set_width(MENU_WIDTH * scale);
-            item(ui, "Home: the observer’s view", Action::HomeView, actions);
-            item(ui, "Focus selection", Action::FocusSelection, actions);
-            item(ui, "Set observer to this view", Action::ObserverFromView, actions);
-            ui.separator();
-            for terms in lab.offered_terms(registry) {
-                let name = match terms {
-                    TermSelection::All => "All terms of the equation".to_owned(),
-                    other => format!("The {} term alone", other.id()),
-                };
-                if ui.radio(lab.view.terms == terms, name).clicked() {
-                    actions.push(Action::View(ViewChange::Terms(terms)));
+            ui.set_width(MENU_WIDTH);
+            let most = ui.ctx().content_rect().height() - 48.0;
+            egui::ScrollArea::vertical().max_height(most).show(ui, |ui| {
+                item(ui, "Home: the observer’s view", Action::HomeView, actions);
+                item(ui, "Focus selection", Action::FocusSelection, actions);
+                item(ui, "Set observer to this view", Action::ObserverFromView, actions);
+                ui.separator();
+                ui.menu_button("Terms of the equation", |ui| {
+                    for terms in lab.offered_terms(registry) {
+                        let name = match terms {
+                            TermSelection::All => "All terms".to_owned(),
+                            other => format!("The {} term alone", other.id()),
+                        };
+                        if ui.radio(lab.view.terms == terms, name).clicked() {
+                            actions.push(Action::View(ViewChange::Terms(terms)));
+                        }
+                    }
+                });
+                ui.separator();
+                let v = &lab.view;
+                let view = |c: ViewChange| Action::View(c);
+                check(
+                    ui,
+                    "Show light markers",
+                    v.show_gizmos,
+                    "",
+                    view(ViewChange::Gizmos(!v.show_gizmos)),
+                    actions,
+                );
+                check(
+                    ui,
+                    "Outline of the room",
+                    v.show_room,
+                    "",
+                    view(ViewChange::Room(!v.show_room)),
+                    actions,
+                );
+                ui.separator();
+                check(ui, "Scene list", v.left_open, "", view(ViewChange::Left(!v.left_open)), actions);
+                check(ui, "Properties", v.right_open, "", view(ViewChange::Right(!v.right_open)), actions);
+                check(
+                    ui,
+                    "Examples",
+                    v.examples_open,
+                    "",
+                    view(ViewChange::Examples(!v.examples_open)),
+                    actions,
+                );
+                for panel in lab.panels.iter().filter(|p| p.place == Place::Bottom) {
+                    let shown = v.bottom_open && v.bottom_tab == panel.id;
+                    let change = if shown {
+                        ViewChange::Bottom(false)
+                    } else {
+                        ViewChange::BottomTab(panel.id.to_owned())
+                    };
+                    let key = match panel.id {
+                        "messages" => "F8",
+                        SHADER_TAB => "F9",
+                        _ => "",
+                    };
+                    check(ui, panel.title, shown, key, view(change), actions);
                 }
-            }
-            ui.separator();
-            let v = &lab.view;
-            let view = |c: ViewChange| Action::View(c);
-            check(
-                ui,
-                "Show light markers",
-                v.show_gizmos,
-                "",
-                view(ViewChange::Gizmos(!v.show_gizmos)),
-                actions,
-            );
-            check(ui, "Outline of the room", v.show_room, "", view(ViewChange::Room(!v.show_room)), actions);
-            ui.separator();
-            check(ui, "Scene list", v.left_open, "", view(ViewChange::Left(!v.left_open)), actions);
-            check(ui, "Properties", v.right_open, "", view(ViewChange::Right(!v.right_open)), actions);
-            for panel in lab.panels.iter().filter(|p| p.place == Place::Bottom) {
-                let shown = v.bottom_open && v.bottom_tab == panel.id;
-                let change = if shown {
-                    ViewChange::Bottom(false)
-                } else {
-                    ViewChange::BottomTab(panel.id.to_owned())
-                };
-                let key = match panel.id {
-                    "messages" => "F8",
-                    SHADER_TAB => "F9",
-                    _ => "",
-                };
-                check(ui, panel.title, shown, key, view(change), actions);
-            }
-            ui.separator();
-            for (choice, name) in [(ThemeChoice::Dark, "Dark theme"), (ThemeChoice::Light, "Light theme")] {
-                if ui.radio(v.theme == choice, name).clicked() {
-                    actions.push(view(ViewChange::Theme(choice)));
-                }
-            }
-            check(
-                ui,
-                "Large type, for projectors",
-                v.large_type,
-                "",
-                view(ViewChange::LargeType(!v.large_type)),
-                actions,
-            );
+                ui.separator();
+                ui.menu_button(format!("Size of everything: {} %", v.scale), |ui| {
+                    item(ui, "Larger", view(ViewChange::Larger), actions);
+                    item(ui, "Smaller", view(ViewChange::Smaller), actions);
+                    item(ui, "100 %", view(ViewChange::Scale(100)), actions);
+                });
+                ui.menu_button("Theme", |ui| {
+                    for (choice, name) in [(ThemeChoice::Dark, "Dark"), (ThemeChoice::Light, "Light")] {
+                        if ui.radio(v.theme == choice, name).clicked() {
+                            actions.push(view(ViewChange::Theme(choice)));
+                        }
+                    }
+                });
+                item(ui, "Presentation", view(ViewChange::Presenting(!v.presenting)), actions);
+                check(
+                    ui,
+                    "Full screen",
+                    v.fullscreen,
+                    "F11",
+                    view(ViewChange::Fullscreen(!v.fullscreen)),
+                    actions,
+                );
+            });
         });
         ui.menu_button("Help", |ui| {
-            ui.set_width(MENU_WIDTH * scale);
+            ui.set_width(MENU_WIDTH);
             item(ui, "Keys and mouse", Action::View(ViewChange::Keys(!lab.view.keys_open)), actions);
             item(ui, "About", Action::View(ViewChange::About(true)), actions);
         });
@@ -250,17 +295,43 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
 }
 
 /// One button for each shading mode, as one control.
-fn shading(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
-    let names: Vec<_> = registry.modes().iter().map(|m| m.declaration.short_name).collect();
+fn shading(
+    ui: &mut Ui,
+    lab: &Lab,
+    registry: &Registry,
+    names: &[&str],
+    apart: bool,
+    actions: &mut Vec<Action>,
+) {
     let chosen = registry.modes().iter().position(|m| m.declaration.id == lab.mode_shown());
     let tip = |ui: &mut Ui, i: usize| {
         let d = registry.modes()[i].declaration;
-        ui.set_max_width(300.0 * theme::scale_here(ui));
+        ui.set_max_width(300.0);
         ui.label(theme::strong(ui, format!("{} shading", d.name)));
         ui.label(d.summary);
         ui.label(theme::small(ui, format!("{} · computed {} · key {}", d.author, d.stage.phrase(), d.key)));
     };
-    if let Some(i) = segmented(ui, "Shading", &names, chosen, tip) {
+    let picked = if apart {
+        segmented(ui, "Shading", names, chosen, tip)
+    } else {
+        let shown = chosen.map_or("–", |i| names[i]);
+        let menu =
+            egui::ComboBox::from_id_salt("shading").width(88.0).selected_text(shown).show_ui(ui, |ui| {
+                let mut picked = None;
+                for (i, name) in names.iter().enumerate() {
+                    let response = ui.selectable_label(chosen == Some(i), *name);
+                    if response.clicked() {
+                        picked = Some(i);
+                    }
+                    response.on_hover_ui(|ui| tip(ui, i));
+                }
+                picked
+            });
+        menu.response
+            .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Shading: {shown}")));
+        menu.inner.flatten()
+    };
+    if let Some(i) = picked {
         actions.push(Action::Edit(lab.edit_mode(registry.modes()[i].declaration.id)));
     }
 }
@@ -273,19 +344,21 @@ fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
         (false, true) => "shading",
         (false, false) => return,
     };
-    let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
-    ui.add_space(6.0 * scale);
+    ui.add_space(6.0);
     let name = lab.name_of(lab.selection, registry);
     let text = format!("{name} overrides {what}");
     // The frame rate keeps its place.
-    let room = (ui.available_width() - 96.0 * scale).max(40.0 * scale);
+    let room = ui.available_width() - 96.0;
+    if room < 40.0 {
+        return;
+    }
     let galley = theme::elided(ui, &text, egui::TextStyle::Small, palette.accent, room);
     let (rect, response) = ui.allocate_exact_size(galley.size(), egui::Sense::hover());
     ui.painter().galley(rect.min, galley, palette.accent);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
     response.on_hover_ui(|ui| {
-        ui.set_max_width(320.0 * scale);
+        ui.set_max_width(320.0);
         ui.label(format!(
             "{name} has its own {what}, so the choice here changes that of {name} alone. At the end of the \
              panel at the right it can be made to follow the scene again."
@@ -294,6 +367,13 @@ fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
         let mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
         ui.label(theme::small(ui, format!("The scene: {model}, {mode} shading")));
     });
+}
+
+/// How wide a choice of several is: as when it is chosen, so that nothing moves when the choice does.
+fn segment_width(ui: &Ui, option: &str) -> f32 {
+    let bold = egui::FontId::new(egui::TextStyle::Button.resolve(ui.style()).size, theme::semibold());
+    let text = ui.painter().layout_no_wrap(option.to_owned(), bold, egui::Color32::WHITE);
+    text.size().x + 2.0 * ui.spacing().button_padding.x
 }
 
 /// Several choices side by side, one of them chosen. Returns the index of another one that was clicked.
@@ -305,7 +385,6 @@ pub fn segmented(
     tip: impl Fn(&mut Ui, usize),
 ) -> Option<usize> {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let mut out = None;
     egui::Frame::new()
         .fill(palette.field)
@@ -317,14 +396,7 @@ pub fn segmented(
             ui.horizontal(|ui| {
                 for (i, option) in options.iter().enumerate() {
                     let on = chosen == Some(i);
-                    // As wide as when chosen, so that nothing moves when the choice does.
-                    let bold = egui::FontId::new(
-                        egui::TextStyle::Button.resolve(ui.style()).size,
-                        theme::semibold(),
-                    );
-                    let width =
-                        ui.painter().layout_no_wrap((*option).to_owned(), bold, palette.text).size().x;
-                    let width = width + 2.0 * ui.spacing().button_padding.x;
+                    let width = segment_width(ui, option);
                     let colour = if on { palette.text } else { palette.weak };
                     let text = RichText::new(*option).color(colour);
                     let text = if on { text.family(theme::semibold()) } else { text };
@@ -333,13 +405,13 @@ pub fn segmented(
                         .fill(fill)
                         .stroke(egui::Stroke::NONE)
                         .corner_radius(4.0)
-                        .min_size(vec2(width, 22.0 * scale));
+                        .min_size(vec2(width, 22.0));
                     let response = ui.add(button);
                     response.widget_info(|| {
                         WidgetInfo::selected(WidgetType::RadioButton, true, on, format!("{name}: {option}"))
                     });
                     if on {
-                        let r = response.rect.shrink2(vec2(6.0 * scale, 0.0));
+                        let r = response.rect.shrink2(vec2(6.0, 0.0));
                         ui.painter().hline(
                             r.x_range(),
                             r.bottom() - 1.0,
@@ -385,7 +457,7 @@ fn renderer(ui: &mut Ui, lab: &Lab) {
     if !status.backend.is_empty() {
         parts.push(status.backend.clone());
     }
-    if ui.available_width() < 100.0 * theme::scale_here(ui) {
+    if ui.available_width() < 100.0 {
         parts.truncate(1);
     }
     if parts.is_empty() {

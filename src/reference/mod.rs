@@ -23,6 +23,7 @@
 use std::{
     collections::HashMap,
     sync::{Arc, OnceLock},
+    time::Instant,
 };
 
 use glam::{EulerRot, Mat3, Mat4, Vec3, Vec4};
@@ -106,7 +107,7 @@ impl Picture {
 /// Renders a scene to light.
 #[must_use]
 pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Picture {
-    let pixels = draw(scene, registry, settings, Vec4::ZERO, |pixel| pixel);
+    let pixels = draw(scene, registry, settings, None, Vec4::ZERO, |pixel| pixel);
     Picture { width: settings.width, height: settings.height, pixels }
 }
 
@@ -116,7 +117,21 @@ pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Pictur
 pub fn render_rgb8(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<u8> {
     let developer = Developer::new(&scene.display);
     let background = developer.develop(Vec4::ZERO);
-    draw(scene, registry, settings, background, |pixel| developer.develop(pixel)).into_flattened()
+    draw(scene, registry, settings, None, background, |pixel| developer.develop(pixel)).into_flattened()
+}
+
+/// The same, unless it is not done by then.
+#[must_use]
+pub fn render_rgb8_until(
+    scene: &Scene,
+    registry: &Registry,
+    settings: &Settings,
+    end: Instant,
+) -> Option<Vec<u8>> {
+    let developer = Developer::new(&scene.display);
+    let background = developer.develop(Vec4::ZERO);
+    let pixels = draw(scene, registry, settings, Some(end), background, |pixel| developer.develop(pixel));
+    (Instant::now() < end).then(|| pixels.into_flattened())
 }
 
 /// A mesh with its normals, made once for all objects of its kind and tessellation.
@@ -163,18 +178,20 @@ const POLYGONS_PER_BATCH: usize = 1 << 16;
 /// Vertices or polygons that one task shades at least.
 const SHADED_PER_TASK: usize = 256;
 
-/// Draws a scene: `background` where nothing is, and what `finish` makes of the light elsewhere.
+/// Draws a scene: `background` where nothing is, and what `finish` makes of the light elsewhere. What is not done by
+/// `end` is left out.
 fn draw<T: Copy + Send + Sync>(
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
+    end: Option<Instant>,
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
 ) -> Vec<T> {
     if settings.samples > 1 {
-        draw_sampled::<4, T>(scene, registry, settings, background, finish)
+        draw_sampled::<4, T>(scene, registry, settings, end, background, finish)
     } else {
-        draw_sampled::<1, T>(scene, registry, settings, background, finish)
+        draw_sampled::<1, T>(scene, registry, settings, end, background, finish)
     }
 }
 
@@ -182,9 +199,11 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     scene: &Scene,
     registry: &Registry,
     settings: &Settings,
+    end: Option<Instant>,
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
 ) -> Vec<T> {
+    let late = || end.is_some_and(|end| Instant::now() >= end);
     let (width, height) = (settings.width as usize, settings.height as usize);
     let mut out = vec![background; width * height];
     if out.is_empty() {
@@ -208,7 +227,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
 
     let mut tiles: Vec<Option<Tile<S>>> = (0..screen.tiles()).map(|_| None).collect();
     let mut rest = &seen[..];
-    while !rest.is_empty() {
+    while !rest.is_empty() && !late() {
         let mut polygons = 0;
         let within = rest
             .iter()
@@ -223,7 +242,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
         let draws: Vec<Draw> = batch
             .par_iter()
             .filter_map(|&(object, shape)| {
-                let model = registry.model(scene.model_of(object))?;
+                let model = registry.model(scene.model_of(object)).filter(|_| !late())?;
                 Some(Draw {
                     object,
                     shape,
@@ -233,8 +252,10 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                 })
             })
             .collect();
-        let triangles: Vec<Vec<Triangle>> =
-            draws.par_iter().map(|draw| triangles(draw, &lights, &clip_from_room, &screen)).collect();
+        let triangles: Vec<Vec<Triangle>> = draws
+            .par_iter()
+            .map(|draw| if late() { Vec::new() } else { triangles(draw, &lights, &clip_from_room, &screen) })
+            .collect();
         let bins = bin(&triangles, &screen);
 
         // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them
@@ -245,6 +266,9 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
             .enumerate()
             .filter_map(|(i, (tile, bin))| {
                 for &(object, triangle) in bin {
+                    if late() {
+                        break;
+                    }
                     let draw = &draws[object as usize];
                     let triangle = &triangles[object as usize][triangle as usize];
                     let lighting = lights.on(&*draw.surface);

@@ -20,6 +20,7 @@ use crate::{
 
 pub mod check;
 pub mod error;
+pub mod examples;
 mod format;
 mod lacking_size;
 pub mod load;

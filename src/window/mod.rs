@@ -30,8 +30,8 @@ use bevy::{
         view::Msaa,
     },
     window::{
-        ExitCondition, PresentMode, PrimaryWindow, RequestRedraw, Window, WindowCloseRequested, WindowPlugin,
-        WindowResolution,
+        ExitCondition, MonitorSelection, PresentMode, PrimaryWindow, RequestRedraw, Window,
+        WindowCloseRequested, WindowMode, WindowPlugin, WindowResolution,
     },
     winit::{EventLoopProxyWrapper, UpdateMode, WinitSettings, WinitUserEvent},
 };
@@ -138,6 +138,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     let mut lab = Lab::new(options.scene.clone());
     lab.path.clone_from(&options.file);
     lab.disk.use_defaults = options.use_defaults;
+    lab.view.examples_open = options.examples;
     load_settings(&mut lab);
     options.warnings.iter().for_each(|warning| lab.say(Severity::Warning, warning.as_str()));
     if let Some(registry) = app.world().get_resource::<Registry>() {
@@ -287,7 +288,7 @@ impl Plugin for WindowSystemsPlugin {
                 shaders::tell.in_set(LabSystems::Upload).after(scene_to_lab),
             ),
         )
-        .add_systems(PostUpdate, (fit_viewport, window_title, redraw));
+        .add_systems(PostUpdate, (fit_viewport, window_title, fullscreen, redraw));
     }
 
     fn finish(&self, app: &mut App) {
@@ -452,7 +453,7 @@ fn fit_viewport(
         return;
     }
     let limit = window.physical_size();
-    let pixels = |points: f32| (points * window.scale_factor()).round().max(0.0) as u32;
+    let pixels = |points: f32| (points * lab.zoom * window.scale_factor()).round().max(0.0) as u32;
     let low = UVec2::new(pixels(rect.min.x), pixels(rect.min.y)).min(limit.saturating_sub(UVec2::ONE));
     let high = UVec2::new(pixels(rect.max.x), pixels(rect.max.y)).min(limit);
     let size = high.saturating_sub(low).max(UVec2::ONE);
@@ -481,6 +482,18 @@ fn window_title(lab: Res<Lab>, mut window: Single<&mut Window, With<PrimaryWindo
     let title = format!("{}{mark} – Lights, Camera, Models!", lab.title());
     if window.title != title {
         window.title = title;
+    }
+}
+
+/// The window fills the screen where the state says so.
+fn fullscreen(lab: Res<Lab>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
+    let mode = if lab.view.fullscreen {
+        WindowMode::BorderlessFullscreen(MonitorSelection::Current)
+    } else {
+        WindowMode::Windowed
+    };
+    if window.mode != mode {
+        window.mode = mode;
     }
 }
 

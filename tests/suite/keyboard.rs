@@ -15,10 +15,12 @@ pub enum Key {
     Escape = 9,
     Two = 11,
     Three = 12,
+    Equals = 21,
     Tab = 23,
     Return = 36,
     Control = 37,
     S = 39,
+    F5 = 71,
 }
 
 /// A keyboard at a screen.

@@ -4,8 +4,10 @@
 mod albedo;
 mod assets;
 mod command_line;
+mod dialogs;
 mod editors;
 mod equations;
+mod examples;
 mod extension;
 mod features;
 mod files;
@@ -25,6 +27,7 @@ mod own_folder;
 mod own_models;
 mod panels;
 mod pictures;
+mod presentation;
 mod readme;
 mod reference_renderer;
 mod reload;

@@ -222,7 +222,8 @@ impl Bench {
     pub fn frame(&mut self, events: Vec<Event>) -> Vec<epaint::ClippedPrimitive> {
         self.time += 1.0 / 30.0;
         let input = RawInput {
-            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size)),
+            // As bevy_egui does: of so many points is a window of so many pixels.
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size / self.ctx.zoom_factor())),
             time: Some(self.time),
             focused: true,
             events,
@@ -363,7 +364,14 @@ impl Bench {
         for _ in 0..30 {
             self.frame(Vec::new());
         }
-        let primitives = self.frame(Vec::new());
+        let mut primitives = self.frame(Vec::new());
+        let zoom = self.ctx.zoom_factor();
+        for primitive in &mut primitives {
+            primitive.clip_rect = primitive.clip_rect * zoom;
+            if let epaint::Primitive::Mesh(mesh) = &mut primitive.primitive {
+                mesh.vertices.iter_mut().for_each(|v| v.pos = v.pos * zoom);
+            }
+        }
         let size = (self.size.x as usize, self.size.y as usize);
         let picture = self.painter.draw(&primitives, size, ground);
         let file = std::fs::File::create(file)?;
@@ -1095,11 +1103,11 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         }),
         ("large", (1280.0, 720.0), |b| {
             b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
-            b.apply(Action::View(ViewChange::LargeType(true)));
+            b.apply(Action::View(ViewChange::Scale(150)));
             b.apply(Action::Edit(Edit::Model("phong".to_owned())));
         }),
         ("large-dark", (1920.0, 1080.0), |b| {
-            b.apply(Action::View(ViewChange::LargeType(true)));
+            b.apply(Action::View(ViewChange::Scale(150)));
             b.apply(Action::Edit(Edit::Model("phong".to_owned())));
         }),
         ("error", (1280.0, 720.0), |b| {
@@ -1143,11 +1151,11 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         ("lumen-wide", (1920.0, 1080.0), lamp),
         ("lumen-large", (1280.0, 720.0), |b| {
             b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
-            b.apply(Action::View(ViewChange::LargeType(true)));
+            b.apply(Action::View(ViewChange::Scale(150)));
             lamp(b);
         }),
         ("caption", (1280.0, 720.0), |b| {
-            b.apply(Action::View(ViewChange::LargeType(true)));
+            b.apply(Action::View(ViewChange::Scale(150)));
             b.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
             b.apply(Action::Edit(Edit::Mode("derivative".to_owned())));
             b.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
@@ -1194,7 +1202,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         }),
         ("models-large", (1280.0, 720.0), |b| {
             everything(b);
-            b.apply(Action::View(ViewChange::LargeType(true)));
+            b.apply(Action::View(ViewChange::Scale(150)));
             b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
             b.key(Key::R, Modifiers::NONE);
         }),

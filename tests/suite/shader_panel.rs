@@ -138,7 +138,7 @@ fn many_models_and_long_messages_stay_on_the_picture() {
     {
         let mut bench = bench_with(troubles.clone());
         bench.size = size.into();
-        bench.apply(Action::View(ViewChange::LargeType(large)));
+        bench.apply(Action::View(ViewChange::Scale(if large { 150 } else { 100 })));
         let (_, rect) = badge(&bench).expect("a badge");
         let picture = bench.lab.picture_rect;
         assert!(picture.contains_rect(rect), "{size:?} {large}: {rect:?} in {picture:?}");
@@ -640,7 +640,7 @@ fn pictures_of_the_shader_panel() -> Result<(), Box<dyn std::error::Error>> {
         b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
     }
     fn large(b: &mut Bench) {
-        b.apply(Action::View(ViewChange::LargeType(true)));
+        b.apply(Action::View(ViewChange::Scale(150)));
     }
     fn one(b: &mut Bench) {
         b.lab.shaders.troubles = vec![broken_lambert()];

@@ -1,0 +1,192 @@
+//! Small pictures of scenes that are not open: examples, and files in the dialog. They are read and drawn on a thread,
+//! by the CPU renderer, each once.
+
+use std::{
+    collections::HashMap,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::PathBuf,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    thread,
+    time::{Duration, Instant},
+};
+
+use bevy_egui::egui::{
+    self, Align2, Color32, ColorImage, Context, Id, Rect, TextureHandle, TextureOptions, Ui, pos2,
+};
+
+use super::{inspector::plural, theme::Palette};
+use crate::{
+    reference,
+    registry::Registry,
+    scene::{
+        Scene,
+        examples::EXAMPLES,
+        load::{self, Defaults},
+    },
+};
+
+/// Pixels across and down.
+const SIZE: [u32; 2] = [320, 180];
+/// The longest that a picture may take.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// More pictures are not kept.
+const MOST: usize = 128;
+/// More lines of what is wrong with a file are not shown.
+const LINES: usize = 6;
+
+/// The scene that is looked at.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Source {
+    /// One of [`EXAMPLES`].
+    Example(usize),
+    /// A scene file.
+    File(PathBuf),
+}
+
+/// What there is to see of a scene.
+#[derive(Clone)]
+pub enum Preview {
+    /// It is being made.
+    Waiting,
+    /// What the file holds.
+    Ready(Arc<Shown>),
+    /// The file cannot be used: why.
+    Failed(Arc<str>),
+}
+
+/// The facts of a scene.
+pub struct Shown {
+    /// Its name, if it has one.
+    pub name: Option<String>,
+    /// What it shows.
+    pub description: Option<String>,
+    /// What it is made of, in a line.
+    pub facts: String,
+    /// Its picture, unless that would take too long.
+    pub picture: Option<TextureHandle>,
+}
+
+#[derive(Default)]
+struct Store {
+    known: HashMap<Source, Preview>,
+    /// What is still to be done, the most urgent last.
+    queue: Vec<Source>,
+    working: bool,
+}
+
+type Shared = Arc<Mutex<Store>>;
+
+fn lock(store: &Shared) -> MutexGuard<'_, Store> {
+    store.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn store(ctx: &Context) -> Shared {
+    ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("previews")).clone())
+}
+
+/// What there is to see of a scene now. What is asked for last is made first.
+pub fn of(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
+    let shared = store(ctx);
+    let mut store = lock(&shared);
+    if let Some(known) = store.known.get(source) {
+        return known.clone();
+    }
+    if store.known.len() >= MOST {
+        store.known.clear();
+    }
+    store.known.insert(source.clone(), Preview::Waiting);
+    match source {
+        // All examples are asked for at once, and seen from the first on.
+        Source::Example(_) => store.queue.insert(0, source.clone()),
+        Source::File(_) => store.queue.push(source.clone()),
+    }
+    if !std::mem::replace(&mut store.working, true) {
+        let (ctx, registry, shared) = (ctx.clone(), registry.clone(), shared.clone());
+        thread::spawn(move || work(&ctx, &registry, &shared));
+    }
+    Preview::Waiting
+}
+
+/// Files are read anew: they may have changed since the dialog was open.
+pub fn forget_files(ctx: &Context) {
+    let shared = store(ctx);
+    let mut store = lock(&shared);
+    store.known.retain(|source, _| matches!(source, Source::Example(_)));
+    store.queue.retain(|source| matches!(source, Source::Example(_)));
+}
+
+fn work(ctx: &Context, registry: &Registry, shared: &Shared) {
+    loop {
+        let source = {
+            let mut store = lock(shared);
+            let Some(source) = store.queue.pop() else {
+                store.working = false;
+                return;
+            };
+            source
+        };
+        let made = catch_unwind(AssertUnwindSafe(|| make(ctx, &source, registry)))
+            .unwrap_or_else(|_| Preview::Failed("This scene cannot be drawn.".into()));
+        lock(shared).known.insert(source, made);
+        ctx.request_repaint();
+    }
+}
+
+fn make(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
+    let read = match source {
+        Source::Example(i) => match EXAMPLES.get(*i) {
+            Some(example) => example.scene(registry),
+            None => return Preview::Failed("There is no such example.".into()),
+        },
+        Source::File(path) => load::file(path, registry, Defaults::Use).map(|loaded| loaded.scene),
+    };
+    let scene = match read {
+        Ok(scene) => scene,
+        Err(error) => {
+            let lines: Vec<_> = error.to_string().lines().take(LINES).map(str::to_owned).collect();
+            return Preview::Failed(lines.join("\n").into());
+        }
+    };
+    let [width, height] = SIZE;
+    let settings = reference::Settings { width, height, ..reference::Settings::default() };
+    let picture = reference::render_rgb8_until(&scene, registry, &settings, Instant::now() + PATIENCE);
+    let picture = picture.map(|pixels| {
+        let image = ColorImage::from_rgb(SIZE.map(|n| n as usize), &pixels);
+        ctx.load_texture("preview", image, TextureOptions::LINEAR)
+    });
+    Preview::Ready(Arc::new(Shown {
+        facts: facts(&scene, registry),
+        name: scene.name,
+        description: scene.description,
+        picture,
+    }))
+}
+
+fn facts(scene: &Scene, registry: &Registry) -> String {
+    let model = registry.model(&scene.reflection_model).map_or("–", |m| m.declaration.name);
+    let mode = registry.mode(&scene.shading_model).map_or("–", |m| m.declaration.name);
+    let [objects, lights] =
+        [(scene.objects.len(), "object"), (scene.lights.len(), "light")].map(|(n, what)| plural(n, what));
+    format!("{objects} · {lights} · {model} · {mode} shading")
+}
+
+/// Paints the picture of a scene, or says why there is none yet.
+pub fn paint(ui: &Ui, rect: Rect, preview: &Preview) {
+    let palette = Palette::here(ui);
+    let painter = ui.painter_at(rect);
+    let words = match preview {
+        Preview::Ready(shown) => match &shown.picture {
+            Some(picture) => {
+                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                painter.image(picture.id(), rect, whole, Color32::WHITE);
+                return;
+            }
+            None => "Too large for a preview",
+        },
+        Preview::Waiting => "…",
+        Preview::Failed(_) => "No picture",
+    };
+    painter.rect_filled(rect, 2.0, palette.field);
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    painter.text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
+}

@@ -1,0 +1,140 @@
+//! The examples: a menu of them, and the strip below the picture that shows them when the window opens without a file.
+
+use bevy_egui::egui::{
+    self, Align, Context, Key, Label, Layout, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind,
+    TextStyle, Ui, WidgetInfo, WidgetType, vec2,
+};
+
+use super::{
+    icon::{self, Icon},
+    preview::{self, Source},
+    state::{Action, Lab, ViewChange},
+    theme::{self, Palette},
+};
+use crate::{registry::Registry, scene::examples::EXAMPLES};
+
+/// The size of a picture in the strip, points.
+const CARD: egui::Vec2 = vec2(112.0, 63.0);
+/// The size of one in the menu.
+const ROW: egui::Vec2 = vec2(96.0, 54.0);
+/// The least height of strip and picture together, points.
+const LEAST: f32 = 320.0;
+/// How wide the menu is.
+const MENU: f32 = 440.0;
+
+/// The strip below the picture.
+pub fn strip(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    let mut actions = Vec::new();
+    // The picture comes first; the menu has the examples too.
+    if !lab.view.examples_open || ui.available_height() < LEAST {
+        return actions;
+    }
+    let palette = Palette::here(ui);
+    egui::Panel::bottom("examples").frame(theme::panel_frame(&palette, vec2(12.0, 4.0))).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.label(theme::strong(ui, "Examples"));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if icon::button(ui, Icon::Cross, "Close the examples (Esc); they stay under File › Examples")
+                    .clicked()
+                {
+                    actions.push(Action::View(ViewChange::Examples(false)));
+                }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    let hint = theme::small(ui, "open as new scenes; also in the File menu");
+                    ui.add(Label::new(hint).truncate());
+                });
+            });
+        });
+        ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| {
+            ui.horizontal_top(|ui| {
+                for (i, example) in EXAMPLES.iter().enumerate() {
+                    let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, 20.0), Sense::click());
+                    let picture = Rect::from_min_size(rect.min, CARD);
+                    face(ui, i, picture, &response, registry);
+                    let galley = theme::elided(ui, &example.name, TextStyle::Small, palette.text, CARD.x);
+                    ui.painter().galley(picture.left_bottom() + vec2(0.0, 4.0), galley, palette.text);
+                    frame(ui, picture, &response);
+                    if response.clicked() {
+                        actions.push(Action::OpenExample(i));
+                    }
+                    response.on_hover_ui(|ui| {
+                        ui.set_max_width(320.0);
+                        ui.label(theme::strong(ui, &example.name));
+                        ui.label(&example.description);
+                    });
+                }
+            });
+        });
+    });
+    actions
+}
+
+/// Escape closes the strip, unless it is another's.
+pub fn left(ctx: &Context, lab: &Lab) -> Option<Action> {
+    let open = lab.view.chooser_open || lab.view.keys_open || lab.view.about_open || lab.draft.is_some();
+    let free = lab.keyboard_free && !open && !lab.view.presenting && !egui::Popup::is_any_open(ctx);
+    let left = lab.view.examples_open && free && ctx.input(|i| i.key_pressed(Key::Escape));
+    left.then_some(Action::View(ViewChange::Examples(false)))
+}
+
+/// The menu of the examples.
+pub fn menu(ui: &mut Ui, registry: &Registry, actions: &mut Vec<Action>) {
+    ui.set_width(MENU.min(ui.ctx().content_rect().width() - 180.0));
+    let most = 0.75 * ui.ctx().content_rect().height();
+    ScrollArea::vertical().max_height(most).show(ui, |ui| {
+        for (i, example) in EXAMPLES.iter().enumerate() {
+            let palette = Palette::here(ui);
+            let (rect, response) =
+                ui.allocate_exact_size(vec2(ui.available_width(), ROW.y + 8.0), Sense::click());
+            if response.hovered() || response.has_focus() {
+                ui.painter().rect_filled(rect, 4.0, palette.hovered);
+            }
+            let picture = Rect::from_min_size(rect.min + vec2(4.0, 4.0), ROW);
+            face(ui, i, picture, &response, registry);
+            frame(ui, picture, &response);
+            let left = picture.right() + 10.0;
+            let width = rect.right() - left - 4.0;
+            let font = egui::FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+            let name = theme::elided(ui, &example.name, font, palette.text, width);
+            let mut job = egui::text::LayoutJob::simple(
+                example.description.clone(),
+                TextStyle::Small.resolve(ui.style()),
+                palette.text,
+                width,
+            );
+            job.wrap.max_rows = 2;
+            let words = ui.painter().layout_job(job);
+            let at = egui::pos2(left, rect.top() + 5.0);
+            ui.painter().galley(at + vec2(0.0, name.size().y + 3.0), words.clone(), palette.text);
+            ui.painter().galley(at, name, palette.text);
+            if response.clicked() {
+                actions.push(Action::OpenExample(i));
+                ui.close();
+            }
+            if words.elided {
+                response.on_hover_ui(|ui| {
+                    ui.set_max_width(320.0);
+                    ui.label(&example.description);
+                });
+            }
+        }
+    });
+}
+
+fn face(ui: &Ui, i: usize, rect: Rect, response: &Response, registry: &Registry) {
+    let label = || format!("Example: {}", EXAMPLES[i].name);
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, label()));
+    if ui.is_rect_visible(rect) {
+        preview::paint(ui, rect, &preview::of(ui.ctx(), &Source::Example(i), registry));
+    }
+}
+
+fn frame(ui: &Ui, rect: Rect, response: &Response) {
+    let palette = Palette::here(ui);
+    let stroke = if response.hovered() || response.has_focus() {
+        Stroke::new(2.0, palette.accent)
+    } else {
+        Stroke::new(1.0, palette.line)
+    };
+    ui.painter().rect_stroke(rect, 2.0, stroke, StrokeKind::Inside);
+}

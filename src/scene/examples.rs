@@ -1,0 +1,96 @@
+//! The shipped scenes, within the program, so that it needs no folder beside it.
+
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+use super::{
+    Scene,
+    error::LoadError,
+    load::{self, Defaults},
+};
+use crate::registry::Registry;
+
+/// A shipped scene.
+#[derive(Clone, Debug)]
+pub struct Example {
+    /// The name of its file in the folder `scenes`.
+    pub file: &'static str,
+    /// The text of the file.
+    pub text: &'static str,
+    /// The name of the scene.
+    pub name: String,
+    /// What it shows.
+    pub description: String,
+}
+
+macro_rules! texts {
+    ($($file:literal),* $(,)?) => {
+        [$(($file, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $file)))),*]
+    };
+}
+
+/// From the simplest to those that measure something.
+const TEXTS: [(&str, &str); 11] = texts![
+    "default.json",
+    "shapes_and_lights.json",
+    "gouraud_misses_highlight.json",
+    "half_lambert.json",
+    "portrait.json",
+    "lobe_shape.json",
+    "fresnel_effect.json",
+    "gold_three_lights.json",
+    "white_furnace.json",
+    "model_matrix.json",
+    "many_lights.json",
+];
+
+/// All of them, in the order of lists.
+pub static EXAMPLES: LazyLock<Vec<Example>> = LazyLock::new(|| {
+    #[derive(Default, Deserialize)]
+    #[serde(default)]
+    struct Head {
+        name: String,
+        description: String,
+    }
+    TEXTS
+        .into_iter()
+        .map(|(file, text)| {
+            let Head { name, description } = serde_json::from_str(text).unwrap_or_default();
+            Example { file, text, name, description }
+        })
+        .collect()
+});
+
+impl Example {
+    /// The scene itself.
+    ///
+    /// # Errors
+    /// [`LoadError`], if the registry lacks what the scene names.
+    pub fn scene(&self, registry: &Registry) -> Result<Scene, LoadError> {
+        load::from_text(self.text, self.file, registry, Defaults::Use).map(|loaded| loaded.scene)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shipped_scene_is_an_example_with_a_name_and_a_description() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+        let mut files: Vec<_> = std::fs::read_dir(folder)
+            .expect("the folder is there")
+            .map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned())
+            .filter(|name| name.ends_with(".json") && !name.ends_with(".schema.json"))
+            .collect();
+        let mut known: Vec<_> = EXAMPLES.iter().map(|e| e.file.to_owned()).collect();
+        files.sort();
+        known.sort();
+        assert_eq!(known, files);
+        for example in EXAMPLES.iter() {
+            assert!(!example.name.is_empty() && !example.description.is_empty(), "{}", example.file);
+            assert!(example.scene(&Registry::builtin()).is_ok(), "{}", example.file);
+        }
+    }
+}

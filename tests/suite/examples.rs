@@ -1,0 +1,125 @@
+//! The shipped scenes in the window: menu, strip, small pictures.
+
+use std::time::{Duration, Instant};
+
+use bevy_egui::egui::{Key, Modifiers, vec2};
+use lights_camera_models::{
+    panel::{
+        preview::{self, Preview, Source},
+        state::{Action, Answer, Edit, Effect, Lab, Question, ViewChange},
+    },
+    reference::{self, Settings},
+    registry::Registry,
+    scene::{Scene, examples::EXAMPLES},
+};
+
+use crate::panels::Bench;
+
+/// Waits for what is made on a thread.
+pub fn until(bench: &mut Bench, what: &str, mut is: impl FnMut(&mut Bench) -> bool) {
+    let begin = Instant::now();
+    while !is(bench) {
+        assert!(begin.elapsed() < Duration::from_secs(120), "never {what}");
+        std::thread::sleep(Duration::from_millis(10));
+        bench.frame(Vec::new());
+    }
+    bench.settle();
+}
+
+#[test]
+fn an_example_is_opened_from_the_menu_as_a_document_in_no_file() {
+    let mut bench = Bench::new(Lab::default());
+    bench.click("File");
+    bench.click("Examples ⏵");
+    for example in EXAMPLES.iter() {
+        assert!(
+            bench.find(&format!("Example: {}", example.name)).is_some(),
+            "{} is not listed",
+            example.name
+        );
+    }
+    bench.click("Example: Portrait");
+    assert_eq!((bench.lab.title().as_str(), bench.lab.path.clone()), ("Portrait", None));
+    assert!(!bench.lab.is_dirty() && bench.find("Example: Portrait").is_none());
+    assert!(bench.effects.contains(&Effect::DocumentChanged));
+    // Saving asks where.
+    let effects = bench.lab.apply(Action::Save, &bench.registry);
+    assert_eq!(effects, [Effect::PickSave]);
+}
+
+#[test]
+fn unsaved_changes_are_asked_about_before_an_example_is_opened() {
+    let registry = Registry::builtin();
+    for (answer, title) in [(Answer::Cancel, "Mine"), (Answer::Discard, "Portrait")] {
+        let mut lab = Lab::default();
+        lab.apply(Action::Edit(Edit::SceneName("Mine".to_owned())), &registry);
+        let portrait = EXAMPLES.iter().position(|e| e.name == "Portrait").expect("shipped");
+        lab.apply(Action::OpenExample(portrait), &registry);
+        assert!(matches!(lab.question, Some(Question::Unsaved { .. })));
+        assert_eq!(lab.title(), "Mine");
+        lab.apply(Action::Answer(answer), &registry);
+        assert_eq!(lab.title(), title);
+    }
+}
+
+#[test]
+fn the_strip_stands_below_the_picture_and_escape_closes_it() {
+    let mut bench = Bench::new(Lab::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    assert!(bench.find("Example: Portrait").is_none());
+    let whole = bench.lab.picture_rect;
+    bench.apply(Action::View(ViewChange::Examples(true)));
+    let card = bench.find("Example: Shapes and lights").expect("a card").rect;
+    let picture = bench.lab.picture_rect;
+    assert!(picture.bottom() <= card.top() && whole.contains_rect(card), "{picture:?} {card:?}");
+    assert!(picture.height() > 0.75 * whole.height(), "the picture keeps its room: {picture:?}");
+    bench.click("Example: Shapes and lights");
+    assert_eq!(bench.lab.title(), "Shapes and lights");
+    assert!(bench.lab.view.examples_open, "one looks at several");
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.lab.view.examples_open);
+    assert_eq!(bench.lab.picture_rect, whole);
+}
+
+#[test]
+fn every_example_gets_its_small_picture() {
+    let mut bench = Bench::new(Lab::default());
+    let registry = bench.registry.clone();
+    until(&mut bench, "all pictures", |bench| {
+        let ready = |i| match preview::of(&bench.ctx, &Source::Example(i), &registry) {
+            Preview::Waiting => false,
+            Preview::Ready(shown) => {
+                assert_eq!(shown.name.as_deref(), Some(EXAMPLES[i].name.as_str()));
+                // On a machine that is slow, one with many lights may take too long.
+                i > 0 || shown.picture.is_some()
+            }
+            Preview::Failed(why) => panic!("{}: {why}", EXAMPLES[i].file),
+        };
+        (0..EXAMPLES.len()).all(ready)
+    });
+}
+
+#[test]
+fn a_picture_that_takes_too_long_is_given_up() {
+    let (scene, registry) = (Scene::default(), Registry::builtin());
+    let settings = Settings { width: 64, height: 36, ..Settings::default() };
+    let whole = reference::render_rgb8(&scene, &registry, &settings);
+    let end = Instant::now() + Duration::from_secs(600);
+    assert_eq!(reference::render_rgb8_until(&scene, &registry, &settings, end), Some(whole));
+    assert_eq!(reference::render_rgb8_until(&scene, &registry, &settings, Instant::now()), None);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_window_shows_the_examples_when_it_opens_without_a_file() {
+    use crate::screen::Screen;
+    let screen = Screen::new(1280, 720);
+    // The strip has the colour of the panels where else the picture's surround would be.
+    let panel = |p: &crate::screen::Picture| p.count(300..700, 582..590, |c| c == [21, 21, 21]) > 1500;
+    let scene = format!("{}/scenes/default.json", env!("CARGO_MANIFEST_DIR"));
+    screen.start(&["view", "--size", "1280x720"]).until("the examples", panel);
+    let mut window = screen.start(&["view", &scene, "--size", "1280x720"]);
+    window.until("the picture", |p| p.count(220..230, 60..600, |c| c == [46, 46, 46]) > 3000);
+    assert!(!panel(&window.rest()));
+}

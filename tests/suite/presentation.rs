@@ -1,0 +1,300 @@
+//! The size of everything, the presentation, and a layout that stands still.
+
+use std::collections::HashMap;
+
+use bevy_egui::egui::{self, Key, Modifiers, Shape, accesskit::Role, vec2};
+use lights_camera_models::{
+    optics::TermSelection,
+    panel::{
+        settings::SCALES,
+        state::{Action, Effect, Lab, Selection, ViewChange},
+    },
+    scene::Scene,
+};
+
+use crate::panels::{Bench, Seen};
+
+const CTRL: Modifiers = Modifiers::CTRL.plus(Modifiers::COMMAND);
+
+fn bench(size: (f32, f32), model: &str) -> Bench {
+    let mut bench = Bench::with_model(model);
+    bench.size = size.into();
+    bench.settle();
+    bench
+}
+
+fn called<'a>(bench: &'a Bench, label: &str) -> &'a Seen {
+    bench.find(label).unwrap_or_else(|| panic!("nothing is called {label}"))
+}
+
+#[test]
+fn ctrl_plus_minus_and_0_scale_the_window_by_our_steps() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    for percent in SCALES.into_iter().skip(1).chain([200]) {
+        bench.key(Key::Plus, CTRL);
+        assert_eq!(bench.lab.view.scale, percent);
+        assert_eq!(bench.ctx.zoom_factor(), f32::from(percent) / 100.0, "nobody else zooms");
+    }
+    bench.key(Key::Minus, CTRL);
+    assert_eq!(bench.lab.view.scale, 175);
+    assert!(bench.effects.contains(&Effect::SaveSettings), "it survives a restart");
+    bench.key(Key::Num0, CTRL);
+    assert_eq!((bench.lab.view.scale, bench.ctx.zoom_factor()), (100, 1.0));
+}
+
+#[test]
+fn at_every_scale_the_panels_fill_the_window_and_the_bar_can_be_reached() {
+    for size in [(1280.0, 720.0), (1920.0, 1080.0)] {
+        let mut bench = bench(size, "blinn_phong");
+        for percent in SCALES {
+            bench.apply(Action::View(ViewChange::Scale(percent)));
+            let zoom = f32::from(percent) / 100.0;
+            let (lab, whole) = (&bench.lab, bench.size / zoom);
+            assert_eq!(lab.zoom, zoom);
+            assert!(
+                lab.picture_rect.width() > 100.0 && lab.picture_rect.bottom() > whole.y - 60.0,
+                "{percent}"
+            );
+            let bar: Vec<_> = bench
+                .tree
+                .iter()
+                .filter(|s| matches!(s.role, Role::Button | Role::ComboBox | Role::RadioButton))
+                .filter(|s| s.rect.bottom() < 36.0)
+                .collect();
+            for part in &bar {
+                assert!(
+                    part.rect.right() <= whole.x,
+                    "{percent} %: {} is cut off: {:?}",
+                    part.label,
+                    part.rect
+                );
+            }
+            assert!(
+                bar.iter().any(|s| s.label.starts_with("Shading: ")),
+                "{percent} %: no choice of shading"
+            );
+            assert!(bar.iter().any(|s| s.label.starts_with("Reflection model: ")), "{percent} %");
+        }
+    }
+}
+
+#[test]
+fn a_narrow_bar_has_a_menu_of_the_shading_modes() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    bench.apply(Action::View(ViewChange::Scale(200)));
+    let shown = called(&bench, "Shading: Gouraud").role;
+    assert_eq!(shown, Role::ComboBox);
+    bench.click("Shading: Gouraud");
+    bench.click("Flat");
+    assert_eq!(bench.lab.scene.shading_model, "flat");
+}
+
+#[test]
+fn a_presentation_is_the_picture_alone_and_the_keys_go_on() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    bench.key(Key::F5, Modifiers::NONE);
+    assert!(bench.lab.view.presenting && bench.lab.view.fullscreen);
+    assert_eq!(bench.lab.picture_rect.size(), vec2(1280.0, 720.0));
+    for gone in ["File", "Observer", "diffuse coefficient"] {
+        assert!(bench.find(gone).is_none(), "{gone} is still there");
+    }
+    bench.letter(Key::F, "f");
+    assert_eq!(bench.lab.scene.shading_model, "flat");
+    bench.letter(Key::T, "t");
+    assert_ne!(bench.lab.view.terms, TermSelection::All);
+    bench.letter(Key::H, "h");
+    assert!(bench.effects.contains(&Effect::HomeView));
+    bench.lab.fill_model_slots(&bench.registry.clone());
+    let model = bench.lab.model_slots[1].clone();
+    bench.letter(Key::Num2, "2");
+    assert_eq!(bench.lab.scene.reflection_model, model);
+    // The list of keys closes before the presentation does.
+    bench.key(Key::F1, Modifiers::NONE);
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.lab.view.keys_open && bench.lab.view.presenting);
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.lab.view.presenting && !bench.lab.view.fullscreen);
+    assert!(bench.find("File").is_some());
+    for on in [true, false] {
+        bench.key(Key::F11, Modifiers::NONE);
+        assert_eq!((bench.lab.view.fullscreen, bench.lab.view.presenting), (on, false));
+    }
+    // Who presents on a full screen is back on one afterwards.
+    for key in [Key::F11, Key::F5, Key::F5] {
+        bench.key(key, Modifiers::NONE);
+    }
+    assert!(bench.lab.view.fullscreen && !bench.lab.view.presenting);
+}
+
+/// The heights of the capitals on screen, points, with the text that they are in.
+fn capitals(bench: &mut Bench) -> Vec<(f32, String)> {
+    let mut all = Vec::new();
+    for shape in bench.shapes() {
+        let Shape::Text(text) = shape else { continue };
+        for glyph in text.galley.rows.iter().flat_map(|row| &row.glyphs) {
+            if glyph.chr.is_ascii_uppercase() {
+                all.push((glyph.uv_rect.size.y, text.galley.job.text.clone()));
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn a_presentation_can_be_read_from_the_last_row() {
+    for (size, scale) in [((1280.0, 720.0), 100), ((1920.0, 1080.0), 100), ((1280.0, 720.0), 150)] {
+        for model in ["lambert", "blinn_phong", "cook_torrance"] {
+            let mut bench = bench(size, model);
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::View(ViewChange::Presenting(true)));
+            let height = bench.lab.picture_rect.height();
+            let capitals = capitals(&mut bench);
+            assert!(capitals.iter().any(|(_, text)| text.contains("shading")), "no caption");
+            assert!(capitals.iter().any(|(_, text)| text == "I" || text == "L"), "no equation: {capitals:?}");
+            for (high, text) in capitals {
+                assert!(high >= 0.025 * height, "{model}, {size:?}: {text}: {high} of {height}");
+            }
+        }
+    }
+}
+
+#[test]
+fn equations_of_a_presentation_leave_room_for_the_picture() {
+    for model in lights_camera_models::registry::Registry::builtin().models() {
+        let mut bench = bench((1280.0, 720.0), model.declaration.id);
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let ground = lights_camera_models::panel::theme::DARK.panel;
+        let plates = bench.shapes().into_iter().filter_map(|shape| match shape {
+            Shape::Rect(r) if r.fill == ground && r.rect.left() == 0.0 => Some(r.rect),
+            _ => None,
+        });
+        let (mut count, mut covered) = (0, 0.0);
+        for plate in plates {
+            assert!(plate.right() <= 1280.0, "{}: {plate:?}", model.declaration.id);
+            (count, covered) = (count + 1, covered + plate.height());
+        }
+        assert_eq!(count, 2, "{}: equation and caption have a ground", model.declaration.id);
+        assert!(covered < 0.62 * 720.0, "{}: {covered}", model.declaration.id);
+    }
+}
+
+// ── what stands still ──
+
+fn scene_called(name: &str) -> Lab {
+    Lab::new(Scene { name: Some(name.to_owned()), ..Scene::default() })
+}
+
+#[test]
+fn the_menus_stand_at_the_same_place_in_every_scene() {
+    let long = "A scene whose name is as long as names get, and a little longer than that";
+    let places: Vec<_> = ["A", "Default scene", long]
+        .into_iter()
+        .map(|name| {
+            let mut bench = Bench::new(scene_called(name));
+            bench.size = vec2(1280.0, 720.0);
+            bench.settle();
+            ["File", "Edit", "View", "Help"].map(|menu| called(&bench, menu).rect)
+        })
+        .collect();
+    assert_eq!(places[0], places[1]);
+    assert_eq!(places[0], places[2]);
+    // The whole name is in the tooltip.
+    let mut bench = Bench::new(scene_called(long));
+    let title = bench.tree.iter().find(|s| s.label.starts_with(long)).expect("the title").rect;
+    assert!(title.width() < 220.0);
+    bench.hover(title.center());
+    assert!(bench.says(long));
+}
+
+/// Where everything is that has a name of its own.
+fn places(bench: &Bench) -> HashMap<String, egui::Rect> {
+    let named = bench.tree.iter().filter(|s| !s.label.is_empty());
+    let once = named.filter(|s| bench.tree.iter().filter(|o| o.label == s.label).count() == 1);
+    once.map(|s| (s.label.clone(), s.rect)).collect()
+}
+
+#[test]
+fn nothing_moves_under_the_pointer_in_the_bar() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    let still = |bench: &Bench| -> Vec<_> {
+        ["File", "Edit", "View", "Help", "Reflection model: Phong", "Shading: Gouraud", "Shading: Flat"]
+            .map(|label| called(bench, label).rect)
+            .to_vec()
+    };
+    let before = still(&bench);
+    let title = bench.tree.iter().find(|s| s.label.starts_with(&bench.lab.title())).expect("the title").rect;
+    for at in before.iter().copied().chain([title]) {
+        bench.frame(vec![egui::Event::PointerMoved(at.center())]);
+        bench.settle();
+        assert_eq!(still(&bench), before, "with the pointer at {at:?}");
+    }
+}
+
+#[test]
+fn nothing_moves_when_a_field_gets_the_focus() {
+    let mut bench = bench((1280.0, 1600.0), "phong");
+    for (part, label) in [
+        (Selection::Room, "What the scene shows"),
+        (Selection::Room, "Name of the scene"),
+        (Selection::Object(0), "Name"),
+        (Selection::Object(0), "shininess"),
+        (Selection::Object(0), "base colour in hexadecimal"),
+    ] {
+        bench.apply(Action::Select(part));
+        let before = places(&bench);
+        let at = bench.field(label).rect.center();
+        bench.click_at(at, egui::PointerButton::Primary);
+        assert!(bench.ctx.text_edit_focused(), "{label} has the focus");
+        let after = places(&bench);
+        let both: Vec<_> = before.iter().filter_map(|(k, a)| Some((k, a, after.get(k)?))).collect();
+        assert!(both.len() > 20, "there is something to compare");
+        for (other, was, is) in both {
+            let moved = (was.min - is.min).length().max((was.max - is.max).length());
+            assert!(moved < 0.1, "with the focus in {label}, {other} moved from {was:?} to {is:?}");
+        }
+        bench.key(Key::Escape, Modifiers::NONE);
+    }
+}
+
+#[cfg(target_os = "linux")]
+mod on_screen {
+    use crate::{
+        keyboard::{Key, Keyboard},
+        screen::{Picture, Screen},
+    };
+
+    const SURROUND: [u8; 3] = [46, 46, 46];
+    const PANEL: [u8; 3] = [21, 21, 21];
+
+    /// True if a place is of one colour, nearly.
+    fn is(p: &Picture, x: std::ops::Range<u32>, y: std::ops::Range<u32>, colour: [u8; 3]) -> bool {
+        let all = (x.len() * y.len()) as f32;
+        p.count(x, y, |at| at == colour) as f32 > 0.8 * all
+    }
+
+    #[test]
+    fn the_picture_fits_between_larger_panels_and_fills_a_presentation() {
+        let scene = format!("{}/scenes/default.json", env!("CARGO_MANIFEST_DIR"));
+        let screen = Screen::new(1280, 720);
+        let mut window = screen.start(&["view", &scene, "--size", "1280x720"]);
+        window
+            .until("the window", |p| is(p, 180..200, 300..600, PANEL) && is(p, 920..930, 60..500, SURROUND));
+        window.rest();
+        let mut keyboard = Keyboard::new(screen.display());
+        for _ in 0..3 {
+            keyboard.press(&[Key::Control, Key::Equals]);
+            window.rest();
+        }
+        // At 150 % the panels begin at 764 pixels; up to there is the picture.
+        window.until("the larger panels", |p| is(p, 770..780, 100..600, PANEL));
+        let shown = window.rest();
+        assert!(is(&shown, 745..760, 80..500, SURROUND), "the picture ends before the panel begins");
+        assert!(is(&shown, 320..750, 668..676, SURROUND), "the picture ends above the line at the bottom");
+        keyboard.press(&[Key::F5]);
+        window.until("the presentation", |p| {
+            is(p, 10..60, 100..400, SURROUND) && is(p, 1200..1270, 150..400, SURROUND)
+        });
+        keyboard.press(&[Key::Escape]);
+        window.until("the panels", |p| is(p, 770..780, 100..600, PANEL));
+    }
+}
