@@ -384,7 +384,7 @@ mod tests {
                 assert!(contrast(bar, ground) >= 3.0, "on {ground:?}: {}", contrast(bar, ground));
             }
         }
-        let style = style(&DARK, 1.0);
+        let style = style(&DARK);
         assert!(style.spacing.scroll.dormant_handle_opacity >= SCROLL_BAR);
         assert!(style.spacing.scroll.foreground_color);
     }
