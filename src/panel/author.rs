@@ -288,7 +288,6 @@ const FOCUSED: &str = "model draft focused";
 fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<Action> {
     let mut actions = Vec::new();
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let checked = check_name(&draft.name, registry);
     ui.label("Name");
     let mut text = draft.name.clone();
@@ -305,7 +304,7 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
                 .fill(palette.field)
                 .stroke(stroke)
                 .corner_radius(4.0)
-                .inner_margin(egui::Margin::symmetric((6.0 * scale) as i8, (5.0 * scale) as i8)),
+                .inner_margin(egui::Margin::symmetric(6, 5)),
         )
         .show(ui);
     let response = edit.response.response;
@@ -328,7 +327,7 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
     if response.changed() {
         actions.push(Action::Author(Ask::Type(text)));
     }
-    ui.add_space(2.0 * scale);
+    ui.add_space(2.0);
     match &checked {
         Ok(id) => {
             let path = on_disk(&lab.shaders, &source_path(id));
@@ -340,9 +339,9 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
         }
         Err(why) => {
             ui.horizontal_top(|ui| {
-                ui.spacing_mut().item_spacing.x = 6.0 * scale;
-                let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0) * scale, egui::Sense::hover());
-                icon::severity(ui.painter(), rect.center(), 5.5 * scale, Severity::Error, &palette);
+                ui.spacing_mut().item_spacing.x = 6.0;
+                let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), egui::Sense::hover());
+                icon::severity(ui.painter(), rect.center(), 5.5, Severity::Error, &palette);
                 ui.add(egui::Label::new(RichText::new(why).small().color(palette.error)).wrap());
             });
         }
@@ -350,18 +349,18 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
     let what = "It is selected once created, and listed under “Custom models”. The first lines of the file declare its name and \
                 its parameters.";
     ui.add(egui::Label::new(theme::small(ui, what)).wrap());
-    ui.add_space(12.0 * scale);
+    ui.add_space(12.0);
     let enter = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
-    let line = vec2(ui.available_width(), 28.0 * scale);
+    let line = vec2(ui.available_width(), 28.0);
     ui.allocate_ui_with_layout(line, Layout::right_to_left(Align::Center), |ui| {
-        let mut button = Button::new(theme::strong(ui, "Create")).min_size(vec2(80.0, 28.0) * scale);
+        let mut button = Button::new(theme::strong(ui, "Create")).min_size(vec2(80.0, 28.0));
         if checked.is_ok() {
             button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
         }
         if ui.add_enabled(checked.is_ok(), button).clicked() || enter {
             actions.push(Action::Author(Ask::Create));
         }
-        if ui.add(Button::new("Cancel").min_size(vec2(80.0, 28.0) * scale)).clicked() {
+        if ui.add(Button::new("Cancel").min_size(vec2(80.0, 28.0))).clicked() {
             actions.push(Action::Author(Ask::Cancel));
         }
     });

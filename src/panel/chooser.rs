@@ -96,7 +96,6 @@ pub fn list<'e, T>(
     entry: impl Fn(&T) -> Entry<'e>,
     tip: impl Fn(&mut Ui, &T),
 ) -> Option<T> {
-    let scale = theme::scale_here(ui);
     let (search_id, row_id) = (id.with("search"), id.with("row"));
     let mut search: String = ui.data(|d| d.get_temp(search_id)).unwrap_or_default();
     let mut found = find(&search);
@@ -132,11 +131,11 @@ pub fn list<'e, T>(
     if before.is_none() {
         edit.request_focus();
     }
-    ui.add_space(4.0 * scale);
+    ui.add_space(4.0);
     ScrollArea::vertical().max_height(height).show(ui, |ui| {
         // The scroll bar floats over this margin.
-        ui.set_width(ui.available_width() - 8.0 * scale);
-        ui.spacing_mut().item_spacing.y = 2.0 * scale;
+        ui.set_width(ui.available_width() - 8.0);
+        ui.spacing_mut().item_spacing.y = 2.0;
         if found.is_empty() {
             ui.weak(words.none);
         }
@@ -145,7 +144,7 @@ pub fn list<'e, T>(
             let entry = entry(item);
             if heading != entry.heading {
                 heading = entry.heading;
-                ui.add_space(if i == 0 { 0.0 } else { 6.0 * scale });
+                ui.add_space(if i == 0 { 0.0 } else { 6.0 });
                 ui.label(theme::strong(ui, heading).small());
             }
             let response = list_row(ui, &entry, i == row);
@@ -161,9 +160,9 @@ pub fn list<'e, T>(
             // Beside the list: below, it would hide what is read next.
             let mut tooltip = Tooltip::for_enabled(&response);
             let popup = tooltip.popup.align(RectAlign::RIGHT_START);
-            tooltip.popup = popup.align_alternatives(&[RectAlign::LEFT_START]).gap(16.0 * scale);
+            tooltip.popup = popup.align_alternatives(&[RectAlign::LEFT_START]).gap(16.0);
             tooltip.show(|ui| {
-                ui.set_max_width(320.0 * scale);
+                ui.set_max_width(320.0);
                 tip(ui, item);
             });
         }
@@ -182,8 +181,7 @@ pub fn list<'e, T>(
 
 fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> egui::Response {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0 * scale), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::click());
     response
         .widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, entry.current, entry.name));
     if !ui.is_rect_visible(rect) {
@@ -200,19 +198,19 @@ fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> egui::Response {
     let y = rect.center().y;
     if let Some(number) = entry.number {
         let small = egui::TextStyle::Small.resolve(ui.style());
-        let at = pos2(rect.left() + 16.0 * scale, y);
+        let at = pos2(rect.left() + 16.0, y);
         painter.text(at, egui::Align2::CENTER_CENTER, number, small, palette.weak);
     }
-    let mut left = rect.left() + 30.0 * scale;
+    let mut left = rect.left() + 30.0;
     if let Some(colour) = entry.swatch {
-        left = rect.left() + 10.0 * scale;
-        let sample = Rect::from_min_size(pos2(left, y - 7.0 * scale), vec2(22.0, 14.0) * scale);
+        left = rect.left() + 10.0;
+        let sample = Rect::from_min_size(pos2(left, y - 7.0), vec2(22.0, 14.0));
         painter.rect(sample, 3.0, colour, Stroke::new(1.0, palette.weak), egui::StrokeKind::Inside);
-        left += 30.0 * scale;
+        left += 30.0;
     }
-    let right = rect.right() - 6.0 * scale;
+    let right = rect.right() - 6.0;
     let name = theme::elided(ui, entry.name, egui::TextStyle::Body, palette.text, right - left);
-    let room = right - left - name.size().x - 12.0 * scale;
+    let room = right - left - name.size().x - 12.0;
     painter.galley(pos2(left, y - name.size().y / 2.0), name, palette.text);
     let note = theme::elided(ui, &entry.note, egui::TextStyle::Small, palette.weak, room);
     painter.galley(pos2(right - note.size().x, y - note.size().y / 2.0), note, palette.weak);
@@ -288,7 +286,6 @@ pub const WIDTH: f32 = 160.0;
 /// own, else about that of the scene.
 pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
-    let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
     let id = Id::new("reflection chooser");
     let shown = lab.model_shown();
@@ -296,7 +293,7 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
     let name = current.map_or(shown, |m| m.declaration.name);
     let button = Button::new(theme::strong(ui, name))
         .right_text(RichText::new("▾").color(palette.weak))
-        .min_size(vec2(132.0, 24.0) * scale)
+        .min_size(vec2(132.0, 24.0))
         .truncate();
     let response = ui.add_sized(vec2(WIDTH, 24.0), button);
     response
@@ -308,7 +305,7 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         forget(ui.ctx(), id);
         if let Some(model) = current {
             response.on_hover_ui(|ui| {
-                ui.set_max_width(320.0 * scale);
+                ui.set_max_width(320.0);
                 about(ui, model);
                 ui.label(theme::small(ui, "key R chooses another"));
             });
@@ -318,8 +315,8 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
     let mut open = true;
     let mut chosen = None;
     let mut asked = Vec::new();
-    let width = 460.0 * scale;
-    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 156.0 * scale;
+    let width = 460.0;
+    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 156.0;
     Popup::from_response(&response)
         .id(id)
         .open_bool(&mut open)

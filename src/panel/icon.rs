@@ -6,10 +6,7 @@ use bevy_egui::egui::{
     vec2,
 };
 
-use super::{
-    state::Severity,
-    theme::{self, Palette},
-};
+use super::{state::Severity, theme::Palette};
 use crate::shading::Stage;
 
 /// A small picture.
@@ -144,8 +141,7 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
 /// A button with nothing but a picture. `says` is its tooltip and its name.
 pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(22.0, 22.0) * scale, Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(22.0, 22.0), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, ui.is_enabled(), says));
     if ui.is_rect_visible(rect) {
         let hot = response.hovered() || response.has_focus();
@@ -156,7 +152,7 @@ pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
             ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.5, palette.accent), egui::StrokeKind::Inside);
         }
         let colour = if hot { palette.text } else { palette.weak };
-        paint(ui.painter(), Rect::from_center_size(rect.center(), vec2(13.0, 13.0) * scale), icon, colour);
+        paint(ui.painter(), Rect::from_center_size(rect.center(), vec2(13.0, 13.0)), icon, colour);
     }
     response.on_hover_text(says)
 }

@@ -64,14 +64,14 @@ impl Panel for Inspector {
 
 /// A group with a heading; folds.
 fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
-    ui.add_space(4.0 * theme::scale_here(ui));
+    ui.add_space(4.0);
     let line = ui.available_rect_before_wrap();
     let palette = Palette::here(ui);
     ui.painter().hline(line.x_range(), line.top(), egui::Stroke::new(1.0, palette.line));
     ui.add_space(4.0);
     let heading = theme::strong(ui, title);
     ui.scope(|ui| {
-        ui.spacing_mut().indent = 16.0 * theme::scale_here(ui);
+        ui.spacing_mut().indent = 16.0;
         ui.visuals_mut().indent_has_left_vline = false;
         CollapsingHeader::new(heading).id_salt(title).default_open(open).show_unindented(ui, |ui| {
             ui.add_space(2.0);
@@ -89,11 +89,10 @@ fn header(
     own: Option<&str>,
     actions: &mut Vec<Action>,
 ) {
-    let scale = theme::scale_here(ui);
     let name = lab.name_of(part, registry);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        let width = ui.available_width() - 76.0 * scale;
+        let width = ui.available_width() - 76.0;
         let rename = move |text: String| match part {
             Selection::Light(i) => Action::Edit(Edit::Light(i, LightField::Name(text))),
             Selection::Object(i) => Action::Edit(Edit::Object(i, ObjectField::Name(text))),
@@ -114,7 +113,7 @@ fn header(
             }
         });
     });
-    ui.add_space(4.0 * scale);
+    ui.add_space(4.0);
 }
 
 /// A field for text; the change counts when the field is left.
@@ -129,7 +128,6 @@ fn text_field(
     mut set: impl FnMut(String),
 ) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let id = ui.make_persistent_id(salt);
     let draft_id = id.with("draft");
     let mut text: String = ui.data(|d| d.get_temp(draft_id)).unwrap_or_else(|| value.to_owned());
@@ -141,13 +139,13 @@ fn text_field(
         .id(id)
         .font(style)
         .hint_text(if heading { RichText::new(hint).heading() } else { RichText::new(hint) })
-        .desired_width(width - 14.0 * scale)
+        .desired_width(width - 14.0)
         .frame(
             egui::Frame::new()
                 .fill(palette.field)
                 .stroke(stroke)
                 .corner_radius(4.0)
-                .inner_margin(egui::Margin::symmetric((6.0 * scale) as i8, (3.0 * scale) as i8)),
+                .inner_margin(egui::Margin::symmetric(6, 3)),
         );
     let response = ui.add(edit);
     response.widget_info(|| {
@@ -360,10 +358,9 @@ fn measured(
 
 /// What was measured on a material, and by whom.
 fn measurement(ui: &mut Ui, material: &Measured) {
-    let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
     ui.label(theme::strong(ui, material.name));
-    egui::Grid::new("measurement").num_columns(5).spacing(vec2(14.0, 3.0) * scale).show(ui, |ui| {
+    egui::Grid::new("measurement").num_columns(5).spacing(vec2(14.0, 3.0)).show(ui, |ui| {
         ui.label("");
         for wavelength in ["630 nm", "532 nm", "465 nm"] {
             ui.label(theme::small(ui, wavelength));
@@ -371,7 +368,7 @@ fn measurement(ui: &mut Ui, material: &Measured) {
         ui.end_row();
         let rows = [("n", material.n), ("k", material.k), ("F_0", material.f0.to_array())];
         for (symbol, values) in rows {
-            maths::symbol(ui, symbol, 15.0 * scale);
+            maths::symbol(ui, symbol, 15.0);
             for v in values {
                 // The k of glass and water is about 10⁻⁸.
                 let text = if v > 0.0 && v < 5e-4 {
@@ -382,7 +379,7 @@ fn measurement(ui: &mut Ui, material: &Measured) {
                 ui.label(text);
             }
             if symbol == "F_0" {
-                let (rect, _) = ui.allocate_exact_size(vec2(30.0, 16.0) * scale, Sense::hover());
+                let (rect, _) = ui.allocate_exact_size(vec2(30.0, 16.0), Sense::hover());
                 let stroke = egui::Stroke::new(1.0, palette.weak);
                 ui.painter().rect(rect, 3.0, theme::swatch(material.f0), stroke, egui::StrokeKind::Inside);
             }
@@ -415,13 +412,13 @@ fn model_header(ui: &mut Ui, model: &ModelEntry) {
     ui.horizontal(|ui| {
         ui.label(name);
         // What does not fit is in the tooltip.
-        if !d.author.is_empty() && ui.available_width() > 48.0 * theme::scale_here(ui) {
+        if !d.author.is_empty() && ui.available_width() > 48.0 {
             ui.add(egui::Label::new(theme::small(ui, d.author)).truncate());
         }
     })
     .response
     .on_hover_ui(|ui| {
-        ui.set_max_width(320.0 * theme::scale_here(ui));
+        ui.set_max_width(320.0);
         chooser::about(ui, model);
     });
 }
@@ -429,11 +426,10 @@ fn model_header(ui: &mut Ui, model: &ModelEntry) {
 /// What stands in the place of a model that is not there: its file is gone, or never worked.
 fn missing_model(ui: &mut Ui, lab: &Lab, registry: &Registry, id: &str, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0 * scale;
-        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 20.0) * scale, Sense::hover());
-        icon::severity(ui.painter(), sign.center(), 6.0 * scale, Severity::Error, &palette);
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 20.0), Sense::hover());
+        icon::severity(ui.painter(), sign.center(), 6.0, Severity::Error, &palette);
         ui.vertical(|ui| {
             ui.add(egui::Label::new(shader::missing_model(lab, registry, id)).wrap().selectable(true));
             ui.horizontal_wrapped(|ui| {
@@ -446,7 +442,7 @@ fn missing_model(ui: &mut Ui, lab: &Lab, registry: &Registry, id: &str, actions:
             });
         });
     });
-    ui.add_space(6.0 * scale);
+    ui.add_space(6.0);
 }
 
 fn equation(ui: &mut Ui, model: &ModelEntry) {
@@ -483,7 +479,7 @@ fn terms(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>)
         return;
     }
     ui.horizontal(|ui| {
-        ui.set_min_height(30.0 * theme::scale_here(ui));
+        ui.set_min_height(30.0);
         ui.label(theme::small(ui, "show"));
         let chosen = options.iter().position(|t| *t == lab.view.terms);
         let names: Vec<_> = options.iter().map(|t| t.id()).collect();
@@ -505,9 +501,8 @@ fn terms(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>)
 fn stage(ui: &mut Ui, mode: &ModeEntry) {
     let d = mode.declaration;
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(48.0, 42.0) * scale, Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(vec2(48.0, 42.0), Sense::hover());
         icon::stage(ui.painter(), rect, d.stage, &palette);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 1.0;
@@ -517,11 +512,11 @@ fn stage(ui: &mut Ui, mode: &ModeEntry) {
     })
     .response
     .on_hover_ui(|ui| {
-        ui.set_max_width(320.0 * scale);
+        ui.set_max_width(320.0);
         ui.label(d.summary);
         ui.label(theme::small(ui, d.source));
     });
-    ui.add_space(6.0 * scale);
+    ui.add_space(6.0);
 }
 
 // ── light ──
@@ -649,9 +644,8 @@ fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightFiel
 /// The colour of a light: sRGB, or the temperature of a black body.
 fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
     let mut out = None;
-    let scale = theme::scale_here(ui);
     ui.horizontal(|ui| {
-        ui.set_min_height(30.0 * scale);
+        ui.set_min_height(30.0);
         ui.label(theme::small(ui, "Colour from"));
         let chosen = usize::from(light.colour_temperature.is_some());
         let tip = |ui: &mut Ui, i: usize| {
@@ -670,7 +664,7 @@ fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
         }
         if light.colour_temperature.is_some() {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.add_space(22.0 * scale);
+                ui.add_space(22.0);
                 knob::colour_sample(ui, light.rgb8());
             });
         }
@@ -717,11 +711,10 @@ fn unit_help(unit: &str) -> &'static str {
 
 fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     let o = lab.scene.observer;
-    let scale = theme::scale_here(ui);
     let set = |o: Observer| Action::Edit(Edit::Observer(o));
     ui.label(RichText::new("Observer").heading());
     ui.label(theme::small(ui, "The camera of the scene"));
-    ui.add_space(6.0 * scale);
+    ui.add_space(6.0);
     section(ui, "Position", true, |ui| {
         let caption = Caption {
             label: "position",
@@ -774,7 +767,6 @@ fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
 // ── room and display ──
 
 fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
-    let scale = theme::scale_here(ui);
     let width = ui.available_width();
     let s = &lab.scene;
     text_field(
@@ -789,7 +781,7 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
             actions.push(Action::Edit(Edit::SceneName(text)));
         },
     );
-    ui.add_space(4.0 * scale);
+    ui.add_space(4.0);
     text_field(
         ui,
         "description",
@@ -802,7 +794,7 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
             actions.push(Action::Edit(Edit::SceneDescription(text)));
         },
     );
-    ui.add_space(6.0 * scale);
+    ui.add_space(6.0);
     section(ui, "Room", true, |ui| {
         let size = s.scene_size;
         let caption = Caption {
@@ -859,7 +851,7 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     });
     let objects = s.objects.len();
     let own = s.objects.iter().filter(|o| o.reflection_model.is_some() || o.shading_model.is_some()).count();
-    ui.add_space(8.0 * scale);
+    ui.add_space(8.0);
     let text = format!("{} · {}", plural(s.lights.len(), "light"), plural(objects, "object"));
     let text = if own > 0 { format!("{text}, {own} with an override of model or shading") } else { text };
     ui.add(egui::Label::new(theme::small(ui, text)).wrap());

@@ -96,7 +96,6 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
         });
     }
 
-    let scale = theme::scale_here(ui);
     let stroke = match (&wrong, focused) {
         (Some(_), _) => Stroke::new(1.5, palette.error),
         (None, true) => Stroke::new(1.5, palette.accent),
@@ -104,14 +103,14 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     };
     let edit = TextEdit::singleline(&mut text)
         .id(id)
-        .desired_width(width - 10.0 * scale)
-        .min_size(vec2(width, 22.0 * scale))
+        .desired_width(width - 10.0)
+        .min_size(vec2(width, 22.0))
         .vertical_align(Align::Center)
         .horizontal_align(Align::Max)
         .clip_text(true)
         .text_color(if wrong.is_some() { palette.error } else { palette.text })
-        .frame(field_frame(&palette, stroke, scale));
-    let response = ui.add_sized(vec2(width, 22.0 * scale), edit);
+        .frame(field_frame(&palette, stroke));
+    let response = ui.add_sized(vec2(width, 22.0), edit);
     response.widget_info(|| {
         let mut info = WidgetInfo::text_edit(ui.is_enabled(), number(value), &text, "");
         info.label = Some(name.to_owned());
@@ -220,11 +219,10 @@ fn slider(
     width: f32,
 ) -> (Response, Option<f64>) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let height = 16.0 * scale;
+    let height = 16.0;
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), value, name));
-    let radius = 6.0 * scale;
+    let radius = 6.0;
     let rail = Rect::from_min_max(
         pos2(rect.left() + radius, rect.center().y - 1.5),
         pos2(rect.right() - radius, rect.center().y + 1.5),
@@ -277,7 +275,7 @@ fn slider(
             let tick = x(default);
             painter.vline(
                 tick,
-                rail.center().y + 3.5 * scale..=rail.center().y + 7.0 * scale,
+                rail.center().y + 3.5..=rail.center().y + 7.0,
                 Stroke::new(1.0, palette.weak),
             );
         }
@@ -312,22 +310,21 @@ enum Words {
 /// The line of a knob: symbol and word at the left, the widgets of `right` at the right.
 fn head<R>(ui: &mut Ui, caption: &Caption, words: Words, right: impl FnOnce(&mut Ui) -> R) -> (Response, R) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let marked = !caption.symbol.is_empty()
         && maths::highlighted(ui.ctx()).is_some_and(|m| maths::same_symbol(&m, caption.symbol));
     let row = ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0 * scale;
-        let height = 22.0 * scale;
-        let symbol_size = 16.0 * scale;
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let height = 22.0;
+        let symbol_size = 16.0;
         let symbol_column = if caption.symbol.is_empty() {
             0.0
         } else {
-            (maths::symbol_width(ui, caption.symbol, symbol_size) + 6.0 * scale).max(28.0 * scale)
+            (maths::symbol_width(ui, caption.symbol, symbol_size) + 6.0).max(28.0)
         };
         let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
         let room = match words {
-            Words::Leave(points) => (ui.available_width() - points * scale).max(symbol_column + 40.0 * scale),
-            Words::Column => (COLUMN * ui.available_width()).max(symbol_column + 40.0 * scale).floor(),
+            Words::Leave(points) => (ui.available_width() - points).max(symbol_column + 40.0),
+            Words::Column => (COLUMN * ui.available_width()).max(symbol_column + 40.0).floor(),
         };
         // A parameter without a symbol of its own has its name for one, and need not say it twice.
         let word = if caption.symbol == caption.label { "" } else { caption.label };
@@ -341,7 +338,7 @@ fn head<R>(ui: &mut Ui, caption: &Caption, words: Words, right: impl FnOnce(&mut
             ui.painter().rect_filled(rect.expand2(vec2(4.0, 0.0)), 3.0, palette.chosen);
         }
         if !caption.symbol.is_empty() {
-            let at = pos2(rect.left(), rect.center().y + 5.0 * scale);
+            let at = pos2(rect.left(), rect.center().y + 5.0);
             maths::paint_symbol(ui, at, caption.symbol, symbol_size, colour);
         }
         let at = pos2(rect.left() + symbol_column, rect.center().y - galley.size().y / 2.0);
@@ -360,7 +357,7 @@ const CHOICE: f32 = 150.0;
 
 /// The tooltip of a knob: its name, what it does, what is legal, the default.
 fn tooltip(ui: &mut Ui, caption: &Caption, rule: &str, default: &str) {
-    ui.set_max_width(300.0 * theme::scale_here(ui));
+    ui.set_max_width(300.0);
     ui.label(theme::strong(ui, capitalised(caption.label)));
     if let Some(reason) = caption.disabled {
         ui.label(RichText::new(format!("{}.", capitalised(reason))).color(Palette::here(ui).warning));
@@ -405,9 +402,8 @@ fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
         return;
     }
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let gap = vec2(0.0, 4.0 * scale);
-    let below = field.rect.bottom() + 56.0 * scale < ui.ctx().content_rect().bottom();
+    let gap = vec2(0.0, 4.0);
+    let below = field.rect.bottom() + 56.0 < ui.ctx().content_rect().bottom();
     let (pivot, at) = if below {
         (Align2::RIGHT_TOP, field.rect.right_bottom() + gap)
     } else {
@@ -416,7 +412,7 @@ fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
     let area = Area::new(field.id.with("complaint")).order(Order::Tooltip).interactable(false);
     area.pivot(pivot).fixed_pos(at).constrain(true).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).stroke(Stroke::new(1.0, palette.error)).show(ui, |ui| {
-            ui.set_max_width(300.0 * scale);
+            ui.set_max_width(300.0);
             let text = format!("{error}; the picture keeps {kept}");
             ui.add(egui::Label::new(RichText::new(text).small().color(palette.error)).wrap());
         });
@@ -425,31 +421,29 @@ fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
 
 /// The unit, outside the field, in a column of its own.
 fn unit(ui: &mut Ui, text: &str) {
-    let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
     let font = TextStyle::Small.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, palette.weak);
-    let width = (18.0 * scale).max(galley.size().x);
-    let (rect, _) = ui.allocate_exact_size(vec2(width, 22.0 * scale), Sense::hover());
+    let width = 18.0_f32.max(galley.size().x);
+    let (rect, _) = ui.allocate_exact_size(vec2(width, 22.0), Sense::hover());
     ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, palette.weak);
 }
 
 /// The unit as a choice: each option is a sign and a word. As wide as a plain unit, so that fields stay in
 /// line. Returns the index of a new choice.
 pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<usize> {
-    let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
     let [sign, word] = options.get(chosen).copied().unwrap_or(["–", "unknown"]);
-    let (rect, response) = ui.allocate_exact_size(vec2(18.0, 22.0) * scale, Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(18.0, 22.0), Sense::click());
     response
         .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, ui.is_enabled(), format!("unit: {word}")));
     let hot = response.hovered() || response.has_focus();
     let colour = if hot { palette.accent } else { palette.text };
     let font = TextStyle::Small.resolve(ui.style());
-    let at = rect.center() - vec2(0.0, 3.0 * scale);
+    let at = rect.center() - vec2(0.0, 3.0);
     ui.painter().text(at, egui::Align2::CENTER_CENTER, sign, font, colour);
-    let tip = rect.center_bottom() - vec2(0.0, 2.0 * scale);
-    let corners = [tip, tip + vec2(-3.5, -4.0) * scale, tip + vec2(3.5, -4.0) * scale];
+    let tip = rect.center_bottom() - vec2(0.0, 2.0);
+    let corners = [tip, tip + vec2(-3.5, -4.0), tip + vec2(3.5, -4.0)];
     ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), colour, Stroke::NONE));
     let mut out = None;
     egui::Popup::menu(&response).show(|ui| {
@@ -491,13 +485,12 @@ pub fn number_knob_beside(
     let mut out = None;
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let scale = theme::scale_here(ui);
         let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
         let words = if finite { Words::Column } else { Words::Leave(NUMBER) };
         let (label, (field, slider)) = head(ui, caption, words, |ui| {
             beside(ui);
-            let field = field(ui, id, caption.label, value, limits, 56.0 * scale);
-            let width = (ui.available_width() - 2.0 * scale).max(24.0);
+            let field = field(ui, id, caption.label, value, limits, 56.0);
+            let width = (ui.available_width() - 2.0).max(24.0);
             (field, finite.then(|| slider(ui, caption.label, value, default, limits, width)))
         });
         out = field.value;
@@ -519,7 +512,7 @@ pub fn number_knob_beside(
             None if field.response.has_focus() => {}
             None => explain(field.response, tip),
         }
-        ui.add_space(3.0 * scale);
+        ui.add_space(3.0);
     });
     out
 }
@@ -536,7 +529,6 @@ pub fn colour_knob(
     let mut out = None;
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        let scale = theme::scale_here(ui);
         let rule = "three whole numbers from 0 to 255: red, green, blue";
         let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
         let [r, g, b] = value;
@@ -548,7 +540,7 @@ pub fn colour_knob(
                 parse_hex(text)
                     .ok_or_else(|| "is not a colour; must be # and six hexadecimal digits".to_owned())
             };
-            text_field(ui, id.with("hex"), &name, &shown, "", 72.0 * scale, read)
+            text_field(ui, id.with("hex"), &name, &shown, "", 72.0, read)
         });
         out = hex.value;
         let mut hot = label.hovered();
@@ -556,7 +548,7 @@ pub fn colour_knob(
         explain(label, |ui| tooltip(ui, caption, &rule, ""));
         let mut wrong = hex.error.map(|e| (e, hex.response));
         ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0 * scale;
+            ui.spacing_mut().item_spacing.x = 4.0;
             let mut rgb = value;
             let swatch = swatch(ui, id.with("swatch"), caption.label, &mut rgb, default);
             hot |= swatch.hovered();
@@ -571,7 +563,7 @@ pub fn colour_knob(
                     rgb[channel] = v as u8;
                     out = Some(rgb);
                 });
-                let f = field(ui, id.with(channel), &name, f64::from(value[channel]), &limits, 40.0 * scale);
+                let f = field(ui, id.with(channel), &name, f64::from(value[channel]), &limits, 40.0);
                 if let Some(v) = f.value {
                     let mut rgb = value;
                     rgb[channel] = v as u8;
@@ -587,7 +579,7 @@ pub fn colour_knob(
         if let Some((error, field)) = wrong {
             complaint(ui, &field, &capitalised(&error), &format!("{r}, {g}, {b}"));
         }
-        ui.add_space(6.0 * scale);
+        ui.add_space(6.0);
     });
     out.filter(|c| *c != value)
 }
@@ -595,8 +587,7 @@ pub fn colour_knob(
 /// The colour itself; a click opens the picker, a double-click sets the default.
 fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u8; 3]>) -> Response {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0) * scale, Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0), Sense::click());
     let says = format!("{name}: choose a colour");
     response.widget_info(|| WidgetInfo::labeled(WidgetType::ColorButton, ui.is_enabled(), &says));
     let [r, g, b] = *rgb;
@@ -614,7 +605,7 @@ fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u
         .id(id)
         .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
         .show(|ui| {
-            ui.spacing_mut().slider_width = 220.0 * scale;
+            ui.spacing_mut().slider_width = 220.0;
             let mut colour = Color32::from_rgb(rgb[0], rgb[1], rgb[2]);
             if egui::color_picker::color_picker_color32(ui, &mut colour, egui::color_picker::Alpha::Opaque) {
                 *rgb = [colour.r(), colour.g(), colour.b()];
@@ -626,7 +617,7 @@ fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u
 /// A colour that follows from something else.
 pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
     let palette = Palette::here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0) * theme::scale_here(ui), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0), Sense::hover());
     let [r, g, b] = rgb;
     let stroke = Stroke::new(1.0, palette.line);
     ui.painter().rect(rect, 4.0, Color32::from_rgb(r, g, b), stroke, egui::StrokeKind::Inside);
@@ -634,13 +625,13 @@ pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
 }
 
 /// The box around what is typed.
-fn field_frame(palette: &Palette, stroke: Stroke, scale: f32) -> egui::Frame {
+fn field_frame(palette: &Palette, stroke: Stroke) -> egui::Frame {
     egui::Frame::new()
         .fill(palette.field)
         // A stroke of another width would move what stands below.
         .stroke(Stroke::new(1.0, stroke.color))
         .corner_radius(4.0)
-        .inner_margin(egui::Margin::symmetric((4.0 * scale) as i8, (2.0 * scale) as i8))
+        .inner_margin(egui::Margin::symmetric(4, 2))
 }
 
 /// A field for a value that is not one number: `read` takes what is typed or says what is wrong. What is
@@ -655,7 +646,6 @@ fn text_field<T>(
     read: impl Fn(&str) -> Result<T, String>,
 ) -> Field<T> {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let draft_id = id.with("draft");
     let draft: Option<String> = ui.data(|d| d.get_temp(draft_id));
     let focused = ui.memory(|m| m.has_focus(id));
@@ -671,13 +661,13 @@ fn text_field<T>(
     let edit = TextEdit::singleline(&mut text)
         .id(id)
         .hint_text(RichText::new(hint).color(palette.weak))
-        .desired_width(width - 10.0 * scale)
-        .min_size(vec2(width, 22.0 * scale))
+        .desired_width(width - 10.0)
+        .min_size(vec2(width, 22.0))
         .vertical_align(Align::Center)
         .horizontal_align(Align::Max)
         .text_color(if wrong { palette.error } else { palette.text })
-        .frame(field_frame(&palette, stroke, scale));
-    let response = ui.add_sized(vec2(width, 22.0 * scale), edit);
+        .frame(field_frame(&palette, stroke));
+    let response = ui.add_sized(vec2(width, 22.0), edit);
     response.widget_info(|| {
         let mut info = WidgetInfo::text_edit(ui.is_enabled(), shown, &text, hint);
         info.label = Some(name.to_owned());
@@ -717,18 +707,11 @@ pub fn parse_hex(text: &str) -> Option<[u8; 3]> {
 /// The letter before a field; dragging it sideways turns the value.
 fn axis_letter(ui: &mut Ui, letter: &str, name: &str, limits: &Limits, value: f64, set: impl FnOnce(f64)) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(14.0, 22.0) * scale, Sense::DRAG);
+    let (rect, response) = ui.allocate_exact_size(vec2(14.0, 22.0), Sense::DRAG);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, ui.is_enabled(), name));
     let colour = if response.hovered() || response.dragged() { palette.accent } else { palette.weak };
     let font = TextStyle::Small.resolve(ui.style());
-    ui.painter().text(
-        rect.right_center() - vec2(2.0 * scale, 0.0),
-        Align2::RIGHT_CENTER,
-        letter,
-        font,
-        colour,
-    );
+    ui.painter().text(rect.right_center() - vec2(2.0, 0.0), Align2::RIGHT_CENTER, letter, font, colour);
     if response.dragged() {
         let id = response.id.with("drag");
         let start: f64 =
@@ -761,12 +744,11 @@ fn three_fields(
     value: Vec3,
     limits: &[Limits; 3],
 ) -> (Option<Vec3>, Option<(String, f64, Response)>) {
-    let scale = theme::scale_here(ui);
     let mut out = None;
     let mut wrong = None;
     // Three letters, three fields, the unit, and the gaps between the seven.
-    let room = ui.available_width() - (3.0 * 14.0 + 18.0 + 6.0 * 4.0) * scale;
-    let width = (room / 3.0).clamp(36.0 * scale, 96.0 * scale).floor();
+    let room = ui.available_width() - (3.0 * 14.0 + 18.0 + 6.0 * 4.0);
+    let width = (room / 3.0).clamp(36.0, 96.0).floor();
     for axis in 0..3 {
         let component = f64::from(value.to_array()[axis]);
         let name = format!("{} {}", caption.label, letters[axis]);
@@ -799,17 +781,16 @@ pub fn vector_knob(
     let mut out = None;
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        let scale = theme::scale_here(ui);
         ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0 * scale;
+            ui.spacing_mut().item_spacing.x = 4.0;
             let font = TextStyle::Body.resolve(ui.style());
             let colour = Palette::here(ui).text;
             let galley = ui.painter().layout_no_wrap(caption.label.to_owned(), font, colour);
-            let column = galley.size().x.max(54.0 * scale);
-            let (rect, label) = ui.allocate_exact_size(vec2(column, 22.0 * scale), Sense::hover());
+            let column = galley.size().x.max(54.0);
+            let (rect, label) = ui.allocate_exact_size(vec2(column, 22.0), Sense::hover());
             ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, colour);
             label.on_hover_ui(|ui| {
-                ui.set_max_width(300.0 * scale);
+                ui.set_max_width(300.0);
                 ui.label(caption.help);
                 for (letter, limits) in LETTERS.iter().zip(limits) {
                     ui.label(theme::small(ui, format!("{letter}: {}", limits.rule())));
@@ -821,7 +802,7 @@ pub fn vector_knob(
                 complaint(ui, &field, &error, &number(kept));
             }
         });
-        ui.add_space(6.0 * scale);
+        ui.add_space(6.0);
     });
     out
 }
@@ -839,7 +820,6 @@ pub fn triple_knob(
     let mut out = None;
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        let scale = theme::scale_here(ui);
         let plain = |v: f32| number(f64::from(v));
         let list = |v: [f32; 3]| v.map(plain).join(", ");
         let same = value[0] == value[1] && value[1] == value[2];
@@ -852,7 +832,7 @@ pub fn triple_knob(
                 None => Err(format!("is not a number; must be {}", limits.rule())),
             };
             let name = format!("{}: all three", caption.label);
-            text_field(ui, id.with("all"), &name, &shown, "all", 64.0 * scale, read)
+            text_field(ui, id.with("all"), &name, &shown, "all", 64.0, read)
         });
         out = all.value;
         if (label.hovered() || all.response.hovered()) && !caption.symbol.is_empty() {
@@ -862,7 +842,7 @@ pub fn triple_knob(
         explain(label, |ui| tooltip(ui, caption, &rule, ""));
         let mut wrong = all.error.map(|e| (capitalised(&e), list(value), all.response));
         ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0 * scale;
+            ui.spacing_mut().item_spacing.x = 4.0;
             let bounds = [limits.clone(), limits.clone(), limits.clone()];
             let (new, bad) = three_fields(ui, id, caption, ["R", "G", "B"], value.into(), &bounds);
             out = new.map(Into::into).or(out);
@@ -871,7 +851,7 @@ pub fn triple_knob(
         if let Some((error, kept, field)) = wrong {
             complaint(ui, &field, &error, &kept);
         }
-        ui.add_space(6.0 * scale);
+        ui.add_space(6.0);
     });
     out.filter(|v| *v != value)
 }
@@ -879,7 +859,6 @@ pub fn triple_knob(
 /// What follows from the knobs: symbol, word, and the value with a sample of its colour.
 pub fn readout(ui: &mut Ui, readout: &Readout) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let caption = Caption { symbol: readout.symbol, label: readout.label, ..Caption::default() };
     let digits = |v: f32| format!("{v:.3}");
     let text = match readout.value {
@@ -889,7 +868,7 @@ pub fn readout(ui: &mut Ui, readout: &Readout) {
     let value = |ui: &mut Ui| {
         unit(ui, "");
         if let ReadoutValue::Reflectance(rgb) = readout.value {
-            let (rect, _) = ui.allocate_exact_size(vec2(22.0, 14.0) * scale, Sense::hover());
+            let (rect, _) = ui.allocate_exact_size(vec2(22.0, 14.0), Sense::hover());
             let stroke = Stroke::new(1.0, palette.weak);
             ui.painter().rect(rect, 3.0, theme::swatch(rgb), stroke, egui::StrokeKind::Inside);
         }
@@ -899,7 +878,7 @@ pub fn readout(ui: &mut Ui, readout: &Readout) {
         value
     };
     let tip = |ui: &mut Ui| {
-        ui.set_max_width(300.0 * scale);
+        ui.set_max_width(300.0);
         ui.label(theme::strong(ui, readout.label));
         ui.label(readout.help);
     };
@@ -909,7 +888,7 @@ pub fn readout(ui: &mut Ui, readout: &Readout) {
         ReadoutValue::Reflectance(_) => {
             let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
             let (label, ()) = head(ui, &caption, Words::Leave(0.0), |_| ());
-            let row = vec2(ui.available_width(), 20.0 * scale);
+            let row = vec2(ui.available_width(), 20.0);
             let layout = egui::Layout::right_to_left(Align::Center);
             let value = ui.allocate_ui_with_layout(row, layout, value).inner;
             ui.spacing_mut().item_spacing.y = spacing;
@@ -929,21 +908,20 @@ pub fn list_knob<R>(
     shown: &str,
     list: impl FnOnce(&mut Ui, Id) -> Option<R>,
 ) -> Option<R> {
-    let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
     let id = ui.make_persistent_id(salt);
     let (label, button) = head(ui, caption, Words::Leave(CHOICE), |ui| {
-        ui.add_space(22.0 * scale);
-        let width = (ui.available_width() - 4.0 * scale).clamp(80.0 * scale, 190.0 * scale);
+        ui.add_space(22.0);
+        let width = (ui.available_width() - 4.0).clamp(80.0, 190.0);
         let button = Button::new(shown).right_text(RichText::new("▾").color(palette.weak)).truncate();
-        let button = ui.add_sized(vec2(width, 24.0 * scale), button);
+        let button = ui.add_sized(vec2(width, 24.0), button);
         button.widget_info(|| {
             WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
         });
         button
     });
     explain(label, |ui| tooltip(ui, caption, "", ""));
-    let width = 352.0 * scale;
+    let width = 352.0;
     let mut out = None;
     let popup = Popup::from_toggle_button_response(&button)
         .id(id)
@@ -960,7 +938,7 @@ pub fn list_knob<R>(
     if out.is_some() {
         Popup::close_id(ui.ctx(), id);
     }
-    ui.add_space(4.0 * scale);
+    ui.add_space(4.0);
     out
 }
 
@@ -985,7 +963,7 @@ pub fn told_choice_knob(
     options: &[[&str; 3]],
 ) -> Option<usize> {
     let tip = |ui: &mut Ui, [name, author, summary]: [&str; 3]| {
-        ui.set_max_width(300.0 * theme::scale_here(ui));
+        ui.set_max_width(300.0);
         ui.label(theme::strong(ui, name));
         ui.label(summary);
         if !author.is_empty() {
@@ -994,11 +972,10 @@ pub fn told_choice_knob(
     };
     let mut out = None;
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
-        let scale = theme::scale_here(ui);
         let id = ui.make_persistent_id(salt);
         let (label, ()) = head(ui, caption, Words::Leave(CHOICE), |ui| {
-            ui.add_space(22.0 * scale);
-            let width = (ui.available_width() - 4.0 * scale).clamp(80.0 * scale, 190.0 * scale);
+            ui.add_space(22.0);
+            let width = (ui.available_width() - 4.0).clamp(80.0, 190.0);
             let now = options.get(chosen).copied();
             let [shown, _, told] = now.unwrap_or(["–", "", ""]);
             let combo = egui::ComboBox::from_id_salt(id)
@@ -1029,7 +1006,7 @@ pub fn told_choice_knob(
             maths::highlight(ui.ctx(), caption.symbol);
         }
         explain(label, |ui| tooltip(ui, caption, "", ""));
-        ui.add_space(4.0 * scale);
+        ui.add_space(4.0);
     });
     out
 }

@@ -75,17 +75,16 @@ fn laws(ui: &mut Ui, report: &LawReport) {
 /// A finding with its sign; a tick where there is nothing to say against it.
 fn line(ui: &mut Ui, severity: Option<Severity>, what: &str, how: &str, at: &[String]) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let bad = severity == Some(Severity::Error);
     let row = ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(6.0, 1.0) * scale;
-        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 18.0) * scale, Sense::hover());
+        ui.spacing_mut().item_spacing = vec2(6.0, 1.0);
+        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 18.0), Sense::hover());
         match severity {
-            Some(severity) => icon::severity(ui.painter(), sign.center(), 5.5 * scale, severity, &palette),
+            Some(severity) => icon::severity(ui.painter(), sign.center(), 5.5, severity, &palette),
             None => {
-                let (c, r) = (sign.center(), 4.5 * scale);
+                let (c, r) = (sign.center(), 4.5);
                 let tick = vec![c + vec2(-r, 0.0), c + vec2(-0.3 * r, 0.7 * r), c + vec2(r, -0.7 * r)];
-                ui.painter().line(tick, egui::Stroke::new(1.6 * scale, palette.accent));
+                ui.painter().line(tick, egui::Stroke::new(1.6, palette.accent));
             }
         }
         let mut rest = what.chars();

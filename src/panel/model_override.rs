@@ -12,7 +12,6 @@ use crate::{registry::Registry, scene::Object};
 
 /// The button, and what it opens. Returns the change that was asked for.
 pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> Option<ObjectField> {
-    let scale = theme::scale_here(ui);
     let palette = Palette::here(ui);
     let model_name =
         |id: &str| registry.model(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned());
@@ -36,7 +35,7 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
     });
 
     let id = ui.make_persistent_id("model override");
-    let width = 352.0 * scale;
+    let width = 352.0;
     let scene_model = model_name(&lab.scene.reflection_model);
     let scene_mode = mode_name(&lab.scene.shading_model);
     let mut out = None;
@@ -52,7 +51,7 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
                 ui,
                 format!("Of this object alone; the scene has {scene_model} and {scene_mode} shading."),
             ));
-            ui.add_space(4.0 * scale);
+            ui.add_space(4.0);
             let modes = registry.modes();
             let mut names = vec!["Scene default"];
             names.extend(modes.iter().map(|m| m.declaration.name));
@@ -61,7 +60,7 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
                 .as_ref()
                 .map_or(Some(0), |id| modes.iter().position(|m| m.declaration.id == id).map(|k| k + 1));
             let tip = |ui: &mut Ui, i: usize| {
-                ui.set_max_width(300.0 * scale);
+                ui.set_max_width(300.0);
                 match i.checked_sub(1).map(|k| modes[k].declaration) {
                     Some(d) => ui.label(d.summary),
                     None => ui.label(format!("The shading of the scene: {scene_mode}.")),
@@ -70,7 +69,7 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
             if let Some(i) = segmented(ui, "Shading of this object", &names, chosen, tip) {
                 out = Some(ObjectField::Mode(i.checked_sub(1).map(|k| modes[k].declaration.id.to_owned())));
             }
-            ui.add_space(6.0 * scale);
+            ui.add_space(6.0);
             let own = object.reflection_model.as_deref();
             let height = 0.45 * ui.ctx().content_rect().height();
             let first = format!("Scene default ({scene_model})");
@@ -85,7 +84,7 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
         chooser::forget(ui.ctx(), id.with("list"));
     }
     button.on_hover_ui(|ui| {
-        ui.set_max_width(300.0 * scale);
+        ui.set_max_width(300.0);
         ui.label(theme::strong(ui, "Override model and shading"));
         ui.label(if own.is_empty() {
             "Give this object a reflection model or a shading of its own, whatever the scene has.".to_owned()

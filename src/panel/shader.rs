@@ -47,18 +47,17 @@ impl Panel for Shader {
 
     fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
-        let scale = theme::scale_here(ui);
         let palette = Palette::here(ui);
         let whole = ui.available_rect_before_wrap();
-        let gap = 12.0 * scale;
+        let gap = 12.0;
         // What is wrong comes first where there is little room.
         let share = if lab.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
-        let left = (share * whole.width()).clamp(240.0 * scale, 620.0 * scale);
+        let left = (share * whole.width()).clamp(240.0, 620.0);
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             let column = |ui: &mut Ui, width: f32, add: &mut dyn FnMut(&mut Ui)| {
                 ui.allocate_ui_with_layout(vec2(width, whole.height()), Layout::top_down(Align::Min), |ui| {
-                    ui.spacing_mut().item_spacing.x = theme::UNIT * scale;
+                    ui.spacing_mut().item_spacing.x = theme::UNIT;
                     ui.set_width(width);
                     add(ui);
                 });
@@ -125,7 +124,6 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
 }
 
 fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
-    let scale = theme::scale_here(ui);
     let (Some(model), Some(mode)) = (registry.model(lab.model_shown()), registry.mode(lab.mode_shown()))
     else {
         ui.add(egui::Label::new(missing_model(lab, registry, lab.model_shown())).wrap());
@@ -138,9 +136,9 @@ fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>)
     });
     ScrollArea::vertical().id_salt("files").auto_shrink(false).show(ui, |ui| {
         // The scroll bar floats over this margin.
-        ui.set_width(ui.available_width() - 8.0 * scale);
+        ui.set_width(ui.available_width() - 8.0);
         ui.spacing_mut().item_spacing.y = 0.0;
-        ui.spacing_mut().interact_size.y = ROW * scale;
+        ui.spacing_mut().interact_size.y = ROW;
         for file in compose::files(registry.sources(), model, mode, registry.lights()) {
             self::file(ui, lab, &file, actions);
         }
@@ -162,7 +160,7 @@ fn folder(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let text = folder.display().to_string();
     ui.label(theme::small(ui, "watched:"));
-    let room = ui.available_width() - 36.0 * theme::scale_here(ui);
+    let room = ui.available_width() - 36.0;
     let shown = tail(ui, &text, TextStyle::Small, room);
     let path = ui.label(RichText::new(shown).small().color(palette.text));
     let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
@@ -195,18 +193,17 @@ const ROW: f32 = 22.0;
 fn file(ui: &mut Ui, lab: &Lab, file: &File, actions: &mut Vec<Action>) {
     let File { part, ref path, edited } = *file;
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let (name, help) = words(part, path);
     let trouble = lab.shaders.troubles.iter().find(|t| t.problem.file == *path);
     let on_disk = author::on_disk(&lab.shaders, path);
     let row = ui.horizontal(|ui| {
-        ui.set_min_height(ROW * scale);
-        ui.spacing_mut().item_spacing.x = 6.0 * scale;
-        let (sign, _) = ui.allocate_exact_size(vec2(14.0, ROW) * scale, Sense::hover());
+        ui.set_min_height(ROW);
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (sign, _) = ui.allocate_exact_size(vec2(14.0, ROW), Sense::hover());
         if trouble.is_some() {
-            icon::severity(ui.painter(), sign.center(), 5.5 * scale, Severity::Error, &palette);
+            icon::severity(ui.painter(), sign.center(), 5.5, Severity::Error, &palette);
         }
-        let (place, label) = ui.allocate_exact_size(vec2(140.0, ROW) * scale, Sense::hover());
+        let (place, label) = ui.allocate_exact_size(vec2(140.0, ROW), Sense::hover());
         let galley = theme::elided(ui, &name, TextStyle::Body, palette.text, place.width());
         let at = egui::pos2(place.left(), place.center().y - galley.size().y / 2.0);
         ui.painter().galley(at, galley, palette.text);
@@ -238,7 +235,7 @@ fn file(ui: &mut Ui, lab: &Lab, file: &File, actions: &mut Vec<Action>) {
         });
     });
     row.response.on_hover_ui(|ui| {
-        ui.set_max_width(340.0 * scale);
+        ui.set_max_width(340.0);
         ui.label(theme::strong(ui, &name));
         ui.label(help);
         let place = on_disk.map_or_else(|| format!("{path}, built in"), |f| f.display().to_string());
@@ -346,12 +343,11 @@ pub fn report(trouble: &Trouble) -> String {
 }
 
 fn troubles(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
-    let scale = theme::scale_here(ui);
     let mut all: Vec<_> = lab.shaders.troubles.iter().collect();
     // What the picture suffers from comes first.
     all.sort_by_key(|t| t.stale.is_empty());
     ScrollArea::vertical().id_salt("troubles").auto_shrink(false).show(ui, |ui| {
-        ui.set_width(ui.available_width() - 8.0 * scale);
+        ui.set_width(ui.available_width() - 8.0);
         for (i, trouble) in all.into_iter().enumerate() {
             if i > 0 {
                 ui.separator();
@@ -363,12 +359,11 @@ fn troubles(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
 
 fn trouble(ui: &mut Ui, trouble: &Trouble, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let p = &trouble.problem;
     ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0 * scale;
-        let (sign, response) = ui.allocate_exact_size(vec2(16.0, 24.0) * scale, Sense::hover());
-        icon::severity(ui.painter(), sign.center(), 6.0 * scale, Severity::Error, &palette);
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (sign, response) = ui.allocate_exact_size(vec2(16.0, 24.0), Sense::hover());
+        icon::severity(ui.painter(), sign.center(), 6.0, Severity::Error, &palette);
         response.on_hover_text(Severity::Error.name());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(path) = &trouble.path {
@@ -398,12 +393,11 @@ fn source_line(ui: &mut Ui, trouble: &Trouble) {
         return;
     }
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let font = FontId::monospace(TextStyle::Body.resolve(ui.style()).size);
     let plain = |text: String, colour| ui.painter().layout_no_wrap(text, font.clone(), colour);
     let number = plain(p.line.to_string(), palette.weak);
     let advance = plain("0".repeat(10), palette.text).size().x / 10.0;
-    let padding = vec2(8.0, 4.0) * scale;
+    let padding = vec2(8.0, 4.0);
     let gutter = number.size().x + 2.0 * padding.x;
     let width = ui.available_width();
     let room = ((width - gutter - 2.0 * padding.x) / advance).floor().max(0.0) as usize;
@@ -434,7 +428,6 @@ fn source_line(ui: &mut Ui, trouble: &Trouble) {
 
 /// Nothing is wrong: what was last taken over, and how to begin.
 fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
-    let scale = theme::scale_here(ui);
     let heading = if laws::are_broken(lab) { "No errors, but broken laws" } else { "No errors" };
     let how = match &lab.shaders.shaders {
         Some(_) => {
@@ -458,10 +451,10 @@ fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     });
     ScrollArea::vertical().id_salt("well").auto_shrink(false).show(ui, |ui| {
         // The scroll bar floats over this margin.
-        ui.set_width(ui.available_width() - 8.0 * scale);
+        ui.set_width(ui.available_width() - 8.0);
         laws::findings(ui, lab);
         ui.add(egui::Label::new(how).wrap());
-        ui.add_space(4.0 * scale);
+        ui.add_space(4.0);
         actions.extend(author::buttons(ui, lab, registry));
     });
 }

@@ -53,7 +53,7 @@ impl Panel for Tree {
             i if i == 3 + lights => Row::Objects,
             i => Row::Part(Selection::Object(i - 4 - lights)),
         };
-        let height = 26.0 * theme::scale_here(ui);
+        let height = 26.0;
         ui.spacing_mut().item_spacing.y = 0.0;
         let total = 4 + lights + objects;
         let mut area = ScrollArea::vertical().auto_shrink(false);
@@ -127,27 +127,23 @@ fn add_item(ui: &mut Ui, glyph: &str, name: &str, summary: &str, action: Action,
 
 fn heading(ui: &mut Ui, name: &str, count: usize, height: f32, menu: impl FnOnce(&mut Ui)) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let small = TextStyle::Small.resolve(ui.style());
     let text = ui.painter().text(
-        pos2(rect.left() + 8.0 * scale, rect.bottom() - 5.0 * scale),
+        pos2(rect.left() + 8.0, rect.bottom() - 5.0),
         Align2::LEFT_BOTTOM,
         name,
         FontId::new(small.size, theme::semibold()),
         palette.weak,
     );
     ui.painter().text(
-        pos2(text.right() + 6.0 * scale, text.bottom()),
+        pos2(text.right() + 6.0, text.bottom()),
         Align2::LEFT_BOTTOM,
         count,
         small,
         palette.weak,
     );
-    let place = Rect::from_min_size(
-        pos2(rect.right() - 26.0 * scale, rect.top() + 2.0 * scale),
-        vec2(22.0, 22.0) * scale,
-    );
+    let place = Rect::from_min_size(pos2(rect.right() - 26.0, rect.top() + 2.0), vec2(22.0, 22.0));
     let mut child = ui.new_child(egui::UiBuilder::new().id_salt(name).max_rect(place));
     let what = if name == "Lights" { "Add a light" } else { "Add an object" };
     let response = icon::button(&mut child, Icon::Plus, what);
@@ -163,7 +159,6 @@ fn part_row(
     actions: &mut Vec<Action>,
 ) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let selected = lab.selection == part;
     let name = lab.name_of(part, registry);
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
@@ -172,7 +167,7 @@ fn part_row(
     response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, &name));
     let hovered = ui.rect_contains_pointer(rect);
     let painter = ui.painter_at(rect);
-    let ground = rect.shrink2(vec2(4.0 * scale, 0.0));
+    let ground = rect.shrink2(vec2(4.0, 0.0));
     if selected {
         painter.rect_filled(ground, 4.0, palette.chosen);
         painter.rect_filled(Rect::from_min_size(ground.min, vec2(3.0, ground.height())), 1.5, palette.accent);
@@ -183,16 +178,16 @@ fn part_row(
         painter.rect_stroke(ground, 4.0, Stroke::new(1.5, palette.accent), StrokeKind::Inside);
     }
     let nested = matches!(part, Selection::Light(_) | Selection::Object(_));
-    let x = rect.left() + (if nested { 22.0 } else { 16.0 }) * scale;
+    let x = rect.left() + (if nested { 22.0 } else { 16.0 });
     let centre = pos2(x, rect.center().y);
-    let square = Rect::from_center_size(centre, vec2(14.0, 14.0) * scale);
+    let square = Rect::from_center_size(centre, vec2(14.0, 14.0));
     let body = TextStyle::Body.resolve(ui.style());
     let glyph = |glyph: &str| {
         painter.text(
             centre,
             Align2::CENTER_CENTER,
             glyph,
-            FontId::new(14.0 * scale, body.family.clone()),
+            FontId::new(14.0, body.family.clone()),
             palette.text,
         );
     };
@@ -212,23 +207,23 @@ fn part_row(
             dot = Some([colour.x as u8, colour.y as u8, colour.z as u8]);
         }
     }
-    let text_left = x + 14.0 * scale;
+    let text_left = x + 14.0;
     if lab.renaming == Some(part) {
         let place = Rect::from_min_max(
-            pos2(text_left - 4.0 * scale, rect.top() + 2.0),
+            pos2(text_left - 4.0, rect.top() + 2.0),
             pos2(ground.right() - 4.0, rect.bottom() - 2.0),
         );
         rename(ui, lab, part, &name, place, actions);
         return;
     }
-    let right = ground.right() - if nested { 48.0 * scale } else { 8.0 * scale };
+    let right = ground.right() - if nested { 48.0 } else { 8.0 };
     let there = is_there(lab, part);
     let colour = if there { palette.text } else { palette.weak };
     let galley = elided(ui, &name, body, colour, right - text_left);
     let cut = galley.elided;
     painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
     if let Some(rgb) = dot {
-        let centre = |from_right: f32| pos2(ground.right() - from_right * scale, rect.center().y);
+        let centre = |from_right: f32| pos2(ground.right() - from_right, rect.center().y);
         toggle(ui, centre(36.0), hovered, part, there, &name, actions);
         colour_dot(ui, centre(12.0), rgb, part, &name, actions);
     }
@@ -286,7 +281,7 @@ fn toggle_words(part: Selection, there: bool) -> &'static str {
 
 /// A small place in a row that can be clicked. Keys reach what it does through the row, so Tab passes it by.
 fn spot(ui: &Ui, centre: egui::Pos2, id: egui::Id, says: &str) -> egui::Response {
-    let rect = Rect::from_center_size(centre, vec2(22.0, 22.0) * theme::scale_here(ui));
+    let rect = Rect::from_center_size(centre, vec2(22.0, 22.0));
     let response = ui.interact(rect, id, Sense::CLICK);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, says));
     if response.hovered() {
@@ -316,7 +311,7 @@ fn toggle(
     };
     let strong = row_hovered || !there || response.hovered();
     let colour = if strong { palette.text } else { palette.weak };
-    let square = Rect::from_center_size(centre, vec2(13.0, 13.0) * theme::scale_here(ui));
+    let square = Rect::from_center_size(centre, vec2(13.0, 13.0));
     icon::paint(ui.painter(), square, icon, colour);
     if response.on_hover_text(format!("{says} (V for what is selected)")).clicked() {
         actions.push(Action::Toggle(part));
@@ -333,12 +328,11 @@ fn colour_dot(
     actions: &mut Vec<Action>,
 ) {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let response = spot(ui, centre, ui.id().with(("dot", part)), &format!("Colour of {name}"));
     let mut colour = egui::Color32::from_rgb(r, g, b);
-    ui.painter().circle(centre, 4.5 * scale, colour, Stroke::new(1.0, palette.weak));
+    ui.painter().circle(centre, 4.5, colour, Stroke::new(1.0, palette.weak));
     egui::Popup::menu(&response).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
-        ui.spacing_mut().slider_width = 220.0 * scale;
+        ui.spacing_mut().slider_width = 220.0;
         if egui::color_picker::color_picker_color32(ui, &mut colour, egui::color_picker::Alpha::Opaque) {
             let rgb = [colour.r(), colour.g(), colour.b()];
             actions.extend(match part {
