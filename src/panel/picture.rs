@@ -11,26 +11,29 @@ use super::{
     caption::caption_text,
     icon,
     inspector::plural,
-    shader,
+    marks, shader,
     state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
 use crate::{optics::TermSelection, reflection::Term, registry::Registry, shader::status::ShaderStatus};
 
-/// Paints the overlays into the rectangle of the picture. Returns what was asked for there, and the place that
-/// can be clicked, which does not belong to the picture.
-pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Rect) {
+/// Paints the overlays into the rectangle of the picture. Returns what was asked for there, and the places that
+/// can be clicked, which do not belong to the picture.
+pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Vec<Rect>) {
     if rect.width() < 80.0 || rect.height() < 80.0 {
-        return (Vec::new(), Rect::NOTHING);
+        return (Vec::new(), Vec::new());
     }
     let scale = theme::scale(&lab.view);
-    let (actions, covered) = stale(ui, rect, lab, registry, scale);
+    let (mut actions, mut places) = marks::marks(ui, rect, lab, registry);
+    let (asked, covered) = stale(ui, rect, lab, registry, scale);
+    actions.extend(asked);
     let top = if covered.is_positive() { covered.bottom() + 4.0 } else { rect.top() + 8.0 };
     badges(ui, rect, top, lab, scale);
     caption(ui, rect, lab, registry, scale);
     axes(ui, rect, lab, scale);
     hint(ui, rect, lab);
-    (actions, covered)
+    places.push(covered);
+    (actions, places)
 }
 
 /// What the picture says of itself while a shader has an error: a heading, and where the errors are. The model

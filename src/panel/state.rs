@@ -25,6 +25,7 @@ use super::{
 use crate::{
     files::printable,
     light::MAX_LIGHTS,
+    observer::rotation,
     optics::TermSelection,
     reflection::parameter::Value,
     registry::Registry,
@@ -88,6 +89,8 @@ pub struct Lab {
     pub wanted_model: Option<String>,
     /// The orientation of the camera, fed by the app; turns the axes in the corner of the picture.
     pub camera: Quat,
+    /// The place of the camera, fed by the app.
+    pub eye: Vec3,
     /// The question that waits for an answer. While there is one, nothing else can be done.
     pub question: Option<Question>,
     /// Where the picture is, in points; written by the panels.
@@ -639,7 +642,6 @@ impl Lab {
         let mut lab = Self {
             saved: scene.clone(),
             selection: Selection::Room,
-            scene,
             path: None,
             messages: Vec::new(),
             view: View::default(),
@@ -652,7 +654,8 @@ impl Lab {
             draft: None,
             laws: None,
             wanted_model: None,
-            camera: Quat::IDENTITY,
+            camera: rotation(scene.observer.direction),
+            eye: scene.observer.position,
             question: None,
             picture_rect: egui::Rect::NOTHING,
             pointer_in_picture: false,
@@ -669,6 +672,7 @@ impl Lab {
             aside: Aside::default(),
             known_terms: KnownTerms::default(),
             camera_left: false,
+            scene,
         };
         lab.select_first();
         lab.use_slot(&lab.scene.reflection_model.clone());

@@ -19,6 +19,7 @@ mod keyboard;
 mod knobs;
 mod law_check;
 mod laws;
+mod marks;
 mod memory;
 mod missing_size;
 mod own_folder;
