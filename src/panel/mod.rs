@@ -48,6 +48,7 @@ pub mod messages;
 pub mod model_override;
 pub mod names;
 pub mod picture;
+mod placing;
 pub mod question;
 pub mod recovery;
 pub mod reload;

@@ -26,6 +26,7 @@ mod own_folder;
 mod own_models;
 mod panels;
 mod pictures;
+mod placing;
 mod readme;
 mod reference_renderer;
 mod reload;
