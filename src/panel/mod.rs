@@ -31,6 +31,7 @@ use theme::Palette;
 pub mod author;
 pub mod caption;
 pub mod chooser;
+pub mod clipping;
 pub mod files;
 mod focus;
 pub mod follow;

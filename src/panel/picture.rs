@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::{
     author::SHADER_TAB,
     caption::caption_text,
-    icon,
+    clipping, icon,
     inspector::plural,
     marks, shader,
     state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
@@ -24,6 +24,7 @@ pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec
         return (Vec::new(), Vec::new());
     }
     let scale = theme::scale(&lab.view);
+    clipping::paint(&ui.painter_at(rect), rect, lab, ui.pixels_per_point());
     let (mut actions, mut places) = marks::marks(ui, rect, lab, registry);
     let (asked, covered) = stale(ui, rect, lab, registry, scale);
     actions.extend(asked);
@@ -159,7 +160,10 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, scale: f32) {
     let palette = Palette::here(ui);
     let mut y = top;
     let hidden = hidden_terms(lab);
-    for (i, badge) in hidden.iter().chain(&lab.disk.badge).chain(&lab.badges).enumerate() {
+    let per_point = ui.pixels_per_point();
+    let clipped = clipping::badge(lab, f64::from(rect.area() * per_point * per_point));
+    let all = hidden.iter().chain(&lab.disk.badge).chain(&lab.badges).chain(&clipped);
+    for (i, badge) in all.enumerate() {
         let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
         let painter = ui.painter_at(rect);
         let left = 18.0 * scale;

@@ -14,6 +14,7 @@ use glam::{Quat, Vec3};
 use super::{
     PanelInfo,
     author::{Ask, LawCheck, ModelDraft},
+    clipping::Clipping,
     follow::Aside,
     limits,
     names::{Names, free_name, name_of},
@@ -78,6 +79,8 @@ pub struct Lab {
     pub status: Status,
     /// What the picture must say about itself, fed by the app.
     pub badges: Vec<Badge>,
+    /// Where the picture clips, fed by the app; `None` where nothing does.
+    pub clipping: Option<Clipping>,
     /// What is known of the document's file on disk.
     pub disk: OnDisk,
     /// Where shaders are edited and what is wrong with them, fed by the app.
@@ -186,6 +189,8 @@ pub struct View {
     pub show_gizmos: bool,
     /// Whether the outline of the room is drawn.
     pub show_room: bool,
+    /// True if clipped pixels are marked.
+    pub show_clipping: bool,
     /// Which terms of the equation the picture shows.
     pub terms: TermSelection,
     /// Whether the strip at the bottom is unfolded.
@@ -217,6 +222,7 @@ impl Default for View {
             large_type: false,
             show_gizmos: true,
             show_room: true,
+            show_clipping: false,
             terms: TermSelection::All,
             bottom_open: false,
             bottom_tab: "messages".to_owned(),
@@ -443,6 +449,8 @@ pub enum ViewChange {
     Gizmos(bool),
     /// See [`View::show_room`].
     Room(bool),
+    /// See [`View::show_clipping`].
+    Clipping(bool),
     /// See [`View::terms`].
     Terms(TermSelection),
     /// Whether the strip at the bottom is unfolded.
@@ -650,6 +658,7 @@ impl Lab {
             model_slots: Vec::new(),
             status: Status::default(),
             badges: Vec::new(),
+            clipping: None,
             disk: OnDisk::default(),
             shaders: ShaderStatus::default(),
             draft: None,
@@ -1534,6 +1543,7 @@ impl Lab {
             ViewChange::LargeType(on) => view.large_type = on,
             ViewChange::Gizmos(on) => view.show_gizmos = on,
             ViewChange::Room(on) => view.show_room = on,
+            ViewChange::Clipping(on) => view.show_clipping = on,
             ViewChange::Terms(terms) => view.terms = terms,
             ViewChange::Bottom(open) => view.bottom_open = open,
             ViewChange::BottomTab(id) => {

@@ -67,6 +67,7 @@ use crate::{
 pub mod authoring;
 mod camera;
 mod capture;
+mod clipping;
 pub mod editor;
 mod ending;
 pub mod files;
@@ -257,6 +258,7 @@ impl Plugin for WindowSystemsPlugin {
             gizmos::GizmosPlugin,
             camera::CameraPlugin,
             still::StillPlugin,
+            clipping::ClippingPlugin,
             watching::WatchingPlugin,
         ))
         .add_systems(Startup, (spawn_cameras, adapter_facts))

@@ -3,6 +3,7 @@
 
 mod albedo;
 mod assets;
+mod clipping;
 mod command_line;
 mod editors;
 mod equations;
