@@ -77,7 +77,7 @@ fn put_at(camera: &mut PanOrbitCamera, transform: &mut Transform, place: Transfo
 
 /// The picture gets the mouse only where nothing else wants it; and a camera that is moved no longer
 /// stands at the observer.
-fn gate(
+pub(super) fn gate(
     lab: Res<Lab>,
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,

@@ -74,6 +74,7 @@ pub mod files;
 mod gizmos;
 pub mod laws;
 mod pick;
+mod pointer;
 mod recovery;
 mod shaders;
 mod still;
@@ -259,6 +260,7 @@ impl Plugin for WindowSystemsPlugin {
             camera::CameraPlugin,
             still::StillPlugin,
             clipping::ClippingPlugin,
+            pointer::PointerPlugin,
             watching::WatchingPlugin,
         ))
         .add_systems(Startup, (spawn_cameras, adapter_facts))

@@ -28,6 +28,7 @@ mod own_models;
 mod panels;
 mod pictures;
 mod placing;
+mod pointer;
 mod readme;
 mod reference_renderer;
 mod reload;
