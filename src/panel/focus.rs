@@ -89,24 +89,17 @@ fn opened() -> Id {
     Id::new("menu opened by key")
 }
 
-/// Opens the menus of a bar: each with Alt and its letter, the first with F10, the one beside the open one with ← and →.
+/// Opens the menus of a bar: each with Alt and its letter, the first with F10.
 pub(super) fn open_menus(ctx: &Context, bar: &[(Key, Response)]) {
     let ids: Vec<Id> = bar.iter().map(|(_, button)| Popup::default_response_id(button)).collect();
-    let open = ids.iter().position(|id| Popup::is_id_open(ctx, *id));
-    let count = ids.len();
     let wanted = ctx.input_mut(|input| {
         let by_letter = bar.iter().position(|(key, _)| input.consume_key(Modifiers::ALT, *key));
         let first = input.consume_key(Modifiers::NONE, Key::F10).then_some(0);
-        let beside = open.and_then(|at| {
-            let right = input.consume_key(Modifiers::NONE, Key::ArrowRight);
-            let left = input.consume_key(Modifiers::NONE, Key::ArrowLeft);
-            (right || left).then_some((at + if right { 1 } else { count - 1 }) % count)
-        });
-        by_letter.or(first).or(beside)
+        by_letter.or(first)
     });
     let Some(wanted) = wanted else { return };
     ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
-    if open == Some(wanted) {
+    if Popup::is_id_open(ctx, ids[wanted]) {
         Popup::close_id(ctx, ids[wanted]);
         return;
     }

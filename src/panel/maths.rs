@@ -367,7 +367,8 @@ pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> O
         let helper = size < SIZE;
         let leading = if helper { 6.0 } else { 8.0 };
         let colour = if helper { palette.text } else { palette.term_text(*term) };
-        let setter = Setter { ui, size: size * scale, colour, stacked: true };
+        // A presentation must be read from the last row.
+        let setter = Setter { ui, size: size * scale, colour, stacked: true, shrinks: scale <= 1.0 };
         for line in setter.lines(&formula::tree(text), width) {
             let baseline = height + line.ascent + 0.5 * leading * scale;
             height = baseline + line.descent + 0.5 * leading * scale;

@@ -30,6 +30,7 @@ use theme::Palette;
 pub mod author;
 pub mod caption;
 pub mod chooser;
+pub mod clipping;
 pub mod dialogs;
 pub mod files;
 mod focus;
@@ -42,11 +43,13 @@ pub mod keys;
 pub mod knob;
 pub mod laws;
 pub mod limits;
+pub mod marks;
 pub mod maths;
 pub mod messages;
 pub mod model_override;
 pub mod names;
 pub mod picture;
+mod placing;
 pub mod presentation;
 pub mod preview;
 pub mod question;
@@ -258,7 +261,7 @@ pub fn show(
     actions.extend(asked);
     actions.extend(question::show(&ctx, lab));
     actions.extend(dialogs.update(&ctx, lab, registry));
-    steering(&ctx, lab, rect, covered, dialogs.is_open());
+    steering(&ctx, lab, rect, &covered, dialogs.is_open());
     focus::remember_regions(&ctx);
     focus::show(&ctx, &palette);
 
@@ -350,13 +353,13 @@ fn remember_sizes(ctx: &egui::Context, lab: &Lab, sizes: (f32, f32, f32), action
 
 /// Writes down whether the pointer and the keys belong to the picture. What is clicked in `covered` is not the
 /// picture.
-fn steering(ctx: &egui::Context, lab: &mut Lab, rect: Rect, covered: Rect, dialog: bool) {
+fn steering(ctx: &egui::Context, lab: &mut Lab, rect: Rect, covered: &[Rect], dialog: bool) {
     let pointer = ctx.input(|i| i.pointer.latest_pos());
     let busy = lab.question.is_some() || dialog;
     // Panels are no layers of their own; menus, popups, windows and dialogs are.
     let over = pointer.is_some_and(|p| {
         rect.contains(p)
-            && !covered.contains(p)
+            && !covered.iter().any(|c| c.contains(p))
             && ctx.layer_id_at(p).is_none_or(|l| l.order == egui::Order::Background)
     });
     lab.pointer_in_picture = over && !busy && !ctx.egui_is_using_pointer();

@@ -9,24 +9,27 @@ use glam::Vec3;
 use super::{
     author::SHADER_TAB,
     caption::caption_text,
-    icon,
+    clipping, icon,
     inspector::plural,
-    presentation, shader,
+    marks, presentation, shader,
     state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
 use crate::{optics::TermSelection, reflection::Term, registry::Registry, shader::status::ShaderStatus};
 
-/// Paints the overlays into the rectangle of the picture. Returns what was asked for there, and the place that
-/// can be clicked, which does not belong to the picture.
-pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Rect) {
+/// Paints the overlays into the rectangle of the picture. Returns what was asked for there, and the places that
+/// can be clicked, which do not belong to the picture.
+pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Vec<Rect>) {
     if rect.width() < 80.0 || rect.height() < 80.0 {
-        return (Vec::new(), Rect::NOTHING);
+        return (Vec::new(), Vec::new());
     }
+    clipping::paint(&ui.painter_at(rect), rect, lab, ui.pixels_per_point());
     // In a presentation, what the picture says of itself stands below the equation.
     let presenting = lab.view.presenting;
     let free = if presenting { presentation::overlay(ui, rect, lab, registry) } else { rect };
-    let (actions, covered) = stale(ui, free, lab, registry);
+    let (mut actions, mut places) = marks::marks(ui, rect, lab, registry);
+    let (asked, covered) = stale(ui, free, lab, registry);
+    actions.extend(asked);
     let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
     badges(ui, free, top, lab);
     if !presenting {
@@ -37,7 +40,8 @@ pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec
         }
     }
     hint(ui, rect, lab);
-    (actions, covered)
+    places.push(covered);
+    (actions, places)
 }
 
 /// What the picture says of itself while a shader has an error: a heading, and where the errors are. The model
@@ -169,7 +173,10 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab) {
     let palette = Palette::here(ui);
     let mut y = top;
     let hidden = hidden_terms(lab);
-    for (i, badge) in hidden.iter().chain(&lab.disk.badge).chain(&lab.badges).enumerate() {
+    let per_point = ui.pixels_per_point();
+    let clipped = clipping::badge(lab, f64::from(rect.area() * per_point * per_point));
+    let all = hidden.iter().chain(&lab.disk.badge).chain(&lab.badges).chain(&clipped);
+    for (i, badge) in all.enumerate() {
         let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
         let painter = ui.painter_at(rect);
         let left = 18.0;

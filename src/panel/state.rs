@@ -14,9 +14,11 @@ use glam::{Quat, Vec3};
 use super::{
     PanelInfo,
     author::{Ask, LawCheck, ModelDraft},
+    clipping::Clipping,
     follow::Aside,
     limits,
     names::{Names, free_name, name_of},
+    placing::Stand,
     recovery::{Choice, Offer},
     reload::OnDisk,
     settings::{SCALES, Settings, nearest_scale},
@@ -25,6 +27,7 @@ use super::{
 use crate::{
     files::printable,
     light::MAX_LIGHTS,
+    observer::rotation,
     optics::TermSelection,
     reflection::parameter::Value,
     registry::Registry,
@@ -78,6 +81,8 @@ pub struct Lab {
     pub status: Status,
     /// What the picture must say about itself, fed by the app.
     pub badges: Vec<Badge>,
+    /// Where the picture clips, fed by the app; `None` where nothing does.
+    pub clipping: Option<Clipping>,
     /// What is known of the document's file on disk.
     pub disk: OnDisk,
     /// Where shaders are edited and what is wrong with them, fed by the app.
@@ -90,6 +95,8 @@ pub struct Lab {
     pub wanted_model: Option<String>,
     /// The orientation of the camera, fed by the app; turns the axes in the corner of the picture.
     pub camera: Quat,
+    /// The place of the camera, fed by the app.
+    pub eye: Vec3,
     /// The question that waits for an answer. While there is one, nothing else can be done.
     pub question: Option<Question>,
     /// Where the picture is, in points; written by the panels.
@@ -194,6 +201,8 @@ pub struct View {
     pub show_gizmos: bool,
     /// Whether the outline of the room is drawn.
     pub show_room: bool,
+    /// True if clipped pixels are marked.
+    pub show_clipping: bool,
     /// Which terms of the equation the picture shows.
     pub terms: TermSelection,
     /// Whether the strip at the bottom is unfolded.
@@ -229,6 +238,7 @@ impl Default for View {
             fullscreen_before: false,
             show_gizmos: true,
             show_room: true,
+            show_clipping: false,
             terms: TermSelection::All,
             bottom_open: false,
             bottom_tab: "messages".to_owned(),
@@ -467,6 +477,8 @@ pub enum ViewChange {
     Gizmos(bool),
     /// See [`View::show_room`].
     Room(bool),
+    /// See [`View::show_clipping`].
+    Clipping(bool),
     /// See [`View::terms`].
     Terms(TermSelection),
     /// Whether the strip at the bottom is unfolded.
@@ -667,7 +679,6 @@ impl Lab {
         let mut lab = Self {
             saved: scene.clone(),
             selection: Selection::Room,
-            scene,
             path: None,
             messages: Vec::new(),
             view: View::default(),
@@ -675,12 +686,14 @@ impl Lab {
             model_slots: Vec::new(),
             status: Status::default(),
             badges: Vec::new(),
+            clipping: None,
             disk: OnDisk::default(),
             shaders: ShaderStatus::default(),
             draft: None,
             laws: None,
             wanted_model: None,
-            camera: Quat::IDENTITY,
+            camera: rotation(scene.observer.direction),
+            eye: scene.observer.position,
             question: None,
             picture_rect: egui::Rect::NOTHING,
             zoom: 1.0,
@@ -698,6 +711,7 @@ impl Lab {
             aside: Aside::default(),
             known_terms: KnownTerms::default(),
             camera_left: false,
+            scene,
         };
         lab.select_first();
         lab.use_slot(&lab.scene.reflection_model.clone());
@@ -1193,15 +1207,16 @@ impl Lab {
             return;
         }
         let d = entry.declaration;
-        let corner = self.scene.scene_size.corner();
-        let position = self.free_place(corner * Vec3::new(0.25, 0.8, 0.9));
-        let light = Light {
+        let stand = self.stand(registry);
+        let position = stand.light(None);
+        let mut light = Light {
             kind: kind.to_owned(),
             position: d.has_position.then_some(position),
-            direction: d.has_direction.then(|| self.towards_centre(position)),
+            direction: d.has_direction.then(|| stand.towards_middle(position)),
             intensity: d.default_intensity,
             ..Light::default()
         };
+        light.intensity = stand.intensity(&light, entry);
         let at = self.scene.lights.len();
         self.change_parts(registry, |scene, names| {
             scene.lights.push(light);
@@ -1218,9 +1233,7 @@ impl Lab {
             self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
             return;
         }
-        let corner = self.scene.scene_size.corner();
-        let size = crate::scene::DEFAULT_SIZE.min(0.5 * corner.min_element());
-        let position = self.free_place(corner * 0.5);
+        let (position, size) = self.stand(registry).object(kind);
         let object = Object { kind: kind.to_owned(), position, size, ..Object::default() };
         let at = self.scene.objects.len();
         self.change_parts(registry, |scene, names| {
@@ -1238,7 +1251,7 @@ impl Lab {
                     return;
                 }
                 let mut copy = self.scene.lights[i].clone();
-                copy.position = copy.position.map(|p| self.free_place(p));
+                copy.position = copy.position.map(|p| self.stand(registry).light(Some(p)));
                 copy.name = copy.name.map(|n| free_name(&self.scene, &n));
                 self.change_parts(registry, |scene, names| {
                     scene.lights.insert(i + 1, copy);
@@ -1252,7 +1265,7 @@ impl Lab {
                     return;
                 }
                 let mut copy = self.scene.objects[i].clone();
-                copy.position = self.free_place(copy.position);
+                copy.position = self.stand(registry).copy(&copy);
                 copy.name = copy.name.map(|n| free_name(&self.scene, &n));
                 self.change_parts(registry, |scene, names| {
                     scene.objects.insert(i + 1, copy);
@@ -1300,32 +1313,9 @@ impl Lab {
         }
     }
 
-    /// A place in the room near the wanted one where nothing stands yet.
-    fn free_place(&self, wanted: Vec3) -> Vec3 {
-        let corner = self.scene.scene_size.corner();
-        let step = 0.1 * corner;
-        let taken = |p: Vec3| places(&self.scene).any(|(_, q)| (p - q).length() < 0.5 * step.min_element());
-        let inside = |p: Vec3| p.clamp(0.02 * corner, corner);
-        let moves = (0..1000).map(|n| {
-            // x runs fastest, then z, then y: a row on the floor before a tower.
-            let (x, z, y) = (n % 10, (n / 10) % 10, n / 100);
-            let wrapped = |start: f32, k: i32, step: f32, end: f32| {
-                let q = start + k as f32 * step;
-                if q > end { q - end } else { q }
-            };
-            inside(Vec3::new(
-                wrapped(wanted.x, x, step.x, corner.x),
-                wrapped(wanted.y, y, step.y, corner.y),
-                wrapped(wanted.z, z, step.z, corner.z),
-            ))
-        });
-        let mut moves = moves;
-        moves.find(|p| !taken(*p)).unwrap_or_else(|| inside(wanted + 0.01 * step))
-    }
-
-    fn towards_centre(&self, from: Vec3) -> Vec3 {
-        let to_centre = 0.5 * self.scene.scene_size.corner() - from;
-        if to_centre.length() > SAME_PLACE { round(to_centre.normalize()) } else { Vec3::NEG_Y }
+    /// The scene before the camera, as a place for what is added.
+    fn stand<'a>(&'a self, registry: &'a Registry) -> Stand<'a> {
+        Stand::new(&self.scene, registry, self.eye, self.camera)
     }
 
     // ── changing the scene ──
@@ -1434,11 +1424,10 @@ impl Lab {
 
     fn change_light_kind(&mut self, i: usize, kind: &str, registry: &Registry) {
         let Some(new) = registry.light(kind) else { return };
-        let position = match self.scene.lights[i].position {
-            Some(p) => p,
-            None => self.free_place(self.scene.scene_size.corner() * Vec3::new(0.75, 0.8, 0.9)),
-        };
-        let direction = self.scene.lights[i].direction.unwrap_or_else(|| self.towards_centre(position));
+        let light = &self.scene.lights[i];
+        let stand = self.stand(registry);
+        let position = light.position.unwrap_or_else(|| stand.light(None));
+        let direction = light.direction.unwrap_or_else(|| stand.towards_middle(position));
         self.change_parts(registry, |s, names| {
             names.lights[i] = None;
             let room = s.scene_size;
@@ -1616,6 +1605,7 @@ impl Lab {
             ViewChange::Fullscreen(on) => view.fullscreen = on,
             ViewChange::Gizmos(on) => view.show_gizmos = on,
             ViewChange::Room(on) => view.show_room = on,
+            ViewChange::Clipping(on) => view.show_clipping = on,
             ViewChange::Terms(terms) => view.terms = terms,
             ViewChange::Bottom(open) => view.bottom_open = open,
             ViewChange::BottomTab(id) => {
@@ -1647,9 +1637,4 @@ fn places(scene: &Scene) -> impl Iterator<Item = (Selection, Vec3)> + '_ {
 /// two lights or two objects may share theirs.
 fn may_not_meet(a: Selection, b: Selection) -> bool {
     std::mem::discriminant(&a) != std::mem::discriminant(&b)
-}
-
-/// Rounded to what people like to read.
-fn round(v: Vec3) -> Vec3 {
-    (v * 1000.0).round() / 1000.0
 }

@@ -237,6 +237,8 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                     view(ViewChange::Room(!v.show_room)),
                     actions,
                 );
+                let clipping = ViewChange::Clipping(!v.show_clipping);
+                check(ui, "Show clipped pixels", v.show_clipping, "", view(clipping), actions);
                 ui.separator();
                 check(ui, "Scene list", v.left_open, "", view(ViewChange::Left(!v.left_open)), actions);
                 check(ui, "Properties", v.right_open, "", view(ViewChange::Right(!v.right_open)), actions);

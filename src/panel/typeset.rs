@@ -141,6 +141,8 @@ pub struct Setter<'a> {
     pub colour: Color32,
     /// True if fractions are stacked; else they have a slash.
     pub stacked: bool,
+    /// True if what is too long may be set smaller.
+    pub shrinks: bool,
 }
 
 impl Setter<'_> {
@@ -274,13 +276,13 @@ impl Setter<'_> {
         const SIZES: [f32; 4] = [1.0, 0.94, 0.88, 0.82];
         let fits = |lines: &[Set]| lines.iter().all(|line| line.width <= width);
         let mut lines = Vec::new();
-        for factor in SIZES {
+        for factor in SIZES.into_iter().take(if self.shrinks { SIZES.len() } else { 1 }) {
             lines = self.with_size(factor * self.size).broken(&terms(nodes), width);
             if fits(&lines) {
                 return lines;
             }
         }
-        let small = self.with_size(SIZES[SIZES.len() - 1] * self.size);
+        let small = if self.shrinks { self.with_size(SIZES[SIZES.len() - 1] * self.size) } else { self };
         for flat in [false, true] {
             let setter = Self { stacked: !flat, ..small };
             let nodes = if flat { flattened(nodes) } else { nodes.to_vec() };
@@ -338,7 +340,8 @@ mod tests {
         for pass in 0..2 {
             let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
                 for (size, text) in texts.iter().filter(|_| pass == 1) {
-                    let setter = Setter { ui, size: *size, colour: Color32::WHITE, stacked: true };
+                    let setter =
+                        Setter { ui, size: *size, colour: Color32::WHITE, stacked: true, shrinks: true };
                     see(text, *size, &setter.lines(&tree(text), width));
                 }
             });
@@ -386,7 +389,7 @@ mod tests {
         theme::install_fonts(&ctx);
         for _ in 0..2 {
             let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
-                let setter = Setter { ui, size: 17.0, colour: Color32::WHITE, stacked: true };
+                let setter = Setter { ui, size: 17.0, colour: Color32::WHITE, stacked: true, shrinks: true };
                 let tall = setter.row(&tree("(1 + a/b)"));
                 let flat = setter.row(&tree("(1 + a b)"));
                 let brackets =

@@ -1,7 +1,7 @@
 //! Moving the camera of the picture: orbit, pan, zoom around an object; back to the observer.
 
 use bevy::{
-    app::{App, Plugin, PreUpdate},
+    app::{App, Plugin, PostUpdate, PreUpdate},
     ecs::{prelude::*, system::SystemParam},
     input::{
         ButtonInput,
@@ -10,7 +10,8 @@ use bevy::{
     },
     transform::components::Transform,
 };
-use bevy_panorbit_camera::PanOrbitCamera;
+use bevy_egui::EguiPostUpdateSet;
+use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraSystemSet};
 use glam::{Quat, Vec3};
 
 use crate::{
@@ -48,7 +49,11 @@ pub(super) struct CameraPlugin;
 
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(PreUpdate, (gate, keep_at_observer, tell_lab).chain());
+        app.add_systems(PreUpdate, (gate, keep_at_observer).chain()).add_systems(
+            PostUpdate,
+            // So that the marks over the picture belong to the same frame.
+            tell_lab.after(PanOrbitCameraSystemSet).before(EguiPostUpdateSet::EndPass),
+        );
     }
 }
 
@@ -72,7 +77,7 @@ fn put_at(camera: &mut PanOrbitCamera, transform: &mut Transform, place: Transfo
 
 /// The picture gets the mouse only where nothing else wants it; and a camera that is moved no longer
 /// stands at the observer.
-fn gate(
+pub(super) fn gate(
     lab: Res<Lab>,
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
@@ -133,9 +138,10 @@ fn keep_at_observer(
 
 fn tell_lab(mut lab: ResMut<Lab>, cameras: Query<(&Transform, &PictureCamera)>) {
     if let Some((transform, picture)) = cameras.iter().next()
-        && (lab.camera != transform.rotation || lab.camera_left == picture.follows_observer)
+        && ((lab.camera, lab.eye) != (transform.rotation, transform.translation)
+            || lab.camera_left == picture.follows_observer)
     {
-        lab.camera = transform.rotation;
+        (lab.camera, lab.eye) = (transform.rotation, transform.translation);
         lab.camera_left = !picture.follows_observer;
     }
 }

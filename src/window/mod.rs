@@ -67,12 +67,14 @@ use crate::{
 pub mod authoring;
 mod camera;
 mod capture;
+mod clipping;
 pub mod editor;
 mod ending;
 pub mod files;
 mod gizmos;
 pub mod laws;
 mod pick;
+mod pointer;
 mod recovery;
 mod shaders;
 mod still;
@@ -258,6 +260,8 @@ impl Plugin for WindowSystemsPlugin {
             gizmos::GizmosPlugin,
             camera::CameraPlugin,
             still::StillPlugin,
+            clipping::ClippingPlugin,
+            pointer::PointerPlugin,
             watching::WatchingPlugin,
         ))
         .add_systems(Startup, (spawn_cameras, adapter_facts))

@@ -13,7 +13,10 @@ use glam::Vec2;
 
 use crate::{
     observer::camera::PictureCamera,
-    panel::state::{Action, Lab, Selection},
+    panel::{
+        marks::anchor,
+        state::{Action, Lab, Selection},
+    },
     registry::Registry,
     scene::spawn::{CurrentScene, LitObject, SceneEntities},
 };
@@ -77,7 +80,7 @@ fn nearest_light(
         .iter()
         .enumerate()
         .filter_map(|(i, light)| {
-            let at = camera.world_to_viewport(place, light.position?).ok()?;
+            let at = camera.world_to_viewport(place, anchor(light, &scene.0)?).ok()?;
             Some((i, at.distance(pointer)))
         })
         .filter(|(_, distance)| *distance <= LIGHT_REACH)

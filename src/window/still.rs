@@ -68,15 +68,22 @@ struct Look {
 }
 
 #[derive(Default, Resource)]
-struct Stillness {
+pub(super) struct Stillness {
     last: Option<Look>,
     /// How many frames are still to be drawn.
     frames: u32,
 }
 
+impl Stillness {
+    /// True once the picture has been drawn as it is.
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.frames == 0
+    }
+}
+
 /// The sources of changes that say so themselves.
 #[derive(SystemParam)]
-struct Changes<'w, 's> {
+pub(super) struct Changes<'w, 's> {
     scene: Res<'w, CurrentScene>,
     terms: Res<'w, ShownTerms>,
     registry: Res<'w, Registry>,
@@ -118,7 +125,7 @@ type Picture = (
     Option<&'static RenderLayers>,
 );
 
-fn keep(
+pub(super) fn keep(
     lab: Res<Lab>,
     window: Single<&Window, With<PrimaryWindow>>,
     mut changes: Changes,

@@ -1,4 +1,4 @@
-//! Pressing keys on a virtual screen: the few requests of the X protocol that this takes, those of its extension XTEST.
+//! Pressing keys and moving the pointer on a virtual screen: the few requests of the X protocol that this takes, those of its extension XTEST.
 
 #![cfg(target_os = "linux")]
 
@@ -71,6 +71,21 @@ impl Keyboard {
         thread::sleep(Duration::from_millis(50));
     }
 
+    /// Moves the pointer to a place on the screen, as a tablet does.
+    pub fn point_at(&mut self, x: i16, y: i16) {
+        self.fake_at(6, 0, x, y);
+    }
+
+    /// Moves the pointer by a way, as a mouse does.
+    pub fn move_by(&mut self, x: i16, y: i16) {
+        self.fake_at(6, 1, x, y);
+    }
+
+    /// Presses the left button of the pointer, or lets it go.
+    pub fn button(&mut self, pressed: bool) {
+        self.fake_at(if pressed { 4 } else { 5 }, 1, 0, 0);
+    }
+
     /// The window that is shown.
     fn window(&mut self) -> u32 {
         // QueryTree.
@@ -83,8 +98,13 @@ impl Keyboard {
     }
 
     fn fake(&mut self, event: u8, key: Key) {
-        let head = [self.xtest, 2, 9, 0, event, key as u8, 0, 0];
-        self.tell(&head, &[0; 7]);
+        self.fake_at(event, key as u8, 0, 0);
+    }
+
+    fn fake_at(&mut self, event: u8, detail: u8, x: i16, y: i16) {
+        let head = [self.xtest, 2, 9, 0, event, detail, 0, 0];
+        let place = u32::from(x.cast_unsigned()) | u32::from(y.cast_unsigned()) << 16;
+        self.tell(&head, &[0, 0, 0, 0, place, 0, 0]);
     }
 
     fn tell(&mut self, head: &[u8], numbers: &[u32]) {

@@ -3,6 +3,7 @@
 
 mod albedo;
 mod assets;
+mod clipping;
 mod command_line;
 mod dialogs;
 mod editors;
@@ -21,12 +22,15 @@ mod keyboard;
 mod knobs;
 mod law_check;
 mod laws;
+mod marks;
 mod memory;
 mod missing_size;
 mod own_folder;
 mod own_models;
 mod panels;
 mod pictures;
+mod placing;
+mod pointer;
 mod presentation;
 mod readme;
 mod reference_renderer;

@@ -120,7 +120,8 @@ fn a_condition_that_cannot_hold_is_reported_where_it_stands() {
 fn a_copy_of_a_model_has_its_conditions() {
     let registry = Registry::builtin();
     let model = registry.model("microfacet").expect("built in");
-    let text = own::duplicate(model, registry.sources(), "microfacet_copy", "Microfacet copy").expect("can be duplicated");
+    let text = own::duplicate(model, registry.sources(), "microfacet_copy", "Microfacet copy")
+        .expect("can be duplicated");
     assert!(text.contains("\"used_when\": { \"distribution\": [\"gtr\"] }"), "{text}");
     let copy = own::read(Path::new("microfacet_copy.wgsl"), &text, &registry).expect("can be read");
     for p in model.parameters {

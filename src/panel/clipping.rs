@@ -1,0 +1,106 @@
+//! The sign that the picture clips, and where: a channel asks for more light than the display can show.
+
+use bevy_egui::egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
+
+use super::{
+    limits,
+    state::{Badge, Lab, Severity},
+};
+
+/// Fields across and down in which clipped pixels are counted.
+pub const GRID: [usize; 2] = [128, 96];
+
+/// Where the picture clips.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clipping {
+    /// Clipped pixels in each field, row by row from the top left.
+    counts: Vec<u32>,
+}
+
+impl Clipping {
+    /// From the pixels counted in each field; `None` where none clips.
+    #[must_use]
+    pub fn new(counts: Vec<u32>) -> Option<Self> {
+        (counts.len() == GRID[0] * GRID[1] && counts.iter().any(|n| *n > 0)).then_some(Self { counts })
+    }
+
+    /// Pixels that clip.
+    #[must_use]
+    pub fn pixels(&self) -> u64 {
+        self.counts.iter().map(|n| u64::from(*n)).sum()
+    }
+}
+
+/// "3 %", "under 0.1 %".
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent {
+        p if p < 0.1 => "under 0.1 %".to_owned(),
+        p if p < 10.0 => format!("{} %", limits::number((10.0 * p).round() / 10.0)),
+        p => format!("{} %", limits::number(p.round())),
+    }
+}
+
+/// The sign in the corner of a picture of so many pixels.
+#[must_use]
+pub fn badge(lab: &Lab, pixels: f64) -> Option<Badge> {
+    let clipping = lab.clipping.as_ref()?;
+    let share = percent(clipping.pixels() as f64 / pixels.max(1.0));
+    Some(Badge {
+        severity: Severity::Warning,
+        text: format!("Clipped: {share} of the picture"),
+        help: "Some pixels ask for more light than the display can show. They are cut off: highlights lose their \
+               shape, and colours shift. A lower exposure, a weaker light or tone mapping brings them back. \
+               View › Show clipped pixels shows where."
+            .to_owned(),
+    })
+}
+
+/// Paints where the picture clips.
+pub fn paint(painter: &Painter, rect: Rect, lab: &Lab, pixels_per_point: f32) {
+    let Some(clipping) = lab.clipping.as_ref().filter(|_| lab.view.show_clipping) else { return };
+    let mut mesh = Mesh::default();
+    let [across, down] = GRID;
+    let edge = |low: f32, extent: f32, k: usize, of: usize| {
+        // On whole pixels, so that no seams show.
+        ((low + extent * k as f32 / of as f32) * pixels_per_point).round() / pixels_per_point
+    };
+    for (i, count) in clipping.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+        let (x, y) = (i % across, i / across);
+        let column = |k| edge(rect.left(), rect.width(), k, across);
+        let row = |k| edge(rect.top(), rect.height(), k, down);
+        let field = Rect::from_min_max(pos2(column(x), row(y)), pos2(column(x + 1), row(y + 1)));
+        let all = field.area() * pixels_per_point * pixels_per_point;
+        let share = (*count as f32 / all.max(1.0)).min(1.0);
+        // A chequered pattern is told from any surface without its colour.
+        let colour = if (x + y) % 2 == 0 { Color32::from_rgb(0xff, 0x00, 0xc8) } else { Color32::BLACK };
+        mesh.add_colored_rect(field, colour.gamma_multiply(0.45 + 0.55 * share));
+    }
+    painter.add(Shape::mesh(mesh));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_read_as_people_say_them() {
+        assert_eq!(percent(0.0004), "under 0.1 %");
+        assert_eq!(percent(0.0234), "2.3 %");
+        assert_eq!(percent(0.02), "2 %");
+        assert_eq!(percent(0.456), "46 %");
+    }
+
+    #[test]
+    fn there_is_no_sign_where_nothing_clips() {
+        let fields = GRID[0] * GRID[1];
+        assert_eq!(Clipping::new(vec![0; fields]), None);
+        assert_eq!(Clipping::new(vec![1; 3]), None);
+        let mut counts = vec![0; fields];
+        (counts[0], counts[fields - 1]) = (2, 3);
+        let mut lab = Lab::default();
+        assert_eq!(badge(&lab, 100.0), None);
+        lab.clipping = Clipping::new(counts);
+        assert_eq!(badge(&lab, 100.0).map(|b| b.text).as_deref(), Some("Clipped: 5 % of the picture"));
+    }
+}

@@ -1,0 +1,285 @@
+//! The place of what is added to a scene: free, and in view of the camera; and the intensity of a new light, which
+//! shows something and does not blow the picture out.
+
+use std::collections::HashMap;
+
+use glam::{Quat, Vec3};
+
+use super::limits::significant;
+use crate::{
+    light::LightEntry,
+    observer::camera::WIDE,
+    optics::tone::exposure_factor,
+    reference,
+    registry::Registry,
+    scene::{DEFAULT_SIZE, Light, Object, Observer, Scene},
+};
+
+/// Free space around a light, and between an object and the camera, metres.
+const AIR: f32 = 0.3;
+/// Pictures that tell how bright a light may be: small ones are enough.
+const PROBE: [u32; 2] = [128, 72];
+/// The most objects in such a picture: those nearest to the camera.
+const PROBED: usize = 200;
+/// The part of such a picture that may clip all the same: sharp highlights.
+const HIGHLIGHTS: f32 = 0.005;
+/// What a new light may take of what is left up to the brightest that the display shows.
+const SHARE: f32 = 0.7;
+
+/// A scene, and the camera before which something is placed.
+pub(super) struct Stand<'a> {
+    scene: &'a Scene,
+    registry: &'a Registry,
+    eye: Vec3,
+    turn: Quat,
+    /// The spheres around the objects.
+    taken: Vec<(Vec3, f32)>,
+    /// Radius of the sphere around an object of size 1, by type.
+    radii: HashMap<&'static str, f32>,
+}
+
+impl<'a> Stand<'a> {
+    pub(super) fn new(scene: &'a Scene, registry: &'a Registry, eye: Vec3, turn: Quat) -> Self {
+        let radii: HashMap<_, _> = (registry.shapes().iter())
+            .map(|shape| {
+                let mesh = shape.mesh(*shape.declaration.tessellation.start());
+                (shape.declaration.id, mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max))
+            })
+            .collect();
+        let radius = |o: &Object| radii.get(o.kind.as_str()).map_or(0.0, |r| r * o.size);
+        let taken = scene.objects.iter().map(|o| (o.position, radius(o))).collect();
+        Self { scene, registry, eye, turn, taken, radii }
+    }
+
+    /// Position and size of a new object.
+    pub(super) fn object(&self, kind: &str) -> (Vec3, f32) {
+        let size = DEFAULT_SIZE.min(0.5 * self.scene.scene_size.corner().min_element());
+        let unit = self.radii.get(kind).copied().unwrap_or(0.5);
+        let wanted = self.middle();
+        // Where there is no room for it, it is smaller.
+        let smaller = [4.0, 8.0, 16.0].map(|divisor| (divisor, true));
+        for (divisor, hides) in
+            [(1.0, false), (2.0, false), (1.0, true), (2.0, true)].into_iter().chain(smaller)
+        {
+            let step = 0.55 * (size / divisor).max(0.3 * size);
+            let size = size / divisor;
+            let radius = unit * size;
+            let fits = |p: Vec3| {
+                self.free(p, radius) && self.sees(p, radius) && (hides || self.is_beside_all(p, radius))
+            };
+            if let Some(place) = self.search(wanted, step, fits) {
+                return (place, size);
+            }
+        }
+        let radius = unit * size;
+        let anywhere = self.search(wanted, 0.55 * size, |p| self.free(p, radius));
+        (anywhere.unwrap_or_else(|| self.lattice(wanted)), size)
+    }
+
+    /// The place of a copy of an object.
+    pub(super) fn copy(&self, of: &Object) -> Vec3 {
+        let radius = self.radii.get(of.kind.as_str()).map_or(0.0, |r| r * of.size);
+        let free = |p: Vec3| self.free(p, radius);
+        let step = 0.55 * of.size;
+        self.search(of.position, step, |p| free(p) && self.sees(p, radius))
+            .or_else(|| self.search(of.position, step, free))
+            .unwrap_or_else(|| self.lattice(of.position))
+    }
+
+    /// The place of a new light, or of one more near a place.
+    pub(super) fn light(&self, near: Option<Vec3>) -> Vec3 {
+        let distance = (self.middle() - self.eye).length();
+        let [across, up] = self.opening();
+        // Over the shoulder, from the side where there is less light.
+        let depth = 0.7 * distance;
+        let beside =
+            |side: f32| self.eye + self.turn * (depth * Vec3::new(side * 0.4 * across, 0.6 * up, -1.0));
+        let wanted = near.unwrap_or_else(|| {
+            let [left, right] = [-1.0, 1.0].map(beside);
+            if self.nearest_light(left) < self.nearest_light(right) { left } else { right }
+        });
+        let step = 0.1 * distance.min(self.scene.scene_size.corner().min_element()).max(AIR);
+        let apart = |p: Vec3| {
+            let lights = self.scene.lights.iter().filter_map(|l| l.position);
+            self.free(p, 0.0) && lights.into_iter().all(|q| p.distance(q) > step)
+        };
+        self.search(wanted, step, |p| apart(p) && self.sees(p, 0.08 * p.distance(self.eye)))
+            .or_else(|| self.search(wanted, step, apart))
+            .unwrap_or_else(|| self.lattice(wanted))
+    }
+
+    /// The cosine between the directions from the middle to a place and to the light that is nearest to it.
+    fn nearest_light(&self, place: Vec3) -> f32 {
+        let middle = self.middle();
+        let way = (place - middle).normalize_or_zero();
+        let lights = self.scene.lights.iter();
+        let ways = lights.filter_map(|l| l.position.map(|p| p - middle).or(l.direction.map(|d| -d)));
+        ways.map(|w| w.normalize_or_zero().dot(way)).fold(-1.0, f32::max)
+    }
+
+    /// The direction from a place to the middle of what is seen.
+    pub(super) fn towards_middle(&self, from: Vec3) -> Vec3 {
+        (self.middle() - from).try_normalize().map_or(Vec3::NEG_Y, round)
+    }
+
+    /// The intensity at which a light that is added lights what the camera sees, and the brightest parts stay
+    /// within what the display shows: pictures with it and without it tell.
+    pub(super) fn intensity(&self, light: &Light, entry: &LightEntry) -> f32 {
+        let default = entry.declaration.default_intensity;
+        let mut scene = self.scene.clone();
+        scene.observer = Observer {
+            position: self.eye,
+            direction: self.turn * Vec3::NEG_Z,
+            field_of_view: scene.observer.field_of_view,
+        };
+        scene.objects.sort_by(|a, b| a.position.distance(self.eye).total_cmp(&b.position.distance(self.eye)));
+        scene.objects.truncate(PROBED);
+        for object in &mut scene.objects {
+            if let Some(shape) = self.registry.shape(&object.kind) {
+                let range = &shape.declaration.tessellation;
+                let count = shape.tessellation(object.tessellation).min(32);
+                object.tessellation = Some(count.clamp(*range.start(), *range.end()));
+            }
+        }
+        let [width, height] = PROBE;
+        let settings = reference::Settings { width, height, samples: 1, ..reference::Settings::default() };
+        let before = reference::render(&scene, self.registry, &settings);
+        scene.lights = vec![Light { intensity: default, luminous_flux: None, ..light.clone() }];
+        let added = reference::render(&scene, self.registry, &settings);
+        let limit = self.brightest();
+        let mut factors: Vec<f32> = Vec::new();
+        for (before, added) in before.pixels.iter().zip(&added.pixels) {
+            let (before, added) = (before.truncate().max_element(), added.truncate().max_element());
+            // What clips already cannot be spared.
+            if added > 1e-9 && before < limit {
+                factors.push(SHARE * (limit - before) / added);
+            }
+        }
+        if factors.is_empty() {
+            return default;
+        }
+        factors.sort_by(f32::total_cmp);
+        let factor = factors[(HIGHLIGHTS * factors.len() as f32) as usize];
+        // From a thousandth, since a light that cannot be seen helps nobody.
+        let intensity = f64::from(default) * f64::from(factor).clamp(1e-3, 1e3);
+        significant(intensity, 2) as f32
+    }
+
+    /// The most light that the display still tells from more.
+    fn brightest(&self) -> f32 {
+        let display = &self.scene.display;
+        let curve = |x: f32| display.tone_mapping.map(Vec3::splat(x)).max_element();
+        let top = [8.0, 4.0, 2.0].into_iter().find(|x| curve(*x) < 0.97).unwrap_or(1.0);
+        top / exposure_factor(display.exposure)
+    }
+
+    /// Half the opening of the view, across and up, as tangents. A window shows at least this.
+    fn opening(&self) -> [f32; 2] {
+        let up = (0.5 * self.scene.observer.field_of_view.to_radians()).tan();
+        [WIDE * up, up]
+    }
+
+    /// The middle of the objects, if it is in view, else the point of the line of sight that is nearest to it.
+    fn middle(&self) -> Vec3 {
+        let objects = &self.scene.objects;
+        let middle = match objects.len() {
+            0 => 0.5 * self.scene.scene_size.corner(),
+            n => objects.iter().map(|o| o.position).sum::<Vec3>() / n as f32,
+        };
+        if self.sees(middle, 0.0) {
+            return middle;
+        }
+        let ahead = self.turn * Vec3::NEG_Z;
+        let near = 0.2 * self.scene.scene_size.corner().min_element();
+        self.eye + ahead * (middle - self.eye).dot(ahead).max(near)
+    }
+
+    /// True if a sphere is in the view, nearly whole.
+    fn sees(&self, p: Vec3, radius: f32) -> bool {
+        let seen = self.turn.inverse() * (p - self.eye);
+        let [across, up] = self.opening();
+        let within = |side: f32, opening: f32| {
+            (opening * -seen.z - side.abs()) / (1.0 + opening * opening).sqrt() >= 0.9 * radius
+        };
+        -seen.z > radius + 0.1 && within(seen.x, across) && within(seen.y, up)
+    }
+
+    /// True if a sphere neither hides an object nor is hidden by one.
+    fn is_beside_all(&self, p: Vec3, radius: f32) -> bool {
+        let flat = |p: Vec3| {
+            let seen = self.turn.inverse() * (p - self.eye);
+            (seen.truncate() / -seen.z, -seen.z)
+        };
+        let (at, depth) = flat(p);
+        self.taken.iter().all(|(q, other)| {
+            let (there, far) = flat(*q);
+            far < 0.1 || at.distance(there) >= 0.9 * (radius / depth + other / far)
+        })
+    }
+
+    /// True if a sphere is in the room and touches nothing.
+    fn free(&self, p: Vec3, radius: f32) -> bool {
+        let corner = self.scene.scene_size.corner();
+        let margin = radius.max(0.01 * corner.min_element());
+        let inside = (p - margin).min_element() >= 0.0 && (p + margin).cmple(corner).all();
+        let air = |q: Vec3| p.distance(q) > radius + AIR.min(0.1 * corner.min_element());
+        inside
+            && air(self.eye)
+            && air(self.scene.observer.position)
+            && self.scene.lights.iter().filter_map(|l| l.position).all(air)
+            && self.taken.iter().all(|(q, other)| p.distance(*q) > other + 1.05 * radius.max(0.05))
+    }
+
+    /// The place nearest to a wanted one that fits: rather beside it than behind, rather behind than above.
+    fn search(&self, wanted: Vec3, step: f32, fits: impl Fn(Vec3) -> bool) -> Option<Vec3> {
+        let level = |v: Vec3| v.with_y(0.0).try_normalize();
+        let right = level(self.turn * Vec3::X).unwrap_or(Vec3::X);
+        let ahead = right.cross(Vec3::NEG_Y).normalize_or(Vec3::NEG_Z);
+        let mut offsets = Vec::new();
+        for i in -8..=8i32 {
+            for j in -5..=5i32 {
+                for k in -8..=8i32 {
+                    let lean = |n: i32, cost: f32| cost * n.abs() as f32 + if n < 0 { 0.1 } else { 0.0 };
+                    let cost = lean(i, 1.0) + lean(j, 2.0) + lean(k, 1.3);
+                    let way = i as f32 * right + j as f32 * Vec3::Y + k as f32 * ahead;
+                    offsets.push((cost, way));
+                }
+            }
+        }
+        offsets.sort_by(|a, b| a.0.total_cmp(&b.0));
+        offsets.into_iter().map(|(_, way)| round(wanted + step * way)).find(|p| fits(*p))
+    }
+
+    /// Where all is full: a place of a lattice in which nothing has its centre.
+    fn lattice(&self, wanted: Vec3) -> Vec3 {
+        let corner = self.scene.scene_size.corner();
+        let step = 0.1 * corner;
+        let lights = self.scene.lights.iter().filter_map(|l| l.position);
+        let others: Vec<_> = (lights.chain(self.scene.objects.iter().map(|o| o.position)))
+            .chain([self.scene.observer.position])
+            .collect();
+        let taken = |p: Vec3| others.iter().any(|q| (p - *q).length() < 0.5 * step.min_element());
+        let inside = |p: Vec3| p.clamp(0.02 * corner, corner);
+        let wrapped = |start: f32, k: i32, step: f32, end: f32| {
+            let q = start + k as f32 * step;
+            if q > end { q - end } else { q }
+        };
+        let start = inside(wanted);
+        (0..1000)
+            // x runs fastest, then z, then y: a row on the floor before a tower.
+            .map(|n| {
+                inside(Vec3::new(
+                    wrapped(start.x, n % 10, step.x, corner.x),
+                    wrapped(start.y, n / 100, step.y, corner.y),
+                    wrapped(start.z, (n / 10) % 10, step.z, corner.z),
+                ))
+            })
+            .find(|p| !taken(*p))
+            .unwrap_or_else(|| inside(start + 0.01 * step))
+    }
+}
+
+/// Rounded to what people like to read.
+fn round(v: Vec3) -> Vec3 {
+    (v * 1000.0).round() / 1000.0
+}

@@ -1,0 +1,228 @@
+//! Counts where the picture clips: on the graphics card, in the picture that is on screen, once it has come to rest.
+//!
+//! A compute pass after tone mapping reads the texture of the picture, which holds what the display is asked for, also
+//! beyond what it can show. A few kilobytes come back, a frame or two later.
+
+use bevy::{
+    app::{App, Plugin, PostUpdate},
+    asset::{Assets, Handle, RenderAssetUsages},
+    core_pipeline::{Core3d, Core3dSystems, tonemapping::tonemapping},
+    ecs::prelude::*,
+    prelude::Shader,
+    render::{
+        RenderApp, RenderStartup,
+        camera::ExtractedCamera,
+        extract_resource::{ExtractResource, ExtractResourcePlugin},
+        gpu_readback::{Readback, ReadbackComplete},
+        render_asset::RenderAssets,
+        render_resource::{
+            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId,
+            ComputePassDescriptor, ComputePipelineDescriptor, PipelineCache, TextureSampleType,
+            binding_types::{storage_buffer_sized, texture_2d, uniform_buffer_sized},
+        },
+        renderer::{RenderContext, ViewQuery},
+        storage::{GpuShaderBuffer, ShaderBuffer},
+        view::ViewTarget,
+    },
+    window::RequestRedraw,
+};
+use wgpu::{BufferUsages, ShaderStages, util::BufferInitDescriptor};
+
+use super::{SETTLING_FRAMES, Settling, still::Stillness};
+use crate::{
+    optics::{colour::Encoding, tone::ToneMapping},
+    panel::{
+        clipping::{Clipping, GRID},
+        state::Lab,
+    },
+    scene::{Display, spawn::CurrentScene},
+};
+
+/// Frames in which an answer is waited for.
+const PATIENCE: u32 = 30;
+/// Invocations of a workgroup in each direction.
+const GROUP: u32 = 8;
+
+pub(super) struct ClippingPlugin;
+
+impl Plugin for ClippingPlugin {
+    fn build(&self, app: &mut App) {
+        let [across, down] = GRID.map(|n| n as u32);
+        let text = include_str!("clipping.wgsl")
+            .replace("ACROSS", &format!("{across}u"))
+            .replace("DOWN", &format!("{down}u"));
+        let world = app.world_mut();
+        let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wgsl(text, "clipping.wgsl"));
+        let bytes = 4 * (1 + across as usize * down as usize);
+        let buffer = ShaderBuffer::with_size(bytes, RenderAssetUsages::default());
+        let buffer = world.resource_mut::<Assets<ShaderBuffer>>().add(buffer);
+        let question = Question { number: 0, open: false, limit: 1.0, shader, buffer };
+        world.insert_resource(question.clone());
+        app.add_plugins(ExtractResourcePlugin::<Question>::default())
+            .add_systems(PostUpdate, ask.after(super::still::keep).after(super::redraw));
+        if let Some(render) = app.get_sub_app_mut(RenderApp) {
+            // The pass is prepared before anything is handed over.
+            render
+                .insert_resource(question)
+                .add_systems(RenderStartup, prepare)
+                .add_systems(Core3d, count.in_set(Core3dSystems::PostProcess).after(tonemapping));
+        }
+    }
+}
+
+/// What the graphics card is asked.
+#[derive(Clone, Resource)]
+struct Question {
+    /// Counts the questions.
+    number: u32,
+    /// There is no answer yet.
+    open: bool,
+    /// See [`limit`].
+    limit: f32,
+    shader: Handle<Shader>,
+    buffer: Handle<ShaderBuffer>,
+}
+
+impl ExtractResource for Question {
+    type Source = Self;
+
+    fn extract_resource(source: &Self) -> Self {
+        source.clone()
+    }
+}
+
+/// Above this, a channel of the picture is cut off. What was cut off before the texture shows as exactly the
+/// brightest there is: curves of tone mapping end there, and so does gamma-naive encoding.
+fn limit(display: &Display) -> f32 {
+    if display.tone_mapping == ToneMapping::None && display.encoding == Encoding::Srgb {
+        // Exactly white is not cut off; half floats are that coarse.
+        1.0005
+    } else {
+        0.999
+    }
+}
+
+/// Asks once the picture has come to rest, and keeps frames coming until the answer is there.
+fn ask(
+    scene: Res<CurrentScene>,
+    stillness: Res<Stillness>,
+    settling: Res<Settling>,
+    mut question: ResMut<Question>,
+    mut due: Local<bool>,
+    mut patience: Local<u32>,
+    mut readback: Local<Option<Entity>>,
+    mut requests: MessageWriter<RequestRedraw>,
+    mut commands: Commands,
+) {
+    if !stillness.is_at_rest() {
+        *due = true;
+    } else if *due && settling.frames == 0 {
+        *due = false;
+        *patience = PATIENCE;
+        question.number = question.number.wrapping_add(1);
+        question.open = true;
+        question.limit = limit(&scene.0.display);
+        if readback.is_none() {
+            let asked = Readback::buffer(question.buffer.clone());
+            *readback = Some(commands.spawn(asked).observe(answered).id());
+        }
+    }
+    if question.open && *patience > 0 {
+        *patience -= 1;
+        requests.write(RequestRedraw);
+    } else if let Some(entity) = readback.take() {
+        question.open = false;
+        commands.entity(entity).despawn();
+    } else if *due {
+        requests.write(RequestRedraw);
+    }
+}
+
+fn answered(
+    answer: On<ReadbackComplete>,
+    mut question: ResMut<Question>,
+    mut lab: ResMut<Lab>,
+    mut settling: ResMut<Settling>,
+) {
+    let mut numbers = answer.data.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    if !question.open || numbers.next() != Some(question.number) {
+        return;
+    }
+    question.open = false;
+    let clipping = Clipping::new(numbers.collect());
+    if lab.clipping != clipping {
+        lab.clipping = clipping;
+        settling.frames = settling.frames.max(SETTLING_FRAMES);
+    }
+}
+
+/// The pass, ready to run.
+#[derive(Resource)]
+struct Pass {
+    layout: BindGroupLayoutDescriptor,
+    pipeline: CachedComputePipelineId,
+}
+
+fn prepare(question: Res<Question>, cache: Res<PipelineCache>, mut commands: Commands) {
+    let layout = BindGroupLayoutDescriptor::new(
+        "clipping",
+        &BindGroupLayoutEntries::sequential(
+            ShaderStages::COMPUTE,
+            (
+                texture_2d(TextureSampleType::Float { filterable: false }),
+                uniform_buffer_sized(false, None),
+                storage_buffer_sized(false, None),
+            ),
+        ),
+    );
+    let pipeline = cache.queue_compute_pipeline(ComputePipelineDescriptor {
+        label: Some("clipping".into()),
+        layout: vec![layout.clone()],
+        shader: question.shader.clone(),
+        entry_point: Some("count".into()),
+        ..ComputePipelineDescriptor::default()
+    });
+    commands.insert_resource(Pass { layout, pipeline });
+}
+
+fn count(
+    view: ViewQuery<(&ExtractedCamera, &ViewTarget)>,
+    question: Res<Question>,
+    pass: Res<Pass>,
+    cache: Res<PipelineCache>,
+    buffers: Res<RenderAssets<GpuShaderBuffer>>,
+    mut context: RenderContext,
+) {
+    let (camera, target) = view.into_inner();
+    let (Some(viewport), true) = (&camera.viewport, question.open) else { return };
+    let (Some(pipeline), Some(answer)) =
+        (cache.get_compute_pipeline(pass.pipeline), buffers.get(&question.buffer))
+    else {
+        return;
+    };
+    let [origin, size] = [viewport.physical_position, viewport.physical_size];
+    let words = [origin.x, origin.y, size.x, size.y, question.limit.to_bits(), question.number];
+    let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).chain([0; 8]).collect();
+    let device = context.render_device();
+    let asked = device.create_buffer_with_data(&BufferInitDescriptor {
+        label: Some("clipping"),
+        contents: &bytes,
+        usage: BufferUsages::UNIFORM,
+    });
+    let group = device.create_bind_group(
+        "clipping",
+        &cache.get_bind_group_layout(&pass.layout),
+        &BindGroupEntries::sequential((
+            target.main_texture_view(),
+            asked.as_entire_binding(),
+            answer.buffer.as_entire_binding(),
+        )),
+    );
+    let mut compute = context
+        .command_encoder()
+        .begin_compute_pass(&ComputePassDescriptor { label: Some("clipping"), timestamp_writes: None });
+    compute.set_pipeline(pipeline);
+    compute.set_bind_group(0, &group, &[]);
+    let [across, down] = GRID.map(|n| (n as u32).div_ceil(GROUP));
+    compute.dispatch_workgroups(across, down, 1);
+}

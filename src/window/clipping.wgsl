@@ -1,0 +1,36 @@
+// How many pixels of each field of a grid over the picture clip.
+
+struct Ask {
+    // The first pixel of the picture, and its extent.
+    origin: vec2<u32>,
+    size: vec2<u32>,
+    // Above this, a channel clips.
+    limit: f32,
+    // Returned, so that an answer is known to be to this question.
+    number: u32,
+}
+
+@group(0) @binding(0) var picture: texture_2d<f32>;
+@group(0) @binding(1) var<uniform> ask: Ask;
+@group(0) @binding(2) var<storage, read_write> answer: array<u32>;
+
+@compute @workgroup_size(8, 8)
+fn count(@builtin(global_invocation_id) id: vec3<u32>) {
+    let grid = vec2<u32>(ACROSS, DOWN);
+    if any(id.xy >= grid) {
+        return;
+    }
+    let low = id.xy * ask.size / grid;
+    let high = (id.xy + 1u) * ask.size / grid;
+    var clipped = 0u;
+    for (var y = low.y; y < high.y; y++) {
+        for (var x = low.x; x < high.x; x++) {
+            let colour = textureLoad(picture, ask.origin + vec2(x, y), 0).rgb;
+            clipped += u32(any(colour > vec3(ask.limit)));
+        }
+    }
+    answer[1u + id.y * ACROSS + id.x] = clipped;
+    if id.x == 0u && id.y == 0u {
+        answer[0] = ask.number;
+    }
+}

@@ -1,0 +1,181 @@
+//! What is added to a scene stands free and in view, and a new light shows the scene without blowing it out.
+
+use bevy_egui::egui::{Pos2, Rect, vec2};
+use glam::{Quat, Vec3};
+use lights_camera_models::{
+    optics::tone::{ToneMapping, exposure_factor},
+    panel::{
+        marks::{Lens, anchor},
+        state::{Action, Lab, Selection},
+    },
+    reference,
+    registry::Registry,
+    scene::{Light, Object, Scene, SceneSize},
+};
+
+/// The sphere around an object.
+fn radius(object: &Object, registry: &Registry) -> f32 {
+    let shape = registry.shape(&object.kind).unwrap();
+    let mesh = shape.mesh(*shape.declaration.tessellation.start());
+    object.size * mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max)
+}
+
+fn sees(lab: &Lab, p: Vec3) -> bool {
+    let rect = Rect::from_min_size(Pos2::ZERO, vec2(1600.0, 900.0));
+    Lens::of(lab, rect).project(p).is_some_and(|at| rect.contains(at))
+}
+
+fn touches_nothing(what: &str, lab: &Lab, added: usize, registry: &Registry) {
+    let object = &lab.scene.objects[added];
+    let r = radius(object, registry);
+    for (i, other) in lab.scene.objects.iter().enumerate().filter(|(i, _)| *i != added) {
+        let apart = object.position.distance(other.position) - r - radius(other, registry);
+        assert!(apart > 0.0, "{what}: {added} ({}) is in {i} by {} m", object.kind, -apart);
+    }
+    for light in lab.scene.lights.iter().filter_map(|l| l.position) {
+        assert!(object.position.distance(light) > r, "{added} is around a light");
+    }
+    assert!(object.position.distance(lab.eye) > r);
+    assert!(lab.scene.scene_size.contains(object.position));
+}
+
+/// Rooms and cameras of several kinds.
+fn labs() -> Vec<Lab> {
+    let mut low = Scene::default();
+    low.objects[0].position = Vec3::new(2.0, 1.0, 3.0);
+    let mut small =
+        Scene { scene_size: SceneSize { height: 1.0, width: 1.5, depth: 1.0 }, ..Scene::default() };
+    small.objects[0] = Object { position: Vec3::new(0.7, 0.5, 0.3), size: 0.3, ..Object::default() };
+    small.lights[0].position = Some(Vec3::new(0.9, 0.9, 0.9));
+    small.observer.position = Vec3::new(0.75, 0.5, 0.95);
+    let mut turned = Lab::default();
+    // From the right, above.
+    turned.eye = Vec3::new(9.5, 7.5, 5.0);
+    turned.camera = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2) * Quat::from_rotation_x(-0.5);
+    vec![Lab::default(), Lab::new(low), Lab::new(small), turned]
+}
+
+#[test]
+fn new_objects_stand_free_and_in_view() {
+    let registry = Registry::builtin();
+    for (which, mut lab) in labs().into_iter().enumerate() {
+        for i in 0..9 {
+            let kind = registry.shapes()[i % registry.shapes().len()].declaration.id;
+            lab.apply(Action::AddObject(kind.to_owned()), &registry);
+            let added = lab.scene.objects.len() - 1;
+            touches_nothing(&format!("{which}"), &lab, added, &registry);
+            assert!(sees(&lab, lab.scene.objects[added].position), "{which}: {kind} {i}");
+        }
+    }
+}
+
+#[test]
+fn a_new_object_hides_nothing_where_there_is_room() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::default();
+    lab.apply(Action::AddObject("cube".to_owned()), &registry);
+    let [old, new] = [0, 1].map(|i| &lab.scene.objects[i]);
+    let rect = Rect::from_min_size(Pos2::ZERO, vec2(1600.0, 900.0));
+    let [a, b] = [old, new].map(|o| Lens::of(&lab, rect).project(o.position).unwrap());
+    assert!(a.distance(b) > 300.0, "{a:?} and {b:?}");
+}
+
+#[test]
+fn copies_stand_free_too() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::default();
+    for i in 0..4 {
+        lab.apply(Action::Duplicate(Selection::Object(0)), &registry);
+        touches_nothing("copy", &lab, 1, &registry);
+        assert!(sees(&lab, lab.scene.objects[1].position), "copy {i}");
+        assert_eq!(lab.scene.objects[1].size, lab.scene.objects[0].size);
+    }
+    lab.apply(Action::Duplicate(Selection::Light(0)), &registry);
+    let [a, b] = [0, 1].map(|i| lab.scene.lights[i].position.unwrap());
+    assert!(a.distance(b) > 0.2);
+}
+
+#[test]
+fn new_lights_stand_free_and_in_view() {
+    let registry = Registry::builtin();
+    for (which, mut lab) in labs().into_iter().enumerate() {
+        for kind in ["point", "spot", "point", "directional", "spot"] {
+            lab.apply(Action::AddLight(kind.to_owned()), &registry);
+            let Some(light) = lab.scene.lights.last() else { panic!("none") };
+            let Some(at) = light.position else { continue };
+            assert!(sees(&lab, at), "{which}: a {kind} at {at}");
+            assert_eq!(anchor(light, &lab.scene), Some(at));
+            for object in &lab.scene.objects {
+                let apart = at.distance(object.position) - radius(object, &registry);
+                assert!(apart > 0.0, "{which}: a {kind} stands in an object");
+            }
+            let others = &lab.scene.lights[..lab.scene.lights.len() - 1];
+            assert!(others.iter().filter_map(|l| l.position).all(|p| p.distance(at) > 0.02), "{which}");
+        }
+    }
+}
+
+/// The brightest channel of each pixel that shows an object, as a factor of what the display can show.
+fn brightness(lab: &Lab, registry: &Registry) -> Vec<f32> {
+    let settings = reference::Settings { width: 320, height: 180, samples: 1, ..Default::default() };
+    let picture = reference::render(&lab.scene, registry, &settings);
+    let exposure = exposure_factor(lab.scene.display.exposure);
+    let lit = picture.pixels.iter().filter(|p| p.w > 0.0);
+    lit.map(|p| exposure * p.truncate().max_element()).collect()
+}
+
+#[test]
+fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
+    let registry = Registry::builtin();
+    let dark = |mut scene: Scene| {
+        scene.lights[0].intensity = 0.0;
+        scene
+    };
+    let mut bright = Scene::default();
+    bright.display.exposure = 3.0;
+    let mut dim = Scene::default();
+    dim.display.exposure = -3.0;
+    let mut large =
+        Scene { scene_size: SceneSize { height: 100.0, width: 100.0, depth: 100.0 }, ..Scene::default() };
+    large.objects[0] = Object { position: Vec3::splat(50.0), size: 20.0, ..Object::default() };
+    large.observer.position = Vec3::new(50.0, 50.0, 95.0);
+    let shiny = Scene { reflection_model: "blinn_phong".to_owned(), ..Scene::default() };
+    for (what, scene) in [
+        ("default", Scene::default()),
+        ("dark", dark(Scene::default())),
+        ("bright", dark(bright)),
+        ("dim", dark(dim)),
+        ("large", dark(large)),
+        ("shiny", shiny),
+    ] {
+        for kind in registry.lights() {
+            let kind = kind.declaration.id;
+            let mut lab = Lab::new(scene.clone());
+            let before = brightness(&lab, &registry);
+            for nth in 0..3 {
+                lab.apply(Action::AddLight(kind.to_owned()), &registry);
+                let after = brightness(&lab, &registry);
+                let clipped =
+                    |all: &[f32]| all.iter().filter(|b| **b > 1.0).count() as f32 / all.len() as f32;
+                let more = clipped(&after) - clipped(&before);
+                assert!(more < 0.02, "{what}, {kind} {nth}: {more} of the objects clip");
+            }
+            let after = brightness(&lab, &registry);
+            let gain = after.iter().zip(&before).map(|(a, b)| a - b).fold(0.0, f32::max);
+            assert!(gain > 0.04, "{what}, {kind}: the brightest gain is {gain}");
+        }
+    }
+}
+
+#[test]
+fn a_curve_of_tone_mapping_leaves_a_new_light_more_room() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::default();
+    lab.apply(Action::AddLight("point".to_owned()), &registry);
+    let mut mapped = Scene::default();
+    mapped.display.tone_mapping = ToneMapping::Reinhard;
+    let mut lab2 = Lab::new(mapped);
+    lab2.apply(Action::AddLight("point".to_owned()), &registry);
+    let of = |lab: &Lab| lab.scene.lights.last().map_or(0.0, |l: &Light| l.intensity);
+    assert!(of(&lab2) > 2.0 * of(&lab), "{} and {}", of(&lab2), of(&lab));
+}
