@@ -24,10 +24,10 @@ pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec
         return (Vec::new(), Vec::new());
     }
     clipping::paint(&ui.painter_at(rect), rect, lab, ui.pixels_per_point());
+    let (mut actions, mut places) = marks::marks(ui, rect, lab, registry);
     // In a presentation, what the picture says of itself stands below the equation.
     let presenting = lab.view.presenting;
     let free = if presenting { presentation::overlay(ui, rect, lab, registry) } else { rect };
-    let (mut actions, mut places) = marks::marks(ui, rect, lab, registry);
     let (asked, covered) = stale(ui, free, lab, registry);
     actions.extend(asked);
     let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
@@ -174,7 +174,7 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab) {
     let mut y = top;
     let hidden = hidden_terms(lab);
     let per_point = ui.pixels_per_point();
-    let clipped = clipping::badge(lab, f64::from(rect.area() * per_point * per_point));
+    let clipped = clipping::badge(lab, f64::from(lab.picture_rect.area() * per_point * per_point));
     let all = hidden.iter().chain(&lab.disk.badge).chain(&lab.badges).chain(&clipped);
     for (i, badge) in all.enumerate() {
         let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
