@@ -42,6 +42,9 @@ fn stops(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
             |w: &&WidgetRect| w.enabled && w.sense.is_focusable() && w.interact_rect.is_positive();
         widgets.layers().flat_map(|(_, all)| all).filter(focusable).filter(|w| keep(w)).copied().collect()
     });
+    // A menu and an area that scrolls take clicks as a whole, but are no stops.
+    let centres: Vec<_> = stops.iter().map(|w| w.rect.center()).collect();
+    stops.retain(|w| centres.iter().filter(|centre| w.rect.contains(**centre)).count() < 3);
     stops.sort_by(|a, b| {
         (a.rect.center().y.round(), a.rect.left())
             .partial_cmp(&(b.rect.center().y.round(), b.rect.left()))

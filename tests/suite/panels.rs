@@ -369,7 +369,7 @@ impl Bench {
         for primitive in &mut primitives {
             primitive.clip_rect = primitive.clip_rect * zoom;
             if let epaint::Primitive::Mesh(mesh) = &mut primitive.primitive {
-                mesh.vertices.iter_mut().for_each(|v| v.pos = v.pos * zoom);
+                mesh.vertices.iter_mut().for_each(|v| v.pos *= zoom);
             }
         }
         let size = (self.size.x as usize, self.size.y as usize);
