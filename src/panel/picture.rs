@@ -24,9 +24,10 @@ pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec
         return (Vec::new(), Vec::new());
     }
     clipping::paint(&ui.painter_at(rect), rect, lab, ui.pixels_per_point());
-    let (mut actions, mut places) = marks::marks(ui, rect, lab, registry);
-    // In a presentation, what the picture says of itself stands below the equation.
+    // In a presentation the picture has no marks, and what it says of itself stands below the equation.
     let presenting = lab.view.presenting;
+    let (mut actions, mut places) =
+        if presenting { Default::default() } else { marks::marks(ui, rect, lab, registry) };
     let free = if presenting { presentation::overlay(ui, rect, lab, registry) } else { rect };
     let (asked, covered) = stale(ui, free, lab, registry);
     actions.extend(asked);

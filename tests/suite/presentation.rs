@@ -92,7 +92,9 @@ fn a_narrow_bar_has_a_menu_of_the_shading_modes() {
 #[test]
 fn a_presentation_is_the_picture_alone_and_the_keys_go_on() {
     let mut bench = bench((1280.0, 720.0), "phong");
+    assert!(bench.says("Point 1"), "in the list, and at the edge of the picture");
     bench.key(Key::F5, Modifiers::NONE);
+    assert!(!bench.says("Point 1"), "no marks over the picture");
     assert!(bench.lab.view.presenting && bench.lab.view.fullscreen);
     assert_eq!(bench.lab.picture_rect.size(), vec2(1280.0, 720.0));
     for gone in ["File", "Observer", "diffuse coefficient"] {
