@@ -74,7 +74,7 @@ mod tests {
         let large = said(&vec![b' '; MAX_BYTES as usize + 1]).expect_err("too large");
         assert!(large.contains("larger than 1 MiB"), "{large}");
         let gone = read(Path::new("/nonexistent/a.wgsl"), "a.wgsl").expect_err("is not there");
-        assert!(gone.message.contains("the file is gone"), "{gone}");
+        assert!(gone.message.contains("the file is missing"), "{gone}");
         let folder = tempfile::tempdir().expect("a folder");
         let is_folder = read(folder.path(), "a.wgsl").expect_err("is a folder");
         assert!(is_folder.message.contains("no file"), "{is_folder}");
