@@ -13,6 +13,10 @@ use crate::registry::Registry;
 
 /// How much of the window they take.
 const SHARE: f32 = 0.7;
+/// The same in a window that is narrow, which has no room to spare.
+const ALL: f32 = 0.96;
+/// As wide is a narrow window, points.
+const NARROW: f32 = 800.0;
 
 /// See the module.
 #[derive(Debug)]
@@ -97,7 +101,8 @@ impl Dialogs {
             let selection = &mut style.visuals.selection;
             (selection.bg_fill, selection.stroke) = (palette.accent, Stroke::new(1.0, palette.panel));
         });
-        let size = SHARE * ctx.content_rect().size();
+        let screen = ctx.content_rect().size();
+        let size = if screen.x < NARROW { ALL } else { SHARE } * screen;
         for dialog in [&mut self.open, &mut self.save, &mut self.folder] {
             let config = dialog.config_mut();
             (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));

@@ -123,6 +123,7 @@ pub(super) fn walk_menus(ctx: &Context) {
         return;
     }
     let mut step = 0_isize;
+    let mut stays = false;
     ctx.input_mut(|input| {
         input.events.retain(|event| {
             let Event::Key { key, pressed: true, modifiers: Modifiers::NONE, .. } = event else {
@@ -131,11 +132,19 @@ pub(super) fn walk_menus(ctx: &Context) {
             match key {
                 Key::ArrowDown => step += 1,
                 Key::ArrowUp => step -= 1,
+                // They open and close what hangs at an entry; the focus stays within the menu.
+                Key::ArrowLeft | Key::ArrowRight => {
+                    stays = true;
+                    return true;
+                }
                 _ => return true,
             }
             false
         });
     });
+    if stays {
+        ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
+    }
     let entering = now.is_none() && ctx.data_mut(|d| d.remove_temp::<bool>(opened())).unwrap_or(false);
     if entering {
         step = 1;

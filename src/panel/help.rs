@@ -9,6 +9,9 @@ use super::{
 };
 use crate::registry::Registry;
 
+/// The least width of the window in which the list has two columns, points.
+const TWO_COLUMNS: f32 = 820.0;
+
 /// Shows the windows that are open.
 pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
@@ -83,8 +86,11 @@ fn key_list(ui: &mut Ui, lab: &Lab, registry: &Registry) {
         count += size;
     }
     ui.spacing_mut().interact_size.y = 20.0;
-    ui.columns_const(|[a, b]| {
-        for (ui, groups) in [(a, left), (b, right)] {
+    // Where there is no room for two, the second goes on below the first.
+    let narrow = ui.ctx().content_rect().width() < TWO_COLUMNS;
+    ui.columns(if narrow { 1 } else { 2 }, |columns| {
+        for (i, groups) in [left, right].into_iter().enumerate() {
+            let ui = &mut columns[if narrow { 0 } else { i }];
             for group in groups {
                 ui.label(theme::strong(ui, group));
                 Grid::new(group).num_columns(2).min_col_width(88.0).show(ui, |ui| {

@@ -81,7 +81,8 @@ impl<'a> Stand<'a> {
         let radius = self.radii.get(of.kind.as_str()).map_or(0.0, |r| r * of.size);
         let free = |p: Vec3| self.free(p, radius);
         let step = 0.55 * of.size;
-        self.search(of.position, step, |p| free(p) && self.sees(p, radius))
+        self.search(of.position, step, |p| free(p) && self.sees(p, radius) && self.is_beside_all(p, radius))
+            .or_else(|| self.search(of.position, step, |p| free(p) && self.sees(p, radius)))
             .or_else(|| self.search(of.position, step, free))
             .unwrap_or_else(|| self.lattice(of.position))
     }

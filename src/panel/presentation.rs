@@ -111,8 +111,9 @@ fn reminder(ui: &Ui, rect: Rect) {
     let palette = Palette::here(ui);
     let font = FontId::proportional(CAPTION * rect.height());
     let galley = ui.painter().layout_no_wrap("Esc leaves the presentation".to_owned(), font, palette.text);
-    let place = Align2::RIGHT_BOTTOM
-        .anchor_size(rect.right_bottom() - vec2(12.0, 12.0), galley.size() + vec2(24.0, 12.0));
+    // The caption has the bottom, the equation begins at the left.
+    let place =
+        Align2::RIGHT_TOP.anchor_size(rect.right_top() + vec2(-12.0, 12.0), galley.size() + vec2(24.0, 12.0));
     ui.painter().rect_filled(place, theme::UNIT, palette.panel);
     ui.painter().galley(place.min + vec2(12.0, 6.0), galley, palette.text);
 }

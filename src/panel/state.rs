@@ -906,11 +906,17 @@ impl Lab {
             }
             Action::SaveAsDialog => return vec![Effect::PickSave],
             Action::SaveAs(path) => {
-                // A scene that was in no file is called as its file from now on, unless the user named it.
-                if self.path.is_none() && self.scene.name == self.saved.name {
+                // The default scene is called as its file from now on.
+                if self.path.is_none() && self.scene.name == Scene::default().name {
                     self.change(|scene| scene.name = None);
                 }
-                return vec![Effect::SaveFile { path, overwrite: true }];
+                // The dialog adds an extension to whatever is typed, and asked about that file only.
+                let typed =
+                    path.to_str().and_then(|p| p.strip_suffix(".json")).filter(|p| p.ends_with(".json"));
+                return vec![match typed.map(PathBuf::from) {
+                    Some(path) => Effect::SaveFile { path, overwrite: false },
+                    None => Effect::SaveFile { path, overwrite: true },
+                }];
             }
             Action::ClearRecent => {
                 self.recent_files.clear();

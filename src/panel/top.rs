@@ -202,7 +202,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
         let view_menu = ui.menu_button("View", |ui| {
             ui.set_width(MENU_WIDTH);
             let most = ui.ctx().content_rect().height() - 48.0;
-            egui::ScrollArea::vertical().max_height(most).show(ui, |ui| {
+            egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
                 item(ui, "Home: the observer’s view", Action::HomeView, actions);
                 item(ui, "Focus selection", Action::FocusSelection, actions);
                 item(ui, "Set observer to this view", Action::ObserverFromView, actions);
@@ -351,7 +351,7 @@ fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
     let palette = Palette::here(ui);
     ui.add_space(6.0);
     let name = lab.name_of(lab.selection, registry);
-    let text = format!("{name} overrides {what}");
+    let text = format!("“{name}” overrides {what}");
     // The frame rate keeps its place.
     let room = ui.available_width() - 96.0;
     if room < 40.0 {

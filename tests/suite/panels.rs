@@ -593,7 +593,7 @@ fn what_the_top_shows_is_what_the_selected_object_has() {
     let mut bench = Bench::new(Lab::default());
     bench.apply(Action::AddObject("cube".to_owned()));
     bench.apply(Action::Edit(Edit::Object(1, ObjectField::Model(Some("phong".to_owned())))));
-    assert!(bench.says("Reflection model: Phong") && bench.says("Cube 1 overrides reflection"));
+    assert!(bench.says("Reflection model: Phong") && bench.says("“Cube 1” overrides reflection"));
     bench.key(Key::R, Modifiers::NONE);
     bench.frame(vec![Event::Text("1977".to_owned())]);
     bench.settle();

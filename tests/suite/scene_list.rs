@@ -242,6 +242,13 @@ fn saving_says_where_and_offers_to_keep_the_view() {
     bench.effects.clear();
     bench.click("Set observer to this view");
     assert_eq!(bench.effects, [Effect::ObserverFromView]);
+    // What is typed with its extension gets no second one, and is not replaced unasked.
+    bench.effects.clear();
+    bench.apply(Action::SaveAs(PathBuf::from("/somewhere/a.json.json")));
+    assert_eq!(
+        bench.effects,
+        [Effect::SaveFile { path: PathBuf::from("/somewhere/a.json"), overwrite: false }]
+    );
     // A name that the user gave stays.
     bench.apply(Action::Edit(Edit::SceneName("My lecture".to_owned())));
     bench.apply(Action::SaveAs(PathBuf::from("/somewhere/other.json")));
