@@ -2,8 +2,7 @@
 //! them. An icon button always has a tooltip, which is also what a screen reader says.
 
 use bevy_egui::egui::{
-    self, Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, WidgetType, pos2,
-    vec2,
+    Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 
 use super::{state::Severity, theme::Palette};
@@ -147,9 +146,6 @@ pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
         let hot = response.hovered() || response.has_focus();
         if hot {
             ui.painter().rect_filled(rect, 4.0, palette.hovered);
-        }
-        if response.has_focus() {
-            ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.5, palette.accent), egui::StrokeKind::Inside);
         }
         let colour = if hot { palette.text } else { palette.weak };
         paint(ui.painter(), Rect::from_center_size(rect.center(), vec2(13.0, 13.0)), icon, colour);

@@ -172,6 +172,13 @@ pub fn keys_of(bindings: &[Binding], action: &Action) -> String {
     bindings.iter().find(|b| b.action == *action).map(Binding::keys).unwrap_or_default()
 }
 
+/// True if Escape was pressed and nothing that is open over the picture takes it.
+pub(super) fn escapes(ctx: &egui::Context, lab: &Lab) -> bool {
+    let open = lab.view.chooser_open || lab.view.keys_open || lab.view.about_open || lab.draft.is_some();
+    let free = lab.keyboard_free && !open && !egui::Popup::is_any_open(ctx);
+    free && ctx.input(|i| i.key_pressed(Key::Escape))
+}
+
 /// Reads the keys that were pressed. Call before the widgets see them.
 #[must_use]
 pub fn pressed(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> {

@@ -921,25 +921,35 @@ pub fn list_knob<R>(
         button
     });
     explain(label, |ui| tooltip(ui, caption, "", ""));
+    let out = drop_down(&button, id, list);
+    if out.is_some() {
+        Popup::close_id(ui.ctx(), id);
+    }
+    ui.add_space(4.0);
+    out
+}
+
+/// What a button opens and closes: `list`, which gets an id of its own.
+pub(super) fn drop_down<R>(
+    button: &Response,
+    id: Id,
+    list: impl FnOnce(&mut Ui, Id) -> Option<R>,
+) -> Option<R> {
     let width = 352.0;
-    let mut out = None;
-    let popup = Popup::from_toggle_button_response(&button)
+    let list_id = id.with("list");
+    let popup = Popup::from_toggle_button_response(button)
         .id(id)
         .align(RectAlign::BOTTOM_END)
         .width(width)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .show(|ui| {
             ui.set_width(width);
-            out = list(ui, id.with("list"));
+            list(ui, list_id)
         });
     if popup.is_none() {
-        chooser::forget(ui.ctx(), id.with("list"));
+        chooser::forget(&button.ctx, list_id);
     }
-    if out.is_some() {
-        Popup::close_id(ui.ctx(), id);
-    }
-    ui.add_space(4.0);
-    out
+    popup.and_then(|popup| popup.inner)
 }
 
 /// One of several: word at the left, list at the right. Returns the index of a new choice.

@@ -145,12 +145,11 @@ impl Ink {
     fn line(&mut self, mut points: Vec<Pos2>, colour: Color32) {
         self.above.push(Shape::line(points.clone(), Stroke::new(LINE, colour)));
         // The outline goes around the ends too.
-        let rim = RIM;
         let end = points.len() - 1;
         let (first, last) = (points[0] - points[1], points[end] - points[end - 1]);
-        points[0] += first.normalized() * rim;
-        points[end] += last.normalized() * rim;
-        self.below.push(Shape::line(points, Stroke::new(LINE + 2.0 * rim, OUTLINE)));
+        points[0] += first.normalized() * RIM;
+        points[end] += last.normalized() * RIM;
+        self.below.push(Shape::line(points, Stroke::new(LINE + 2.0 * RIM, OUTLINE)));
     }
 
     fn path(&mut self, points: &[Vec3], colour: Color32) {
@@ -361,8 +360,7 @@ fn arrows(
             true => LIGHT,
             false => OFF,
         };
-        let size = ARROW;
-        let (ahead, side) = (way * size, way.rot90() * size);
+        let (ahead, side) = (way * ARROW, way.rot90() * ARROW);
         // So slim that it cannot be taken for an arrow in another direction.
         let (tip, back) = (at + ahead * 1.2, at - ahead);
         let triangle = vec![tip, back + side * 0.7, back - side * 0.7];
@@ -370,12 +368,12 @@ fn arrows(
         if lights.len() > 1 {
             let font = FontId::new(10.5, theme::semibold());
             let text = painter.layout_no_wrap(lights.len().to_string(), font, colour);
-            let middle = at - way * (size + 0.5 * text.size().max_elem() + 3.0);
+            let middle = at - way * (ARROW + 0.5 * text.size().max_elem() + 3.0);
             let plate = Rect::from_center_size(middle, text.size() + vec2(6.0, 2.0));
             painter.rect_filled(plate, 3.0, OUTLINE);
             painter.galley(Align2::CENTER_CENTER.anchor_size(middle, text.size()).min, text, colour);
         }
-        let place = Rect::from_center_size(at, Vec2::splat(3.0 * size));
+        let place = Rect::from_center_size(at, Vec2::splat(3.0 * ARROW));
         // Not a stop for the Tab key: the list has all lights.
         let id = Id::new(("light outside the view", lights[0]));
         let response = ui.interact(place, id, Sense::CLICK).on_hover_cursor(CursorIcon::PointingHand);

@@ -1,9 +1,9 @@
 //! The model and the shading that one object has in place of the scene's: one button beside the model's name.
 
-use bevy_egui::egui::{Button, Popup, PopupCloseBehavior, RectAlign, RichText, Ui, WidgetInfo, WidgetType};
+use bevy_egui::egui::{Button, Popup, RichText, Ui, WidgetInfo, WidgetType};
 
 use super::{
-    chooser,
+    chooser, knob,
     state::{Lab, ObjectField},
     theme::{self, Palette},
     top::segmented,
@@ -35,54 +35,43 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
     });
 
     let id = ui.make_persistent_id("model override");
-    let width = 352.0;
     let scene_model = model_name(&lab.scene.reflection_model);
     let scene_mode = mode_name(&lab.scene.shading_model);
-    let mut out = None;
-    let popup = Popup::from_toggle_button_response(&button)
-        .id(id)
-        .align(RectAlign::BOTTOM_END)
-        .width(width)
-        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
-        .show(|ui| {
-            ui.set_width(width);
-            ui.label(theme::strong(ui, "Override model and shading"));
-            ui.label(theme::small(
-                ui,
-                format!("Of this object alone; the scene has {scene_model} and {scene_mode} shading."),
-            ));
-            ui.add_space(4.0);
-            let modes = registry.modes();
-            let mut names = vec!["Scene default"];
-            names.extend(modes.iter().map(|m| m.declaration.name));
-            let chosen = object
-                .shading_model
-                .as_ref()
-                .map_or(Some(0), |id| modes.iter().position(|m| m.declaration.id == id).map(|k| k + 1));
-            let tip = |ui: &mut Ui, i: usize| {
-                ui.set_max_width(300.0);
-                match i.checked_sub(1).map(|k| modes[k].declaration) {
-                    Some(d) => ui.label(d.summary),
-                    None => ui.label(format!("The shading of the scene: {scene_mode}.")),
-                };
+    let out = knob::drop_down(&button, id, |ui, list| {
+        let mut out = None;
+        ui.label(theme::strong(ui, "Override model and shading"));
+        ui.label(theme::small(
+            ui,
+            format!("Of this object alone; the scene has {scene_model} and {scene_mode} shading."),
+        ));
+        ui.add_space(4.0);
+        let modes = registry.modes();
+        let mut names = vec!["Scene default"];
+        names.extend(modes.iter().map(|m| m.declaration.name));
+        let chosen = object
+            .shading_model
+            .as_ref()
+            .map_or(Some(0), |id| modes.iter().position(|m| m.declaration.id == id).map(|k| k + 1));
+        let tip = |ui: &mut Ui, i: usize| {
+            ui.set_max_width(300.0);
+            match i.checked_sub(1).map(|k| modes[k].declaration) {
+                Some(d) => ui.label(d.summary),
+                None => ui.label(format!("The shading of the scene: {scene_mode}.")),
             };
-            if let Some(i) = segmented(ui, "Shading of this object", &names, chosen, tip) {
-                out = Some(ObjectField::Mode(i.checked_sub(1).map(|k| modes[k].declaration.id.to_owned())));
-            }
-            ui.add_space(6.0);
-            let own = object.reflection_model.as_deref();
-            let height = 0.45 * ui.ctx().content_rect().height();
-            let first = format!("Scene default ({scene_model})");
-            if let Some(model) =
-                chooser::models(ui, id.with("list"), height, lab, registry, own, Some(&first))
-            {
-                out = Some(ObjectField::Model(model.map(|m| m.declaration.id.to_owned())));
-                Popup::close_id(ui.ctx(), id);
-            }
-        });
-    if popup.is_none() {
-        chooser::forget(ui.ctx(), id.with("list"));
-    }
+        };
+        if let Some(i) = segmented(ui, "Shading of this object", &names, chosen, tip) {
+            out = Some(ObjectField::Mode(i.checked_sub(1).map(|k| modes[k].declaration.id.to_owned())));
+        }
+        ui.add_space(6.0);
+        let own = object.reflection_model.as_deref();
+        let height = 0.45 * ui.ctx().content_rect().height();
+        let first = format!("Scene default ({scene_model})");
+        if let Some(model) = chooser::models(ui, list, height, lab, registry, own, Some(&first)) {
+            out = Some(ObjectField::Model(model.map(|m| m.declaration.id.to_owned())));
+            Popup::close_id(ui.ctx(), id);
+        }
+        out
+    });
     button.on_hover_ui(|ui| {
         ui.set_max_width(300.0);
         ui.label(theme::strong(ui, "Override model and shading"));

@@ -4,12 +4,12 @@
 use std::{thread, time::Duration};
 
 use bevy_egui::egui::{
-    self, Align2, Context, CornerRadius, FontId, Id, Key, Rect, TextStyle, Ui, UiBuilder, Vec2, vec2,
+    Align2, Context, CornerRadius, FontId, Id, Rect, TextStyle, Ui, UiBuilder, Vec2, vec2,
 };
 
 use super::{
     caption::caption_text,
-    maths,
+    keys, maths,
     state::{Action, Lab, ViewChange},
     theme::{self, Palette},
 };
@@ -27,9 +27,7 @@ const REMINDER: f64 = 5.0;
 
 /// Escape leaves, unless it is another's.
 pub fn left(ctx: &Context, lab: &Lab) -> Option<Action> {
-    let open = lab.view.chooser_open || lab.view.keys_open || lab.view.about_open || lab.draft.is_some();
-    let free = lab.keyboard_free && !open && !egui::Popup::is_any_open(ctx);
-    let left = lab.view.presenting && free && ctx.input(|i| i.key_pressed(Key::Escape));
+    let left = lab.view.presenting && keys::escapes(ctx, lab);
     left.then_some(Action::View(ViewChange::Presenting(false)))
 }
 

@@ -422,14 +422,6 @@ pub fn segmented(
                             egui::Stroke::new(2.0, palette.accent),
                         );
                     }
-                    if response.has_focus() {
-                        ui.painter().rect_stroke(
-                            response.rect,
-                            4.0,
-                            egui::Stroke::new(1.5, palette.accent),
-                            egui::StrokeKind::Inside,
-                        );
-                    }
                     if response.clicked() && !on {
                         out = Some(i);
                     }

@@ -1,8 +1,8 @@
 //! The tree at the left: room, observer, lights, objects.
 
 use bevy_egui::egui::{
-    self, Align2, FontId, Key, Rect, ScrollArea, Sense, Stroke, StrokeKind, TextEdit, TextStyle, Ui,
-    WidgetInfo, WidgetType, pos2, vec2,
+    self, Align2, FontId, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, TextStyle, Ui, WidgetInfo,
+    WidgetType, pos2, vec2,
 };
 
 use super::{
@@ -174,9 +174,6 @@ fn part_row(
     } else if hovered {
         painter.rect_filled(ground, 4.0, palette.hovered);
     }
-    if response.has_focus() {
-        painter.rect_stroke(ground, 4.0, Stroke::new(1.5, palette.accent), StrokeKind::Inside);
-    }
     let nested = matches!(part, Selection::Light(_) | Selection::Object(_));
     let x = rect.left() + (if nested { 22.0 } else { 16.0 });
     let centre = pos2(x, rect.center().y);
@@ -219,7 +216,7 @@ fn part_row(
     let right = ground.right() - if nested { 48.0 } else { 8.0 };
     let there = is_there(lab, part);
     let colour = if there { palette.text } else { palette.weak };
-    let galley = elided(ui, &name, body, colour, right - text_left);
+    let galley = theme::elided(ui, &name, body, colour, (right - text_left).max(8.0));
     let cut = galley.elided;
     painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
     if let Some(rgb) = dot {
@@ -346,18 +343,6 @@ fn colour_dot(
         }
     });
     response.on_hover_text(format!("Colour of {name}"));
-}
-
-fn elided(
-    ui: &Ui,
-    text: &str,
-    font: FontId,
-    colour: egui::Color32,
-    width: f32,
-) -> std::sync::Arc<egui::Galley> {
-    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, colour);
-    job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(8.0));
-    ui.painter().layout_job(job)
 }
 
 fn rename(ui: &mut Ui, lab: &Lab, part: Selection, name: &str, place: Rect, actions: &mut Vec<Action>) {

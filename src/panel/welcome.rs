@@ -1,12 +1,13 @@
 //! The examples: a menu of them, and the strip below the picture that shows them when the window opens without a file.
 
 use bevy_egui::egui::{
-    self, Align, Context, Key, Label, Layout, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind,
-    TextStyle, Ui, WidgetInfo, WidgetType, vec2,
+    self, Align, Context, Label, Layout, Rect, Response, ScrollArea, Sense, Stroke, StrokeKind, TextStyle,
+    Ui, WidgetInfo, WidgetType, vec2,
 };
 
 use super::{
     icon::{self, Icon},
+    keys,
     preview::{self, Source},
     state::{Action, Lab, ViewChange},
     theme::{self, Palette},
@@ -71,9 +72,7 @@ pub fn strip(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
 
 /// Escape closes the strip, unless it is another's.
 pub fn left(ctx: &Context, lab: &Lab) -> Option<Action> {
-    let open = lab.view.chooser_open || lab.view.keys_open || lab.view.about_open || lab.draft.is_some();
-    let free = lab.keyboard_free && !open && !lab.view.presenting && !egui::Popup::is_any_open(ctx);
-    let left = lab.view.examples_open && free && ctx.input(|i| i.key_pressed(Key::Escape));
+    let left = lab.view.examples_open && !lab.view.presenting && keys::escapes(ctx, lab);
     left.then_some(Action::View(ViewChange::Examples(false)))
 }
 
