@@ -52,6 +52,9 @@ impl Lab {
         renderer.app().world_mut().resource_mut::<LiveShaders>().start(Sources::default(), folders);
         renderer.set_scene(Scene::default());
         renderer.settle().expect("the GPU draws");
+        // What did not change is not drawn: in the window, the processors have the trial to themselves.
+        renderer.draw_on_demand();
+        renderer.settle().expect("the GPU draws");
         let (wake, news) = mpsc::channel();
         if apart {
             let wake = wake.clone();

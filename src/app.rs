@@ -19,6 +19,7 @@ use crate::{
         swap::{self, ParameterTables, ShapeMeshes},
     },
     registry::{Registry, register_builtin},
+    render::view::ViewPlugin,
     scene::spawn::{CurrentScene, SceneEntities, absorb, reconcile},
     shader::live::LiveShadersPlugin,
 };
@@ -95,7 +96,7 @@ impl Plugin for ScenePlugin {
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
             )
-            .add_plugins(LiveShadersPlugin);
+            .add_plugins((LiveShadersPlugin, ViewPlugin));
     }
 }
 

@@ -18,6 +18,7 @@
 //! - [`scene`]: the scene as a value; JSON; entities.
 //! - [`shader`]: WGSL text in, WGSL text out.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
+//! - [`render`]: views, each with its picture in a texture of its own.
 //! - [`capture`]: rendering without a window, PNG files.
 //! - [`study`]: what tells the models apart, as numbers and a report.
 //! - [`watch`]: which files on disk change.
@@ -46,6 +47,7 @@ pub mod capture;
 pub mod panel;
 pub mod recovery;
 pub mod reference;
+pub mod render;
 pub mod signals;
 pub mod study;
 pub mod watch;

@@ -29,14 +29,15 @@ use bevy::{
     window::{ExitCondition, WindowPlugin},
     winit::WinitPlugin,
 };
-use glam::Vec3;
+use glam::{UVec2, Vec3};
 use thiserror::Error;
 use wgpu::PollError;
 
 use crate::{
     app::{ScenePlugin, ShownTerms},
-    observer::camera::picture_camera,
+    observer::camera::{PictureCamera, picture_camera},
     optics::TermSelection,
+    render::view::View,
     scene::{Scene, spawn::CurrentScene},
     shader::{check::ShaderProblem, live::LiveShaders, trial::Bench},
 };
@@ -260,6 +261,16 @@ impl GpuRenderer {
     /// Shows only some terms from the next frame on.
     pub fn set_terms(&mut self, terms: TermSelection) {
         self.app.world_mut().resource_mut::<ShownTerms>().set_if_neq(ShownTerms(terms));
+    }
+
+    /// From now on frames draw only what changed, as those of the window do.
+    pub fn draw_on_demand(&mut self) {
+        let view = View { size: UVec2::new(self.width, self.height), format: self.output.format() };
+        let world = self.app.world_mut();
+        let cameras: Vec<_> = world.query_filtered::<Entity, With<PictureCamera>>().iter(world).collect();
+        for camera in cameras {
+            world.entity_mut(camera).insert(view);
+        }
     }
 
     /// Draws one frame.

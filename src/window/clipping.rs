@@ -28,13 +28,14 @@ use bevy::{
 };
 use wgpu::{BufferUsages, ShaderStages, util::BufferInitDescriptor};
 
-use super::{SETTLING_FRAMES, Settling, still::Stillness};
+use super::{SETTLING_FRAMES, Settling};
 use crate::{
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
         clipping::{Clipping, GRID},
         state::Lab,
     },
+    render::view::{Drawing, ViewSystems},
     scene::{Display, spawn::CurrentScene},
 };
 
@@ -59,7 +60,7 @@ impl Plugin for ClippingPlugin {
         let question = Question { number: 0, open: false, limit: 1.0, shader, buffer };
         world.insert_resource(question.clone());
         app.add_plugins(ExtractResourcePlugin::<Question>::default())
-            .add_systems(PostUpdate, ask.after(super::still::keep).after(super::redraw));
+            .add_systems(PostUpdate, ask.after(ViewSystems).after(super::redraw));
         if let Some(render) = app.get_sub_app_mut(RenderApp) {
             // The pass is prepared before anything is handed over.
             render
@@ -102,22 +103,17 @@ fn limit(display: &Display) -> f32 {
     }
 }
 
-/// Asks once the picture has come to rest, and keeps frames coming until the answer is there.
+/// Asks about the last picture after a change, and keeps frames coming until the answer is there.
 fn ask(
     scene: Res<CurrentScene>,
-    stillness: Res<Stillness>,
-    settling: Res<Settling>,
+    views: Query<&Drawing>,
     mut question: ResMut<Question>,
-    mut due: Local<bool>,
     mut patience: Local<u32>,
     mut readback: Local<Option<Entity>>,
     mut requests: MessageWriter<RequestRedraw>,
     mut commands: Commands,
 ) {
-    if !stillness.is_at_rest() {
-        *due = true;
-    } else if *due && settling.frames == 0 {
-        *due = false;
+    if views.iter().any(|drawing| drawing.draws() && drawing.is_done()) {
         *patience = PATIENCE;
         question.number = question.number.wrapping_add(1);
         question.open = true;
@@ -133,8 +129,6 @@ fn ask(
     } else if let Some(entity) = readback.take() {
         question.open = false;
         commands.entity(entity).despawn();
-    } else if *due {
-        requests.write(RequestRedraw);
     }
 }
 
@@ -194,15 +188,14 @@ fn count(
     mut context: RenderContext,
 ) {
     let (camera, target) = view.into_inner();
-    let (Some(viewport), true) = (&camera.viewport, question.open) else { return };
+    let (Some(size), true) = (camera.physical_target_size, question.open) else { return };
     let (Some(pipeline), Some(answer)) =
         (cache.get_compute_pipeline(pass.pipeline), buffers.get(&question.buffer))
     else {
         return;
     };
-    let [origin, size] = [viewport.physical_position, viewport.physical_size];
-    let words = [origin.x, origin.y, size.x, size.y, question.limit.to_bits(), question.number];
-    let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).chain([0; 8]).collect();
+    let words = [size.x, size.y, question.limit.to_bits(), question.number];
+    let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
     let device = context.render_device();
     let asked = device.create_buffer_with_data(&BufferInitDescriptor {
         label: Some("clipping"),

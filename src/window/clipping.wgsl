@@ -1,8 +1,7 @@
 // How many pixels of each field of a grid over the picture clip.
 
 struct Ask {
-    // The first pixel of the picture, and its extent.
-    origin: vec2<u32>,
+    // The extent of the picture.
     size: vec2<u32>,
     // Above this, a channel clips.
     limit: f32,
@@ -25,7 +24,7 @@ fn count(@builtin(global_invocation_id) id: vec3<u32>) {
     var clipped = 0u;
     for (var y = low.y; y < high.y; y++) {
         for (var x = low.x; x < high.x; x++) {
-            let colour = textureLoad(picture, ask.origin + vec2(x, y), 0).rgb;
+            let colour = textureLoad(picture, vec2(x, y), 0).rgb;
             clipped += u32(any(colour > vec3(ask.limit)));
         }
     }

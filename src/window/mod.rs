@@ -6,7 +6,7 @@
 use std::{
     panic::{self, AssertUnwindSafe},
     sync::{Arc, Mutex},
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use bevy::{
@@ -15,7 +15,10 @@ use bevy::{
         TerminalCtrlCHandlerPlugin,
     },
     asset::AssetPlugin,
-    camera::{Camera, Camera2d, CameraOutputMode, ClearColorConfig, Hdr, Viewport, visibility::RenderLayers},
+    camera::{
+        Camera, Camera2d, CameraMainTextureUsages, ClearColorConfig, Hdr, RenderTarget,
+        visibility::RenderLayers,
+    },
     ecs::prelude::*,
     input::keyboard::{Key, KeyboardInput},
     light::cluster::GlobalClusterSettings,
@@ -24,7 +27,7 @@ use bevy::{
     render::{
         RenderPlugin,
         pipelined_rendering::PipelinedRenderingPlugin,
-        render_resource::BlendState,
+        render_resource::TextureUsages,
         renderer::RenderAdapterInfo,
         settings::{RenderCreation, WgpuSettings},
         view::Msaa,
@@ -35,9 +38,11 @@ use bevy::{
     },
     winit::{EventLoopProxyWrapper, UpdateMode, WinitSettings, WinitUserEvent},
 };
-use bevy_egui::{EguiGlobalSettings, EguiInput, EguiPlugin, EguiPreUpdateSet, PrimaryEguiContext, egui};
-use bevy_panorbit_camera::PanOrbitCameraPlugin;
-use glam::UVec2;
+use bevy_egui::{
+    EguiGlobalSettings, EguiInput, EguiPlugin, EguiPostUpdateSet, EguiPreUpdateSet, PrimaryEguiContext, egui,
+};
+use bevy_panorbit_camera::{ActiveCameraData, PanOrbitCameraPlugin, PanOrbitCameraSystemSet};
+use glam::{UVec2, Vec2};
 
 use crate::{
     app::{LabFrame, LabSystems, ScenePlugin, ShownTerms},
@@ -53,6 +58,10 @@ use crate::{
     },
     recovery::Store,
     registry::Registry,
+    render::{
+        show::{ShowPlugin, Shows},
+        view::{Drawing, View, ViewSystems, texture_of},
+    },
     scene::spawn::CurrentScene,
     shader::{
         live::LiveShaders,
@@ -71,13 +80,13 @@ mod clipping;
 pub mod editor;
 mod ending;
 pub mod files;
+mod frames;
 mod gizmos;
 pub mod laws;
 mod pick;
 mod pointer;
 mod recovery;
 mod shaders;
-mod still;
 pub mod watching;
 
 /// The size of a new window, points.
@@ -137,6 +146,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     add_with_display(&mut app, plugins)?;
     app.insert_resource(options.registry.clone());
     app.insert_resource(laws::LawChecks::by(options.trial_program.clone()));
+    app.world_mut().resource_mut::<frames::FrameClock>().tells = options.verbose;
     let mut lab = Lab::new(options.scene.clone());
     lab.path.clone_from(&options.file);
     lab.disk.use_defaults = options.use_defaults;
@@ -255,17 +265,17 @@ impl Plugin for WindowSystemsPlugin {
         .init_resource::<Settling>()
         .init_resource::<editor::Editors>()
         .init_resource::<laws::LawChecks>()
-        .init_resource::<FrameClock>()
+        .init_resource::<frames::FrameClock>()
         .add_plugins((
             gizmos::GizmosPlugin,
             camera::CameraPlugin,
-            still::StillPlugin,
+            ShowPlugin,
             clipping::ClippingPlugin,
             pointer::PointerPlugin,
             watching::WatchingPlugin,
         ))
         .add_systems(Startup, (spawn_cameras, adapter_facts))
-        .add_systems(Last, (measure_frame, recovery::keep))
+        .add_systems(Last, (frames::measure, recovery::keep))
         .add_systems(PreUpdate, (close_requested, recovery::interrupted))
         .add_systems(
             PreUpdate,
@@ -292,7 +302,17 @@ impl Plugin for WindowSystemsPlugin {
                 shaders::tell.in_set(LabSystems::Upload).after(scene_to_lab),
             ),
         )
-        .add_systems(PostUpdate, (fit_viewport, window_title, fullscreen, redraw));
+        .configure_sets(PostUpdate, ViewSystems.after(PanOrbitCameraSystemSet))
+        .add_systems(
+            PostUpdate,
+            (
+                fit_picture.after(EguiPostUpdateSet::EndPass).before(ViewSystems),
+                show_picture.after(ViewSystems),
+                window_title,
+                fullscreen,
+                redraw,
+            ),
+        );
     }
 
     fn finish(&self, app: &mut App) {
@@ -312,20 +332,17 @@ fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>
     // Four samples double the cost of a frame where the GPU is a program on the CPU.
     let samples = if software { 1 } else { 4 };
     commands
-        .spawn((picture_camera(samples), Hdr, still::own_texture(), camera::orbit()))
-        .insert(PictureCamera { follows_observer: true, fits_width: true });
+        .spawn((picture_camera(samples), Hdr, RenderTarget::None { size: UVec2::ONE }, camera::orbit()))
+        .insert((
+            PictureCamera { follows_observer: true, fits_width: true },
+            // The panels say how large.
+            View::for_display(UVec2::ZERO),
+        ));
     commands.spawn((
         Camera2d,
-        Camera {
-            order: 1,
-            output_mode: CameraOutputMode::Write {
-                blend_state: Some(BlendState::ALPHA_BLENDING),
-                clear_color: ClearColorConfig::None,
-            },
-            clear_color: ClearColorConfig::Custom(bevy::color::Color::NONE),
-            ..Camera::default()
-        },
-        Hdr,
+        Camera { order: 1, ..Camera::default() },
+        Shows::default(),
+        CameraMainTextureUsages::default().with(TextureUsages::COPY_DST),
         Msaa::Off,
         bevy::core_pipeline::tonemapping::Tonemapping::None,
         RenderLayers::none(),
@@ -446,38 +463,72 @@ fn close_requested(
     }
 }
 
-/// The picture is drawn where the panels leave room.
-fn fit_viewport(
+/// The picture has the size of the room that the panels leave, and is shown there.
+fn fit_picture(
     lab: Res<Lab>,
     window: Single<&Window, With<PrimaryWindow>>,
-    mut cameras: Query<&mut Camera, With<PictureCamera>>,
+    mut views: Query<(Entity, &mut View, &mut Drawing, &mut Camera), With<PictureCamera>>,
+    mut controls: ResMut<ActiveCameraData>,
+    mut room: Local<Option<bool>>,
 ) {
-    let rect = lab.picture_rect;
-    if !rect.is_finite() || !rect.is_positive() {
+    let Ok((entity, mut view, mut drawing, mut camera)) = views.single_mut() else { return };
+    let place = PicturePlace::of(&lab, &window);
+    if place.size.min_element() == 0 {
         return;
     }
-    let limit = window.physical_size();
-    let pixels = |points: f32| (points * lab.zoom * window.scale_factor()).round().max(0.0) as u32;
-    let low = UVec2::new(pixels(rect.min.x), pixels(rect.min.y)).min(limit.saturating_sub(UVec2::ONE));
-    let high = UVec2::new(pixels(rect.max.x), pixels(rect.max.y)).min(limit);
-    let size = high.saturating_sub(low).max(UVec2::ONE);
-    if limit.min_element() == 0 {
-        return;
-    }
+    view.set_if_neq(View::for_display(place.size));
     // In the light theme the surround is light.
     let grey = Palette::of(&lab.view).surround;
-    let surround = ClearColorConfig::Custom(bevy::color::Color::srgb_u8(grey.r(), grey.g(), grey.b()));
-    for mut camera in &mut cameras {
-        if !matches!((camera.clear_color, surround), (ClearColorConfig::Custom(a), ClearColorConfig::Custom(b)) if a == b)
-        {
-            camera.clear_color = surround;
+    let surround = bevy::color::Color::srgb_u8(grey.r(), grey.g(), grey.b());
+    if !matches!(camera.clear_color, ClearColorConfig::Custom(known) if known == surround) {
+        camera.clear_color = ClearColorConfig::Custom(surround);
+    }
+    if room.replace(lab.view.show_room) != Some(lab.view.show_room) {
+        drawing.redraw();
+    }
+    controls.set_if_neq(ActiveCameraData {
+        entity: Some(entity),
+        viewport_size: Some(place.size.as_vec2() / window.scale_factor()),
+        window_size: Some(window.size()),
+        manual: true,
+    });
+}
+
+/// Shows the picture's texture in its place.
+fn show_picture(
+    lab: Res<Lab>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    views: Query<&RenderTarget, With<PictureCamera>>,
+    mut shows: Single<&mut Shows>,
+) {
+    let at = PicturePlace::of(&lab, &window).at;
+    let pictures = views.iter().filter_map(texture_of).map(|texture| (texture.clone(), at)).collect();
+    shows.set_if_neq(Shows(pictures));
+}
+
+/// Where the picture is in the window, pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct PicturePlace {
+    at: UVec2,
+    size: UVec2,
+}
+
+impl PicturePlace {
+    fn of(lab: &Lab, window: &Window) -> Self {
+        let rect = lab.picture_rect;
+        let limit = window.physical_size();
+        if !rect.is_finite() || !rect.is_positive() || limit.min_element() == 0 {
+            return Self { at: UVec2::ZERO, size: UVec2::ZERO };
         }
-        let same =
-            camera.viewport.as_ref().is_some_and(|v| v.physical_position == low && v.physical_size == size);
-        if !same {
-            camera.viewport =
-                Some(Viewport { physical_position: low, physical_size: size, ..Viewport::default() });
-        }
+        let pixels = |points: f32| (points * lab.zoom * window.scale_factor()).round().max(0.0) as u32;
+        let at = UVec2::new(pixels(rect.min.x), pixels(rect.min.y)).min(limit.saturating_sub(UVec2::ONE));
+        let end = UVec2::new(pixels(rect.max.x), pixels(rect.max.y)).min(limit);
+        Self { at, size: end.saturating_sub(at).max(UVec2::ONE) }
+    }
+
+    /// Where a place of the window is in the picture, pixels.
+    fn within(self, window: &Window, point: Vec2) -> Vec2 {
+        point * window.scale_factor() - self.at.as_vec2()
     }
 }
 
@@ -616,29 +667,4 @@ fn mend_input(
             _ => true,
         });
     }
-}
-
-/// Measures what a frame costs: the time between frames that follow each other without a rest, so
-/// that the work of the GPU counts, which goes on after the last system of a frame.
-#[derive(Default, Resource)]
-struct FrameClock {
-    /// When the last frame began, if another was to follow at once.
-    last: Option<Instant>,
-    mean: f32,
-}
-
-fn measure_frame(
-    mut clock: ResMut<FrameClock>,
-    settling: Res<Settling>,
-    settings: Res<WinitSettings>,
-    mut lab: ResMut<Lab>,
-) {
-    let now = Instant::now();
-    if let Some(last) = clock.last.take() {
-        let ms = (now - last).as_secs_f32() * 1e3;
-        clock.mean = if clock.mean == 0.0 { ms } else { 0.8 * clock.mean + 0.2 * ms };
-        lab.bypass_change_detection().status.frame_ms = clock.mean;
-    }
-    let follows = settling.frames > 0 || settings.focused_mode == UpdateMode::Continuous;
-    clock.last = follows.then_some(now);
 }

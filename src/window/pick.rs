@@ -11,6 +11,7 @@ use bevy::{
 };
 use glam::Vec2;
 
+use super::PicturePlace;
 use crate::{
     observer::camera::PictureCamera,
     panel::{
@@ -48,10 +49,12 @@ pub(super) fn pick(
     }
     let (Some(start), Some(end)) = (pressed_at.take(), pointer) else { return };
     let Ok((camera, place)) = cameras.single() else { return };
-    if start.distance(end) > CLICK_SLACK {
+    if start.distance(end) > CLICK_SLACK * lab.zoom {
         return;
     }
-    let light = lab.view.show_gizmos.then(|| nearest_light(&scene, camera, place, end)).flatten();
+    let end = PicturePlace::of(&lab, &window).within(&window, end);
+    let reach = LIGHT_REACH * lab.zoom * window.scale_factor();
+    let light = lab.view.show_gizmos.then(|| nearest_light(&scene, camera, place, end, reach)).flatten();
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
         let filter = |e: Entity| objects.contains(e);
@@ -73,6 +76,7 @@ fn nearest_light(
     camera: &Camera,
     place: &GlobalTransform,
     pointer: Vec2,
+    reach: f32,
 ) -> Option<usize> {
     scene
         .0
@@ -83,7 +87,7 @@ fn nearest_light(
             let at = camera.world_to_viewport(place, anchor(light, &scene.0)?).ok()?;
             Some((i, at.distance(pointer)))
         })
-        .filter(|(_, distance)| *distance <= LIGHT_REACH)
+        .filter(|(_, distance)| *distance <= reach)
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(i, _)| i)
 }

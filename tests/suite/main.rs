@@ -51,6 +51,7 @@ mod tangents;
 #[cfg(unix)]
 mod trial;
 mod usage;
+mod views;
 mod window;
 mod window_reload;
 mod witness;

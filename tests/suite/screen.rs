@@ -120,6 +120,14 @@ impl Running<'_> {
         fs::read_to_string(&self.said).expect("readable")
     }
 
+    /// Asks the program to end, as Ctrl+C does, and waits until it has. Returns what it wrote to standard error.
+    pub fn ended(mut self) -> String {
+        let ask = format!("kill -INT {}", self.program.id());
+        assert!(Command::new("sh").args(["-c", &ask]).status().expect("a shell").success());
+        self.program.wait().expect("it ends");
+        self.said()
+    }
+
     /// Waits until the screen shows what is asked for.
     pub fn until(&mut self, what: &str, shows: impl Fn(&Picture) -> bool) -> Picture {
         let begin = Instant::now();

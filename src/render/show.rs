@@ -1,0 +1,77 @@
+//! How views reach the window: their textures are copied to where they are seen, and the panels are drawn over
+//! them in one pass.
+
+use bevy::{
+    app::{App, Plugin},
+    asset::Handle,
+    core_pipeline::{Core2d, Core2dSystems},
+    ecs::prelude::*,
+    image::Image,
+    log::error_once,
+    render::{
+        RenderApp,
+        extract_component::{ExtractComponent, ExtractComponentPlugin},
+        render_asset::RenderAssets,
+        render_resource::{Extent3d, Origin3d, TexelCopyTextureInfo, TextureAspect},
+        renderer::{RenderContext, ViewQuery},
+        texture::GpuImage,
+        view::ViewTarget,
+    },
+};
+use glam::UVec2;
+
+/// Shows pictures where [`Shows`] says.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ShowPlugin;
+
+impl Plugin for ShowPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(ExtractComponentPlugin::<Shows>::default());
+        if let Some(render) = app.get_sub_app_mut(RenderApp) {
+            render.add_systems(
+                Core2d,
+                copy.after(Core2dSystems::MainPass).before(bevy_egui::render::prepare_egui_pass),
+            );
+        }
+    }
+}
+
+/// The pictures that a camera of a window shows, and where their upper left corners are, pixels. The camera's
+/// textures need the usage `COPY_DST`.
+#[derive(Component, ExtractComponent, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Shows(pub Vec<(Handle<Image>, UVec2)>);
+
+fn copy(
+    view: ViewQuery<(&ViewTarget, &Shows)>,
+    images: Res<RenderAssets<GpuImage>>,
+    mut context: RenderContext,
+) {
+    let (target, shows) = view.into_inner();
+    let window = target.main_texture();
+    for (handle, at) in &shows.0 {
+        let Some(image) = images.get(handle) else { continue };
+        if image.texture.format() != window.format() {
+            error_once!(
+                "The picture cannot be shown: the window's format is {:?} and the picture's {:?}",
+                window.format(),
+                image.texture.format()
+            );
+            continue;
+        }
+        let room = UVec2::new(window.width(), window.height()).saturating_sub(*at);
+        let size = UVec2::new(image.texture.width(), image.texture.height()).min(room);
+        if size.min_element() == 0 {
+            continue;
+        }
+        context.command_encoder().copy_texture_to_texture(
+            image.texture.as_image_copy(),
+            TexelCopyTextureInfo {
+                texture: window,
+                mip_level: 0,
+                origin: Origin3d { x: at.x, y: at.y, z: 0 },
+                aspect: TextureAspect::All,
+            },
+            Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        );
+    }
+}

@@ -1,0 +1,342 @@
+//! Views: pictures in textures of their own, drawn again only when something that they show changed.
+//!
+//! A view is a camera with a [`View`]. Its texture has the size at which it is seen, and keeps the last picture
+//! while nothing is drawn, so that windows can show it as often as they like.
+
+use bevy::{
+    app::{App, Plugin, PostUpdate},
+    asset::{AssetEvent, AssetEventSystems, Assets, Handle, RenderAssetUsages},
+    camera::{
+        Camera, CameraUpdateSystems, ClearColorConfig, Projection, RenderTarget,
+        visibility::VisibilitySystems,
+    },
+    color::Color,
+    core_pipeline::tonemapping::Tonemapping,
+    ecs::{prelude::*, system::SystemParam},
+    image::Image,
+    mesh::Mesh,
+    prelude::Shader,
+    render::{
+        render_resource::{TextureFormat, TextureUsages},
+        storage::ShaderBuffer,
+    },
+    transform::components::Transform,
+};
+use glam::UVec2;
+
+use crate::{app::ShownTerms, reflection::swap::Drawn, registry::Registry, scene::spawn::CurrentScene};
+
+/// So many pictures are drawn after a change: what the renderer could not prepare in the first is in the second.
+const PICTURES: u32 = 2;
+
+/// Gives views their textures and lets them rest.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ViewPlugin;
+
+impl Plugin for ViewPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            PostUpdate,
+            (
+                fit.before(AssetEventSystems).before(CameraUpdateSystems),
+                rest.after(AssetEventSystems)
+                    .after(CameraUpdateSystems)
+                    .before(VisibilitySystems::CheckVisibility),
+            )
+                .chain()
+                .in_set(ViewSystems),
+        );
+    }
+}
+
+/// The systems that give views their textures and decide which of them are drawn.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ViewSystems;
+
+/// A picture that is drawn into a texture of its own when something that it shows changed.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+#[require(Drawing)]
+pub struct View {
+    /// The size of the picture in pixels. Where it is zero, nothing is drawn.
+    pub size: UVec2,
+    /// What the texture holds.
+    pub format: TextureFormat,
+}
+
+impl View {
+    /// A view of what people see: 8 bits, sRGB-encoded.
+    #[must_use]
+    pub const fn for_display(size: UVec2) -> Self {
+        Self { size, format: TextureFormat::Rgba8UnormSrgb }
+    }
+}
+
+/// How far a view is with its picture.
+#[derive(Component, Clone, Debug)]
+pub struct Drawing {
+    last: Option<Look>,
+    /// How many pictures are still to be drawn.
+    due: u32,
+    /// How many have been drawn.
+    drawn: u64,
+    /// One is drawn in this frame.
+    draws: bool,
+}
+
+impl Default for Drawing {
+    fn default() -> Self {
+        Self { last: None, due: PICTURES, drawn: 0, draws: false }
+    }
+}
+
+impl Drawing {
+    /// Draws the picture again: something that only the caller knows of has changed.
+    pub fn redraw(&mut self) {
+        self.due = PICTURES;
+    }
+
+    /// True in a frame in which the picture is drawn.
+    #[must_use]
+    pub fn draws(&self) -> bool {
+        self.draws
+    }
+
+    /// True once the picture shows everything as it is.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        self.due == 0
+    }
+
+    /// How many pictures have been drawn.
+    #[must_use]
+    pub fn drawn(&self) -> u64 {
+        self.drawn
+    }
+}
+
+/// What a camera shows, beside the scene.
+#[derive(Clone, Debug, PartialEq)]
+struct Look {
+    view: View,
+    transform: Transform,
+    /// Field of view and aspect of the lens.
+    lens: Option<[f32; 2]>,
+    background: Option<Color>,
+    tone: Tonemapping,
+}
+
+/// The texture that a view draws into.
+#[must_use]
+pub fn texture_of(target: &RenderTarget) -> Option<&Handle<Image>> {
+    match target {
+        RenderTarget::Image(image) => Some(&image.handle),
+        _ => None,
+    }
+}
+
+/// Gives every view a texture of its size.
+fn fit(
+    mut images: ResMut<Assets<Image>>,
+    mut views: Query<(&View, &mut RenderTarget, &mut Projection), Changed<View>>,
+) {
+    for (view, mut target, mut lens) in &mut views {
+        let known = texture_of(&target)
+            .and_then(|handle| images.get(handle))
+            .map(|image| (image.size(), image.texture_descriptor.format));
+        if view.size.min_element() == 0 || known == Some((view.size, view.format)) {
+            continue;
+        }
+        let mut image = Image::new_target_texture(view.size.x, view.size.y, view.format, None);
+        image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+        image.asset_usage = RenderAssetUsages::default();
+        *target = RenderTarget::Image(images.add(image).into());
+        // Cameras look at their target when their lens changes.
+        lens.set_changed();
+    }
+}
+
+/// The sources of changes that say so themselves.
+#[derive(SystemParam)]
+struct Changes<'w, 's> {
+    scene: Res<'w, CurrentScene>,
+    terms: Res<'w, ShownTerms>,
+    registry: Res<'w, Registry>,
+    drawn: Query<'w, 's, (), Changed<Drawn>>,
+    shaders: MessageReader<'w, 's, AssetEvent<Shader>>,
+    meshes: MessageReader<'w, 's, AssetEvent<Mesh>>,
+    buffers: MessageReader<'w, 's, AssetEvent<ShaderBuffer>>,
+}
+
+impl Changes<'_, '_> {
+    fn any(&mut self) -> bool {
+        // All are read, so that none is left over for the next frame.
+        let told = [self.shaders.read().count(), self.meshes.read().count(), self.buffers.read().count()];
+        told.iter().any(|count| *count > 0)
+            || self.scene.is_changed()
+            || self.terms.is_changed()
+            || self.registry.is_changed()
+            || !self.drawn.is_empty()
+    }
+}
+
+/// Decides which views are drawn in this frame.
+fn rest(
+    mut changes: Changes,
+    mut views: Query<(&View, &mut Drawing, &mut Camera, &Transform, &Projection, &Tonemapping)>,
+) {
+    let changed = changes.any();
+    for (view, mut drawing, mut camera, transform, lens, tone) in &mut views {
+        let look = Look {
+            view: *view,
+            transform: *transform,
+            lens: match lens {
+                Projection::Perspective(lens) => Some([lens.fov, lens.aspect_ratio]),
+                _ => None,
+            },
+            background: match camera.clear_color {
+                ClearColorConfig::Custom(colour) => Some(colour),
+                _ => None,
+            },
+            tone: *tone,
+        };
+        if changed || drawing.last.as_ref() != Some(&look) {
+            drawing.last = Some(look);
+            drawing.due = PICTURES;
+        }
+        let draws = drawing.due > 0 && view.size.min_element() > 0;
+        if draws {
+            drawing.due -= 1;
+            drawing.drawn += 1;
+        }
+        drawing.draws = draws;
+        if camera.is_active != draws {
+            camera.is_active = draws;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{
+        MinimalPlugins,
+        app::Update,
+        asset::{AssetApp as _, AssetId, AssetPlugin},
+    };
+
+    use super::*;
+    use crate::scene::{Object, Scene};
+
+    const SIZE: UVec2 = UVec2::new(64, 48);
+
+    /// An app with views of one scene, without a renderer.
+    fn app(views: usize) -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, AssetPlugin::default()))
+            .init_asset::<Image>()
+            .add_message::<AssetEvent<Shader>>()
+            .add_message::<AssetEvent<Mesh>>()
+            .add_message::<AssetEvent<ShaderBuffer>>()
+            .insert_resource(CurrentScene(Scene { objects: vec![Object::default(); 4], ..Scene::default() }))
+            .insert_resource(Registry::builtin())
+            .init_resource::<ShownTerms>()
+            .add_systems(Update, (fit, rest).chain());
+        for _ in 0..views {
+            app.world_mut().spawn((
+                View::for_display(SIZE),
+                Camera::default(),
+                RenderTarget::None { size: UVec2::ONE },
+                Transform::default(),
+                Projection::default(),
+                Tonemapping::AgX,
+            ));
+        }
+        app
+    }
+
+    /// Which views the next frame draws.
+    fn drawn(app: &mut App) -> Vec<bool> {
+        app.update();
+        let world = app.world_mut();
+        let mut views = world.query::<(&Camera, &Drawing)>();
+        views
+            .iter(world)
+            .map(|(camera, drawing)| {
+                assert_eq!(camera.is_active, drawing.draws());
+                camera.is_active
+            })
+            .collect()
+    }
+
+    fn rest_all(app: &mut App) {
+        for _ in 0..2 * PICTURES {
+            drawn(app);
+        }
+        assert!(drawn(app).iter().all(|draws| !draws));
+    }
+
+    #[test]
+    fn a_view_is_drawn_when_something_that_it_shows_changes_and_then_rests() {
+        let mut app = app(1);
+        assert!(drawn(&mut app)[0] && drawn(&mut app)[0]);
+        rest_all(&mut app);
+        let changes: [(&str, fn(&mut World)); 10] = [
+            ("an object", |w| w.resource_mut::<CurrentScene>().0.objects[3].size = 1.0),
+            ("the terms", |w| w.resource_mut::<ShownTerms>().set_changed()),
+            ("the models", |w| w.resource_mut::<Registry>().set_changed()),
+            ("the camera", |w| one::<Transform>(w).translation.x += 1.0),
+            ("the background", |w| one::<Camera>(w).clear_color = ClearColorConfig::Custom(Color::BLACK)),
+            ("the tone curve", |w| *one::<Tonemapping>(w) = Tonemapping::Reinhard),
+            ("the size", |w| one::<View>(w).size.x += 1),
+            ("what only the caller knows", |w| one::<Drawing>(w).redraw()),
+            ("a table", |w| {
+                w.write_message(AssetEvent::<ShaderBuffer>::Modified { id: AssetId::default() });
+            }),
+            ("a shader", |w| {
+                w.write_message(AssetEvent::<Shader>::Modified { id: AssetId::default() });
+            }),
+        ];
+        for (what, change) in changes {
+            let world = app.world_mut();
+            let before = one::<Drawing>(world).drawn();
+            change(app.world_mut());
+            assert!(drawn(&mut app)[0], "{what}");
+            rest_all(&mut app);
+            assert_eq!(one::<Drawing>(app.world_mut()).drawn() - before, u64::from(PICTURES), "{what}");
+        }
+    }
+
+    /// The component of the only view.
+    fn one<C: Component<Mutability = bevy::ecs::component::Mutable>>(world: &mut World) -> Mut<'_, C> {
+        let mut views = world.query_filtered::<&mut C, With<View>>();
+        views.iter_mut(world).next().expect("there is a view")
+    }
+
+    #[test]
+    fn a_change_of_one_view_draws_no_other() {
+        let mut app = app(2);
+        rest_all(&mut app);
+        one::<Transform>(app.world_mut()).translation.y = 3.0;
+        assert_eq!(drawn(&mut app), [true, false]);
+    }
+
+    #[test]
+    fn textures_have_the_size_at_which_a_view_is_seen_and_none_is_made_in_vain() {
+        let mut app = app(1);
+        let texture = |app: &mut App| {
+            app.update();
+            let world = app.world_mut();
+            let handle = texture_of(&one::<RenderTarget>(world)).cloned();
+            handle
+                .map(|handle| (handle.id(), world.resource::<Assets<Image>>().get(&handle).map(Image::size)))
+        };
+        let first = texture(&mut app);
+        assert_eq!(first.as_ref().and_then(|t| t.1), Some(SIZE));
+        one::<View>(app.world_mut()).set_changed();
+        assert_eq!(texture(&mut app), first);
+        one::<View>(app.world_mut()).size = UVec2::new(10, 20);
+        assert_eq!(texture(&mut app).and_then(|t| t.1), Some(UVec2::new(10, 20)));
+        // A picture that is nowhere to be seen is not drawn.
+        one::<View>(app.world_mut()).size = UVec2::new(0, 20);
+        assert_eq!(drawn(&mut app), [false]);
+    }
+}
