@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use bevy::ecs::change_detection::Mut;
+use bevy::ecs::change_detection::{DetectChangesMut as _, Mut};
 use criterion::{Criterion, criterion_group, criterion_main};
 use lights_camera_models::{
     assets::{Folders, built_in_sources},
@@ -72,6 +72,9 @@ impl Lab {
 
     /// Saves a file and waits for the picture with the new version.
     fn save(&mut self, path: &str, text: &str) -> Duration {
+        // Nobody saves again before the picture has come to rest.
+        self.renderer.settle().expect("the GPU draws");
+        self.renderer.wait();
         while self.news.try_recv().is_ok() {}
         let start = Instant::now();
         fs::write(self.folder.join(path), text).expect("writable");
@@ -80,7 +83,9 @@ impl Lab {
             let changed = self.watcher.changed();
             let world = self.renderer.app().world_mut();
             world.resource_scope(|world, mut live: Mut<LiveShaders>| {
-                changed.iter().for_each(|f| live.look_at(f, &mut world.resource_mut::<Registry>()));
+                // As in the window: that a file was looked at is no news of the models.
+                let mut registry = world.resource_mut::<Registry>();
+                changed.iter().for_each(|f| live.look_at(f, registry.bypass_change_detection()));
             });
             self.renderer.step();
             self.renderer.wait();
