@@ -12,9 +12,11 @@ use bevy::{
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::Vec3;
 use lights_camera_models::{
-    capture::gpu::{GpuRenderer, Output},
-    reflection::swap::shared_mesh,
     registry::Registry,
+    render::{
+        capture::gpu::{GpuRenderer, Output},
+        swap::shared_mesh,
+    },
     scene::{Light, Object, Observer, Scene},
 };
 

@@ -8,11 +8,14 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use lights_camera_models::{
     optics::{Frame, colour::Encoding},
-    reflection::parameter::{Values, words},
-    registry::Registry,
+    parameter::{Values, words},
+    registry::{
+        Registry,
+        compose::{compose, compose_evaluation},
+    },
     shader::{
         check::validate,
-        compose::{Composed, Sources, compose, compose_evaluation},
+        compose::{Composed, Sources},
         interpret::Program,
         limits::{check_module, check_text},
     },

@@ -33,7 +33,7 @@ fn render(criterion: &mut Criterion) {
 }
 
 /// What own models cost commands that do not name them, and one that lists them.
-fn own_models(criterion: &mut Criterion) {
+fn custom_models(criterion: &mut Criterion) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(root.join("assets/models/charlie_sheen.wgsl")).expect("it is shipped");
     let scene = root.join("scenes/default.json");
@@ -64,5 +64,5 @@ fn own_models(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, render, own_models);
+criterion_group!(benches, render, custom_models);
 criterion_main!(benches);

@@ -15,18 +15,18 @@ use std::{
 use bevy::ecs::change_detection::{DetectChangesMut as _, Mut};
 use criterion::{Criterion, criterion_group, criterion_main};
 use lights_camera_models::{
-    assets::{Folders, built_in_sources},
-    capture::gpu::{GpuRenderer, Output},
+    library::assets::{Folders, built_in_sources},
     registry::Registry,
-    scene::Scene,
-    shader::{
-        compose::Sources,
+    render::{
+        capture::gpu::{GpuRenderer, Output},
         live::LiveShaders,
         trial::{
             Bench,
             process::{Budget, TrialProcess},
         },
     },
+    scene::Scene,
+    shader::compose::Sources,
     watch::Watcher,
 };
 

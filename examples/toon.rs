@@ -10,15 +10,13 @@ use std::{error::Error, path::Path};
 
 use glam::Vec3;
 use lights_camera_models::{
-    capture::png,
     optics::{Frame, Terms},
+    parameter::{BASE_COLOUR, Parameter, ParameterKind, Value},
     parameters,
     reference::{self, Settings},
-    reflection::{
-        Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
-        parameter::{BASE_COLOUR, Parameter, ParameterKind, Value},
-    },
+    reflection::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term},
     registry::{Register, Registry},
+    render::capture::png,
     scene::{Object, Scene},
     shader::Source,
 };
@@ -47,7 +45,7 @@ impl ReflectionModel for Toon {
     const DECLARATION: Declaration = Declaration {
         id: "toon",
         name: "Toon",
-        family: Family::Own,
+        family: Family::Custom,
         author: "an example",
         source: "examples/toon.rs",
         summary: "Lambert in a few tones, as in a cartoon.",

@@ -1,36 +1,57 @@
 //! # Lights, Camera, Models!
 //!
-//! A laboratory for the equations that light a surface. The modules stand in the order in which a
-//! scene flows through them:
+//! A laboratory for the equations that light a surface. The modules stand in the order in which they know each
+//! other: each uses only those above it, which `tests/suite/modules.rs` checks.
 //!
 //! ```text
-//! JSON ─ scene ─ spawn ─► entities: Light · Object · Observer ─► materials ─► shader ─► picture
-//!                              ▲                                    ▲
-//!                            panel                     reflection, shading, light, shape
+//! JSON ─► scene ─► entities ─► materials, lights, meshes ─► a texture per view ─► window
+//!           ▲                  reflection, shading, light, shape
+//!         panel
 //! ```
 //!
-//! - [`optics`]: the vocabulary of every model, pure functions on vectors, no Bevy.
-//! - [`reflection`], [`shading`], [`light`], [`shape`]: a trait and a list each; one file per kind.
+//! From the outside of the program:
+//!
+//! - [`text`]: words for people.
 //! - [`files`]: the one guard between the program and files.
-//! - [`assets`]: where shader files and own models are read from.
-//! - [`registry`]: what is known, looked up by id; registration from inside and outside the crate.
-//! - [`observer`]: the camera.
-//! - [`scene`]: the scene as a value; JSON; entities.
-//! - [`shader`]: WGSL text in, WGSL text out.
-//! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
-//! - [`render`]: views, each with its picture in a texture of its own.
-//! - [`capture`]: rendering without a window, PNG files.
-//! - [`study`]: what tells the models apart, as numbers and a report.
+//! - [`failure`]: why a command did not do what it was asked.
+//! - [`signals`]: requests from outside to end the program.
 //! - [`watch`]: which files on disk change.
+//!
+//! The equations:
+//!
+//! - [`optics`]: the vocabulary of every model, pure functions on vectors.
+//! - [`parameter`]: the declaration of a knob, values by name, and their layout for shaders.
+//! - [`shader`]: WGSL text in, WGSL text out: composing, checking, interpreting.
+//! - [`reflection`], [`shading`], [`light`], [`shape`]: a trait and a list each; one file per model, per shading
+//!   model, per light type, per object type.
+//! - [`registry`]: everything that is known, by id; registration from inside and outside the crate.
+//! - [`custom`]: reflection models written as one WGSL file.
+//!
+//! The scene and its pictures:
+//!
+//! - [`scene`]: the scene as a value; reading, checking and writing JSON.
+//! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
+//! - [`library`]: the shader library: which file holds which text, and what is wrong with it.
 //! - [`recovery`]: copies of unsaved work, for the next start.
-//! - [`signals`]: what ends the program from outside.
-//! - [`panel`]: what the window shows, as functions of a state that return actions.
-//! - [`app`]: the scene plugin and the order of the systems.
+//! - [`render`]: everything of Bevy that draws.
+//!
+//! The program:
+//!
+//! - [`panel`]: egui panels, as functions of a state that return actions.
 //! - [`window`]: panels, camera and entities in one window.
+//! - [`study`]: what tells the models apart, as numbers and a report.
 //! - [`cli`]: the command line.
 
+pub mod text;
+
+pub mod failure;
 pub mod files;
+pub mod signals;
+pub mod watch;
+
 pub mod optics;
+pub mod parameter;
+pub mod shader;
 
 pub mod light;
 pub mod reflection;
@@ -39,20 +60,18 @@ pub mod shape;
 
 pub mod registry;
 
-pub mod observer;
-pub mod scene;
-pub mod shader;
+pub mod custom;
 
-pub mod capture;
-pub mod panel;
+pub mod scene;
+
+pub mod library;
 pub mod recovery;
 pub mod reference;
 pub mod render;
-pub mod signals;
-pub mod study;
-pub mod watch;
 
-pub mod app;
-pub mod assets;
-pub mod cli;
+pub mod panel;
 pub mod window;
+
+pub mod study;
+
+pub mod cli;

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     optics::{Frame, albedo::directional},
-    reflection::parameter::ABOVE_ZERO,
+    parameter::ABOVE_ZERO,
 };
 
 /// The column that is read. At μ = 0 the viewer is in the surface, where a response is 0 by definition and

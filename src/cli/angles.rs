@@ -3,11 +3,8 @@
 
 use std::io::{BufRead, Read as _};
 
-use super::{Failure, Outcome};
-use crate::{
-    reflection::parameter::ABOVE_ZERO,
-    scene::{error::quoted, load::STDIN},
-};
+use super::Outcome;
+use crate::{failure::Failure, parameter::ABOVE_ZERO, scene::load::STDIN, text::quoted};
 
 /// No line is longer, bytes: four numbers, each written out in full, take a fraction of it.
 const MAX_LINE: usize = 4096;

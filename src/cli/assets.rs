@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Subcommand;
 
-use super::{Failure, Options, Outcome, complain, print_paths};
-use crate::{assets, registry::Registry};
+use super::{Options, Outcome, complain, print_paths};
+use crate::{failure::Failure, library::assets, registry::Registry};
 
 #[derive(Subcommand, Debug)]
 pub(super) enum Command {

@@ -5,8 +5,11 @@ use std::{fmt::Write as _, path::PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, Options, Outcome, complain, print, print_text, scenes::Source, workshop::Workshop};
-use crate::scene::{error::Problem, load::Defaults};
+use super::{Options, Outcome, complain, print, print_text, scenes::Source, workshop::Workshop};
+use crate::{
+    failure::Failure,
+    scene::{error::Problem, load::Defaults},
+};
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {

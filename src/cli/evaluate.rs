@@ -10,22 +10,19 @@ use clap::{Args, ValueEnum};
 use glam::Vec3;
 
 use super::{
-    Failure, Outcome,
+    Outcome,
     angles::{self, Column},
     workshop::{Workshop, not_on_cpu, valid},
 };
 use crate::{
-    capture::evaluate::Evaluator,
+    failure::Failure,
     optics::{Frame, colour::Encoding, geometry::direction},
-    reflection::{
-        ModelEntry, Surface, brdf, brdf_of,
-        parameter::{Parameter, ParameterKind, Value, Values},
-    },
+    parameter::{Parameter, ParameterKind, Value, Values},
+    reflection::{ModelEntry, Surface, brdf, brdf_of},
     registry::Registry,
-    scene::{
-        check::{self, nearest},
-        error::quoted,
-    },
+    render::capture::evaluate::Evaluator,
+    scene::check,
+    text::{nearest, quoted},
 };
 
 /// A model with its parameters, and who is asked about it.
@@ -228,7 +225,7 @@ fn setting(model: &ModelEntry, name: &str, written: &str) -> Result<(&'static st
         let names: Vec<_> = model.parameters.iter().map(|p| p.name).collect();
         let known = model.parameters.iter().flat_map(|p| [p.name, p.label, p.symbol].map(|s| (s, p.name)));
         let hint = nearest(&spelling, known).map_or_else(
-            || format!("it has {}", check::listed(&names, "and")),
+            || format!("it has {}", crate::text::listed(&names, "and")),
             |n| format!("did you mean {n}?"),
         );
         return Err(format!(

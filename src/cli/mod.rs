@@ -4,6 +4,7 @@
 //! kind of error it was: see [`Failure`]. Nothing heavy happens here: a renderer or a window is started
 //! by the command that needs it.
 
+use crate::{failure::Failure, files::printable, registry::Registry, scene::load::Defaults};
 use std::{
     fmt,
     io::{self, IsTerminal as _, Write},
@@ -14,18 +15,17 @@ use std::{
 use clap::{Args, Parser, Subcommand, error::ErrorKind};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{files::printable, registry::Registry, scene::load::Defaults};
 use workshop::Places;
 
 mod albedo;
 mod angles;
 mod assets;
 mod check;
+mod custom;
 mod evaluate;
 mod models;
 mod new;
 mod outputs;
-mod own;
 mod render;
 #[cfg(target_os = "linux")]
 mod runtime_folder;
@@ -34,8 +34,6 @@ mod study;
 mod trial;
 mod view;
 mod workshop;
-
-pub use view::ViewOptions;
 
 /// A laboratory for the equations that light a surface: see, compare, edit and trust reflection models.
 ///
@@ -142,47 +140,8 @@ enum Command {
     /// Print the JSON Schema of scene files
     Schema,
     /// Try shaders for a window
-    #[command(hide = true, name = crate::shader::trial::process::COMMAND)]
+    #[command(hide = true, name = crate::render::trial::process::COMMAND)]
     TryShaders,
-}
-
-/// Why a command did not do what it was asked.
-#[derive(Debug)]
-pub enum Failure {
-    /// A scene or an input is invalid: exit status 1. One line per problem.
-    Invalid(String),
-    /// The command line makes no sense: exit status 2.
-    Usage(String),
-    /// There is no renderer or no display: exit status 3.
-    NoRenderer(String),
-    /// A result could not be written: exit status 4.
-    Write(String),
-    /// Whoever read the output has read enough: not an error.
-    Closed,
-}
-
-impl From<io::Error> for Failure {
-    /// An error on standard output.
-    fn from(error: io::Error) -> Self {
-        match error.kind() {
-            io::ErrorKind::BrokenPipe => Self::Closed,
-            _ => Self::Write(format!("standard output: {error}")),
-        }
-    }
-}
-
-impl Failure {
-    /// The exit status.
-    #[must_use]
-    pub fn status(&self) -> u8 {
-        match self {
-            Self::Closed => 0,
-            Self::Invalid(_) => 1,
-            Self::Usage(_) => 2,
-            Self::NoRenderer(_) => 3,
-            Self::Write(_) => 4,
-        }
-    }
 }
 
 /// What a command does.

@@ -1,20 +1,17 @@
 //! `lcm models`: what there is to choose from.
 
+use super::{Options, Outcome, custom, print, print_text, workshop::Places};
+use crate::{
+    parameter::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen, json as value},
+    reflection::{ModelEntry, Term},
+    registry::Registry,
+    text::number,
+};
 use std::fmt::Write as _;
 
 use serde_json::{Value as Json, json};
 
 use clap::{Args, Subcommand};
-
-use super::{Options, Outcome, own, print, print_text, workshop::Places};
-use crate::{
-    reflection::{
-        ModelEntry, Term,
-        parameter::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen},
-    },
-    registry::Registry,
-    scene::schema::{number, value},
-};
 
 #[derive(Args, Debug)]
 #[command(args_conflicts_with_subcommands = true)]
@@ -52,9 +49,9 @@ enum Command {
 
 pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Outcome {
     match arguments.command {
-        Some(Command::New { name }) => own::new(&name, options, places),
-        Some(Command::Duplicate { id, name }) => own::duplicate(&id, name.as_deref(), options, places),
-        Some(Command::Check { id, json }) => own::check(&id, json, options, &mut places.open(options)?),
+        Some(Command::New { name }) => custom::new(&name, options, places),
+        Some(Command::Duplicate { id, name }) => custom::duplicate(&id, name.as_deref(), options, places),
+        Some(Command::Check { id, json }) => custom::check(&id, json, options, &mut places.open(options)?),
         None => list(arguments.json, places.open(options)?.list()),
     }
 }
@@ -92,7 +89,7 @@ fn model(entry: &ModelEntry, registry: &Registry) -> Json {
         "laws": { "kept": laws(true), "broken": laws(false) },
         "parameters": entry.parameters.iter().map(parameter).collect::<Vec<_>>(),
     });
-    if let Some(file) = registry.own_file(d.id) {
+    if let Some(file) = registry.custom_file(d.id) {
         json["file"] = file.display().to_string().into();
     }
     json
@@ -161,7 +158,7 @@ fn table(registry: &Registry) -> String {
         let laws =
             d.laws.list().map(|(name, kept)| if kept { name.to_owned() } else { format!("not {name}") });
         let _ = writeln!(text, "  {:ids$}  {}", "", laws.join(", "));
-        if let Some(file) = registry.own_file(d.id) {
+        if let Some(file) = registry.custom_file(d.id) {
             let _ = writeln!(text, "  {:ids$}  {}", "", file.display());
         }
         for p in m.parameters {

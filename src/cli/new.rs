@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use super::{Failure, Options, Outcome};
+use super::{Options, Outcome};
 use crate::{
+    failure::Failure,
     registry::Registry,
     scene::{
         Scene,

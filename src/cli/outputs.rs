@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Failure, Outcome, complain};
-use crate::{files, registry::Registry};
+use super::{Outcome, complain};
+use crate::{failure::Failure, files, registry::Registry};
 
 /// What a command reads: scenes, and the files that its registry was read from.
 pub(super) fn inputs<'a>(scenes: impl IntoIterator<Item = &'a Path>, registry: &Registry) -> Vec<PathBuf> {
-    let models = registry.own_models().map(|(_, path)| path.to_owned());
+    let models = registry.custom_models().map(|(_, path)| path.to_owned());
     // Looking for the file of each of many models among all of them would take a while.
     let shaders = registry.sources().edited().filter_map(|source| match source.strip_prefix("models/") {
-        Some(file) => Some(registry.own_folder()?.join(file)),
+        Some(file) => Some(registry.custom_folder()?.join(file)),
         None => registry.path_on_disk(source),
     });
     scenes.into_iter().map(Path::to_owned).chain(models).chain(shaders).collect()

@@ -11,27 +11,31 @@ use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
-    Failure, Options, Outcome,
+    Options, Outcome,
     outputs::{self, inputs},
     progress,
     scenes::Source,
     workshop::{Workshop, drawable, invalid, not_followed_on_cpu, not_on_cpu},
 };
 use crate::{
-    capture::{
-        evaluate::check_that_it_ends,
-        gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
-        png,
-    },
+    failure::Failure,
     files::{Kind, is_descriptor, kind as kind_on_disk, printable},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     reference,
+    reflection::ends::check_that_it_ends,
     registry::Registry,
-    scene::{Scene, check, error::quoted},
-    shader::trial::{
-        Bench,
-        process::{Budget, TrialProcess},
+    render::{
+        capture::{
+            gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
+            png,
+        },
+        trial::{
+            Bench,
+            process::{Budget, TrialProcess},
+        },
     },
+    scene::{Scene, check},
+    text::quoted,
 };
 
 /// Of so many objects the model is tried on the CPU before the graphics card draws it.
@@ -63,7 +67,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "ID")]
     shading: Option<String>,
     #[arg(long, value_name = "NAME", help = format!(
-        "Use this tone mapping: {}", check::listed(&ToneMapping::ALL.map(ToneMapping::id), "or")
+        "Use this tone mapping: {}", crate::text::listed(&ToneMapping::ALL.map(ToneMapping::id), "or")
     ))]
     tone_mapping: Option<String>,
     /// Use this exposure
@@ -119,9 +123,9 @@ fn samples(text: &str) -> Result<u32, String> {
 fn term(text: &str) -> Result<TermSelection, String> {
     TermSelection::ALL.into_iter().find(|t| t.id() == text).ok_or_else(|| {
         let known = TermSelection::ALL.map(TermSelection::id);
-        let hint = check::nearest(text, known.map(|k| (k, k)).into_iter())
+        let hint = crate::text::nearest(text, known.map(|k| (k, k)).into_iter())
             .map_or_else(String::new, |k| format!("; did you mean {k}?"));
-        format!("it must be {}{hint}", check::listed(&known, "or"))
+        format!("it must be {}{hint}", crate::text::listed(&known, "or"))
     })
 }
 
@@ -181,7 +185,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let passed: Vec<_> = passed.iter().map(String::as_str).collect();
         options.tell(format_args!(
             "the CPU renderer does not follow the edited {}; --renderer gpu does",
-            check::listed(&passed, "and")
+            crate::text::listed(&passed, "and")
         ));
     }
     for ((scene, source), file) in scenes.iter().zip(&sources).zip(&files) {
@@ -264,7 +268,7 @@ impl Painter {
         // Nothing stops a loop without end on a graphics card.
         for object in job.scene.objects.iter().take(MOST_TRIED) {
             if let Some(model) = registry.model(job.scene.model_of(object)) {
-                check_that_it_ends(model, &object.material, Encoding::Srgb).map_err(failed)?;
+                check_that_it_ends(model, &object.material, Encoding::Srgb).map_err(|e| failed(e.into()))?;
             }
         }
         let renderer = match &mut self.last {

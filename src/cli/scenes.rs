@@ -6,12 +6,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{Failure, Options, ask, workshop::Workshop};
-use crate::scene::{
-    Scene,
-    check::listed,
-    error::LoadError,
-    load::{self, Defaults, Loaded, Missing, Stamp},
+use super::{Options, ask, workshop::Workshop};
+use crate::{
+    failure::Failure,
+    scene::{
+        Scene,
+        error::LoadError,
+        load::{self, Defaults, Loaded, Missing, Stamp},
+    },
+    text::listed,
 };
 
 /// Where a scene comes from.

@@ -8,8 +8,9 @@ use std::{
 
 use clap::Args;
 
-use super::{Failure, Options, Outcome, progress};
+use super::{Options, Outcome, progress};
 use crate::{
+    failure::Failure,
     files::{Draft, FileError},
     registry::Registry,
     study,

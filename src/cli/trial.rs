@@ -1,9 +1,9 @@
-//! The hidden command that tries shaders for a window: see [`crate::shader::trial::process`].
+//! The hidden command that tries shaders for a window: see [`crate::render::trial::process`].
 
 use std::{env, io, path::PathBuf};
 
 use super::Outcome;
-use crate::capture::trial::serve;
+use crate::render::capture::trial::serve;
 
 pub(super) fn run() -> Outcome {
     Ok(serve(io::stdin().lock(), io::stdout().lock())?)

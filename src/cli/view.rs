@@ -4,16 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Failure, Options, Outcome, outputs, render::Size, scenes::Source, workshop::Places};
+use super::{Options, Outcome, outputs, render::Size, scenes::Source, workshop::Places};
 use crate::{
-    assets::Folders,
+    failure::Failure,
     files,
     registry::Registry,
-    scene::{
-        Scene,
-        error::LoadError,
-        load::{Defaults, Stamp},
-    },
+    scene::{Scene, error::LoadError, load::Defaults},
 };
 
 #[derive(Args, Debug)]
@@ -41,42 +37,6 @@ impl Arguments {
     }
 }
 
-/// What the window starts with.
-#[derive(Clone, Debug)]
-pub struct ViewOptions {
-    /// The scene, checked.
-    pub scene: Scene,
-    /// The file that it came from, if any.
-    pub file: Option<PathBuf>,
-    /// The state of that file when it was read.
-    pub stamp: Option<Stamp>,
-    /// A file that the window must open itself, since there is something to ask first.
-    pub open: Option<PathBuf>,
-    /// True if the window shows the examples: it begins without a scene of the user's.
-    pub examples: bool,
-    /// Whether the defaults are used when the file comes to lack parts.
-    pub use_defaults: bool,
-    /// The size of the window in pixels; else 1280×720 points.
-    pub size: Option<[u32; 2]>,
-    /// Close the window after so many frames.
-    pub exit_after: Option<u32>,
-    /// Write the whole window to this file before it closes.
-    pub capture: Option<PathBuf>,
-    /// What is known, own models included.
-    pub registry: Registry,
-    /// Where shaders and own models are read from. The shaders are not read yet.
-    pub folders: Folders,
-    /// The program that tries shaders when it is called with
-    /// [`COMMAND`](crate::shader::trial::process::COMMAND); without it the window itself does.
-    pub trial_program: Option<PathBuf>,
-    /// What there is to say when the window opens.
-    pub warnings: Vec<String>,
-    /// Log more.
-    pub verbose: bool,
-    /// Log errors only.
-    pub quiet: bool,
-}
-
 pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Outcome {
     let mut workshop = places.open_for_window(options)?;
     let source = Source::of(arguments.scene.as_deref());
@@ -94,7 +54,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         Source::Default | Source::Stdin => Vec::new(),
     };
     let Options { verbose, quiet, .. } = options;
-    let mut view = ViewOptions {
+    let mut view = crate::window::ViewOptions {
         scene: Scene::default(),
         file: None,
         stamp: None,
@@ -154,7 +114,7 @@ fn meant_command(path: &Path) -> Outcome {
     if path.exists() {
         return Ok(());
     }
-    match crate::scene::check::nearest(word, COMMANDS.map(|c| (c, c)).into_iter()) {
+    match crate::text::nearest(word, COMMANDS.map(|c| (c, c)).into_iter()) {
         Some(command) => Err(Failure::Usage(format!(
             "there is no command {word}, and no scene file of that name; did you mean lcm {command}?"
         ))),

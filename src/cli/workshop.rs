@@ -7,15 +7,17 @@ use std::{
 
 use clap::Args;
 
-use super::{Failure, Options, Outcome, complain};
+use super::{Options, Outcome, complain};
 use crate::{
-    assets::{self, Folders},
-    capture::gpu::GpuError,
-    reflection::{
-        Family, ModelEntry,
-        own::folder::{self, Reading},
+    custom::folder::{self, Reading},
+    failure::Failure,
+    library::assets::{self, Folders},
+    reflection::{Family, ModelEntry},
+    registry::{
+        Registry,
+        compose::{Part, compose, compose_evaluation, files},
     },
-    registry::Registry,
+    render::capture::gpu::GpuError,
     scene::{
         Scene,
         error::LoadError,
@@ -23,7 +25,6 @@ use crate::{
     },
     shader::{
         check::{self, ShaderProblem},
-        compose::{Part, compose, compose_evaluation, files},
         report::annotated,
         whole::validate_drawing,
     },
@@ -80,7 +81,7 @@ impl Workshop {
         match folder::read_model(id, &mut self.registry) {
             Reading::Known | Reading::Missing => false,
             Reading::Read => {
-                let file = self.registry.own_file(id).unwrap_or(Path::new(id));
+                let file = self.registry.custom_file(id).unwrap_or(Path::new(id));
                 self.options.detail(format_args!("read {}", file.display()));
                 true
             }
@@ -97,7 +98,7 @@ impl Workshop {
     /// files. That the folder cannot be read is told at once.
     fn declare_rest(&mut self) -> (bool, folder::Problems) {
         let found = folder::declare_rest(&mut self.registry);
-        let is_folder = |path: &Path| Some(path) == self.registry.own_folder();
+        let is_folder = |path: &Path| Some(path) == self.registry.custom_folder();
         let (of_folder, of_files): (Vec<_>, Vec<_>) =
             found.problems.into_iter().partition(|(path, _)| is_folder(path));
         if !of_folder.is_empty() {
@@ -174,7 +175,7 @@ impl Places {
         let folders = self.folders()?;
         let mut registry = Registry::builtin();
         if let Some(models) = &folders.models {
-            registry.set_own_folder(models);
+            registry.set_custom_folder(models);
         }
         if let Some(shaders) = &folders.shaders {
             assets::read_shaders(shaders, &mut registry)
@@ -285,7 +286,7 @@ pub(super) fn not_followed_on_cpu(registry: &Registry, scene: &Scene) -> BTreeSe
     let known = pairs.into_iter().filter_map(|(m, n)| Some((registry.model(m)?, registry.mode(n)?)));
     known
         .flat_map(|(model, mode)| {
-            let own = model.declaration.family == Family::Own;
+            let own = model.declaration.family == Family::Custom;
             files(registry.sources(), model, mode, registry.lights())
                 .into_iter()
                 .filter(move |file| file.edited && !(own && file.part == Part::Vocabulary))

@@ -9,12 +9,9 @@ use bevy::ecs::component::Component;
 use glam::Vec3;
 
 use crate::{
-    reflection::parameter::{Parameter, Values},
-    registry::Register,
+    parameter::{Parameter, Values},
     shader::Source,
 };
-
-pub mod buffer;
 
 mod ambient;
 mod directional;
@@ -26,12 +23,18 @@ pub use directional::Directional;
 pub use point::Point;
 pub use spot::Spot;
 
+/// Takes light types one after the other.
+pub trait Take {
+    /// Takes the next one.
+    fn take<T: LightType>(&mut self);
+}
+
 /// The built-in light types, in the order in which choosers list them. The one list.
-pub fn register_builtin(to: &mut impl Register) {
-    to.add_light_type::<Point>();
-    to.add_light_type::<Spot>();
-    to.add_light_type::<Directional>();
-    to.add_light_type::<Ambient>();
+pub fn register_builtin(to: &mut impl Take) {
+    to.take::<Point>();
+    to.take::<Spot>();
+    to.take::<Directional>();
+    to.take::<Ambient>();
 }
 
 /// The most lights that a scene may have; the capacity of the light buffer.

@@ -4,7 +4,7 @@ use glam::Vec3;
 use super::{Declaration, Incident, LightRecord, LightType, MAX_LIGHT_PARAMETERS};
 use crate::{
     optics::radiometry::{cone, cone_solid_angle, inverse_square},
-    reflection::parameter::{ABOVE_ZERO, Parameter, ParameterKind},
+    parameter::{ABOVE_ZERO, Parameter, ParameterKind},
     shader::wgsl,
 };
 

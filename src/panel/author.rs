@@ -13,12 +13,10 @@ use super::{
     theme::{self, Palette},
 };
 use crate::{
-    reflection::{
-        law_report::LawReport,
-        own::{id_of_name, source_path},
-    },
+    custom::{id_of_name, source_path},
+    library::status::{Reloaded, ShaderStatus},
+    reflection::law_report::LawReport,
     registry::Registry,
-    shader::status::{Reloaded, ShaderStatus},
 };
 
 /// Id of the panel that shows the shaders.

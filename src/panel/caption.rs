@@ -5,10 +5,8 @@ use std::collections::BTreeSet;
 use super::{limits::number, state::Lab};
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    reflection::{
-        parameter::{Parameter, Value},
-        usage,
-    },
+    parameter::{Parameter, Value},
+    reflection::usage,
     registry::Registry,
     scene::Object,
 };

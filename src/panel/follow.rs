@@ -7,7 +7,7 @@ use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 
 use super::state::{Lab, Selection, Severity};
 use crate::{
-    reflection::parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
+    parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
     registry::Registry,
 };
 
@@ -270,7 +270,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        reflection::own,
+        custom,
         scene::{Object, check, load, save},
     };
 
@@ -280,9 +280,9 @@ mod tests {
             "/* lcm {{ \"parameters\": [{parameters}] }} */\nfn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, \
              m: Parameters) -> Terms {{\n    return Terms(vec3(0.0), vec3(max(dot(frame.n, l), 0.0)), vec3(0.0));\n}}\n"
         );
-        let model = own::read(Path::new("models/mine.wgsl"), &text, registry)
+        let model = custom::read(Path::new("models/mine.wgsl"), &text, registry)
             .unwrap_or_else(|problems| panic!("{parameters}: {problems:?}"));
-        registry.put_own_model(model);
+        registry.put_custom_model(model);
     }
 
     fn number(name: &str, min: f32, max: f32) -> String {

@@ -1,11 +1,5 @@
 //! The inspector at the right: everything that can be set about what is selected.
 
-use bevy_egui::egui::{
-    self, Align, CollapsingHeader, Key, Layout, RichText, ScrollArea, Sense, TextEdit, TextStyle, Ui,
-    WidgetInfo, vec2,
-};
-use glam::Vec3;
-
 use super::{
     Panel, Place, author, chooser,
     icon::{self, Icon},
@@ -19,11 +13,18 @@ use super::{
 use crate::{
     light::LightEntry,
     optics::{TermSelection, colour::Encoding, temperature, tone::ToneMapping},
-    reflection::{EquationPart, Measured, ModelEntry, Term, parameter::Value, preset, usage},
+    parameter::Value,
+    reflection::{EquationPart, Measured, ModelEntry, Term, preset, usage},
     registry::Registry,
     scene::{Display, Light, Object, Observer, SceneSize},
     shading::ModeEntry,
+    text::plural,
 };
+use bevy_egui::egui::{
+    self, Align, CollapsingHeader, Key, Layout, RichText, ScrollArea, Sense, TextEdit, TextStyle, Ui,
+    WidgetInfo, vec2,
+};
+use glam::Vec3;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -353,7 +354,7 @@ fn measured(
             };
             chooser::list(ui, id, words, height, find, entry, |ui, m| measurement(ui, m))
         });
-    chosen.map(|material| preset::along(model, material, registry))
+    chosen.map(|material| crate::registry::along(model, material, registry))
 }
 
 /// What was measured on a material, and by whom.
@@ -855,10 +856,4 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     let text = format!("{} · {}", plural(s.lights.len(), "light"), plural(objects, "object"));
     let text = if own > 0 { format!("{text}, {own} with an override of model or shading") } else { text };
     ui.add(egui::Label::new(theme::small(ui, text)).wrap());
-}
-
-/// "1 light", "2 lights".
-#[must_use]
-pub fn plural(n: usize, what: &str) -> String {
-    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }

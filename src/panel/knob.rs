@@ -16,9 +16,9 @@ use super::{
     maths,
     theme::{self, Palette},
 };
-use crate::reflection::{
-    Readout, ReadoutValue,
+use crate::{
     parameter::{Parameter, ParameterKind, Value},
+    reflection::{Readout, ReadoutValue},
 };
 
 /// What a knob says about itself.

@@ -7,7 +7,7 @@ use crate::{
         radiometry::SPHERE,
         temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
     },
-    reflection::parameter::ABOVE_ZERO,
+    parameter::ABOVE_ZERO,
     scene::{MAX_DIMENSION, Scene, SceneSize, check},
     shape,
 };

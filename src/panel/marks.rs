@@ -16,9 +16,12 @@ use super::{
 };
 use crate::{
     light::LightEntry,
-    observer::{camera::vertical_field_of_view, rotation as look_along},
     registry::Registry,
-    scene::{Light, Object, Observer, Scene, spawn::object_transform},
+    scene::{
+        Light, Object, Observer, Scene,
+        observer::{rotation as look_along, vertical_field_of_view},
+        rotation::rotation,
+    },
 };
 
 /// Okabe–Ito yellow: lights.
@@ -316,13 +319,14 @@ fn corners(ink: &mut Ink, object: &Object, registry: &Registry) {
     let mesh = shape.mesh(*shape.declaration.tessellation.start());
     let extent = mesh.positions.iter().fold(Vec3::ZERO, |extent, p| extent.max(p.abs()));
     let half = extent.max(Vec3::splat(0.02)) * 1.04;
-    let place = object_transform(object);
+    let turn = rotation(object.rotation);
+    let place = |at: Vec3| object.position + turn * (object.size * at);
     for corner in 0..8u32 {
         let sign = |bit: u32| if corner & bit == 0 { -1.0 } else { 1.0 };
         let at = Vec3::new(sign(1), sign(2), sign(4)) * half;
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
             let inward = at - axis * at * 0.2;
-            ink.path(&[place.transform_point(at), place.transform_point(inward)], SELECTED);
+            ink.path(&[place(at), place(inward)], SELECTED);
         }
     }
 }

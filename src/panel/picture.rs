@@ -9,13 +9,13 @@ use glam::Vec3;
 use super::{
     author::SHADER_TAB,
     caption::caption_text,
-    clipping, icon,
-    inspector::plural,
-    marks, presentation, shader,
+    clipping, icon, marks, presentation, shader,
     state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
-use crate::{optics::TermSelection, reflection::Term, registry::Registry, shader::status::ShaderStatus};
+use crate::{
+    library::status::ShaderStatus, optics::TermSelection, reflection::Term, registry::Registry, text::plural,
+};
 
 /// Paints the overlays into the rectangle of the picture. Returns what was asked for there, and the places that
 /// can be clicked, which do not belong to the picture.

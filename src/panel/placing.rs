@@ -8,11 +8,10 @@ use glam::{Quat, Vec3};
 use super::limits::significant;
 use crate::{
     light::LightEntry,
-    observer::camera::WIDE,
     optics::tone::exposure_factor,
     reference,
     registry::Registry,
-    scene::{DEFAULT_SIZE, Light, Object, Observer, Scene},
+    scene::{DEFAULT_SIZE, Light, Object, Observer, Scene, observer::WIDE},
 };
 
 /// Free space around a light, and between an object and the camera, metres.

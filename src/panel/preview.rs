@@ -14,7 +14,7 @@ use bevy_egui::egui::{
     self, Align2, Color32, ColorImage, Context, Id, Rect, TextureHandle, TextureOptions, Ui, pos2,
 };
 
-use super::{inspector::plural, theme::Palette};
+use super::theme::Palette;
 use crate::{
     reference,
     registry::Registry,
@@ -23,6 +23,7 @@ use crate::{
         examples::EXAMPLES,
         load::{self, Defaults},
     },
+    text::plural,
 };
 
 /// Pixels across and down.

@@ -5,22 +5,22 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    Panel, Place, author,
-    author::Ask,
+    Panel, Place,
+    author::{self, Ask},
     icon::{self, Icon},
-    inspector::plural,
     laws,
     state::{Action, Lab, Severity},
     theme::{self, Palette},
 };
 use crate::{
-    reflection::own::source_path,
-    registry::Registry,
-    shader::{
-        compose::{self, File, Part},
-        report::annotated,
-        status::Trouble,
+    custom::source_path,
+    library::status::Trouble,
+    registry::{
+        Registry,
+        compose::{File, Part},
     },
+    shader::report::annotated,
+    text::plural,
 };
 
 /// See the module.
@@ -139,7 +139,7 @@ fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>)
         ui.set_width(ui.available_width() - 8.0);
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = ROW;
-        for file in compose::files(registry.sources(), model, mode, registry.lights()) {
+        for file in crate::registry::compose::files(registry.sources(), model, mode, registry.lights()) {
             self::file(ui, lab, &file, actions);
         }
     });

@@ -26,15 +26,15 @@ use super::{
 };
 use crate::{
     files::printable,
+    library::status::ShaderStatus,
     light::MAX_LIGHTS,
-    observer::rotation,
     optics::TermSelection,
-    reflection::parameter::Value,
+    parameter::Value,
     registry::Registry,
     scene::{
         Display, Light, MAX_OBJECTS, Object, Observer, Scene, SceneSize, examples::EXAMPLES, load::Stamp,
+        observer::rotation,
     },
-    shader::status::ShaderStatus,
 };
 
 /// The most models that keys 1–9 reach.

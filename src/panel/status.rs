@@ -8,11 +8,10 @@ use super::{
     Panel, Place,
     author::SHADER_TAB,
     icon::{self, Icon},
-    inspector::plural,
     state::{Action, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
-use crate::registry::Registry;
+use crate::{registry::Registry, text::plural};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]

@@ -10,9 +10,10 @@ use glam::Vec3;
 
 use crate::{
     optics::{Frame, TermSelection},
-    reflection::{ModelEntry, parameter::Values, swap::shines_from_everywhere},
+    parameter::Values,
+    reflection::ModelEntry,
     registry::Registry,
-    scene::Scene,
+    scene::{Scene, shines_from_everywhere},
 };
 
 /// So many objects are looked at; in most scenes the first one has all terms.

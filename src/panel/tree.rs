@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     optics::colour::Encoding,
-    reflection::parameter::{BASE_COLOUR, Value},
+    parameter::{BASE_COLOUR, Value},
     registry::Registry,
 };
 

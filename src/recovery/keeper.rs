@@ -279,7 +279,7 @@ impl Writer {
 fn no_folder() -> io::Error {
     io::Error::other(format!(
         "there is no folder for the user's data; {} names one",
-        crate::assets::DATA_VARIABLE
+        crate::library::assets::DATA_VARIABLE
     ))
 }
 

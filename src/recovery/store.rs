@@ -9,7 +9,8 @@ use std::{
 
 use super::About;
 use crate::{
-    assets, files,
+    files,
+    library::assets,
     registry::Registry,
     scene::{
         Scene,

@@ -3,11 +3,11 @@
 use glam::Vec3;
 
 use crate::{
-    light::{Incident, LightRecord, buffer::record},
+    light::{Incident, LightRecord},
     optics::{Frame, TermSelection},
     reflection::Surface,
     registry::Registry,
-    scene::Scene,
+    scene::{Scene, record},
     shading::Lighting,
 };
 

@@ -30,11 +30,10 @@ use glam::{EulerRot, Mat3, Mat4, Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::{
-    observer::clip_from_room,
     optics::TermSelection,
     reflection::Surface,
     registry::Registry,
-    scene::{Display, Object, Scene},
+    scene::{Display, Object, Scene, observer::clip_from_room},
     shading::{Corner, Lighting, ModeEntry, Stage, Varying},
     shape::PolygonMesh,
 };

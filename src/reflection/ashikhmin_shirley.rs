@@ -1,12 +1,11 @@
 use glam::Vec3;
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    parameter::{BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR, Value},
-    preset,
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term, preset,
 };
 use crate::{
     optics::{Frame, Terms, fresnel::schlick, geometry::half_slope},
+    parameter::{BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR, Value},
     parameters,
     shader::wgsl,
 };

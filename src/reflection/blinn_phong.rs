@@ -1,11 +1,9 @@
 use glam::Vec3;
 
-use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term,
-    parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
-};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term};
 use crate::{
     optics::{Frame, Terms, geometry::half_vector},
+    parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
     parameters,
     shader::wgsl,
 };

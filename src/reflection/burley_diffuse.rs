@@ -1,11 +1,9 @@
 use glam::Vec3;
 
-use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
-    parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
-};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
 use crate::{
     optics::{Frame, Terms, diffuse::burley, geometry::half_vector},
+    parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
     parameters,
     shader::wgsl,
 };

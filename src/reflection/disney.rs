@@ -3,9 +3,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, ROUGHNESS, Value},
-    preset,
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term, preset,
 };
 use crate::{
     optics::{
@@ -17,6 +15,7 @@ use crate::{
         geometry::half_vector,
         masking::{separable, smith_ggx},
     },
+    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, ROUGHNESS, Value},
     parameters,
     shader::wgsl,
 };

@@ -2,12 +2,10 @@ use std::f32::consts::{FRAC_2_PI, PI};
 
 use glam::Vec3;
 
-use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
-    parameter::{BASE_COLOUR, Parameter, ParameterKind},
-};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
 use crate::{
     optics::{Frame, Terms},
+    parameter::{BASE_COLOUR, Parameter, ParameterKind},
     parameters,
     shader::wgsl,
 };

@@ -1,10 +1,9 @@
 use glam::Vec3;
 
-use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term, parameter::BASE_COLOUR,
-};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
 use crate::{
     optics::{Frame, Terms},
+    parameter::BASE_COLOUR,
     parameters,
     shader::wgsl,
 };

@@ -6,11 +6,11 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::Vec3;
 
-use super::{
-    Laws, ModelEntry, brdf_of,
+use super::{Laws, ModelEntry, brdf_of};
+use crate::{
+    optics::{Frame, Terms},
     parameter::{Parameter, ParameterKind, Value, Values},
 };
-use crate::optics::{Frame, Terms};
 
 /// The largest relative difference between there and back that rounding may make.
 pub const RECIPROCITY_TOLERANCE: f32 = 2e-3;

@@ -3,9 +3,7 @@ use std::f32::consts::PI;
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    parameter::{BASE_COLOUR, METALLIC, REFLECTANCE, ROUGHNESS, Value},
-    preset,
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term, preset,
 };
 use crate::{
     optics::{
@@ -15,6 +13,7 @@ use crate::{
         geometry::half_vector,
         masking::{height_correlated, smith_ggx},
     },
+    parameter::{BASE_COLOUR, METALLIC, REFLECTANCE, ROUGHNESS, Value},
     parameters,
     shader::wgsl,
 };

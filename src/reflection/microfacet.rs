@@ -3,9 +3,7 @@ use std::f32::consts::{PI, SQRT_2};
 use glam::{Vec2, Vec3};
 
 use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
-    preset,
+    Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term, preset,
 };
 use crate::{
     optics::{
@@ -16,6 +14,7 @@ use crate::{
         geometry::half_vector,
         masking,
     },
+    parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
     parameters,
     shader::wgsl,
 };
@@ -360,7 +359,7 @@ mod tests {
     use super::*;
     use crate::{
         optics::colour::Encoding,
-        reflection::parameter::{ParameterSet as _, Values},
+        parameter::{ParameterSet as _, Values},
     };
 
     #[test]

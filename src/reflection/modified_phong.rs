@@ -1,14 +1,12 @@
 use glam::Vec3;
 
-use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term,
-    parameter::{ALPHA, BASE_COLOUR, K_S, SPECULAR_COLOUR},
-};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term};
 use crate::{
     optics::{
         Frame, Terms, equivalence,
         lobe::{mirror_tangent_squared, power_of_cosine},
     },
+    parameter::{ALPHA, BASE_COLOUR, K_S, SPECULAR_COLOUR},
     parameters,
     shader::wgsl,
 };

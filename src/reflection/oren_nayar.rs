@@ -1,14 +1,12 @@
 use glam::Vec3;
 
-use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term,
-    parameter::{BASE_COLOUR, Parameter, ParameterKind, SIGMA},
-};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
 use crate::{
     optics::{
         Frame, Terms,
         diffuse::{oren_nayar_full, oren_nayar_qualitative},
     },
+    parameter::{BASE_COLOUR, Parameter, ParameterKind, SIGMA},
     parameters,
     shader::wgsl,
 };

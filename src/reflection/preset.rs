@@ -9,13 +9,9 @@ use std::{collections::BTreeMap, sync::LazyLock};
 use glam::Vec3;
 use serde::Deserialize;
 
-use super::{
-    Family, ModelEntry,
-    parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, REFLECTANCE, Value},
-};
 use crate::{
     optics::colour::{luminance, srgb_encode8},
-    registry::Registry,
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, REFLECTANCE, Value},
 };
 
 /// A material whose refractive index was measured.
@@ -127,27 +123,6 @@ pub(super) fn by_names(parameters: &[Parameter]) -> fn(&Measured) -> Vec<(&'stat
     }
 }
 
-/// What choosing a measured material for one model sets: the parameters of that model, and those of the
-/// microfacet and standard models that do not contradict them, so that gold stays gold when the model is
-/// exchanged.
-#[must_use]
-pub fn along(model: &ModelEntry, material: &Measured, registry: &Registry) -> Vec<(&'static str, Value)> {
-    let mut values = (model.preset)(material);
-    let takes_along = |m: &&ModelEntry| matches!(m.declaration.family, Family::Microfacet | Family::Standard);
-    for other in registry.models().iter().filter(takes_along) {
-        let theirs = (other.preset)(material);
-        let clashes = |(name, value): &(&str, Value)| values.iter().any(|(n, v)| n == name && v != value);
-        if !theirs.iter().any(clashes) {
-            for (name, value) in theirs {
-                if !values.iter().any(|(n, _)| *n == name) {
-                    values.push((name, value));
-                }
-            }
-        }
-    }
-    values
-}
-
 /// A number as the value of a parameter that ends at 1, with as many digits as a knob shows, so that the
 /// value shown is the value.
 #[must_use]
@@ -166,7 +141,7 @@ mod tests {
     use super::*;
     use crate::{
         optics::{colour::Encoding, fresnel::normal_reflectance},
-        reflection::parameter::Parameter,
+        parameter::Parameter,
     };
 
     fn material(id: &str) -> &'static Measured {
@@ -244,22 +219,5 @@ mod tests {
                 other => panic!("{}: {other:?}", m.name),
             }
         }
-    }
-
-    #[test]
-    fn gold_stays_gold_when_the_model_is_exchanged() {
-        let registry = Registry::builtin();
-        let gold = by_id("gold").expect("measured");
-        for from in ["metallic_roughness", "microfacet", "cook_torrance", "disney"] {
-            let values = along(registry.model(from).expect("built in"), gold, &registry);
-            for to in ["metallic_roughness", "microfacet", "torrance_sparrow", "cook_torrance", "disney"] {
-                for wanted in (registry.model(to).expect("built in").preset)(gold) {
-                    assert!(values.contains(&wanted), "{from} → {to}: {wanted:?} is not among {values:?}");
-                }
-            }
-        }
-        // A base that is black on purpose makes no black metal of others.
-        let lacquer = along(registry.model("ashikhmin_shirley").expect("built in"), gold, &registry);
-        assert!(!lacquer.iter().any(|(name, _)| *name == METALLIC.name), "{lacquer:?}");
     }
 }

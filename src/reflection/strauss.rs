@@ -2,16 +2,13 @@ use std::f32::consts::FRAC_2_PI;
 
 use glam::Vec3;
 
-use super::{
-    Ambient, Declaration, EquationPart, Family, Laws, Measured, ReflectionModel, Term,
-    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, Value},
-    preset,
-};
+use super::{Ambient, Declaration, EquationPart, Family, Laws, Measured, ReflectionModel, Term, preset};
 use crate::{
     optics::{
         Frame, Terms,
         lobe::{mirror_tangent_squared, power_of_cosine},
     },
+    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, Value},
     parameters,
     shader::wgsl,
 };

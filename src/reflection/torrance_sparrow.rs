@@ -5,7 +5,6 @@ use glam::Vec3;
 use super::{
     Ambient, Declaration, EquationPart, Family, Laws, Measured, Readout, ReflectionModel, Term,
     cook_torrance::{SPECULAR_WEIGHT, conductor_preset},
-    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
 };
 use crate::{
     optics::{
@@ -14,6 +13,7 @@ use crate::{
         geometry::half_vector,
         masking::v_cavity,
     },
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
     parameters,
     shader::wgsl,
 };

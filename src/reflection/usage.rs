@@ -1,6 +1,6 @@
 //! The parameters of a model that the chosen options use.
 
-use super::parameter::{Parameter, ParameterKind, UsedWhen, Values};
+use crate::parameter::{Parameter, ParameterKind, UsedWhen, Values};
 
 /// The condition of a parameter that does not hold, with the parameter that it is about. A parameter that
 /// depends on one without effect has none itself.
@@ -92,10 +92,8 @@ mod tests {
     use super::*;
     use crate::{
         optics::{Frame, colour::Encoding},
-        reflection::{
-            ModelEntry,
-            parameter::{BASE_COLOUR, Value},
-        },
+        parameter::{BASE_COLOUR, Value},
+        reflection::ModelEntry,
         registry::Registry,
     };
 

@@ -1,4 +1,15 @@
-//! Everything of Bevy that draws: views, and how they reach the window.
+//! Everything of Bevy that draws: the scene as entities, materials, lights in a buffer, live shaders, views, and
+//! pictures without a window.
 
+pub mod camera;
+pub mod capture;
+pub mod entities;
+pub mod illumination;
+pub mod live;
+pub mod material;
+pub mod plugin;
+mod register;
 pub mod show;
+pub mod swap;
+pub mod trial;
 pub mod view;

@@ -24,7 +24,8 @@ use bevy::{
 };
 use glam::UVec2;
 
-use crate::{app::ShownTerms, reflection::swap::Drawn, registry::Registry, scene::spawn::CurrentScene};
+use super::{entities::CurrentScene, plugin::ShownTerms, swap::Drawn};
+use crate::registry::Registry;
 
 /// So many pictures are drawn after a change: what the renderer could not prepare in the first is in the second.
 const PICTURES: u32 = 2;

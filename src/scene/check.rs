@@ -4,28 +4,26 @@
 //! a sentence: "k_d is 0.2, but **the diffuse coefficient must be between 0.5 and 1**". [`scene`]
 //! applies them all to a whole scene.
 
-use std::{borrow::Cow, collections::HashMap, fmt};
-
-use glam::Vec3;
-
 use super::{
     Light, MAX_DIMENSION, MAX_OBJECTS, Object, Observer, Scene, SceneSize,
-    error::{Path, Problem, quoted},
+    error::{Path, Problem},
 };
 use crate::{
+    custom,
     light::{LightEntry, MAX_LIGHTS},
     optics::{
         colour::Encoding,
         temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
         tone::ToneMapping,
     },
-    reflection::{
-        own,
-        parameter::{Parameter, ParameterKind, Value, Values},
-    },
+    parameter::{Parameter, ParameterKind, Value, Values},
     registry::Registry,
     shape::ShapeEntry,
+    text::{listed, nearest, quoted},
 };
+use std::{borrow::Cow, collections::HashMap, fmt};
+
+use glam::Vec3;
 
 /// The narrowest legal field of view, degrees.
 pub const MIN_FIELD_OF_VIEW: f32 = 1.0;
@@ -209,11 +207,11 @@ pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
 
 /// That there is no file for an id, where own models are kept: it may have been left behind.
 fn own_model_missing(registry: &Registry, id: &str) -> String {
-    match registry.own_folder() {
-        Some(folder) if folder.is_dir() && own::is_id(id) => {
+    match registry.custom_folder() {
+        Some(folder) if folder.is_dir() && custom::is_id(id) => {
             format!(
                 "; among the custom models there is no {}",
-                folder.join(id).with_extension(own::EXTENSION).display()
+                folder.join(id).with_extension(custom::EXTENSION).display()
             )
         }
         _ => String::new(),
@@ -270,41 +268,6 @@ pub(super) fn one_of<'a>(
         let suggestion = did_you_mean(id, known.clone().map(|(k, _)| (k, k)).chain(names));
         format!("{what} must be {}{suggestion}", listed(&ids, "or"))
     })
-}
-
-/// "a", "a or b", "a, b or c".
-#[must_use]
-pub fn listed(items: &[impl AsRef<str>], conjunction: &str) -> String {
-    match items {
-        [] => String::new(),
-        [one] => one.as_ref().to_owned(),
-        [first @ .., last] => {
-            let first: Vec<_> = first.iter().map(AsRef::as_ref).collect();
-            format!("{} {conjunction} {}", first.join(", "), last.as_ref())
-        }
-    }
-}
-
-/// The target whose spelling is nearest to what was written, if any is near. Each candidate is a
-/// spelling and what it stands for.
-#[must_use]
-pub fn nearest<'a>(written: &str, candidates: impl Iterator<Item = (&'a str, &'a str)>) -> Option<&'a str> {
-    // Names are short; comparing a book with each of them would take forever.
-    if written.len() > 64 {
-        return None;
-    }
-    // Case and separators are the commonest slips: sceneSize, scene-size.
-    let plain = |s: &str| s.to_lowercase().replace(['_', '-', ' '], "");
-    let wanted = plain(written);
-    let distance = |candidate: &str| {
-        let candidate = plain(candidate);
-        let edits = strsim::damerau_levenshtein(&wanted, &candidate);
-        // A third of the letters may differ: more is another word.
-        let letters = candidate.chars().count().max(wanted.chars().count());
-        (edits <= (letters + 1) / 3).then_some(edits)
-    };
-    let near = candidates.filter(|(spelling, _)| !spelling.is_empty());
-    near.filter_map(|(spelling, target)| Some((distance(spelling)?, target))).min_by_key(|n| n.0).map(|n| n.1)
 }
 
 /// "; did you mean "lambert"?", or nothing.

@@ -1,11 +1,13 @@
 //! What can be wrong with a scene, and how it is said: file, line, column, path, value, rule.
 
+use super::load::{MAX_FILE_BYTES, Missing};
+use crate::{
+    files::{FileError, Kind},
+    text::quoted,
+};
 use std::{borrow::Cow, fmt, io, path::Path as FilePath};
 
 use serde::{Serialize, Serializer};
-
-use super::load::{MAX_FILE_BYTES, Missing};
-use crate::files::{FileError, Kind};
 
 /// A place in a text. Both count from 1; columns count characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -97,24 +99,6 @@ impl Serialize for Path {
 /// Whether a key can stand in a path without quotes.
 fn is_plain(key: &str) -> bool {
     !key.is_empty() && key.len() <= 60 && key.chars().all(|c| c.is_alphanumeric() || "_-$".contains(c))
-}
-
-/// A text in double quotes, with control characters escaped, and shortened: for messages.
-#[must_use]
-pub fn quoted(text: &str) -> String {
-    shortened(&format!("{text:?}"))
-}
-
-/// The beginning of a text that is too long for a message, on one line.
-#[must_use]
-pub fn shortened(text: &str) -> String {
-    /// What still reads well within a sentence.
-    const LONGEST: usize = 60;
-    let flat = |c: char| if c.is_control() { ' ' } else { c };
-    match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => text[..end].chars().map(flat).chain(['…']).collect(),
-        None => text.chars().map(flat).collect(),
-    }
 }
 
 /// One thing that is wrong with a scene.
@@ -364,7 +348,7 @@ fn declined(missing: &[Missing]) -> String {
     let verb = if missing.len() == 1 { "is" } else { "are" };
     format!(
         "{} {verb} missing; --use-defaults takes the defaults, --no-defaults refuses them",
-        super::check::listed(&parts, "and")
+        crate::text::listed(&parts, "and")
     )
 }
 

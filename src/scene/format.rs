@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 
 use super::{Display, Light, Object, Observer, Scene, SceneSize};
 use crate::{
-    reflection::parameter::{Parameter, Value, Values},
+    parameter::{Parameter, Value, Values},
     registry::Registry,
 };
 

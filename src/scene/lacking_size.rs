@@ -74,7 +74,7 @@ pub(super) fn explain(problems: Vec<Problem>, scene: &Scene, missing: &[Missing]
         "is missing, and the default, {}, is too small for {} {found}{more}; write {} or more",
         first.default,
         example.path,
-        check::listed(&wanted, "and")
+        crate::text::listed(&wanted, "and")
     );
     rest.insert(0, Problem { place: first.place, ..Problem::about(first.path.clone(), predicate) });
     rest

@@ -356,7 +356,7 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
 /// What is at a place, for a message.
 fn shown(found: Option<char>, word: &str) -> String {
     match found {
-        _ if word.chars().count() > 1 => super::error::shortened(word),
+        _ if word.chars().count() > 1 => crate::text::shortened(word),
         Some('\n' | '\r') => "the end of the line".to_owned(),
         Some(c) if c.is_control() => format!("the character U+{:04X}", u32::from(c)),
         Some(c) => format!("`{c}`"),

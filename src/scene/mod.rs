@@ -4,19 +4,19 @@
 //! the panels edit it, the CPU renderer draws it. Angles are degrees, lengths metres, colours
 //! sRGB-encoded integers: the values as users write them.
 
-use std::collections::BTreeSet;
-
-use glam::Vec3;
-
 use crate::{
-    light::LightEntry,
+    light::{Incident, LightEntry, LightRecord},
     optics::{
         colour::{Encoding, srgb_encode},
         temperature,
         tone::ToneMapping,
     },
-    reflection::parameter::Values,
+    parameter::Values,
+    registry::Registry,
 };
+use std::collections::BTreeSet;
+
+use glam::Vec3;
 
 pub mod check;
 pub mod error;
@@ -24,10 +24,11 @@ pub mod examples;
 mod format;
 mod lacking_size;
 pub mod load;
+pub mod observer;
 mod read;
+pub mod rotation;
 pub mod save;
 pub mod schema;
-pub mod spawn;
 
 /// Largest legal extent of a scene in any direction, metres (CA `MAX_HEIGHT`, `MAX_WIDTH`, `MAX_DEPTH`).
 pub const MAX_DIMENSION: f32 = 100.0;
@@ -293,5 +294,43 @@ impl Scene {
     #[must_use]
     pub fn mode_of<'a>(&'a self, object: &'a Object) -> &'a str {
         object.shading_model.as_deref().unwrap_or(&self.shading_model)
+    }
+}
+
+/// A light of the scene as calculation sees it. A light of an unknown type gives no light.
+#[must_use]
+pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRecord {
+    let Some((kind, entry)) = registry.light_index(&light.kind).zip(registry.light(&light.kind)) else {
+        return LightRecord { kind: u32::MAX, ..LightRecord::default() };
+    };
+    LightRecord {
+        kind,
+        position: light.position.unwrap_or(Vec3::ZERO),
+        direction: light.direction.unwrap_or(Vec3::ZERO).normalize_or_zero(),
+        colour: light.colour_under(encoding),
+        intensity: light.intensity_as(entry),
+        parameters: entry.numbers(&light.parameters),
+    }
+}
+
+/// Whether some light of a scene shines from everywhere alike, so that albedos are asked for.
+#[must_use]
+pub fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
+    scene.shining().any(|light| {
+        registry.light(&light.kind).is_some_and(|entry| {
+            let record = record(light, registry, scene.display.encoding);
+            matches!((entry.incident)(&record, Vec3::ZERO), Incident::Everywhere { .. })
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_light_types_give_no_light_and_no_panic() {
+        let light = Light { kind: "laser".to_owned(), ..Light::default() };
+        assert_eq!(record(&light, &Registry::builtin(), Encoding::Srgb).kind, u32::MAX);
     }
 }

@@ -17,15 +17,16 @@ use jsonc_parser::{
 use super::{
     DEFAULT_DIMENSION, DEFAULT_REFLECTION_MODEL, DEFAULT_SHADING_MODEL, Display, Light, MAX_DIMENSION,
     Object, Observer, Scene, SceneSize, check,
-    error::{LoadError, Path, Problem, Segment, quoted, shortened},
+    error::{LoadError, Path, Problem, Segment},
     lacking_size,
     load::{Defaults, Lines, Missing},
 };
 use crate::{
     light::LightEntry,
     optics::{colour::Encoding, tone::ToneMapping},
-    reflection::parameter::{Parameter, ParameterKind, Value, Values},
+    parameter::{Parameter, ParameterKind, Value, Values},
     registry::Registry,
+    text::{quoted, shortened},
 };
 
 /// The keys of a scene. The order is that of messages.
@@ -539,7 +540,8 @@ impl Reader<'_> {
         what: &str,
     ) -> Option<Fields<'b, 'a>> {
         let Ast::Object(object) = value else {
-            let rule = format!("{what} must be an object, with the keys {}", check::listed(known, "and"));
+            let rule =
+                format!("{what} must be an object, with the keys {}", crate::text::listed(known, "and"));
             self.report(value.start(), Problem::value(path, self.describe(value), rule));
             return None;
         };
@@ -581,9 +583,10 @@ impl Reader<'_> {
                 self.registry.material_parameters().flat_map(|p| [(p.label, p.name), (p.symbol, p.name)]);
             let labels = labels.filter(|_| what == "a material");
             let spelling = written.replace("color", "colour");
-            match check::nearest(&spelling, known.iter().map(|k| (*k, *k)).chain(others).chain(labels)) {
+            match crate::text::nearest(&spelling, known.iter().map(|k| (*k, *k)).chain(others).chain(labels))
+            {
                 Some(nearest) => format!("; did you mean {}?", quoted(nearest)),
-                None => format!("; {what} has the keys {}", check::listed(known, "and")),
+                None => format!("; {what} has the keys {}", crate::text::listed(known, "and")),
             }
         };
         let key = shortened(written);

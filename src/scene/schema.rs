@@ -1,19 +1,17 @@
 //! The JSON Schema of scene files, for editors: the types of `format` plus what the
 //! registry knows.
 
-use schemars::{SchemaGenerator, generate::SchemaSettings};
-use serde_json::{Map, Value as Json, json};
-
 use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile, read};
 use crate::{
     light::MAX_LIGHTS,
     optics::{colour::Encoding, tone::ToneMapping},
-    reflection::{
-        ModelEntry,
-        parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
-    },
+    parameter::{ABOVE_ZERO, Parameter, ParameterKind, json as value},
+    reflection::ModelEntry,
     registry::Registry,
+    text::number,
 };
+use schemars::{SchemaGenerator, generate::SchemaSettings};
+use serde_json::{Map, Value as Json, json};
 
 /// The file name of the schema beside the shipped scenes; what their `$schema` says.
 pub const FILE_NAME: &str = "scene.schema.json";
@@ -241,23 +239,4 @@ fn parameter(p: &Parameter) -> Json {
     field["description"] = p.help.into();
     field["default"] = value(&p.default_value());
     field
-}
-
-/// The value of a parameter.
-pub(crate) fn value(value: &Value) -> Json {
-    match value {
-        Value::Number(v) => number(*v),
-        Value::Integer(v) => (*v).into(),
-        Value::Colour(rgb) => json!(rgb),
-        Value::Triple(v) => v.iter().map(|c| number(*c)).collect(),
-        Value::Choice(v) => v.as_ref().into(),
-    }
-}
-
-/// The number that a person would write: 0.1, and not its nearest 32-bit neighbour in 64 bits.
-pub(crate) fn number(v: f32) -> Json {
-    if v.fract() == 0.0 && v.abs() < 1e9 {
-        return (v as i64).into();
-    }
-    v.to_string().parse::<f64>().ok().and_then(serde_json::Number::from_f64).map_or(Json::Null, Json::Number)
 }

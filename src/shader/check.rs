@@ -86,7 +86,7 @@ fn parsed(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
 
 /// What the validator says in full: the outermost message only says that some function is invalid, the
 /// innermost says why.
-pub(super) fn reason(error: &dyn std::error::Error) -> String {
+pub(crate) fn reason(error: &dyn std::error::Error) -> String {
     let mut message = error.to_string();
     let mut source = error.source();
     while let Some(inner) = source {
@@ -145,10 +145,10 @@ pub fn struct_layout(module: &Module, name: &str) -> Option<Vec<(String, usize)>
 mod tests {
     use super::*;
     use crate::{
-        light::buffer::{ILLUMINATION_LAYOUT, LIGHT_LAYOUT},
-        reflection::parameter::{layout, stride},
-        registry::Registry,
-        shader::compose::{LIGHTS, OPTICS, Sources, compose_evaluation},
+        parameter::{layout, stride},
+        registry::{Registry, compose::compose_evaluation},
+        render::illumination::{ILLUMINATION_LAYOUT, LIGHT_LAYOUT},
+        shader::compose::{LIGHTS, OPTICS, Sources},
     };
 
     #[test]

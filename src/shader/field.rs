@@ -1,6 +1,6 @@
 //! Fields that the parameters of a model do not have, told with the name that was meant.
 
-use crate::scene::check::{listed, nearest};
+use crate::text::{listed, nearest};
 
 /// What to say instead of the compiler's message about a field of the parameters: `m.base_color`. None for other
 /// messages. The place is a line of the text, and a byte in it from 1.

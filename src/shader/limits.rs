@@ -131,12 +131,11 @@ mod tests {
 
     use super::*;
     use crate::{
-        reflection::own,
-        registry::Registry,
-        shader::{
+        registry::{
+            Registry,
             compose::{compose, compose_evaluation},
-            whole,
         },
+        shader::whole,
         shading::Stage,
     };
 
@@ -168,10 +167,10 @@ mod tests {
     /// All texts that the shipped models are drawn and evaluated with.
     fn shipped() -> Vec<(String, Composed)> {
         let mut registry = Registry::builtin();
-        for (name, text) in crate::assets::EXAMPLES {
+        for (name, text) in crate::library::assets::EXAMPLES {
             let path = std::path::Path::new(name);
-            let model = own::read(path, text, &registry).unwrap_or_else(|p| panic!("{p:?}"));
-            registry.put_own_model(model);
+            let model = crate::custom::read(path, text, &registry).unwrap_or_else(|p| panic!("{p:?}"));
+            registry.put_custom_model(model);
         }
         let mut texts = Vec::new();
         for model in registry.models() {

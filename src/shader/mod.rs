@@ -4,15 +4,11 @@
 pub mod check;
 pub mod compose;
 mod field;
-pub mod file;
 pub mod interpret;
 pub mod limits;
-pub mod live;
 pub mod pitfall;
-mod reading;
 pub mod report;
-pub mod status;
-pub mod trial;
+pub mod slim;
 pub mod whole;
 
 /// The WGSL source of one file under `assets/shaders/`, with the copy that is built in.

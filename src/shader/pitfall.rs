@@ -308,11 +308,8 @@ fn is_zero(expressions: &naga::Arena<Expression>, handle: Handle<Expression>, mo
 mod tests {
     use super::*;
     use crate::{
-        registry::Registry,
-        shader::{
-            check,
-            compose::{Sources, compose_evaluation},
-        },
+        registry::{Registry, compose::compose_evaluation},
+        shader::{check, compose::Sources},
     };
 
     fn said(text: &str) -> String {

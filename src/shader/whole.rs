@@ -84,8 +84,8 @@ pub(super) fn standing_alone(text: &str, faces: bool) -> Option<String> {
 mod tests {
     use super::*;
     use crate::{
-        registry::Registry,
-        shader::compose::{Sources, compose},
+        registry::{Registry, compose::compose},
+        shader::compose::Sources,
         shading::Stage,
     };
 

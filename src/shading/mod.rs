@@ -7,7 +7,7 @@ use std::fmt;
 
 use glam::Vec3;
 
-use crate::{registry::Register, shader::Source};
+use crate::shader::Source;
 
 pub mod normals;
 
@@ -21,12 +21,18 @@ pub use flat::Flat;
 pub use gouraud::Gouraud;
 pub use phong::PhongShading;
 
+/// Takes shading models one after the other.
+pub trait Take {
+    /// Takes the next one.
+    fn take<T: ShadingMode>(&mut self);
+}
+
 /// The built-in modes, in the order in which choosers list them. The one list.
-pub fn register_builtin(to: &mut impl Register) {
-    to.add_shading_mode::<Flat>();
-    to.add_shading_mode::<Gouraud>();
-    to.add_shading_mode::<PhongShading>();
-    to.add_shading_mode::<Derivative>();
+pub fn register_builtin(to: &mut impl Take) {
+    to.take::<Flat>();
+    to.take::<Gouraud>();
+    to.take::<PhongShading>();
+    to.take::<Derivative>();
 }
 
 /// The stage that evaluates the reflection model.

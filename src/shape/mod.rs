@@ -4,8 +4,6 @@
 
 use std::{fmt, ops::RangeInclusive};
 
-use crate::registry::Register;
-
 pub mod mesh;
 
 mod cube;
@@ -19,12 +17,18 @@ pub use sphere::Sphere;
 pub use teapot::Teapot;
 pub use torus::Torus;
 
+/// Takes object types one after the other.
+pub trait Take {
+    /// Takes the next one.
+    fn take<T: ObjectType>(&mut self);
+}
+
 /// The built-in object types, in the order in which choosers list them. The one list.
-pub fn register_builtin(to: &mut impl Register) {
-    to.add_object_type::<Sphere>();
-    to.add_object_type::<Cube>();
-    to.add_object_type::<Torus>();
-    to.add_object_type::<Teapot>();
+pub fn register_builtin(to: &mut impl Take) {
+    to.take::<Sphere>();
+    to.take::<Cube>();
+    to.take::<Torus>();
+    to.take::<Teapot>();
 }
 
 /// What an object type is called and how finely it can be cut.

@@ -14,8 +14,9 @@ use crate::{
         colour::luminance,
         fresnel::{conductor, normal_reflectance, schlick},
     },
+    parameter::Value,
     reference::Picture,
-    reflection::{Measured, parameter::Value, preset},
+    reflection::{Measured, preset},
 };
 
 const SCENE: &str = include_str!("../../scenes/fresnel_effect.json");

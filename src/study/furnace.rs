@@ -10,8 +10,8 @@ use super::{
 };
 use crate::{
     optics::{Frame, TermSelection, colour::luminance},
+    parameter::Value,
     reference::{Picture, encode8},
-    reflection::parameter::Value,
     scene::{Light, Scene},
 };
 

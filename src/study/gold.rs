@@ -10,8 +10,9 @@ use super::{
 };
 use crate::{
     optics::{TermSelection, colour::luminance},
+    parameter::Value,
     reference::Picture,
-    reflection::{parameter::Value, preset},
+    reflection::preset,
     scene::{Light, Object, Scene},
 };
 

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     optics::{Frame, TermSelection, colour::Encoding, equivalence, geometry::direction},
-    reflection::parameter::{Value, Values},
+    parameter::{Value, Values},
     registry::Registry,
 };
 

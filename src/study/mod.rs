@@ -10,16 +10,13 @@ use maud::{Markup, PreEscaped, html};
 use thiserror::Error;
 
 use crate::{
-    capture::png,
     files,
     optics::{Frame, TermSelection, albedo, colour::Encoding, geometry::direction},
-    reference,
-    reference::Picture,
-    reflection::{
-        Surface,
-        parameter::{Value, Values},
-    },
+    parameter::{Value, Values},
+    reference::{self, Picture},
+    reflection::Surface,
     registry::Registry,
+    render::capture::png,
     scene::{
         Scene,
         load::{self, Defaults},

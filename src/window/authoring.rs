@@ -5,14 +5,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-pub use crate::assets::write_new;
+pub use crate::library::assets::write_new;
 use crate::{
-    assets::{self, Exported, Folders},
+    custom,
+    library::assets::{self, Exported, Folders},
     panel::{
         author::ModelDraft,
         state::{Effect, Lab, Severity},
     },
-    reflection::own,
     registry::Registry,
 };
 
@@ -20,13 +20,13 @@ use crate::{
 /// chosen. Returns the folder whose shaders are to be read from now on, if there is a new one.
 pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<PathBuf> {
     match effect {
-        Effect::NewModel { id, name } => new_file(lab, registry, id, name, None, &own::template(id, name)),
+        Effect::NewModel { id, name } => new_file(lab, registry, id, name, None, &custom::template(id, name)),
         Effect::DuplicateModel { model, id, name } => {
             let Some(entry) = registry.model(model) else {
                 lab.say(Severity::Error, format!("There is no reflection model “{model}” to copy."));
                 return None;
             };
-            let sources = match own::folder::sources_with(model, registry) {
+            let sources = match custom::folder::sources_with(model, registry) {
                 Ok(sources) => sources,
                 Err(why) => {
                     let copied = entry.declaration.name;
@@ -34,7 +34,7 @@ pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<Path
                     return None;
                 }
             };
-            match own::duplicate(entry, &sources, id, name) {
+            match custom::duplicate(entry, &sources, id, name) {
                 Ok(text) => new_file(lab, registry, id, name, Some(model), &text),
                 Err(why) => {
                     lab.say(Severity::Error, format!("{} was not copied: {why}.", entry.declaration.name));
@@ -55,7 +55,7 @@ pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<Path
 
 /// Where own models are: where they are read from, else where they would be looked for.
 fn models_folder(lab: &Lab, registry: &Registry) -> Option<PathBuf> {
-    let known = lab.shaders.models.clone().or_else(|| registry.own_folder().map(Path::to_owned));
+    let known = lab.shaders.models.clone().or_else(|| registry.custom_folder().map(Path::to_owned));
     known.or_else(|| Folders::find(None, None).ok()?.models)
 }
 
@@ -64,7 +64,7 @@ fn new_file(lab: &mut Lab, registry: &Registry, id: &str, name: &str, of: Option
         let why = "There is no folder for custom models: name one with `lcm --models FOLDER`.";
         return lab.say(Severity::Error, why);
     };
-    let path = folder.join(format!("{id}.{}", own::EXTENSION));
+    let path = folder.join(format!("{id}.{}", custom::EXTENSION));
     match write_new(&path, text) {
         Ok(()) => {
             lab.wanted_model = Some(id.to_owned());

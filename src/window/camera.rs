@@ -15,10 +15,10 @@ use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraSystemSet};
 use glam::{Quat, Vec3};
 
 use crate::{
-    observer::{camera::PictureCamera, rotation},
     panel::state::{Action, Edit, Lab, Selection, Severity, Steer},
     registry::Registry,
-    scene::{Observer, Scene, check, spawn::CurrentScene},
+    render::{camera::PictureCamera, entities::CurrentScene},
+    scene::{Observer, Scene, check, observer::rotation},
 };
 
 /// The nearest that the camera comes to what it turns around, metres.

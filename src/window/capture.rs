@@ -13,10 +13,12 @@ use bevy::{
 };
 
 use crate::{
-    app::{LabFrame, LabSystems},
-    capture::png,
-    cli::Failure,
-    shader::live::LiveShaders,
+    failure::Failure,
+    render::{
+        capture::png,
+        live::LiveShaders,
+        plugin::{LabFrame, LabSystems},
+    },
 };
 
 /// The longest that shaders are waited for before frames are counted.

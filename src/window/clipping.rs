@@ -35,8 +35,11 @@ use crate::{
         clipping::{Clipping, GRID},
         state::Lab,
     },
-    render::view::{Drawing, ViewSystems},
-    scene::{Display, spawn::CurrentScene},
+    render::{
+        entities::CurrentScene,
+        view::{Drawing, ViewSystems},
+    },
+    scene::Display,
 };
 
 /// Frames in which an answer is waited for.

@@ -16,7 +16,7 @@ use bevy::app::{App, AppExit};
 
 use super::watching::complain;
 use crate::{
-    cli::Failure,
+    failure::Failure,
     recovery::{Keeper, Settled},
 };
 

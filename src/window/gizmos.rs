@@ -16,9 +16,11 @@ use bevy::{
 use glam::Vec3;
 
 use crate::{
-    app::{LabFrame, LabSystems},
     panel::state::{Lab, ThemeChoice},
-    scene::spawn::CurrentScene,
+    render::{
+        entities::CurrentScene,
+        plugin::{LabFrame, LabSystems},
+    },
 };
 
 /// Lines that are hidden by what stands before them.

@@ -12,7 +12,7 @@ use std::{
 
 use bevy::ecs::prelude::*;
 
-use crate::{assets::Folders, reflection::law_report::LawReport};
+use crate::{library::assets::Folders, reflection::law_report::LawReport};
 
 /// The longest that a check may take: software Vulkan needs seconds for a model at the limits.
 const LONGEST: Duration = Duration::from_secs(120);

@@ -45,11 +45,8 @@ use bevy_panorbit_camera::{ActiveCameraData, PanOrbitCameraPlugin, PanOrbitCamer
 use glam::{UVec2, Vec2};
 
 use crate::{
-    app::{LabFrame, LabSystems, ScenePlugin, ShownTerms},
-    assets::Folders,
-    capture::gpu::{find_adapter, wgpu_settings},
-    cli::{Failure, ViewOptions},
-    observer::camera::{PictureCamera, picture_camera},
+    failure::Failure,
+    library::{assets::Folders, status::ShaderStatus},
     panel::{
         PanelPlugin,
         files::{load_settings, run as run_files},
@@ -59,17 +56,17 @@ use crate::{
     recovery::Store,
     registry::Registry,
     render::{
-        show::{ShowPlugin, Shows},
-        view::{Drawing, View, ViewSystems, texture_of},
-    },
-    scene::spawn::CurrentScene,
-    shader::{
+        camera::{PictureCamera, picture_camera},
+        capture::gpu::{find_adapter, wgpu_settings},
+        entities::CurrentScene,
         live::LiveShaders,
-        status::ShaderStatus,
+        plugin::{LabFrame, LabSystems, ScenePlugin, ShownTerms},
+        show::{ShowPlugin, Shows},
         trial::{
             Bench,
             process::{Budget, TrialProcess},
         },
+        view::{Drawing, View, ViewSystems, texture_of},
     },
 };
 
@@ -83,11 +80,14 @@ pub mod files;
 mod frames;
 mod gizmos;
 pub mod laws;
+mod options;
 mod pick;
 mod pointer;
 mod recovery;
 mod shaders;
 pub mod watching;
+
+pub use options::ViewOptions;
 
 /// The size of a new window, points.
 const SIZE: UVec2 = UVec2::new(1280, 720);
@@ -239,15 +239,15 @@ fn add_with_display<M>(app: &mut App, plugins: impl Plugins<M>) -> Result<(), Fa
 
 fn log_plugin(options: &ViewOptions) -> LogPlugin {
     let (level, filter) = if options.verbose {
-        (Level::INFO, "wgpu=error,naga=warn,notify=error")
+        (Level::INFO, "wgpu=error,naga=warn,notify=error,bevy_render::gpu_readback=error")
     } else if options.quiet {
-        (Level::ERROR, "wgpu=error,naga=off,notify=error")
+        (Level::ERROR, "wgpu=error,naga=off,notify=error,bevy_render::gpu_readback=error")
     } else {
         // That the renderer is a program on the CPU stands in the status line, and what is wrong with a
         // shader is told in terms of its file; the rest of what is silenced here is no news to a user.
         (
             Level::WARN,
-            "wgpu=error,naga=off,notify=error,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",
+            "wgpu=error,naga=off,notify=error,bevy_render::renderer=error,bevy_render::gpu_readback=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",
         )
     };
     LogPlugin { level, filter: filter.to_owned(), ..LogPlugin::default() }

@@ -13,13 +13,15 @@ use glam::Vec2;
 
 use super::PicturePlace;
 use crate::{
-    observer::camera::PictureCamera,
     panel::{
         marks::anchor,
         state::{Action, Lab, Selection},
     },
     registry::Registry,
-    scene::spawn::{CurrentScene, LitObject, SceneEntities},
+    render::{
+        camera::PictureCamera,
+        entities::{CurrentScene, LitObject, SceneEntities},
+    },
 };
 
 /// How far from a light's mark a click still means it, points.

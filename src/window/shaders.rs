@@ -10,18 +10,18 @@ use bevy::ecs::prelude::*;
 
 use super::watching::{FileWatch, FilesChanged, complain, complain_in_colour};
 use crate::{
-    assets::{self, Folders},
+    custom,
+    library::{
+        assets::{self, Folders},
+        status::Trouble,
+    },
     panel::{
         follow::follow_registry,
         state::{Lab, Severity},
     },
-    reflection::own,
     registry::Registry,
-    shader::{
-        live::LiveShaders,
-        report::{annotated, coloured},
-        status::Trouble,
-    },
+    render::live::LiveShaders,
+    shader::report::{annotated, coloured},
 };
 
 /// Reads the shaders of the folders and watches them. Own models are in the registry already; shaders that cannot
@@ -35,11 +35,11 @@ pub(super) fn open(world: &mut World, folders: &Folders) {
     let sources = registry.sources().clone();
     // What is wrong with these is found when they are looked at. Models of which the declaration is right are read
     // when the scene uses them.
-    let declared = |path: &PathBuf| own::id_of(path).is_some_and(|id| registry.unread_file(id).is_some());
+    let declared = |path: &PathBuf| custom::id_of(path).is_some_and(|id| registry.unread_file(id).is_some());
     let broken: Vec<_> = folders
         .models
         .iter()
-        .flat_map(|folder| own::folder::files_in(folder).unwrap_or_default())
+        .flat_map(|folder| custom::folder::files_in(folder).unwrap_or_default())
         .filter(|path| !declared(path))
         .chain(unreadable.into_iter().map(|(path, _)| path))
         .collect();
@@ -59,12 +59,12 @@ pub(super) fn move_to(world: &mut World, folder: &Path) {
         Err(why) => return world.resource_mut::<Lab>().say(Severity::Error, why.to_string()),
     };
     let mut registry = world.resource_mut::<Registry>();
-    match registry.own_folder().filter(|folder| folder.is_dir()) {
+    match registry.custom_folder().filter(|folder| folder.is_dir()) {
         Some(known) => folders.models = Some(known.to_owned()),
         None => {
             if let Some(models) = &folders.models {
                 // What is wrong with them is told when they are looked at.
-                let _ = own::folder::declare_folder(models, &mut registry);
+                let _ = custom::folder::declare_folder(models, &mut registry);
             }
         }
     }

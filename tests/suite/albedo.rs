@@ -5,26 +5,24 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 use lights_camera_models::{
-    capture::{
-        evaluate::{albedos, evaluate},
-        gpu::{GpuRenderer, Output},
-    },
     optics::{
         Frame, TermSelection, Terms,
         albedo::{AlbedoCurve, LobeAlbedo, directional},
         colour::{BACKGROUND, Encoding},
     },
+    parameter::{BASE_COLOUR, Parameter, ParameterKind, Value, Values},
     parameters, reference,
-    reflection::{
-        self, Ambient, EquationPart, Family, Laws, ModelEntry, ReflectionModel, Term,
-        parameter::{BASE_COLOUR, Parameter, ParameterKind, Value, Values},
+    reflection::{self, Ambient, EquationPart, Family, Laws, ModelEntry, ReflectionModel, Term},
+    registry::{Register, Registry, compose::compose_evaluation},
+    render::capture::{
+        evaluate::{albedos, evaluate},
+        gpu::{GpuRenderer, Output},
     },
-    registry::{Register, Registry},
     scene::Scene,
     shader::{
         Source,
         check::{struct_layout, validate},
-        compose::{Sources, compose_evaluation},
+        compose::Sources,
     },
 };
 
@@ -116,7 +114,7 @@ fn lobe_of_test(l: vec3<f32>, v: vec3<f32>, frame: Frame, alpha_x: f32, alpha_y:
 const PATCHWORK: reflection::Declaration = reflection::Declaration {
     id: "patchwork",
     name: "Patchwork",
-    family: Family::Own,
+    family: Family::Custom,
     author: "a test",
     source: "a test",
     summary: "Lambert and GGX.",

@@ -7,7 +7,7 @@ use std::{
 };
 
 use lights_camera_models::{
-    assets::{self, EXAMPLES, export},
+    library::assets::{self, EXAMPLES, export},
     registry::Registry,
 };
 use serde_json::Value as Json;

@@ -4,18 +4,16 @@
 use bevy::ecs::component::Component;
 use glam::Vec3;
 use lights_camera_models::{
-    capture::gpu::{GpuRenderer, Output},
     light::{self, Incident, LightRecord, LightType},
     optics::{
         Frame, TermSelection, Terms,
         colour::{BACKGROUND, Encoding},
     },
+    parameter::{BASE_COLOUR, Parameter, ParameterKind},
     parameters, reference,
-    reflection::{
-        self, EquationPart, Family, Laws, ReflectionModel, Term,
-        parameter::{BASE_COLOUR, Parameter, ParameterKind},
-    },
+    reflection::{self, EquationPart, Family, Laws, ReflectionModel, Term},
     registry::{Register, Registry},
+    render::capture::gpu::{GpuRenderer, Output},
     scene::{Light, Scene},
     shader::Source,
     shape::{self, ObjectType, PolygonMesh, mesh::Polygon},
@@ -47,7 +45,7 @@ impl ReflectionModel for Toon {
     const DECLARATION: reflection::Declaration = reflection::Declaration {
         id: "toon",
         name: "Toon",
-        family: Family::Own,
+        family: Family::Custom,
         author: "a test",
         source: "a test",
         summary: "Lambert in a few tones.",

@@ -5,13 +5,13 @@ use std::{error::Error, fs, io::BufReader, path::Path};
 
 use glam::Vec3;
 use lights_camera_models::{
-    capture::{
-        gpu::{GpuRenderer, Output},
-        png,
-    },
     optics::TermSelection,
     reference,
     registry::Registry,
+    render::capture::{
+        gpu::{GpuRenderer, Output},
+        png,
+    },
     scene::{
         Scene, check,
         load::{self, Defaults},

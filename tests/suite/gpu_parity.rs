@@ -3,17 +3,19 @@
 use bevy::render::{RenderApp, render_resource::TextureFormat, view::ViewTarget};
 use glam::Vec3;
 use lights_camera_models::{
-    capture::{
+    optics::{
+        Frame, TermSelection,
+        colour::{BACKGROUND, Encoding},
+        tone::ToneMapping,
+    },
+    parameter::{ParameterKind, Value, Values},
+    reference,
+    reflection::ModelEntry,
+    registry::Registry,
+    render::capture::{
         evaluate::evaluate,
         gpu::{GpuRenderer, Output},
     },
-    optics::{Frame, TermSelection, colour::BACKGROUND, colour::Encoding, tone::ToneMapping},
-    reference,
-    reflection::{
-        ModelEntry,
-        parameter::{ParameterKind, Value, Values},
-    },
-    registry::Registry,
     scene::{Display, Light, Scene},
     shader::compose::Sources,
 };

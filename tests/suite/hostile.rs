@@ -11,11 +11,14 @@ use std::{
 };
 
 use lights_camera_models::{
-    reflection::own,
-    registry::Registry,
+    custom,
+    registry::{
+        Registry,
+        compose::{compose, compose_evaluation},
+    },
     shader::{
         check::{ShaderProblem, validate},
-        compose::{Sources, compose, compose_evaluation},
+        compose::Sources,
         limits,
     },
 };
@@ -252,7 +255,7 @@ fn file_of(piece: &str) -> String {
 fn said(id: &str, text: &str) -> Result<(), Vec<ShaderProblem>> {
     let path = Path::new("somewhere").join(format!("{id}.wgsl"));
     thread::scope(|scope| {
-        let read = || own::read(&path, text, &Registry::builtin()).map(drop);
+        let read = || custom::read(&path, text, &Registry::builtin()).map(drop);
         let thread = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, read);
         thread.expect("a thread").join().expect("no panic")
     })
@@ -391,7 +394,7 @@ fn what_is_within_the_limits_needs_a_quarter_of_the_stack() {
     for (id, text) in at_the_limit() {
         let registry = Registry::builtin();
         let path = Path::new("somewhere").join(format!("{id}.wgsl"));
-        let read = own::read(&path, &text, &registry).unwrap_or_else(|p| panic!("{id}: {p:?}"));
+        let read = custom::read(&path, &text, &registry).unwrap_or_else(|p| panic!("{id}: {p:?}"));
         let mut sources = Sources::default();
         sources.edit(read.entry.declaration.wgsl.path, text.clone());
         let composed = compose_evaluation(&sources, &read.entry);

@@ -2,14 +2,14 @@
 
 use glam::Vec3;
 use lights_camera_models::{
-    capture::gpu::{GpuRenderer, Output},
     optics::colour::BACKGROUND,
-    reflection::parameter::Value,
+    parameter::Value,
     registry::Registry,
-    scene::{
-        Light, Object, Scene,
-        spawn::{LightSource, LitObject, SceneEntities},
+    render::{
+        capture::gpu::{GpuRenderer, Output},
+        entities::{LightSource, LitObject, SceneEntities},
     },
+    scene::{Light, Object, Scene},
 };
 
 use crate::pictures::close_up;
@@ -191,7 +191,7 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
         Some(Vec3::new(3.0, 7.0, 8.0));
     renderer.step();
 
-    let scene = &renderer.app().world().resource::<lights_camera_models::scene::spawn::CurrentScene>().0;
+    let scene = &renderer.app().world().resource::<lights_camera_models::render::entities::CurrentScene>().0;
     assert_eq!(scene.lights[0].colour, [0, 0, 255]);
     assert_eq!(scene.lights[0].position.map(|p| p.x), Some(3.0));
     assert_eq!(scene.objects[0].kind, "cube");

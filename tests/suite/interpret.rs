@@ -3,16 +3,10 @@
 use glam::Vec3;
 use lights_camera_models::{
     optics::{Frame, Terms, colour::Encoding},
-    reflection::{
-        Ambient, ModelEntry,
-        parameter::{self, Values},
-    },
-    registry::Registry,
-    shader::{
-        check::validate,
-        compose::{Sources, compose_evaluation},
-        interpret::Program,
-    },
+    parameter::{self, Values},
+    reflection::{Ambient, ModelEntry},
+    registry::{Registry, compose::compose_evaluation},
+    shader::{check::validate, compose::Sources, interpret::Program},
 };
 use proptest::prelude::*;
 

@@ -3,13 +3,12 @@
 use std::{path::PathBuf, sync::mpsc, time::Duration};
 
 use lights_camera_models::{
-    assets::Folders,
+    library::{assets::Folders, status::Reloaded},
     panel::{
         author::Ask,
         state::{Action, Effect, Lab, ViewChange},
     },
     reflection::law_report::LawReport,
-    shader::status::Reloaded,
     window::laws::LawChecks,
 };
 

@@ -6,13 +6,13 @@ use std::f32::consts::FRAC_PI_2;
 use glam::Vec3;
 use lights_camera_models::{
     optics::{Frame, colour::Encoding},
+    parameter::{Value, Values},
     reflection::{
         ModelEntry, Surface, brdf,
         laws::{
             self, COARSE, FINE, LARGEST_ALBEDO, NEARLY_ALL, NEGATIVE_TOLERANCE, RECIPROCITY_TOLERANCE,
             Random, is_finite, least, reciprocity_error, smallest,
         },
-        parameter::{Value, Values},
     },
     registry::Registry,
 };

@@ -11,15 +11,21 @@ use bevy::{
 };
 use glam::Vec3;
 use lights_camera_models::{
-    capture::gpu::{GpuRenderer, Output},
+    custom::CustomFile,
     light,
-    optics::{TermSelection, colour::BACKGROUND, colour::srgb_decode},
+    optics::{
+        TermSelection,
+        colour::{BACKGROUND, srgb_decode},
+    },
     panel::state::{Action, Edit, Lab as Window, LightField, MAX_MESSAGES, ObjectField, Selection, Severity},
     reference,
-    reflection::{material::ModelMaterial, own::OwnFile},
     registry::Registry,
+    render::{
+        capture::gpu::{GpuRenderer, Output},
+        live::{LiveShaders, SPARE},
+        material::ModelMaterial,
+    },
     scene::{Scene, check},
-    shader::live::{LiveShaders, SPARE},
 };
 
 use crate::{
@@ -53,7 +59,7 @@ fn held(renderer: &mut GpuRenderer) -> Held {
         shaders: shaders.len(),
         large: shaders.iter().filter(|(_, shader)| is_large(shader)).count(),
         tables: world.resource::<Assets<ShaderBuffer>>().len(),
-        materials: world.resource::<Assets<ModelMaterial<OwnFile>>>().len(),
+        materials: world.resource::<Assets<ModelMaterial<CustomFile>>>().len(),
         meshes: world.resource::<Assets<Mesh>>().len(),
         pipelines: 0,
     };

@@ -22,14 +22,14 @@ use lights_camera_models::{
             Selection, Severity, Shaders, ThemeChoice, ViewChange,
         },
     },
+    parameter::{
+        BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, ParameterKind, REFLECTANCE, ROUGHNESS, Value,
+        Values,
+    },
     parameters,
     reflection::{
-        self, EquationPart, Family, Laws, Measured, Readout, ReadoutValue, ReflectionModel, Term,
-        parameter::{
-            BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, ParameterKind, REFLECTANCE, ROUGHNESS, Value,
-            Values,
-        },
-        preset, usage,
+        self, EquationPart, Family, Laws, Measured, Readout, ReadoutValue, ReflectionModel, Term, preset,
+        usage,
     },
     registry::{Register, Registry},
     scene::{Display, Light, Object, Scene, load::Stamp},

@@ -32,7 +32,7 @@ pub fn close_up(shape: &str, light: &str) -> Scene {
     };
     scene.objects[0]
         .material
-        .set("base_colour", lights_camera_models::reflection::parameter::Value::Colour([220, 120, 60]));
+        .set("base_colour", lights_camera_models::parameter::Value::Colour([220, 120, 60]));
     scene
 }
 

@@ -4,14 +4,12 @@ use std::fs;
 
 use glam::Vec3;
 use lights_camera_models::{
-    capture::{evaluate::evaluate, png},
     optics::{Frame, colour::Encoding},
+    parameter::{Parameter, Value, Values},
     reference::{self, Settings},
-    reflection::{
-        ModelEntry,
-        parameter::{Parameter, Value, Values},
-    },
+    reflection::ModelEntry,
     registry::Registry,
+    render::capture::{evaluate::evaluate, png},
     scene::{
         Scene,
         load::{self, Defaults},

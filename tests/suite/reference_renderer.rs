@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use glam::{Vec3, Vec4};
 use lights_camera_models::{
     optics::{TermSelection, colour::Encoding},
+    parameter::{Value, Values},
     reference::{self, Picture, Settings},
-    reflection::parameter::{Value, Values},
     registry::Registry,
     scene::{Light, Object, Observer, Scene},
 };

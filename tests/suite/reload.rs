@@ -10,17 +10,19 @@ use std::{
 use bevy::prelude::Mut;
 
 use lights_camera_models::{
-    assets::{Folders, built_in_sources},
-    capture::gpu::{GpuRenderer, Output},
-    optics::colour::BACKGROUND,
-    reflection::parameter::Value,
-    registry::Registry,
-    scene::Scene,
-    shader::{
-        compose::Sources,
-        live::{GRACE, LiveShaders},
+    library::{
+        assets::{Folders, built_in_sources},
         status::{ShaderStatus, Trouble},
     },
+    optics::colour::BACKGROUND,
+    parameter::Value,
+    registry::Registry,
+    render::{
+        capture::gpu::{GpuRenderer, Output},
+        live::{GRACE, LiveShaders},
+    },
+    scene::Scene,
+    shader::compose::Sources,
     watch::Watcher,
 };
 use tempfile::TempDir;

@@ -4,17 +4,20 @@ use std::path::PathBuf;
 
 use bevy_egui::egui::{Key, Modifiers, PointerButton};
 use lights_camera_models::{
-    capture::gpu::{GpuRenderer, Output},
     optics::TermSelection,
     panel::{
         caption::caption_text,
         names::name_of,
         state::{Action, Edit, Effect, Lab, LightField, ObjectField, Selection, ViewChange},
     },
+    parameter::{BASE_COLOUR, Value},
     reference,
-    reflection::parameter::{BASE_COLOUR, Value},
     registry::Registry,
-    scene::{Light, Object, Scene, spawn::CurrentScene},
+    render::{
+        capture::gpu::{GpuRenderer, Output},
+        entities::CurrentScene,
+    },
+    scene::{Light, Object, Scene},
 };
 
 use crate::{

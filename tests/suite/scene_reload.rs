@@ -12,11 +12,11 @@ use lights_camera_models::{
         state::{Action, Answer, Edit, Effect, Lab, ObjectField, Question, Selection, Severity, ViewChange},
     },
     registry::Registry,
+    render::entities::{CurrentScene, SceneEntities, reconcile},
     scene::{
         Object, Scene,
         load::{self, Defaults, Stamp},
         save,
-        spawn::{CurrentScene, SceneEntities, reconcile},
     },
     window::files::DiskFiles,
 };

@@ -5,9 +5,12 @@ use std::{fs, time::Instant};
 use glam::Vec3;
 use lights_camera_models::{
     optics::{colour::Encoding, tone::ToneMapping},
-    reflection::parameter::{Parameter, ParameterKind, Value, Values},
+    parameter::{Parameter, ParameterKind, Value, Values},
     registry::Registry,
-    scene::{Display, Light, Object, Observer, Scene, SceneSize, check, load, load::Defaults},
+    scene::{
+        Display, Light, Object, Observer, Scene, SceneSize, check,
+        load::{self, Defaults},
+    },
 };
 use proptest::prelude::*;
 

@@ -26,7 +26,16 @@ impl Screen {
         let memory = tempfile::tempdir().expect("a folder");
         // The server picks a free number and writes it to its standard output.
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", &format!("{width}x{height}x24"), "-nolisten", "tcp"])
+            .args([
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                &format!("{width}x{height}x24"),
+                "-nolisten",
+                "tcp",
+                "-noreset",
+            ])
             .arg("-fbdir")
             .arg(memory.path())
             .stdout(Stdio::piped())

@@ -10,6 +10,8 @@ use std::{
 
 use bevy_egui::egui::{self, Color32, Event, Key, Modifiers, PointerButton, Shape, pos2, vec2};
 use lights_camera_models::{
+    custom,
+    library::status::{Reloaded, ShaderStatus, Trouble},
     panel::{
         author::{Ask, ModelDraft},
         picture,
@@ -17,13 +19,9 @@ use lights_camera_models::{
         state::{Action, Edit, Effect, Lab, ObjectField, ThemeChoice, ViewChange},
         theme::Palette,
     },
-    reflection::own,
     registry::Registry,
     scene::Scene,
-    shader::{
-        check::ShaderProblem,
-        status::{Reloaded, ShaderStatus, Trouble},
-    },
+    shader::check::ShaderProblem,
     window::{
         authoring::{write, write_new},
         editor::{Editors, editor_command},
@@ -537,8 +535,8 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     assert!(said.contains(&*file.to_string_lossy()) && said.contains("was written"), "{said}");
     assert_eq!(bench.lab.wanted_model, Some(name()));
     // What the reload system does when it sees the file.
-    let model = own::read(&file, &text, &bench.registry).map_err(|all| all[0].to_string())?;
-    bench.registry.put_own_model(model);
+    let model = custom::read(&file, &text, &bench.registry).map_err(|all| all[0].to_string())?;
+    bench.registry.put_custom_model(model);
     bench.settle();
     assert_eq!(bench.lab.scene.reflection_model, "my_velvet");
     assert!(bench.says("My velvet"), "the name that its file says");
@@ -562,8 +560,8 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     assert!(bench.lab.messages.last().is_some_and(|m| m.text.contains("exists already")));
     write(&copy("my_phong", "My Phong"), &mut bench.lab, &bench.registry);
     let file = models.join("my_phong.wgsl");
-    let model =
-        own::read(&file, &fs::read_to_string(&file)?, &bench.registry).map_err(|all| all[0].to_string())?;
+    let model = custom::read(&file, &fs::read_to_string(&file)?, &bench.registry)
+        .map_err(|all| all[0].to_string())?;
     assert!(model.entry.declaration.equation.len() > 1, "equation and all");
     assert_eq!(model.entry.declaration.name, "My Phong", "as it was typed");
     let name = "x".to_owned();
@@ -607,8 +605,8 @@ fn bare() -> Bench {
     let mut bench = bench_with(Vec::new());
     let path = Path::new("/home/mira/lab/models/bare.wgsl");
     let text = format!("/* lcm\n{{}}\n*/\n{BARE}");
-    match own::read(path, &text, &bench.registry) {
-        Ok(model) => bench.registry.put_own_model(model),
+    match custom::read(path, &text, &bench.registry) {
+        Ok(model) => bench.registry.put_custom_model(model),
         Err(problems) => panic!("{}", problems[0]),
     }
     bench.apply(Action::Edit(Edit::Model("bare".to_owned())));

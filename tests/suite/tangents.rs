@@ -2,18 +2,17 @@
 
 use glam::{Vec3, Vec4};
 use lights_camera_models::{
-    capture::gpu::{GpuRenderer, Output},
     optics::{
         Frame, TermSelection, Terms,
         colour::{BACKGROUND, Encoding},
         geometry::half_vector,
     },
+    parameter::BASE_COLOUR,
     parameters,
     reference::{self, Picture},
-    reflection::{
-        Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term, parameter::BASE_COLOUR,
-    },
+    reflection::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term},
     registry::{Register, Registry},
+    render::capture::gpu::{GpuRenderer, Output},
     scene::Scene,
     shader::Source,
 };
@@ -32,7 +31,7 @@ impl ReflectionModel for Brushed {
     const DECLARATION: Declaration = Declaration {
         id: "brushed",
         name: "Brushed",
-        family: Family::Own,
+        family: Family::Custom,
         author: "a test",
         source: "a test",
         summary: "Depends on the tangent.",

@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use lights_camera_models::shader::trial::{
+use lights_camera_models::render::trial::{
     Bench,
     process::{Budget, TrialProcess},
 };

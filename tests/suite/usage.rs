@@ -4,14 +4,12 @@ use std::path::Path;
 
 use bevy_egui::egui::{PointerButton, accesskit::Role};
 use lights_camera_models::{
+    custom,
     panel::{
         caption::caption_text,
         state::{Action, Edit, ObjectField},
     },
-    reflection::{
-        own,
-        parameter::{UsedWhen, Value},
-    },
+    parameter::{UsedWhen, Value},
     registry::Registry,
 };
 
@@ -73,8 +71,8 @@ fn forms(used_when: &str) -> String {
     )
 }
 
-fn read(text: &str) -> Result<own::OwnModel, String> {
-    own::read(Path::new("forms.wgsl"), text, &Registry::builtin())
+fn read(text: &str) -> Result<custom::CustomModel, String> {
+    custom::read(Path::new("forms.wgsl"), text, &Registry::builtin())
         .map_err(|all| all.iter().map(|p| format!("{p}\n")).collect())
 }
 
@@ -87,7 +85,7 @@ fn a_model_from_a_file_declares_it_too() {
         let shared = model.entry.parameter("gamma").expect("declared");
         assert_eq!(shared.used_when, None, "a condition of the model that it is from does not come along");
         let mut registry = Registry::builtin();
-        registry.put_own_model(model);
+        registry.put_custom_model(model);
         let mut bench = Bench::with_registry(
             lights_camera_models::panel::state::Lab::new(lights_camera_models::scene::Scene {
                 reflection_model: "forms".to_owned(),
@@ -120,10 +118,10 @@ fn a_condition_that_cannot_hold_is_reported_where_it_stands() {
 fn a_copy_of_a_model_has_its_conditions() {
     let registry = Registry::builtin();
     let model = registry.model("microfacet").expect("built in");
-    let text = own::duplicate(model, registry.sources(), "microfacet_copy", "Microfacet copy")
+    let text = custom::duplicate(model, registry.sources(), "microfacet_copy", "Microfacet copy")
         .expect("can be duplicated");
     assert!(text.contains("\"used_when\": { \"distribution\": [\"gtr\"] }"), "{text}");
-    let copy = own::read(Path::new("microfacet_copy.wgsl"), &text, &registry).expect("can be read");
+    let copy = custom::read(Path::new("microfacet_copy.wgsl"), &text, &registry).expect("can be read");
     for p in model.parameters {
         assert_eq!(copy.entry.parameter(p.name).and_then(|c| c.used_when), p.used_when, "{}", p.name);
     }

@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use lights_camera_models::{assets::export, registry::Registry};
+use lights_camera_models::{library::assets::export, registry::Registry};
 
 use crate::screen::{Picture, Running, Screen};
 

@@ -156,10 +156,10 @@ mod tests {
 
     #[test]
     fn all_that_is_shipped_is_finished() {
-        for source in crate::assets::built_in_sources(&crate::registry::Registry::builtin()) {
+        for source in crate::library::assets::built_in_sources(&crate::registry::Registry::builtin()) {
             assert_eq!(said(source.text), None, "{}", source.path);
         }
-        for (name, text) in crate::assets::EXAMPLES {
+        for (name, text) in crate::library::assets::EXAMPLES {
             assert_eq!(said(text), None, "{name}");
         }
     }

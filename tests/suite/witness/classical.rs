@@ -5,14 +5,14 @@ use std::f64::consts::{LN_2, PI};
 
 use glam::Vec3;
 use lights_camera_models::{
-    capture::evaluate::evaluate,
     optics::colour::Encoding,
+    parameter::{Value, Values},
     reflection::{
         BlinnPhong, BlinnPhongNormalised, Hapke, LommelSeeliger, Minnaert, ModifiedPhong, Phong, Strauss,
         Surface, brdf,
-        parameter::{Value, Values},
     },
     registry::Registry,
+    render::capture::evaluate::evaluate,
     shader::compose::Sources,
 };
 

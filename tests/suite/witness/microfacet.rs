@@ -10,10 +10,8 @@ use lights_camera_models::{
         geometry::half_vector,
         masking,
     },
-    reflection::{
-        Microfacet, ReflectionModel as _, brdf,
-        parameter::{ParameterKind, ParameterSet, Value, Values},
-    },
+    parameter::{ParameterKind, ParameterSet, Value, Values},
+    reflection::{Microfacet, ReflectionModel as _, brdf},
 };
 
 use super::{LOCAL, Row, assert_rows, near, rows};

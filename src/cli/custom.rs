@@ -1,0 +1,118 @@
+//! `lcm models new`, `duplicate` and `check`: own models, from the first line to their laws.
+
+use std::{io, path::PathBuf};
+
+use super::{
+    Options, Outcome, complain,
+    evaluate::find,
+    print, print_paths, print_text,
+    workshop::{Places, Workshop, valid},
+};
+use crate::{
+    custom,
+    failure::Failure,
+    library::assets::write_new,
+    optics::colour::Encoding,
+    reflection::{
+        law_report::LawReport,
+        laws::{self, Effort},
+    },
+    registry::Registry,
+    render::capture::evaluate::Evaluator,
+    text::quoted,
+};
+
+/// `lcm models new NAME`.
+pub(super) fn new(name: &str, options: Options, places: &Places) -> Outcome {
+    let id = id_of(name)?;
+    write(&id, &custom::template(&id, name.trim()), options, places)
+}
+
+/// `lcm models duplicate ID [NAME]`.
+pub(super) fn duplicate(id: &str, name: Option<&str>, options: Options, places: &Places) -> Outcome {
+    let mut workshop = places.open_for_writing(options)?;
+    workshop.need(id);
+    let registry = &workshop.registry;
+    let model = find(registry, id)?;
+    let copy = match name {
+        Some(name) => id_of(name)?,
+        None => format!("{id}_copy"),
+    };
+    let name = name.map_or(copy.as_str(), str::trim);
+    let text = custom::duplicate(model, registry.sources(), &copy, name)
+        .map_err(|e| Failure::Usage(e.to_string()))?;
+    write(&copy, &text, options, places)
+}
+
+/// The id of a model that is to be called by a name.
+fn id_of(name: &str) -> Result<String, Failure> {
+    custom::id_of_name(name).map_err(|rule| Failure::Usage(format!("NAME is {}, but {rule}", quoted(name))))
+}
+
+/// Writes a new file for an own model, and says what to do with it.
+fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
+    if Registry::builtin().model(id).is_some() {
+        return Err(Failure::Usage(format!("{id} is the id of a built-in model; choose another name")));
+    }
+    let Some(folder) = places.folders()?.models else {
+        return Err(Failure::Usage(
+            "there is no folder for custom models; name one: --models FOLDER".to_owned(),
+        ));
+    };
+    let path: PathBuf = folder.join(format!("{id}.{}", custom::EXTENSION));
+    write_new(&path, text).map_err(|e| match e.kind() {
+        io::ErrorKind::AlreadyExists => {
+            Failure::Write(format!("{} is there already; it was left alone", path.display()))
+        }
+        _ => Failure::Write(format!("{} could not be written: {e}", path.display())),
+    })?;
+    print_paths([path.as_path()])?;
+    let flags = places.flags();
+    options.tell(format_args!(
+        "Edit this file; scenes name the model \"{id}\". `lcm render --reflection {id}{flags}` shows it, \
+         `lcm models check {id}{flags}` tests the laws that it claims."
+    ));
+    Ok(())
+}
+
+/// `lcm models check ID`.
+pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Workshop) -> Outcome {
+    workshop.need(id);
+    let registry = &workshop.registry;
+    if registry.broken_model(id).is_some() {
+        // What is wrong with it is told already.
+        return Err(Failure::Invalid(format!("{id} was not checked: its file has a mistake")));
+    }
+    let model = find(registry, id)?;
+    valid(registry, model)?;
+    let mut evaluator = Evaluator::new(registry.sources(), model)?;
+    let mut last = None;
+    let effort = Effort::default();
+    let bar = super::progress(effort.sets as u64, options);
+    let findings = laws::examine(model, effort, |values, pairs| {
+        if last.as_ref() != Some(values) {
+            evaluator.set(values, Encoding::Srgb);
+            last = Some(values.clone());
+            bar.inc(1);
+        }
+        evaluator.evaluate(pairs)
+    })?;
+    bar.finish_and_clear();
+    let report = LawReport::new(model, &findings);
+    if as_json {
+        print(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()))?;
+    } else {
+        print_text(&report.to_string())?;
+    }
+    if !report.is_finite() {
+        complain(format_args!("{id} gives values that are no numbers"));
+    }
+    match report.broken().as_slice() {
+        [] if report.is_finite() => Ok(()),
+        [] => Err(Failure::Invalid(String::new())),
+        laws => Err(Failure::Invalid(format!(
+            "{id} claims to be {}, but is not",
+            crate::text::listed(laws, "and")
+        ))),
+    }
+}

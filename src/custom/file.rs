@@ -1,0 +1,84 @@
+//! Reading shader files, and saying where one is no text.
+
+use std::{io, path::Path};
+
+use crate::{
+    files::{self, FileError},
+    shader::check::ShaderProblem,
+};
+
+/// The largest file that is read, bytes.
+pub const MAX_BYTES: u64 = 1 << 20;
+
+/// The text of a file that messages call `name`, without a byte order mark.
+///
+/// # Errors
+/// When it is not there, cannot be read, is larger than [`MAX_BYTES`], or is not UTF-8.
+pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
+    let failed = |message: String| ShaderProblem {
+        file: name.to_owned(),
+        line: 1,
+        column: 1,
+        source: String::new(),
+        message,
+    };
+    let bytes = files::read(file, MAX_BYTES).map_err(|error| {
+        failed(match error {
+            FileError::Io(e) if e.kind() == io::ErrorKind::NotFound => {
+                "the file is missing; it reloads when restored".to_owned()
+            }
+            FileError::Kind(kind) => format!("this is {kind}, no file that can be read"),
+            FileError::TooLarge(_) => {
+                format!("the file is larger than {} MiB, which no shader is", MAX_BYTES >> 20)
+            }
+            error => format!("the file could not be read: {error}"),
+        })
+    })?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let bytes = error.as_bytes();
+        let start = bytes[..at].iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
+        let end = bytes[at..].iter().position(|b| *b == b'\n').map_or(bytes.len(), |i| at + i);
+        ShaderProblem {
+            line: bytes[..at].iter().filter(|b| **b == b'\n').count() + 1,
+            column: String::from_utf8_lossy(&bytes[start..at]).chars().count() + 1,
+            source: String::from_utf8_lossy(&bytes[start..end]).into_owned(),
+            ..failed(format!(
+                "this is not UTF-8 text from the byte 0x{:02x} on; save the file as UTF-8",
+                bytes[at]
+            ))
+        }
+    })?;
+    Ok(text.strip_prefix('\u{FEFF}').map_or(text.clone(), str::to_owned))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    fn said(bytes: &[u8]) -> Result<String, String> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.wgsl");
+        fs::write(&file, bytes).expect("writable");
+        read(&file, "a.wgsl").map_err(|p| p.to_string())
+    }
+
+    #[test]
+    fn what_is_no_text_is_told_with_its_place() {
+        assert_eq!(said(b"fn f() {}\n"), Ok("fn f() {}\n".to_owned()));
+        assert_eq!(said("\u{FEFF}// é\r\n".as_bytes()), Ok("// é\r\n".to_owned()));
+        assert_eq!(
+            said(b"// one\n// caf\xe9\n"),
+            Err("a.wgsl:2:7: this is not UTF-8 text from the byte 0xe9 on; save the file as UTF-8".to_owned())
+        );
+        let large = said(&vec![b' '; MAX_BYTES as usize + 1]).expect_err("too large");
+        assert!(large.contains("larger than 1 MiB"), "{large}");
+        let gone = read(Path::new("/nonexistent/a.wgsl"), "a.wgsl").expect_err("is not there");
+        assert!(gone.message.contains("the file is missing"), "{gone}");
+        let folder = tempfile::tempdir().expect("a folder");
+        let is_folder = read(folder.path(), "a.wgsl").expect_err("is a folder");
+        assert!(is_folder.message.contains("no file"), "{is_folder}");
+    }
+}

@@ -1,0 +1,464 @@
+//! The parameters that a model's file declares.
+
+use jsonc_parser::{ast::Value as Ast, common::Ranged};
+
+use super::{
+    declaration::{Fields, LONGEST_NAME, LONGEST_TEXT, Reader},
+    intern,
+    text::{allowed_in_wgsl, humanised, identifier},
+};
+use crate::{
+    parameter::{ABOVE_ZERO, Parameter, ParameterKind},
+    text::quoted,
+};
+
+/// What an entry of `parameters` may say.
+const PARAMETER_KEYS: &[&str] = &[
+    "name",
+    "symbol",
+    "label",
+    "unit",
+    "help",
+    "type",
+    "range",
+    "min",
+    "max",
+    "above",
+    "slider_max",
+    "default",
+    "choices",
+    "used_when",
+];
+/// The types of parameters.
+const TYPES: &[&str] = &["number", "integer", "colour", "triple", "choice"];
+/// The symbol of a parameter that gives none: a Greek letter where the name begins with the name of one.
+fn symbol_of(name: &str) -> String {
+    const GREEK: &[(&str, &str)] = &[
+        ("alpha", "α"),
+        ("beta", "β"),
+        ("gamma", "γ"),
+        ("delta", "δ"),
+        ("epsilon", "ε"),
+        ("eta", "η"),
+        ("theta", "θ"),
+        ("kappa", "κ"),
+        ("lambda", "λ"),
+        ("mu", "μ"),
+        ("nu", "ν"),
+        ("rho", "ρ"),
+        ("sigma", "σ"),
+        ("tau", "τ"),
+        ("phi", "φ"),
+        ("omega", "ω"),
+    ];
+    let (first, rest) = name.split_once('_').map_or((name, None), |(f, r)| (f, Some(r)));
+    let first = GREEK.iter().find(|(n, _)| *n == first).map_or(first, |(_, letter)| letter);
+    match rest {
+        Some(rest) => format!("{first}_{{{}}}", rest.replace('_', " ")),
+        None => first.to_owned(),
+    }
+}
+
+impl Reader<'_> {
+    pub(super) fn parameter(&mut self, value: &Ast, path: String) -> Option<Parameter> {
+        let fields = self.fields(value, path, PARAMETER_KEYS, "a parameter")?;
+        let Some(named) = fields.get("name") else {
+            self.lacking(
+                &fields,
+                "name",
+                "it is what scene files call the parameter, and the shader: m.NAME",
+            );
+            return None;
+        };
+        let Ast::StringLit(name) = named else {
+            self.wrong(named, &fields.path("name"), "it must be text");
+            return None;
+        };
+        let name = intern::text(&name.value);
+        let rule = match identifier(name) {
+            Err(rule) => Some(format!("it {rule}")),
+            Ok(()) if name.contains("color") => {
+                Some(format!("scene files spell {}", name.replace("color", "colour")))
+            }
+            Ok(()) if !allowed_in_wgsl(name) => {
+                Some("that is a reserved word in WGSL; choose another".to_owned())
+            }
+            Ok(()) => None,
+        };
+        if let Some(rule) = rule {
+            self.wrong(named, &fields.path("name"), &rule);
+            return None;
+        }
+        let before = self.mistakes.len();
+        let shared = self.built_in(name);
+        let kind = self.kind(&fields, shared.map(|s| &s.kind));
+        self.same_type_elsewhere(named, &fields, kind.as_ref());
+        let given = |reader: &mut Self, key, longest| reader.text(&fields, key, longest);
+        let label = given(self, "label", LONGEST_NAME)
+            .or(shared.map(|s| s.label))
+            .unwrap_or_else(|| intern::text(&name.replace('_', " ")));
+        let usual_unit = if matches!(kind, Some(ParameterKind::Colour { .. })) { "sRGB" } else { "" };
+        let parameter = Parameter {
+            name,
+            symbol: given(self, "symbol", LONGEST_NAME)
+                .or(shared.map(|s| s.symbol))
+                .unwrap_or_else(|| intern::text(&symbol_of(name))),
+            label,
+            unit: given(self, "unit", LONGEST_NAME).or(shared.map(|s| s.unit)).unwrap_or(usual_unit),
+            help: given(self, "help", LONGEST_TEXT)
+                .or(shared.map(|s| s.help))
+                .unwrap_or_else(|| intern::text(&format!("The {label}."))),
+            kind: kind?,
+            used_when: self.used_when(&fields),
+        };
+        (self.mistakes.len() == before).then_some(parameter)
+    }
+
+    /// Parameters are shared by name, so the same name is the same type everywhere.
+    fn same_type_elsewhere(&mut self, named: &Ast, fields: &Fields, kind: Option<&ParameterKind>) {
+        let Some(kind) = kind else { return };
+        let Ast::StringLit(name) = named else { return };
+        let other = self.registry.models().iter().filter(|m| m.declaration.id != self.id).find_map(|m| {
+            let p = m.parameter(&name.value)?;
+            (std::mem::discriminant(&p.kind) != std::mem::discriminant(kind)).then_some((m, p))
+        });
+        if let Some((model, parameter)) = other {
+            let rule = format!(
+                "{} has a parameter of that name whose type is {}, and parameters are shared by name; give it that type or another name",
+                model.declaration.id,
+                type_name(&parameter.kind),
+            );
+            self.wrong(named, &fields.path("name"), &rule);
+        }
+    }
+
+    fn kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
+        let types: Vec<_> = TYPES.iter().map(|t| (*t, *t)).collect();
+        let kind = match fields.get("type") {
+            Some(value) => self.word(value, &fields.path("type"), "a type", &types)?,
+            None => match (shared, fields.get("choices"), fields.get("default")) {
+                (Some(shared), ..) => type_name(shared),
+                (None, Some(_), _) => "choice",
+                (None, None, Some(Ast::Array(_))) => {
+                    self.lacking(fields, "type", "a list may be a \"colour\" or a \"triple\"");
+                    return None;
+                }
+                _ => "number",
+            },
+        };
+        let usable: &[&str] = match kind {
+            "number" | "triple" => &["range", "min", "max", "above"],
+            "integer" => &["range", "min", "max", "slider_max"],
+            "choice" => &["choices"],
+            _ => &[],
+        };
+        for key in ["range", "min", "max", "above", "slider_max", "choices"] {
+            if let Some(value) = fields.get(key).filter(|_| !usable.contains(&key)) {
+                self.mistake(value.start(), format!("{} is given, but a {kind} has none", fields.path(key)));
+                return None;
+            }
+        }
+        match kind {
+            "number" => self.number_kind(fields, shared),
+            "integer" => self.integer_kind(fields, shared),
+            "colour" => self.colour_kind(fields, shared),
+            "triple" => self.triple_kind(fields, shared),
+            _ => self.choice_kind(fields, shared),
+        }
+    }
+
+    /// A finite number in 32 bits.
+    fn number(&mut self, value: &Ast, path: &str) -> Option<f32> {
+        let number = match value {
+            Ast::NumberLit(number) => number.value.parse::<f32>().ok().filter(|n| n.is_finite()),
+            _ => None,
+        };
+        if number.is_none() {
+            self.wrong(value, path, "it must be a number");
+        }
+        number
+    }
+
+    /// A whole number that 32-bit floats hold exactly, as the shader gets it.
+    fn whole(&mut self, value: &Ast, path: &str) -> Option<i64> {
+        const EXACT: f64 = 16_777_216.0;
+        let number = match value {
+            Ast::NumberLit(number) => {
+                number.value.parse::<f64>().ok().filter(|n| n.fract() == 0.0 && n.abs() <= EXACT)
+            }
+            _ => None,
+        };
+        if number.is_none() {
+            self.wrong(value, path, &format!("it must be a whole number between -{EXACT} and {EXACT}"));
+        }
+        number.map(|n| n as i64)
+    }
+
+    /// Smallest and largest value, from `range`, or from `min` or `above`, and `max`.
+    fn limits<T: Copy + PartialOrd>(
+        &mut self,
+        fields: &Fields,
+        (min, max): (T, Option<T>),
+        read: fn(&mut Self, &Ast, &str) -> Option<T>,
+        above_zero: Option<T>,
+    ) -> Option<(T, Option<T>)> {
+        let given = |key| fields.get(key).map(|value| (value, fields.path(key)));
+        let (mut low, mut high, mut good) = (min, max, true);
+        if let Some((value, path)) = given("range") {
+            if let Some(other) = ["min", "max", "above"].into_iter().find(|key| fields.get(key).is_some()) {
+                self.mistake(
+                    value.start(),
+                    format!("{path} is given, but so is {other}; a range is [min, max]"),
+                );
+                return None;
+            }
+            let Ast::Array(list) = value else {
+                self.wrong(value, &path, "a range must be two numbers: [min, max]");
+                return None;
+            };
+            let [a, b] = list.elements.as_slice() else {
+                self.wrong(value, &path, "a range must be two numbers: [min, max]");
+                return None;
+            };
+            let (a, b) = (read(self, a, &format!("{path}[0]")), read(self, b, &format!("{path}[1]")));
+            (low, high) = (a?, Some(b?));
+        }
+        if let Some((value, path)) = given("min") {
+            match read(self, value, &path) {
+                Some(v) => low = v,
+                None => good = false,
+            }
+        }
+        if let Some((value, path)) = given("above") {
+            let zero = matches!(value, Ast::NumberLit(n) if n.value.parse::<f64>() == Ok(0.0));
+            match above_zero.filter(|_| zero && fields.get("min").is_none()) {
+                Some(v) => low = v,
+                None => {
+                    self.wrong(value, &path, "it must be 0, and stands in place of min: greater than 0");
+                    good = false;
+                }
+            }
+        }
+        if let Some((value, path)) = given("max") {
+            match read(self, value, &path) {
+                Some(v) => high = Some(v),
+                None => good = false,
+            }
+        }
+        if !good {
+            return None;
+        }
+        if high.is_some_and(|h| h <= low) {
+            let (value, path) = given("max").or(given("range")).or(given("min")).or(given("above"))?;
+            self.wrong(value, &path, "the largest value must be greater than the smallest");
+            return None;
+        }
+        Some((low, high))
+    }
+
+    /// A default that lies in the range.
+    fn within(&mut self, fields: &Fields, parameter: ParameterKind) -> Option<ParameterKind> {
+        let probe = Parameter {
+            name: "",
+            symbol: "",
+            label: "",
+            unit: "",
+            help: "",
+            kind: parameter,
+            used_when: None,
+        };
+        if !probe.allows(&probe.default_value()) {
+            match fields.get("default") {
+                Some(value) => {
+                    self.wrong(value, &fields.path("default"), &format!("it must be {}", probe.rule()))
+                }
+                None => self.lacking(fields, "default", &format!("it must be {}", probe.rule())),
+            }
+            return None;
+        }
+        Some(probe.kind)
+    }
+
+    fn number_kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
+        let (min, max, usual) = match shared {
+            Some(ParameterKind::Number { min, max, default }) => (*min, *max, Some(*default)),
+            _ => (0.0, 1.0, None),
+        };
+        let limits = self.limits(fields, (min, Some(max)), Self::number, Some(ABOVE_ZERO));
+        let given = match fields.get("default") {
+            Some(value) => Some(self.number(value, &fields.path("default"))?),
+            None => None,
+        };
+        let (min, max) = limits?;
+        let max = max.unwrap_or(1.0);
+        let middle = || usual.filter(|u| (min..=max).contains(u)).unwrap_or(0.5 * min + 0.5 * max);
+        let default = given.unwrap_or_else(middle);
+        self.within(fields, ParameterKind::Number { min, max, default })
+    }
+
+    fn integer_kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
+        let (min, max, slider, usual) = match shared {
+            Some(ParameterKind::Integer { min, max, slider_max, default }) => {
+                (*min, *max, Some(*slider_max), Some(*default))
+            }
+            _ => (0, None, None, None),
+        };
+        let limits = self.limits(fields, (min, max), Self::whole, None);
+        let mut read = |key: &str| match fields.get(key) {
+            Some(value) => self.whole(value, &fields.path(key)).map(Some),
+            None => Some(None),
+        };
+        let (given, slider_given) = (read("default")?, read("slider_max")?);
+        let (min, max) = limits?;
+        let inside = |v: i64| v >= min && max.is_none_or(|m| v <= m);
+        let default = given.or(usual.filter(|u| inside(*u))).unwrap_or(min);
+        let slider = slider_given.or(slider.filter(|s| *s > min));
+        let slider_max =
+            max.map_or_else(|| slider.unwrap_or(default.max(min) + 16), |m| slider.unwrap_or(m).min(m));
+        if slider_max <= min {
+            if let Some(value) = fields.get("slider_max") {
+                self.wrong(
+                    value,
+                    &fields.path("slider_max"),
+                    &format!("it must be greater than {min}, where the slider begins"),
+                );
+            }
+            return None;
+        }
+        self.within(fields, ParameterKind::Integer { min, max, slider_max, default })
+    }
+
+    fn colour_kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
+        let usual = match shared {
+            Some(ParameterKind::Colour { default }) => *default,
+            _ => [255; 3],
+        };
+        let Some(value) = fields.get("default") else {
+            return Some(ParameterKind::Colour { default: usual });
+        };
+        let channel = |e: &Ast| match e {
+            Ast::NumberLit(n) => n.value.parse::<u8>().ok(),
+            _ => None,
+        };
+        let channels: Option<Vec<u8>> = match value {
+            Ast::Array(list) => list.elements.iter().map(channel).collect(),
+            _ => None,
+        };
+        match channels.and_then(|c| c.try_into().ok()) {
+            Some(default) => Some(ParameterKind::Colour { default }),
+            None => {
+                let rule = "a colour must be three whole numbers from 0 to 255: [red, green, blue]";
+                self.wrong(value, &fields.path("default"), rule);
+                None
+            }
+        }
+    }
+
+    fn triple_kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
+        let (min, max, usual) = match shared {
+            Some(ParameterKind::Triple { min, max, default }) => (*min, *max, Some(*default)),
+            _ => (0.0, 1.0, None),
+        };
+        let limits = self.limits(fields, (min, Some(max)), Self::number, Some(ABOVE_ZERO));
+        let path = fields.path("default");
+        let given = match fields.get("default") {
+            None => None,
+            Some(value @ Ast::NumberLit(_)) => Some([self.number(value, &path)?; 3]),
+            Some(Ast::Array(list)) if list.elements.len() == 3 => {
+                let mut triple = [0.0; 3];
+                for (to, element) in triple.iter_mut().zip(&list.elements) {
+                    *to = self.number(element, &path)?;
+                }
+                Some(triple)
+            }
+            Some(value) => {
+                self.wrong(value, &path, "it must be three numbers, [red, green, blue], or one for all");
+                return None;
+            }
+        };
+        let (min, max) = limits?;
+        let max = max.unwrap_or(1.0);
+        let fits = |t: &[f32; 3]| t.iter().all(|c| (min..=max).contains(c));
+        let default = given.or(usual.filter(fits)).unwrap_or([0.5 * min + 0.5 * max; 3]);
+        self.within(fields, ParameterKind::Triple { min, max, default })
+    }
+
+    fn choice_kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
+        let (mut options, usual) = match shared {
+            Some(ParameterKind::Choice { options, default }) => (options.to_vec(), options[*default].0),
+            _ => (Vec::new(), ""),
+        };
+        if let Some(value) = fields.get("choices") {
+            options = self.choices(value, &fields.path("choices"))?;
+        }
+        if options.is_empty() {
+            self.lacking(
+                fields,
+                "choices",
+                "a choice has some: [\"one\", \"other\"], or { \"one\": \"its name\" }",
+            );
+            return None;
+        }
+        let known: Vec<_> = options.iter().enumerate().map(|(i, (id, _))| (*id, i)).collect();
+        let default = match fields.get("default") {
+            Some(value) => self.word(value, &fields.path("default"), "the default", &known)?,
+            None => options.iter().position(|(id, _)| *id == usual).unwrap_or(0),
+        };
+        Some(ParameterKind::Choice { options: intern::options(options), default })
+    }
+
+    /// Choices as a list of ids, or as an object from id to name.
+    fn choices(&mut self, value: &Ast, path: &str) -> Option<Vec<(&'static str, &'static str)>> {
+        let mut options: Vec<(&'static str, &'static str)> = Vec::new();
+        let before = self.mistakes.len();
+        let mut add = |reader: &mut Self, at: usize, id: &str, name: &str| {
+            if let Err(rule) = identifier(id) {
+                reader.mistake(at, format!("{path} has {}, but a choice {rule}", quoted(id)));
+            } else if options.iter().any(|(known, _)| *known == id) {
+                reader.mistake(at, format!("{path} has {} twice", quoted(id)));
+            } else {
+                options.push((intern::text(id), intern::text(name)));
+            }
+        };
+        match value {
+            Ast::Array(list) => {
+                for element in &list.elements {
+                    match element {
+                        Ast::StringLit(id) => add(self, element.start(), &id.value, &humanised(&id.value)),
+                        _ => self.wrong(element, path, "a choice must be text"),
+                    }
+                }
+            }
+            Ast::Object(object) => {
+                for property in &object.properties {
+                    match &property.value {
+                        Ast::StringLit(name)
+                            if !name.value.trim().is_empty()
+                                && name.value.chars().count() <= LONGEST_NAME =>
+                        {
+                            add(self, property.start(), property.name.as_str(), &name.value);
+                        }
+                        other => self.wrong(other, path, "the name of a choice must be a short text"),
+                    }
+                }
+            }
+            _ => self.wrong(
+                value,
+                path,
+                "it must be a list: [\"one\", \"other\"], or an object: { \"one\": \"its name\" }",
+            ),
+        }
+        (self.mistakes.len() == before).then_some(options)
+    }
+}
+
+/// The word for the type of a parameter.
+pub(super) fn type_name(kind: &ParameterKind) -> &'static str {
+    match kind {
+        ParameterKind::Number { .. } => "number",
+        ParameterKind::Integer { .. } => "integer",
+        ParameterKind::Colour { .. } => "colour",
+        ParameterKind::Triple { .. } => "triple",
+        ParameterKind::Choice { .. } => "choice",
+    }
+}

@@ -1,0 +1,246 @@
+//! Models that users write, one file each: `models/ID.wgsl` declares at its top what the model is called
+//! and which parameters it has, and defines below it `fn response` in WGSL. Nothing is compiled into the
+//! program. Of the files in a [`folder`] only so much is read as is needed: all of a model that is used, of the
+//! others the declaration when it is asked for, and nothing when it is not.
+//!
+//! ```wgsl
+//! /* lcm
+//! {
+//!     "name": "Matt",
+//!     "laws": ["reciprocal", "energy conserving", "non-negative"],
+//!     "parameters": ["base_colour", { "name": "strength", "min": 0, "max": 1, "default": 0.8 }],
+//! }
+//! */
+//! fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+//!     let cos_l = max(dot(frame.n, l), 0.0);
+//!     return Terms(vec3(0.0), m.strength * m.base_colour * cos_l, vec3(0.0));
+//! }
+//! ```
+//!
+//! The graphics card runs the file as it is, the CPU interprets it. With a second function
+//! `fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>` the model answers to light
+//! from everywhere by a formula of its own, without it by its directional albedo.
+
+use std::path::Path;
+
+use naga::{Module, ScalarKind, TypeInner, VectorSize};
+
+use crate::{
+    reflection::{Ambient, Declaration, Family, ModelEntry},
+    registry::{
+        Registry,
+        compose::{compose, compose_evaluation},
+    },
+    shader::{
+        Source,
+        check::{self, ShaderProblem},
+        limits,
+        whole::validate_drawing,
+    },
+    shading::Stage,
+};
+
+mod condition;
+mod declaration;
+pub mod file;
+pub mod folder;
+mod intern;
+mod knobs;
+mod surface;
+mod text;
+mod write;
+
+pub use surface::OnCpu;
+pub use text::MARKER;
+pub use write::{BadName, NotDuplicated, duplicate, id_of_name, template};
+
+/// The ending of the files.
+pub const EXTENSION: &str = "wgsl";
+
+/// What every own model's material is made of: they share one type of material, since their shaders, not
+/// their types, tell them apart.
+#[derive(Clone, Copy, Debug)]
+pub struct CustomFile;
+
+pub use crate::registry::CustomModel;
+
+/// How messages and [`Sources`](crate::shader::compose::Sources) call the file of a model.
+#[must_use]
+pub fn source_path(id: &str) -> String {
+    format!("models/{id}.{EXTENSION}")
+}
+
+/// The id of the model in a file: its name without the ending.
+#[must_use]
+pub fn id_of(path: &Path) -> Option<&str> {
+    path.extension().filter(|e| *e == EXTENSION).and(path.file_stem()).and_then(|stem| stem.to_str())
+}
+
+/// Whether a word can be the id of a model: lower-case letters, digits and underscores, a letter first.
+#[must_use]
+pub fn is_id(word: &str) -> bool {
+    text::identifier(word).is_ok()
+}
+
+/// Whether a text is that of a model: it declares one, or defines `response`. Other files of the folder hold
+/// functions that models share.
+#[must_use]
+pub fn is_model(text: &str) -> bool {
+    // A comment that is not closed swallows the function.
+    let begins =
+        text.trim_start().strip_prefix("/*").is_some_and(|rest| rest.trim_start().starts_with(MARKER));
+    begins || text::comment(text).is_ok() || text::definition(text, "response").is_some()
+}
+
+/// How messages call a file before its name is known to be good.
+fn named(path: &Path) -> String {
+    format!("models/{}", path.file_name().unwrap_or_default().to_string_lossy())
+}
+
+/// A problem at a byte of a model's file.
+fn problem(path: &Path, text: &str, (at, message): text::Mistake) -> ShaderProblem {
+    ShaderProblem::at(&named(path), text, at, message)
+}
+
+/// Reads a model: its declaration, and its WGSL as far as one can tell without drawing. A registry that knows
+/// an own model of the same id takes this one for its next version.
+///
+/// # Errors
+/// Everything that is wrong with the declaration, or the first thing that is wrong with the WGSL.
+pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel, Vec<ShaderProblem>> {
+    let (model, lobe) = declared(path, text, registry)?;
+    let problem_at = |at, message: String| vec![problem(path, text, (at, message))];
+    // It may hide the function.
+    if let Some((at, what)) = limits::unfinished(text) {
+        return Err(problem_at(at, what));
+    }
+    if text::definition(text, "response").is_none() {
+        let end = text::comment(text).map_or(0, |c| c.end);
+        return Err(problem_at(end, format!("the function response is missing; it is {RESPONSE}")));
+    }
+    let mut sources = registry.sources().clone();
+    sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
+    let module = check::validate(&compose_evaluation(&sources, &model.entry)).map_err(|found| {
+        // What calls the model is not what is wrong.
+        if found.file == crate::shader::compose::EVALUATE.path
+            && let Some(at) = text::definition(text, "response")
+        {
+            return problem_at(at, format!("response must be {RESPONSE}: {}", found.message));
+        }
+        vec![*found]
+    })?;
+    if model.entry.declaration.ambient == Ambient::Formula
+        && !has_ambient_signature(&module)
+        && let Some(at) = text::definition(text, "ambient_response")
+    {
+        return Err(problem_at(at, format!("ambient_response must be {AMBIENT_RESPONSE}")));
+    }
+    for mode in registry.modes() {
+        let composed = compose(&sources, &model.entry, mode, registry.lights());
+        let faces = mode.declaration.stage == Stage::Polygon;
+        validate_drawing(&composed, faces).map_err(|found| {
+            // What the light loop, a light or a mode calls its own comes after the model, and is told to be there twice.
+            let name =
+                found.message.strip_prefix("redefinition of `").and_then(|rest| rest.split('`').next());
+            match name.and_then(|name| Some((name, text::defined_at(text, name)?))) {
+                Some((name, at)) if found.file != model.entry.declaration.wgsl.path => {
+                    problem_at(at, format!("{} defines {name} too; choose another name", found.file))
+                }
+                _ => vec![*found],
+            }
+        })?;
+    }
+    let entry = surface::entry(model.entry.declaration, model.entry.parameters, lobe, &module);
+    Ok(CustomModel { entry, ..model })
+}
+
+/// Reads the declaration of a model and leaves its WGSL alone: what is drawn, on both machines, is a stand-in. For
+/// a model that is not used yet, and for a window that opens while a file is broken. Cheap: nothing is compiled.
+///
+/// # Errors
+/// Everything that is wrong with the declaration.
+pub fn declare(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel, Vec<ShaderProblem>> {
+    declared(path, text, registry).map(|(model, _)| model)
+}
+
+/// What the functions of a model are, for messages.
+const RESPONSE: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms";
+const AMBIENT_RESPONSE: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>";
+
+/// The declared model, drawn as the stand-in; and the model whose lobe it uses.
+fn declared(
+    path: &Path,
+    text: &str,
+    registry: &Registry,
+) -> Result<(CustomModel, Option<ModelEntry>), Vec<ShaderProblem>> {
+    let wrong = |mistake| problem(path, text, mistake);
+    let id = usable_id(path, registry).map_err(|what| vec![wrong((0, what))])?;
+    let said = declaration::read(text, id, registry)
+        .map_err(|mistakes| mistakes.into_iter().map(wrong).collect::<Vec<_>>())?;
+    let formula = text::definition(&text[said.end..], "ambient_response").is_some();
+    let (ambient, stand_in) =
+        if formula { (Ambient::Formula, FORMULA_STAND_IN) } else { (Ambient::Albedo, STAND_IN) };
+    let declaration = intern::declaration(Declaration {
+        id: intern::text(id),
+        name: said.name,
+        family: Family::Custom,
+        author: said.author,
+        source: said.source,
+        summary: said.summary,
+        equation: said.equation,
+        laws: said.laws,
+        ambient,
+        anisotropic: said.anisotropic,
+        wgsl: Source { path: intern::text(&source_path(id)), text: stand_in },
+    });
+    let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
+    let entry = surface::stand_in(declaration, said.parameters, lobe.as_ref());
+    Ok((CustomModel { entry, path: path.to_owned(), text: text.into() }, lobe))
+}
+
+/// The id of a file, if it can be one.
+fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String> {
+    let id = id_of(path).ok_or_else(|| {
+        format!("the file is called {}, but a model is a file ID.{EXTENSION}", path.display())
+    })?;
+    text::identifier(id)
+        .map_err(|rule| format!("the name of the file is the id of the model: {id} {rule}"))?;
+    if registry.model(id).is_some() && registry.custom_file(id).is_none() {
+        return Err(format!("{id} is the id of a built-in model; give the file another name"));
+    }
+    Ok(id)
+}
+
+/// Lambert's law in grey, whatever the parameters: stands in for models without a good version.
+const STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
+}
+";
+/// The same for models that answer to light from everywhere by a formula.
+const FORMULA_STAND_IN: &str =
+    "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
+}
+fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    return vec3(0.5);
+}
+";
+
+/// Whether the function for light from everywhere takes and gives what the light loop expects.
+fn has_ambient_signature(module: &Module) -> bool {
+    let vector = |ty| {
+        matches!(
+            module.types[ty].inner,
+            TypeInner::Vector { size: VectorSize::Tri, scalar } if scalar.kind == ScalarKind::Float
+        )
+    };
+    let called = |ty, name: &str| module.types[ty].name.as_deref() == Some(name);
+    module.functions.iter().any(|(_, f)| {
+        f.name.as_deref() == Some("ambient_response")
+            && f.result.as_ref().is_some_and(|r| vector(r.ty))
+            && matches!(
+                f.arguments.as_slice(),
+                [v, frame, m] if vector(v.ty) && called(frame.ty, "Frame") && called(m.ty, "Parameters")
+            )
+    })
+}

@@ -1,0 +1,272 @@
+//! Own models on the CPU: their WGSL, interpreted.
+
+use std::sync::{
+    Arc, OnceLock,
+    atomic::{AtomicBool, Ordering},
+};
+
+use glam::Vec3;
+use naga::Module;
+
+use crate::{
+    optics::{
+        Frame, Terms,
+        albedo::{self, AlbedoCurve, LobeAlbedo},
+        colour::Encoding,
+    },
+    parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, pack},
+    reflection::{Ambient, Declaration, Instantiate, Lobe, ModelEntry, Readout, Surface, append_curve},
+    shader::interpret::Program,
+};
+
+/// An own model as the CPU runs it.
+pub struct OnCpu {
+    programs: Result<Programs, String>,
+    /// Whether a function did not come to an end.
+    endless: AtomicBool,
+}
+
+struct Programs {
+    response: Program,
+    /// Of models that answer to light from everywhere by a formula.
+    ambient: Option<Program>,
+}
+
+impl OnCpu {
+    fn new(module: &Module, ambient: Ambient, lobe: bool) -> Self {
+        // The albedo of a lobe is read from the row of the object.
+        let program = |function| {
+            let program = if lobe {
+                Program::with_table(module, function, "parameter_table")
+            } else {
+                Program::new(module, function)
+            };
+            program.map_err(|e| e.to_string())
+        };
+        let programs = program("response").and_then(|response| {
+            let ambient = match ambient {
+                Ambient::Formula => Some(program("ambient_response")?),
+                Ambient::Albedo => None,
+            };
+            Ok(Programs { response, ambient })
+        });
+        Self { programs, endless: AtomicBool::new(false) }
+    }
+
+    /// The results of a function; zeros when it cannot be run.
+    fn run<const N: usize>(
+        &self,
+        which: fn(&Programs) -> Option<&Program>,
+        row: &[u32],
+        arguments: &[u32],
+    ) -> [f32; N] {
+        let mut results = [0; N];
+        let Some(program) = self.programs.as_ref().ok().and_then(which) else { return [0.0; N] };
+        // Each run up to the limit takes a while, and a picture asks a million times.
+        if self.endless.load(Ordering::Relaxed) {
+            return [0.0; N];
+        }
+        if program.run_with(row, arguments, &mut results).is_err() {
+            self.endless.store(true, Ordering::Relaxed);
+            return [0.0; N];
+        }
+        results.map(f32::from_bits)
+    }
+}
+
+impl crate::reflection::Interpreted for OnCpu {
+    fn trouble(&self) -> Option<String> {
+        match &self.programs {
+            Err(what) => Some(what.clone()),
+            Ok(_) if self.endless.load(Ordering::Relaxed) => {
+                Some("a function runs too long; a loop may have no end".to_owned())
+            }
+            Ok(_) => None,
+        }
+    }
+
+    fn runs_too_long(&self) -> bool {
+        self.endless.load(Ordering::Relaxed)
+    }
+}
+
+/// The entry of a model whose WGSL is in a valid module.
+pub(super) fn entry(
+    declaration: &'static Declaration,
+    parameters: &'static [Parameter],
+    lobe: Option<ModelEntry>,
+    module: &Module,
+) -> ModelEntry {
+    let on_cpu = Arc::new(OnCpu::new(module, declaration.ambient, lobe.is_some()));
+    let reads = lobe.as_ref().map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
+    let instantiate: Instantiate = {
+        let on_cpu = on_cpu.clone();
+        Arc::new(move |values, encoding| {
+            let lobe = lobe.as_ref().and_then(|model| {
+                // What the model does not declare must not decide how it looks.
+                let mut own = Values::default();
+                for p in parameters {
+                    own.set(p.name, values.get(p));
+                }
+                model.instantiate(&own, encoding).lobe()
+            });
+            Arc::new(Interpreted {
+                on_cpu: on_cpu.clone(),
+                ambient: declaration.ambient,
+                anisotropic: declaration.anisotropic,
+                parameters: flattened(parameters, values, encoding),
+                row: lobe.map_or_else(Vec::new, |lobe| row(declaration, parameters, values, encoding, lobe)),
+                lobe,
+                curve: OnceLock::new(),
+            })
+        })
+    };
+    ModelEntry::custom(declaration, parameters, reads, instantiate, Some(on_cpu))
+}
+
+/// The entry of a model of which no more is known than its declaration: the CPU draws the same as the WGSL of the
+/// stand-in, Lambert's law in grey.
+pub(super) fn stand_in(
+    declaration: &'static Declaration,
+    parameters: &'static [Parameter],
+    lobe: Option<&ModelEntry>,
+) -> ModelEntry {
+    let reads = lobe.map_or(Lobe::None, |model| Lobe::Of(model.declaration.id));
+    let instantiate: Instantiate =
+        Arc::new(move |_, _| Arc::new(Grey { ambient: declaration.ambient, curve: OnceLock::new() }));
+    ModelEntry::custom(declaration, parameters, reads, instantiate, None)
+}
+
+/// The albedo of stand-ins.
+const GREY: f32 = 0.5;
+
+/// A stand-in.
+struct Grey {
+    ambient: Ambient,
+    curve: OnceLock<Option<AlbedoCurve>>,
+}
+
+impl Surface for Grey {
+    fn response(&self, l: Vec3, _: Vec3, frame: &Frame) -> Terms {
+        let diffuse = Vec3::splat(GREY * frame.n.dot(l).max(0.0));
+        Terms { ambient: Vec3::ZERO, diffuse, specular: Vec3::ZERO }
+    }
+
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        // As the graphics card has it, which reads the curve where there is one.
+        self.curve().map_or(Vec3::splat(GREY), |curve| curve.at(v, frame))
+    }
+
+    fn curve(&self) -> Option<AlbedoCurve> {
+        let new = || AlbedoCurve::new(|l, v| self.response(l, v, &Frame::LOCAL), false);
+        *self.curve.get_or_init(|| (self.ambient == Ambient::Albedo).then(new))
+    }
+
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        None
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        Vec::new()
+    }
+}
+
+/// The members of the WGSL struct `Parameters`, one word for each number.
+fn flattened(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Vec<u32> {
+    let mut words = Vec::with_capacity(3 * parameters.len());
+    for p in parameters {
+        match p.kind {
+            ParameterKind::Number { .. } | ParameterKind::Integer { .. } => {
+                words.push(values.number(p).to_bits())
+            }
+            ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => {
+                words.extend(values.colour(p, encoding).to_array().map(f32::to_bits));
+            }
+            ParameterKind::Choice { .. } => words.push(values.choice(p)),
+        }
+    }
+    // A struct without members is none: it has one that nobody uses.
+    if words.is_empty() {
+        words.push(0);
+    }
+    words
+}
+
+/// The row of an object as the shader reads it, with the albedo of the lobe.
+fn row(
+    declaration: &Declaration,
+    parameters: &[Parameter],
+    values: &Values,
+    encoding: Encoding,
+    lobe: LobeAlbedo,
+) -> Vec<u32> {
+    let mut bytes = pack(parameters, values, encoding);
+    let harmonics = if declaration.anisotropic { 3 } else { 1 };
+    append_curve(&mut bytes, harmonics, None, Some(lobe));
+    bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+}
+
+/// An own model with its parameters set.
+struct Interpreted {
+    on_cpu: Arc<OnCpu>,
+    ambient: Ambient,
+    anisotropic: bool,
+    parameters: Vec<u32>,
+    /// As the table of the shader has it, without the curve; empty where that is not read.
+    row: Vec<u32>,
+    lobe: Option<LobeAlbedo>,
+    curve: OnceLock<Option<AlbedoCurve>>,
+}
+
+impl Interpreted {
+    /// The results of a function of directions, the frame and the parameters.
+    fn ask<const N: usize>(
+        &self,
+        which: fn(&Programs) -> Option<&Program>,
+        directions: &[Vec3],
+        frame: &Frame,
+    ) -> [f32; N] {
+        // Two directions, three vectors of the frame, and as many parameters as there is room for.
+        let mut arguments = [0; 15 + BLOCK_BYTES / 4];
+        let vectors = directions.iter().chain([&frame.n, &frame.t, &frame.b]);
+        let words =
+            vectors.flat_map(|v| v.to_array().map(f32::to_bits)).chain(self.parameters.iter().copied());
+        let mut count = 0;
+        for (to, word) in arguments.iter_mut().zip(words) {
+            *to = word;
+            count += 1;
+        }
+        self.on_cpu.run(which, &self.row, &arguments[..count])
+    }
+}
+
+impl Surface for Interpreted {
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let terms: [f32; 9] = self.ask(|p| Some(&p.response), &[l, v], frame);
+        let vector = |at: usize| Vec3::new(terms[at], terms[at + 1], terms[at + 2]);
+        Terms { ambient: vector(0), diffuse: vector(3), specular: vector(6) }
+    }
+
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        match self.ambient {
+            Ambient::Formula => self.ask::<3>(|p| p.ambient.as_ref(), &[v], frame).into(),
+            Ambient::Albedo => match self.curve() {
+                Some(curve) => curve.at(v, frame),
+                None => albedo::directional(|l| self.response(l, v, frame), v, frame).as_vec3(),
+            },
+        }
+    }
+
+    fn curve(&self) -> Option<AlbedoCurve> {
+        let new = || AlbedoCurve::new(|l, v| self.response(l, v, &Frame::LOCAL), self.anisotropic);
+        *self.curve.get_or_init(|| (self.ambient == Ambient::Albedo).then(new))
+    }
+
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        self.lobe
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,261 @@
+//! New files for own models: a commented one to start from, and copies of models that there are.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value as Json, json};
+
+use super::{
+    knobs::type_name,
+    source_path,
+    text::{LONGEST_ID, MARKER, comment, humanised, identifier, identifier_rule},
+};
+use crate::{
+    parameter::{ABOVE_ZERO, Parameter, ParameterKind, json as json_of},
+    reflection::{Ambient, ModelEntry, Term},
+    registry::Registry,
+    shader::compose::Sources,
+    text::number,
+};
+
+/// Why a model could not be copied to a file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotDuplicated {
+    /// The id of the copy is none.
+    #[error("{id} cannot be the id of a model: it {rule}")]
+    Id {
+        /// The id.
+        id: String,
+        /// The rule that it breaks.
+        rule: String,
+    },
+}
+
+/// A name from which no identifier follows.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the id of a model {rule}{}", .instead.as_ref().map_or_else(String::new, |id| format!("; {id} would do")))]
+pub struct BadName {
+    /// The rule that it breaks.
+    pub rule: String,
+    /// An identifier that is near to it.
+    pub instead: Option<String>,
+}
+
+/// The identifier of a model that people call by a name: `Student toon (2)` is `student_toon_2`. Spaces and signs
+/// become underscores; letters beyond a–z, dots and slashes are not guessed at.
+///
+/// # Errors
+/// The rule that the name breaks, and a name that would do.
+pub fn id_of_name(name: &str) -> Result<String, BadName> {
+    let name = name.trim();
+    if identifier(name).is_ok() {
+        return Ok(name.to_owned());
+    }
+    let id = joined(name);
+    let plain =
+        |c: char| c.is_ascii_alphanumeric() || c == ' ' || c.is_ascii_punctuation() && !"./\\".contains(c);
+    identifier(&id)
+        .and_then(|()| if name.chars().all(plain) { Ok(id) } else { Err(identifier_rule()) })
+        .map_err(|rule| {
+            let near: String = joined(name).chars().skip_while(|c| !c.is_ascii_lowercase()).collect();
+            let near: String = near.chars().take(LONGEST_ID).collect();
+            let near = near.trim_end_matches('_');
+            BadName { rule, instead: identifier(near).is_ok().then(|| near.to_owned()) }
+        })
+}
+
+/// Lower case, with one underscore for whatever stands between letters and digits.
+fn joined(name: &str) -> String {
+    let lower = name.to_lowercase();
+    let words = lower.split(|c: char| !c.is_ascii_alphanumeric());
+    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join("_")
+}
+
+/// A commented file to start from, valid as it is: a matt body under a soft gloss that keeps all laws.
+#[must_use]
+pub fn template(id: &str, name: &str) -> String {
+    let name = if name == id { humanised(id) } else { name.to_owned() };
+    TEMPLATE.replace("NAME", &text(&name)).replace("FILE", &source_path(id))
+}
+
+const TEMPLATE: &str = r#"/* lcm
+{
+    // What choosers call the model. Its id in scene files is the name of this file, FILE.
+    "name": NAME,
+    "author": "who thought of it, and the year",
+    "source": "where it was published",
+    "summary": "A matt body under a soft gloss. What one has, the other lacks.",
+    // One part for each term: total, ambient, diffuse, specular. _x is a subscript, ^x a superscript.
+    "equation": [
+        { "term": "diffuse", "text": "I_d = (1 − g) C_b (N·L)" },
+        { "term": "specular", "text": "I_s = g (N·H)^n (N·L)" },
+    ],
+    // The laws that the model keeps. `lcm models check ID` tries to find them broken.
+    "laws": ["reciprocal", "energy conserving", "non-negative"],
+    // Say true if turning the surface about its normal changes the response.
+    "anisotropic": false,
+    // A name alone is a parameter that other models have too: a surface keeps it when the model changes.
+    // Types are number, integer, colour, triple and choice; what is left out has a sensible value.
+    "parameters": [
+        "base_colour",
+        {
+            "name": "gloss", "symbol": "g", "label": "gloss", "type": "number",
+            "min": 0, "max": 1, "default": 0.3,
+            "help": "How much of the light the surface mirrors instead of scattering it.",
+        },
+        {
+            "name": "polish", "symbol": "n", "label": "polish", "type": "number",
+            "min": 1, "max": 200, "default": 20,
+            "help": "The exponent of the highlight: the larger, the smaller it is.",
+        },
+    ],
+}
+*/
+
+// What the surface sends to the viewer per unit of light, π f_r cos θ_l, where f_r is the BRDF. l points to the
+// light and v to the viewer, both of length 1; frame holds the normal n, the tangent t and the bitangent b;
+// m has the parameters, colours as linear light. The functions of terms.wgsl and optics/ may be called,
+// such as half_vector, power, schlick and ggx.
+fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    let cos_l = dot(frame.n, l);
+    let cos_v = dot(frame.n, v);
+    if cos_l <= 0.0 || cos_v <= 0.0 {
+        return Terms(vec3(0.0), vec3(0.0), vec3(0.0));
+    }
+    let cos_h = max(dot(frame.n, half_vector(l, v)), 0.0);
+    let diffuse = (1.0 - m.gloss) * m.base_colour * cos_l;
+    let specular = vec3(m.gloss * power(cos_h, m.polish) * cos_l);
+    // Ambient, diffuse, specular: the terms that the window can show alone.
+    return Terms(vec3(0.0), diffuse, specular);
+}
+
+// To light from everywhere the model answers by its directional albedo, which is calculated. A model with a
+// formula of its own for that defines it:
+// fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> { … }
+"#;
+
+/// A model as a file of that id: the same picture, the same knobs. `name` is what people call the copy; where that is
+/// the id, one follows from it.
+///
+/// # Errors
+/// When the id cannot be one.
+pub fn duplicate(
+    entry: &ModelEntry,
+    sources: &Sources,
+    id: &str,
+    name: &str,
+) -> Result<String, NotDuplicated> {
+    identifier(id).map_err(|rule| NotDuplicated::Id { id: id.to_owned(), rule })?;
+    let d = entry.declaration;
+    let source = sources.text(&d.wgsl);
+    // Of a model from a file everything but the declaration is copied; that is written anew.
+    let body = comment(source).map_or(source, |c| &source[c.end..]).trim_start();
+    let name = match name {
+        name if name != id => name.to_owned(),
+        _ if id == format!("{}_copy", d.id) => format!("{} (copy)", d.name),
+        _ => humanised(id),
+    };
+    // Writing to a String cannot fail; here and below.
+    let mut out = format!("/* {MARKER}\n{{\n");
+    for (key, value) in
+        [("name", name.as_str()), ("author", d.author), ("source", d.source), ("summary", d.summary)]
+    {
+        let _ = writeln!(out, "    \"{key}\": {},", text(value));
+    }
+    let term = |t| match t {
+        Term::Total => "total",
+        Term::Ambient => "ambient",
+        Term::Diffuse => "diffuse",
+        Term::Specular => "specular",
+    };
+    out.push_str("    \"equation\": [\n");
+    for part in d.equation {
+        let _ =
+            writeln!(out, "        {{ \"term\": \"{}\", \"text\": {} }},", term(part.term), text(part.text));
+    }
+    out.push_str("    ],\n");
+    let laws: Vec<_> = d.laws.list().into_iter().filter(|(_, kept)| *kept).map(|(name, _)| name).collect();
+    let _ = writeln!(out, "    \"laws\": {},", spaced(&json!(laws)));
+    let _ = writeln!(out, "    \"anisotropic\": {},", d.anisotropic);
+    if let Some(lobe) = entry.lobe_of() {
+        let _ = writeln!(
+            out,
+            "    // The shader calls lobe_albedo and average_lobe_albedo: the lobe of this model."
+        );
+        let _ = writeln!(out, "    \"lobe\": \"{lobe}\",");
+    }
+    out.push_str("    \"parameters\": [\n");
+    let built_in = Registry::builtin();
+    for p in entry.parameters {
+        let users = built_in.models().iter().filter(|m| m.parameter(p.name).is_some()).count();
+        let same = |shared: &Parameter| Parameter { used_when: None, ..shared.clone() } == *p;
+        if users > 1 && built_in.material_parameter(p.name).is_some_and(same) {
+            let _ = writeln!(out, "        \"{}\",", p.name);
+        } else {
+            declare(&mut out, p);
+        }
+    }
+    out.push_str("    ],\n}\n*/\n\n");
+    if d.ambient == Ambient::Albedo {
+        out.push_str("// To light from everywhere the model answers by its directional albedo, which is calculated.\n\n");
+    }
+    out.push_str(body);
+    if !out.ends_with('\n') {
+        out.push('\n');
+    }
+    Ok(out)
+}
+
+/// A text as JSON writes it, with nothing in it that begins or ends a comment.
+fn text(text: &str) -> String {
+    Json::from(text).to_string().replace("*/", "*\\/").replace("/*", "\\/*")
+}
+
+/// JSON on one line, with spaces where people put them.
+fn spaced(json: &Json) -> String {
+    match json {
+        Json::Array(list) => {
+            let items: Vec<_> = list.iter().map(spaced).collect();
+            format!("[{}]", items.join(", "))
+        }
+        other => other.to_string(),
+    }
+}
+
+/// A parameter with everything that its declaration says.
+fn declare(out: &mut String, p: &Parameter) {
+    let _ = writeln!(
+        out,
+        "        {{\n            \"name\": \"{}\", \"symbol\": {}, \"label\": {}, \"unit\": {}, \"type\": \"{}\",",
+        p.name,
+        text(p.symbol),
+        text(p.label),
+        text(p.unit),
+        type_name(&p.kind)
+    );
+    let smallest = |min: f32| {
+        if min == ABOVE_ZERO { "\"above\": 0".to_owned() } else { format!("\"min\": {}", number(min)) }
+    };
+    let range = match &p.kind {
+        ParameterKind::Number { min, max, .. } | ParameterKind::Triple { min, max, .. } => {
+            format!("{}, \"max\": {}, ", smallest(*min), number(*max))
+        }
+        ParameterKind::Integer { min, max, slider_max, .. } => {
+            let max = max.map_or_else(String::new, |max| format!("\"max\": {max}, "));
+            format!("\"min\": {min}, {max}\"slider_max\": {slider_max}, ")
+        }
+        ParameterKind::Colour { .. } => String::new(),
+        ParameterKind::Choice { options, .. } => {
+            let options: Vec<_> = options
+                .iter()
+                .map(|(id, name)| format!("                \"{id}\": {},\n", text(name)))
+                .collect();
+            format!("\"choices\": {{\n{}            }},\n            ", options.concat())
+        }
+    };
+    if let Some(condition) = p.used_when {
+        let choices = spaced(&json!(condition.choices));
+        let _ = writeln!(out, "            \"used_when\": {{ \"{}\": {choices} }},", condition.parameter);
+    }
+    let _ = writeln!(out, "            {range}\"default\": {},", spaced(&json_of(&p.default_value())));
+    let _ = writeln!(out, "            \"help\": {},\n        }},", text(p.help));
+}

@@ -1,0 +1,42 @@
+//! Why a command did not do what it was asked, and the exit status for it.
+
+use std::io;
+
+/// Why a command did not do what it was asked.
+#[derive(Debug)]
+pub enum Failure {
+    /// A scene or an input is invalid: exit status 1. One line per problem.
+    Invalid(String),
+    /// The command line makes no sense: exit status 2.
+    Usage(String),
+    /// There is no renderer or no display: exit status 3.
+    NoRenderer(String),
+    /// A result could not be written: exit status 4.
+    Write(String),
+    /// Whoever read the output has read enough: not an error.
+    Closed,
+}
+
+impl From<io::Error> for Failure {
+    /// An error on standard output.
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Self::Closed,
+            _ => Self::Write(format!("standard output: {error}")),
+        }
+    }
+}
+
+impl Failure {
+    /// The exit status.
+    #[must_use]
+    pub fn status(&self) -> u8 {
+        match self {
+            Self::Closed => 0,
+            Self::Invalid(_) => 1,
+            Self::Usage(_) => 2,
+            Self::NoRenderer(_) => 3,
+            Self::Write(_) => 4,
+        }
+    }
+}

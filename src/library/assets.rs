@@ -1,0 +1,319 @@
+//! Where shaders and own models are read from, and copies of them to edit.
+
+use std::{
+    env, fs, io,
+    path::{Path, PathBuf},
+};
+
+use thiserror::Error;
+
+use crate::{
+    custom::{self, file},
+    files::{self, FileError},
+    registry::Registry,
+    shader::{Source, check::ShaderProblem, compose},
+};
+
+/// The environment variable that names another folder for the user's data.
+pub const DATA_VARIABLE: &str = "LCM_DATA_DIR";
+
+/// The models that are shipped as files: name and text of each.
+pub const EXAMPLES: &[(&str, &str)] = &[
+    (
+        "charlie_sheen.wgsl",
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/charlie_sheen.wgsl")),
+    ),
+    ("gooch.wgsl", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/gooch.wgsl"))),
+];
+
+/// What is wrong with a folder.
+#[derive(Debug, Error)]
+pub enum AssetError {
+    /// It has no shaders.
+    #[error("--assets is {}, but {rule}", .folder.display())]
+    NoShaders {
+        /// The folder.
+        folder: PathBuf,
+        /// What it must be, and perhaps which folder is meant.
+        rule: String,
+    },
+    /// It is a file.
+    #[error("--models is {}, but it must be a folder", .0.display())]
+    NotAFolder(PathBuf),
+    /// It, or something in it, could not be written.
+    #[error("{} could not be written: {error}", .path.display())]
+    Write {
+        /// What was being written.
+        path: PathBuf,
+        /// What the system says.
+        error: io::Error,
+    },
+}
+
+/// Where shaders and own models are read from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Folders {
+    /// The folder whose files replace the built-in shaders; none when those are used.
+    pub shaders: Option<PathBuf>,
+    /// The folder whose files are own models. It need not exist yet.
+    pub models: Option<PathBuf>,
+}
+
+/// What surrounds the process: where folders are looked for when none is named.
+#[derive(Clone, Debug, Default)]
+struct Surroundings {
+    /// The folders that hold `assets`, in the order in which they are tried.
+    roots: Vec<PathBuf>,
+    /// The folder of the user's data.
+    data: Option<PathBuf>,
+}
+
+/// The folder that an environment variable names.
+fn folder(variable: &str) -> Option<PathBuf> {
+    env::var_os(variable).filter(|value| !value.is_empty()).map(PathBuf::from)
+}
+
+/// The folder of the user's data: the one that [`DATA_VARIABLE`] names, else the usual place of the operating
+/// system; `None` when there is neither.
+#[must_use]
+pub fn data_folder() -> Option<PathBuf> {
+    let usual =
+        || Some(directories::ProjectDirs::from("", "", "lights-camera-models")?.data_dir().to_owned());
+    folder(DATA_VARIABLE).or_else(usual)
+}
+
+impl Surroundings {
+    fn of_process() -> Self {
+        let beside = || Some(env::current_exe().ok()?.parent()?.to_owned());
+        let roots = [folder("BEVY_ASSET_ROOT"), folder("CARGO_MANIFEST_DIR"), beside()];
+        Self { roots: roots.into_iter().flatten().collect(), data: data_folder() }
+    }
+}
+
+impl Folders {
+    /// Finds the folders.
+    ///
+    /// Shaders are those of `assets/shaders` where `assets` is the folder that is named; else that below
+    /// `$BEVY_ASSET_ROOT`, below `$CARGO_MANIFEST_DIR` (as `cargo run` sets it) or beside the program, whichever
+    /// is there first; else the built-in ones. Own models are those of the folder that is named, else of `models`
+    /// beside the shaders, else of `models` in the user's data (`$LCM_DATA_DIR`, or where the operating system
+    /// has them).
+    ///
+    /// # Errors
+    /// When the folder that is named has no shaders, or that of the models is a file.
+    pub fn find(assets: Option<&Path>, models: Option<&Path>) -> Result<Self, AssetError> {
+        Self::find_in(assets, models, &Surroundings::of_process())
+    }
+
+    fn find_in(
+        assets: Option<&Path>,
+        models: Option<&Path>,
+        surroundings: &Surroundings,
+    ) -> Result<Self, AssetError> {
+        let shaders = match assets {
+            Some(folder) => Some(shaders_of(folder)?),
+            None => surroundings.roots.iter().map(|r| r.join("assets/shaders")).find(|s| s.is_dir()),
+        };
+        if let Some(file) = models.filter(|m| m.exists() && !m.is_dir()) {
+            return Err(AssetError::NotAFolder(file.to_owned()));
+        }
+        let beside = || shaders.as_ref().map(|s| s.with_file_name("models"));
+        let data = || surroundings.data.as_ref().map(|d| d.join("models"));
+        let models = models.map(Path::to_owned).or_else(beside).or_else(data);
+        Ok(Self { shaders, models })
+    }
+}
+
+/// The shaders of a folder that was named.
+fn shaders_of(folder: &Path) -> Result<PathBuf, AssetError> {
+    let shaders = folder.join("shaders");
+    if shaders.is_dir() {
+        return Ok(shaders);
+    }
+    let inside = folder.join("assets");
+    let hint = if inside.join("shaders").is_dir() {
+        format!("; did you mean {}?", inside.display())
+    } else if folder.file_name().is_some_and(|n| n == "shaders") && folder.is_dir() {
+        let above = folder.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        format!("; did you mean {}?", above.display())
+    } else if !folder.exists() {
+        "; there is no such folder: `lcm assets export FOLDER` makes one".to_owned()
+    } else {
+        "; `lcm assets export FOLDER` makes one".to_owned()
+    };
+    Err(AssetError::NoShaders {
+        folder: folder.to_owned(),
+        rule: format!("it must be a folder with a folder shaders in it{hint}"),
+    })
+}
+
+/// Every file that shaders are made of, with its built-in text: what all models need, models, light types and
+/// modes. Without own models.
+#[must_use]
+pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
+    let shared = [
+        compose::ALBEDO,
+        compose::LIGHTS,
+        compose::SHADING,
+        compose::LOOP,
+        compose::WRAPPER,
+        compose::EVALUATE,
+    ];
+    let models =
+        registry.models().iter().map(|m| m.declaration).filter(|d| registry.custom_file(d.id).is_none());
+    compose::OPTICS
+        .iter()
+        .copied()
+        .chain(shared)
+        .chain(models.map(|d| d.wgsl))
+        .chain(registry.lights().iter().map(|l| l.declaration.wgsl))
+        .chain(registry.modes().iter().map(|m| m.declaration.wgsl))
+        .collect()
+}
+
+/// Reads the shaders of a folder into a registry, as far as they differ from the built-in ones; what they are
+/// worth shows when they are used. Files that no built-in shader has the name of are for `#import`.
+///
+/// # Errors
+/// The files that could not be read.
+pub fn read_shaders(folder: &Path, registry: &mut Registry) -> Result<(), Vec<(PathBuf, ShaderProblem)>> {
+    registry.set_shader_folder(folder);
+    let built_in = built_in_sources(registry);
+    let mut problems = Vec::new();
+    let mut files = Vec::new();
+    collect(folder, &mut files);
+    for path in files {
+        let Ok(name) = path.strip_prefix(folder) else { continue };
+        let name = name.components().map(|c| c.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/");
+        match file::read(&path, &name) {
+            Ok(text) => {
+                // A checkout may have other line ends than the program was built with.
+                let same = |s: &Source| s.path == name && s.text.lines().eq(text.lines());
+                if built_in.iter().any(same) {
+                    registry.sources_mut().forget(&name);
+                } else {
+                    registry.sources_mut().edit(name, text);
+                }
+            }
+            Err(problem) => problems.push((path, problem)),
+        }
+    }
+    if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+/// The WGSL files below a folder, in order.
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let mut entries: Vec<_> = entries.flatten().map(|e| e.path()).collect();
+    entries.sort();
+    for path in entries {
+        let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
+        if hidden || path.is_symlink() && path.is_dir() {
+            continue;
+        }
+        if path.is_dir() {
+            collect(&path, files);
+        } else if path.extension().is_some_and(|e| e == custom::EXTENSION) {
+            files.push(path);
+        }
+    }
+}
+
+/// What an export did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Exported {
+    /// Files that were written.
+    pub written: Vec<PathBuf>,
+    /// Files that are there and differ: they were left alone.
+    pub kept: Vec<PathBuf>,
+    /// How many files were there already, the same.
+    pub same: usize,
+}
+
+/// Writes the built-in shaders below `shaders` in a folder, and the example models below `models`, so that they
+/// can be edited: `--assets FOLDER` reads them. A file that is there and differs stays as it is.
+///
+/// # Errors
+/// When a folder or a file could not be written.
+pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError> {
+    let shaders = folder.join("shaders");
+    let sources = built_in_sources(registry).into_iter().map(|s| (shaders.join(s.path), s.text));
+    let models = EXAMPLES.iter().map(|(name, text)| (folder.join("models").join(name), *text));
+    let mut exported = Exported::default();
+    for (path, text) in sources.chain(models) {
+        match files::read(&path, file::MAX_BYTES) {
+            Ok(there) if there == text.as_bytes() => exported.same += 1,
+            Ok(_) | Err(FileError::TooLarge(_)) => exported.kept.push(path),
+            Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => {
+                write_new(&path, text).map_err(|error| AssetError::Write { path: path.clone(), error })?;
+                exported.written.push(path);
+            }
+            Err(error) => return Err(AssetError::Write { path, error: error.into() }),
+        }
+    }
+    Ok(exported)
+}
+
+/// Writes a file that does not exist yet, all or nothing; makes its folder where there is none.
+///
+/// # Errors
+/// [`io::ErrorKind::AlreadyExists`] when there is such a file, which is left alone.
+pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
+    let folder = files::folder_of(path);
+    // A file in the place of the folder must not look as if the file itself were there.
+    fs::create_dir_all(folder)
+        .map_err(|e| io::Error::other(format!("the folder {} could not be made: {e}", folder.display())))?;
+    Ok(files::create(path, text.as_bytes())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surroundings(roots: &[&Path], data: &Path) -> Surroundings {
+        Surroundings { roots: roots.iter().map(|r| (*r).to_owned()).collect(), data: Some(data.to_owned()) }
+    }
+
+    #[test]
+    fn shaders_are_looked_for_in_order_and_models_beside_them() -> io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let at = |name: &str| folder.path().join(name);
+        let (a, b, data) = (at("a"), at("b"), at("data"));
+        fs::create_dir_all(b.join("assets/shaders"))?;
+        let find = |assets: Option<&Path>, models: Option<&Path>| {
+            Folders::find_in(assets, models, &surroundings(&[&a, &b], &data))
+        };
+        let found = find(None, None).expect("there");
+        assert_eq!(found.shaders, Some(b.join("assets/shaders")));
+        assert_eq!(found.models, Some(b.join("assets/models")));
+        fs::create_dir_all(a.join("assets/shaders"))?;
+        assert_eq!(find(None, None).expect("there").shaders, Some(a.join("assets/shaders")));
+        let named = find(Some(&b.join("assets")), Some(&at("mine"))).expect("there");
+        let expected = Folders { shaders: Some(b.join("assets/shaders")), models: Some(at("mine")) };
+        assert_eq!(named, expected);
+        // Without any there are the built-in ones, and models in the user's data.
+        let none = Folders::find_in(None, None, &surroundings(&[], &data)).expect("there");
+        assert_eq!(none, Folders { shaders: None, models: Some(data.join("models")) });
+        Ok(())
+    }
+
+    #[test]
+    fn a_folder_that_is_none_is_told_with_the_one_that_is_meant() -> io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let root = folder.path();
+        fs::create_dir_all(root.join("assets/shaders"))?;
+        fs::write(root.join("file"), "")?;
+        let said = |assets: Option<&Path>, models: Option<&Path>| {
+            Folders::find_in(assets, models, &Surroundings::default())
+                .err()
+                .map(|e| e.to_string())
+                .unwrap_or_default()
+        };
+        let meant = format!("did you mean {}?", root.join("assets").display());
+        assert!(said(Some(root), None).contains(&meant));
+        assert!(said(Some(&root.join("assets/shaders")), None).contains(&meant));
+        assert!(said(Some(&root.join("none")), None).contains("there is no such folder"));
+        assert!(said(None, Some(&root.join("file"))).contains("must be a folder"));
+        Ok(())
+    }
+}

@@ -1,0 +1,51 @@
+//! Models that do not come to an end: nothing can stop a GPU, but the interpreter stops itself, so the CPU is asked
+//! first.
+
+use glam::Vec3;
+use thiserror::Error;
+
+use super::{ModelEntry, Surface, laws::Random};
+use crate::{
+    optics::{Frame, colour::Encoding},
+    parameter::Values,
+};
+
+/// A function of this model runs too long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error(
+    "{0} was not run on the GPU: on the CPU, which interprets it, a function runs too long; a loop may have no end"
+)]
+pub struct Endless(pub &'static str);
+
+/// So many pairs of a batch are asked on the CPU first.
+const SAMPLE: usize = 32;
+
+/// Whether a model with these values comes to an end, as far as a few directions tell: nothing can stop a GPU, but
+/// the interpreter stops itself. Models that are not interpreted do.
+///
+/// # Errors
+/// [`Endless`].
+pub fn check_that_it_ends(model: &ModelEntry, values: &Values, encoding: Encoding) -> Result<(), Endless> {
+    if !model.is_interpreted() {
+        return Ok(());
+    }
+    let mut random = Random(0xe4d);
+    let axes = [Vec3::Z, Vec3::NEG_Z, Vec3::X, Vec3::Y];
+    let mut pairs: Vec<_> = axes.iter().flat_map(|l| axes.map(|v| (*l, v))).collect();
+    pairs.extend((0..SAMPLE).map(|_| (random.direction(), random.direction())));
+    ends(model, model.instantiate(values, encoding).as_ref(), &pairs)
+}
+
+/// The same for one surface and some of these pairs of directions.
+///
+/// # Errors
+/// [`Endless`].
+pub fn ends(model: &ModelEntry, surface: &dyn Surface, pairs: &[(Vec3, Vec3)]) -> Result<(), Endless> {
+    for (l, v) in pairs.iter().step_by(pairs.len().div_ceil(2 * SAMPLE).max(1)) {
+        surface.response(*l, *v, &Frame::LOCAL);
+        if model.runs_too_long() {
+            return Err(Endless(model.declaration.id));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,103 @@
+//! The camera of the picture: it stands where the observer stands until someone moves it.
+
+use super::entities::CurrentScene;
+use crate::{
+    optics::{colour::BACKGROUND, tone::ToneMapping},
+    scene::{
+        Observer,
+        observer::{NEAR, rotation, vertical_field_of_view},
+    },
+};
+use bevy::{
+    camera::{Camera, Camera3d, ClearColorConfig, Hdr, PerspectiveProjection, Projection},
+    color::Color,
+    core_pipeline::tonemapping::{DebandDither, Tonemapping},
+    ecs::prelude::*,
+    render::view::Msaa,
+    transform::components::Transform,
+};
+
+/// The camera that draws the picture.
+#[derive(Component, Debug, Clone, Copy)]
+pub struct PictureCamera {
+    /// Whether it stands at the scene's observer; free once a user has moved it.
+    pub follows_observer: bool,
+    /// Whether a picture that is narrower than [`WIDE`] shows more above and below, so that what a
+    /// wide picture shows at the sides is not cut off: for windows, whose panels take width.
+    pub fits_width: bool,
+}
+
+/// The parts of a camera for the picture. For a picture that people see, add [`Hdr`]: it is drawn into
+/// half floats and tone mapped in a pass of its own; without, the target gets the linear values.
+#[must_use]
+pub fn picture_camera(samples: u8) -> impl Bundle {
+    (
+        PictureCamera { follows_observer: true, fits_width: false },
+        Camera3d::default(),
+        Camera {
+            clear_color: ClearColorConfig::Custom(Color::srgb_u8(
+                BACKGROUND[0],
+                BACKGROUND[1],
+                BACKGROUND[2],
+            )),
+            ..Camera::default()
+        },
+        projection(&Observer::default()),
+        Tonemapping::None,
+        // Dithering would make pictures differ between runs and renderers.
+        DebandDither::Disabled,
+        if samples == 4 { Msaa::Sample4 } else { Msaa::Off },
+    )
+}
+
+fn projection(observer: &Observer) -> Projection {
+    Projection::Perspective(PerspectiveProjection {
+        fov: observer.field_of_view.to_radians(),
+        near: NEAR,
+        ..PerspectiveProjection::default()
+    })
+}
+
+/// The renderer's pass for a tone mapping.
+#[must_use]
+pub fn tonemapping(tone: ToneMapping) -> Tonemapping {
+    match tone {
+        ToneMapping::None => Tonemapping::None,
+        ToneMapping::Reinhard => Tonemapping::Reinhard,
+        ToneMapping::ReinhardLuminance => Tonemapping::ReinhardLuminance,
+        ToneMapping::Aces => Tonemapping::AcesFitted,
+        ToneMapping::AgX => Tonemapping::AgX,
+        ToneMapping::TonyMcMapface => Tonemapping::TonyMcMapface,
+        ToneMapping::BlenderFilmic => Tonemapping::BlenderFilmic,
+        ToneMapping::KhronosPbrNeutral => Tonemapping::KhronosPbrNeutral,
+    }
+}
+
+/// Keeps cameras that follow the observer at its place, and every picture camera's field of view and
+/// tone mapping at the scene's.
+pub fn follow_scene(
+    scene: Res<CurrentScene>,
+    mut cameras: Query<(&PictureCamera, &mut Transform, &mut Projection, &mut Tonemapping, Has<Hdr>)>,
+) {
+    let observer = &scene.0.observer;
+    for (camera, mut transform, mut lens, mut tone, hdr) in &mut cameras {
+        if camera.follows_observer {
+            let wanted =
+                Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
+            if *transform != wanted {
+                *transform = wanted;
+            }
+        }
+        let Projection::Perspective(perspective) = &*lens else { continue };
+        let fov = vertical_field_of_view(observer.field_of_view, perspective.aspect_ratio, camera.fits_width);
+        if perspective.fov != fov
+            && let Projection::Perspective(perspective) = &mut *lens
+        {
+            perspective.fov = fov;
+        }
+        let wanted = if hdr { tonemapping(scene.0.display.tone_mapping) } else { Tonemapping::None };
+        if *tone != wanted {
+            *tone = wanted;
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! Evaluating a model's WGSL in a compute pass: the GPU's answer to the same question that the Rust
+//! function answers.
+
+use bevy::render::{
+    render_resource::{
+        BindGroupEntry, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferBindingType,
+        BufferDescriptor, BufferInitDescriptor, BufferUsages, CommandEncoderDescriptor,
+        ComputePassDescriptor, ComputePipeline, PipelineLayoutDescriptor, RawComputePipelineDescriptor,
+        ShaderModuleDescriptor, ShaderSource, ShaderStages,
+    },
+    renderer::{RenderDevice, RenderQueue},
+    settings::RenderResources,
+};
+use bevy::tasks::block_on;
+use glam::{DVec3, Vec3};
+
+use std::{sync::Arc, time::Duration};
+
+use super::gpu::{GpuError, device, read_back, vector};
+use crate::{
+    optics::{Terms, albedo::directional_in_batches, colour::Encoding},
+    parameter::Values,
+    reflection::{ModelEntry, Surface, ends::ends},
+    registry::compose::compose_evaluation,
+    render::trial::refused,
+    shader::{check, compose::Sources},
+};
+
+/// The response of a model to pairs of directions (to the light, to the viewer) in the local frame
+/// (normal +z, tangent +x), calculated by its WGSL on the GPU. The texts are those of `sources`.
+///
+/// # Errors
+/// Without a driver, or when the model's WGSL is not valid.
+pub fn evaluate(
+    sources: &Sources,
+    model: &ModelEntry,
+    values: &Values,
+    encoding: Encoding,
+    pairs: &[(Vec3, Vec3)],
+) -> Result<Vec<Terms>, GpuError> {
+    if pairs.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut evaluator = Evaluator::new(sources, model)?;
+    evaluator.set(values, encoding);
+    evaluator.evaluate(pairs)
+}
+
+/// The directional albedos of a model for views in the local frame, by its WGSL on the GPU: where to
+/// ask is decided here, the responses come from there, and are added up here in 64 bits.
+///
+/// # Errors
+/// As [`evaluate`].
+pub fn albedos(
+    sources: &Sources,
+    model: &ModelEntry,
+    values: &Values,
+    encoding: Encoding,
+    views: &[Vec3],
+) -> Result<Vec<DVec3>, GpuError> {
+    if views.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut evaluator = Evaluator::new(sources, model)?;
+    evaluator.set(values, encoding);
+    evaluator.albedos(views)
+}
+
+/// The parameters of a model as its shader reads them. The response asks for the lobe, not for the albedo.
+fn row(device: &RenderDevice, model: &ModelEntry, values: &Values, encoding: Encoding) -> Buffer {
+    device.create_buffer_with_data(&BufferInitDescriptor {
+        label: Some("row"),
+        contents: &model.row(values, encoding, false),
+        usage: BufferUsages::STORAGE,
+    })
+}
+
+/// Bytes of `Pair` in `evaluate.wgsl`: two vec3, each padded to 16.
+const PAIR_BYTES: usize = 32;
+/// Bytes of `Terms` in `terms.wgsl`: three vec3, each padded to 16.
+const ANSWER_BYTES: usize = 48;
+
+/// As many pairs are asked for at a time, so that the bound on time is one on a part of the work.
+const BATCH: usize = 1 << 16;
+/// So long a batch may take; a slow model takes a second on two cores.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A model on the GPU, ready to be asked again and again with one set of parameters after the other.
+pub struct Evaluator {
+    model: ModelEntry,
+    device: RenderDevice,
+    queue: RenderQueue,
+    layout: BindGroupLayout,
+    pipeline: ComputePipeline,
+    row: Buffer,
+    /// The model on the CPU, if it is interpreted there.
+    on_cpu: Option<Arc<dyn Surface>>,
+    patience: Duration,
+}
+
+impl Evaluator {
+    /// The model with its default parameters.
+    ///
+    /// # Errors
+    /// Without a driver, or when the model's WGSL is not valid.
+    pub fn new(sources: &Sources, model: &ModelEntry) -> Result<Self, GpuError> {
+        let composed = compose_evaluation(sources, model);
+        check::validate(&composed).map_err(GpuError::Invalid)?;
+        let RenderResources(device, queue, ..) = device()?;
+        let row = row(&device, model, &Values::default(), Encoding::Srgb);
+        // What users write may ask for what is not bound here.
+        let scope = device.wgpu_device().push_error_scope(wgpu::ErrorFilter::Validation);
+        let text = composed.text.clone();
+        let module = device.create_and_validate_shader_module(ShaderModuleDescriptor {
+            label: Some("evaluate"),
+            source: ShaderSource::Wgsl(text.into()),
+        });
+        let entry = |binding, read_only| BindGroupLayoutEntry {
+            binding,
+            visibility: ShaderStages::COMPUTE,
+            ty: BindingType::Buffer {
+                ty: BufferBindingType::Storage { read_only },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let layout =
+            device.create_bind_group_layout("evaluate", &[entry(0, true), entry(1, true), entry(2, false)]);
+        let pipeline_layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some("evaluate"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&RawComputePipelineDescriptor {
+            label: Some("evaluate"),
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some("evaluate"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        if let Some(error) = block_on(scope.pop()) {
+            return Err(GpuError::Invalid(refused(&composed, &error)));
+        }
+        let mut evaluator = Self {
+            model: model.clone(),
+            device,
+            queue,
+            layout,
+            pipeline,
+            row,
+            on_cpu: None,
+            patience: PATIENCE,
+        };
+        evaluator.set(&Values::default(), Encoding::Srgb);
+        Ok(evaluator)
+    }
+
+    /// Answers with these parameters from now on.
+    pub fn set(&mut self, values: &Values, encoding: Encoding) {
+        self.row = row(&self.device, &self.model, values, encoding);
+        self.on_cpu = self.model.is_interpreted().then(|| self.model.instantiate(values, encoding));
+    }
+
+    /// The responses to pairs of directions, in as many passes as they need.
+    ///
+    /// # Errors
+    /// When the answers cannot be copied from the GPU, or when the model does not come to an end.
+    pub fn evaluate(&self, pairs: &[(Vec3, Vec3)]) -> Result<Vec<Terms>, GpuError> {
+        let limit = self.device.limits().max_storage_buffer_binding_size as usize / ANSWER_BYTES;
+        let mut answers = Vec::with_capacity(pairs.len());
+        for chunk in pairs.chunks(limit.min(BATCH)) {
+            if let Some(surface) = &self.on_cpu {
+                ends(&self.model, surface.as_ref(), chunk)?;
+            }
+            answers.extend(self.run(chunk)?);
+        }
+        Ok(answers)
+    }
+
+    /// The directional albedos for views, as [`albedos`] has them.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    pub fn albedos(&self, views: &[Vec3]) -> Result<Vec<DVec3>, GpuError> {
+        /// As many views have their batches in memory at a time.
+        const VIEWS: usize = 64;
+        let mut albedos = Vec::with_capacity(views.len());
+        for views in views.chunks(VIEWS) {
+            albedos.extend(directional_in_batches(views, |pairs| self.evaluate(pairs))?);
+        }
+        Ok(albedos)
+    }
+
+    fn run(&self, pairs: &[(Vec3, Vec3)]) -> Result<Vec<Terms>, GpuError> {
+        let mut input = Vec::with_capacity(pairs.len() * PAIR_BYTES);
+        for v in pairs.iter().flat_map(|(l, v)| [l, v]) {
+            for c in [v.x, v.y, v.z, 0.0] {
+                input.extend_from_slice(&c.to_le_bytes());
+            }
+        }
+        let device = &self.device;
+        let input = device.create_buffer_with_data(&BufferInitDescriptor {
+            label: Some("pairs"),
+            contents: &input,
+            usage: BufferUsages::STORAGE,
+        });
+        let size = (pairs.len() * ANSWER_BYTES) as u64;
+        let empty = |usage| {
+            device.create_buffer(&BufferDescriptor {
+                label: Some("answers"),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let output = empty(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let staging = empty(BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+        let group = device.create_bind_group(
+            "evaluate",
+            &self.layout,
+            &[
+                BindGroupEntry { binding: 0, resource: self.row.as_entire_binding() },
+                BindGroupEntry { binding: 1, resource: input.as_entire_binding() },
+                BindGroupEntry { binding: 2, resource: output.as_entire_binding() },
+            ],
+        );
+        let mut encoder =
+            device.create_command_encoder(&CommandEncoderDescriptor { label: Some("evaluate") });
+        {
+            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                label: Some("evaluate"),
+                timestamp_writes: None,
+            });
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, Some(&*group), &[]);
+            pass.dispatch_workgroups(pairs.len().div_ceil(64) as u32, 1, 1);
+        }
+        encoder.copy_buffer_to_buffer(&output, 0, &staging, 0, size);
+        self.queue.submit([encoder.finish()]);
+        Ok(read_back(device, &staging, self.patience)?
+            .chunks_exact(ANSWER_BYTES)
+            .map(|b| Terms {
+                ambient: vector(&b[..12]),
+                diffuse: vector(&b[16..28]),
+                specular: vector(&b[32..44]),
+            })
+            .collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::Registry;
+
+    #[test]
+    fn a_batch_that_takes_too_long_is_not_waited_for() {
+        let registry = Registry::builtin();
+        let model = registry.model("lambert").expect("built in");
+        let mut sources = Sources::default();
+        let slow = "var s = l.x;\n    for (var i = 0u; i < 4000u; i++) { s = sin(s + f32(i)); }\n    return Terms(vec3(s), vec3(0.0), vec3(0.0));\n}\nfn unused(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {\n";
+        let original = model.declaration.wgsl.text;
+        let body = original.find("-> Terms {").expect("there") + "-> Terms {\n".len();
+        sources
+            .edit(model.declaration.wgsl.path, format!("{}{slow}{}", &original[..body], &original[body..]));
+        let mut evaluator = Evaluator::new(&sources, model).expect("a Vulkan driver");
+        let pairs = vec![(Vec3::Z, Vec3::new(0.6, 0.0, 0.8)); BATCH + 1];
+        assert_eq!(evaluator.evaluate(&pairs).expect("in time").len(), pairs.len());
+        evaluator.patience = Duration::from_micros(1);
+        // On a busy machine the work may be done before anybody waits for it, but not again and again.
+        let late = (0..10).find_map(|_| evaluator.evaluate(&pairs).err()).expect("no driver is as fast");
+        assert!(matches!(late, GpuError::Stuck(_)), "{late}");
+    }
+}

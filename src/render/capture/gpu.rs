@@ -1,0 +1,427 @@
+//! The GPU renderer without a window: the same scene plugin, drawing into an image.
+
+use std::{path::Path, sync::OnceLock, time::Duration};
+
+use bevy::{
+    app::{App, PluginsState},
+    asset::{AssetPlugin, Assets, Handle, RenderAssetUsages},
+    camera::{Hdr, RenderTarget},
+    ecs::prelude::*,
+    image::Image,
+    light::cluster::GlobalClusterSettings,
+    log::LogPlugin,
+    prelude::{DefaultPlugins, PluginGroup},
+    render::{
+        RenderApp, RenderPlugin,
+        pipelined_rendering::PipelinedRenderingPlugin,
+        render_asset::RenderAssets,
+        render_resource::{
+            Buffer, BufferDescriptor, BufferUsages, CachedPipelineState, CommandEncoderDescriptor, Extent3d,
+            MapMode, PipelineCache, PollType, TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat,
+            TextureUsages,
+        },
+        renderer::{RenderDevice, RenderQueue, initialize_renderer},
+        settings::{Backends, RenderCreation, RenderResources, WgpuSettings},
+        texture::GpuImage,
+    },
+    shader::ShaderCacheError,
+    tasks::block_on,
+    window::{ExitCondition, WindowPlugin},
+    winit::WinitPlugin,
+};
+use glam::{UVec2, Vec3};
+use thiserror::Error;
+use wgpu::PollError;
+
+use crate::{
+    optics::TermSelection,
+    reflection::ends::Endless,
+    render::{
+        camera::{PictureCamera, picture_camera},
+        entities::CurrentScene,
+        live::LiveShaders,
+        plugin::{ScenePlugin, ShownTerms},
+        trial::Bench,
+        view::View,
+    },
+    scene::Scene,
+    shader::check::ShaderProblem,
+};
+
+/// Why the GPU renderer could not draw.
+#[derive(Debug, Error)]
+pub enum GpuError {
+    /// No Vulkan adapter, not even a software one.
+    #[error(
+        "no Vulkan driver found; on Debian and Ubuntu `apt-get install libvulkan1 mesa-vulkan-drivers` installs \
+         one that needs no graphics card, or use `--renderer cpu`, which needs no driver"
+    )]
+    NoAdapter,
+    /// Nothing came out in time.
+    #[error(
+        "the GPU renderer gave no picture within {0:?}; run with `--verbose` to see what it was waiting for, or use `--renderer cpu`"
+    )]
+    TimedOut(Duration),
+    /// A shader could not be compiled.
+    #[error("a shader could not be compiled: {0}")]
+    Shader(String),
+    /// A shader is wrong, and where is known.
+    #[error("a shader is not valid: {0}")]
+    Invalid(Box<ShaderProblem>),
+    /// A model does not come to an end, as the CPU found before the GPU was asked.
+    #[error(transparent)]
+    Endless(#[from] Endless),
+    /// The GPU does not come to an end.
+    #[error("the GPU did not finish within {0:?}; a loop in a shader may have no end")]
+    Stuck(Duration),
+    /// The picture could not be copied from the GPU.
+    #[error("the picture could not be copied from the GPU: {0}")]
+    Copy(String),
+}
+
+/// What is known of the adapter that draws.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterFacts {
+    /// The name that the driver gives, e.g. "llvmpipe (LLVM 15.0.6, 256 bits)".
+    pub name: String,
+    /// Whether it is a program on the CPU.
+    pub software: bool,
+}
+
+/// Whether this machine may have a hardware GPU, judged by the device nodes that drivers make: the
+/// cheap sign that decides whether `--renderer auto` looks for an adapter at all.
+#[must_use]
+pub fn may_have_hardware() -> bool {
+    if !cfg!(target_os = "linux") {
+        return true;
+    }
+    let render_node = std::fs::read_dir("/dev/dri").is_ok_and(|mut nodes| {
+        nodes.any(|n| n.is_ok_and(|n| n.file_name().to_string_lossy().starts_with("renderD")))
+    });
+    render_node || Path::new("/dev/nvidiactl").exists() || Path::new("/dev/dxg").exists()
+}
+
+/// The adapter that would draw, without starting anything: a hardware one if there is one.
+///
+/// # Errors
+/// [`GpuError::NoAdapter`] when there is none at all.
+pub fn find_adapter() -> Result<AdapterFacts, GpuError> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends();
+    let instance = wgpu::Instance::new(descriptor);
+    let infos: Vec<_> =
+        block_on(instance.enumerate_adapters(backends())).iter().map(wgpu::Adapter::get_info).collect();
+    infos
+        .iter()
+        .find(|i| i.device_type != wgpu::DeviceType::Cpu)
+        .or_else(|| infos.first())
+        .map(|i| AdapterFacts { name: i.name.clone(), software: i.device_type == wgpu::DeviceType::Cpu })
+        .ok_or(GpuError::NoAdapter)
+}
+
+/// The graphics interfaces that are used: `WGPU_BACKEND` when set, else Vulkan on Linux (asking for
+/// OpenGL as well would print noise on machines without it) and everything elsewhere.
+#[must_use]
+pub fn backends() -> Backends {
+    Backends::from_env().unwrap_or(if cfg!(target_os = "linux") {
+        Backends::VULKAN
+    } else {
+        Backends::PRIMARY
+    })
+}
+
+/// The settings of the renderer, for windows and without.
+#[must_use]
+pub fn wgpu_settings() -> WgpuSettings {
+    WgpuSettings { backends: Some(backends()), ..WgpuSettings::default() }
+}
+
+/// The device of this process. All renderers without a window share it: making one takes longer than
+/// drawing a picture.
+pub(super) fn device() -> Result<RenderResources, GpuError> {
+    static DEVICE: OnceLock<Option<RenderResources>> = OnceLock::new();
+    DEVICE
+        .get_or_init(|| {
+            find_adapter().ok()?;
+            Some(block_on(initialize_renderer(backends(), None, &wgpu_settings())))
+        })
+        .clone()
+        .ok_or(GpuError::NoAdapter)
+}
+
+/// What the target holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// What people see: tone mapped, sRGB-encoded, 8 bits.
+    Display,
+    /// Linear 32-bit floats, unclamped, for measurements. One sample per pixel.
+    Linear,
+}
+
+impl Output {
+    fn format(self) -> TextureFormat {
+        match self {
+            Self::Display => TextureFormat::Rgba8UnormSrgb,
+            Self::Linear => TextureFormat::Rgba32Float,
+        }
+    }
+
+    fn bytes_per_pixel(self) -> u32 {
+        match self {
+            Self::Display => 4,
+            Self::Linear => 16,
+        }
+    }
+}
+
+/// The longest that a first picture may take; software Vulkan compiles shaders for a few seconds at
+/// most.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A renderer that draws scenes into an image, frame by frame.
+pub struct GpuRenderer {
+    app: App,
+    target: Handle<Image>,
+    staging: Option<Buffer>,
+    output: Output,
+    width: u32,
+    height: u32,
+}
+
+impl GpuRenderer {
+    /// Starts a renderer for pictures of one size. `samples` is 1 or 4; [`Output::Linear`] has 1.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] when there is no driver.
+    pub fn new(width: u32, height: u32, samples: u8, output: Output) -> Result<Self, GpuError> {
+        Self::extended(width, height, samples, output, |_| {})
+    }
+
+    /// As [`new`](Self::new), with more models, modes, lights or shapes registered by `extend`.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn extended(
+        width: u32,
+        height: u32,
+        samples: u8,
+        output: Output,
+        extend: impl FnOnce(&mut App),
+    ) -> Result<Self, GpuError> {
+        let resources = device()?;
+        let mut app = App::new();
+        app.add_plugins(
+            DefaultPlugins
+                .set(WindowPlugin {
+                    primary_window: None,
+                    exit_condition: ExitCondition::DontExit,
+                    ..WindowPlugin::default()
+                })
+                .set(RenderPlugin {
+                    render_creation: RenderCreation::Manual(resources),
+                    synchronous_pipeline_compilation: true,
+                    ..RenderPlugin::default()
+                })
+                .set(AssetPlugin { watch_for_changes_override: Some(false), ..AssetPlugin::default() })
+                .disable::<WinitPlugin>()
+                .disable::<PipelinedRenderingPlugin>()
+                .disable::<LogPlugin>(),
+        )
+        .add_plugins(ScenePlugin);
+        extend(&mut app);
+
+        let mut image = Image::new_target_texture(width, height, output.format(), None);
+        image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+        image.asset_usage = RenderAssetUsages::default();
+        let target = app.world_mut().resource_mut::<Assets<Image>>().add(image);
+        let samples = if output == Output::Linear { 1 } else { samples };
+        let mut camera =
+            app.world_mut().spawn((picture_camera(samples), RenderTarget::Image(target.clone().into())));
+        if output == Output::Display {
+            camera.insert(Hdr);
+        }
+        while app.plugins_state() == PluginsState::Adding {
+            std::thread::yield_now();
+        }
+        app.finish();
+        app.cleanup();
+        if let Some(mut clusters) = app.world_mut().get_resource_mut::<GlobalClusterSettings>() {
+            // Bevy's own lights are not used, so neither is their clustering.
+            clusters.gpu_clustering = None;
+        }
+        Ok(Self { app, target, staging: None, output, width, height })
+    }
+
+    /// The world of the app, for tests and for registering more.
+    pub fn app(&mut self) -> &mut App {
+        &mut self.app
+    }
+
+    /// Shows another scene from the next frame on.
+    pub fn set_scene(&mut self, scene: Scene) {
+        self.app.world_mut().resource_mut::<CurrentScene>().set_if_neq(CurrentScene(scene));
+    }
+
+    /// Shows only some terms from the next frame on.
+    pub fn set_terms(&mut self, terms: TermSelection) {
+        self.app.world_mut().resource_mut::<ShownTerms>().set_if_neq(ShownTerms(terms));
+    }
+
+    /// From now on frames draw only what changed, as those of the window do.
+    pub fn draw_on_demand(&mut self) {
+        let view = View { size: UVec2::new(self.width, self.height), format: self.output.format() };
+        let world = self.app.world_mut();
+        let cameras: Vec<_> = world.query_filtered::<Entity, With<PictureCamera>>().iter(world).collect();
+        for camera in cameras {
+            world.entity_mut(camera).insert(view);
+        }
+    }
+
+    /// Draws one frame.
+    pub fn step(&mut self) {
+        self.app.update();
+    }
+
+    /// Waits until the GPU has drawn everything that was asked of it; for timing.
+    pub fn wait(&mut self) {
+        if let Some(render_app) = self.app.get_sub_app(RenderApp) {
+            // A lost device shows when the picture is read.
+            let _ = render_app.world().resource::<RenderDevice>().poll(PollType::wait_indefinitely());
+        }
+    }
+
+    /// What keeps the picture from being what the shader files say, if anything does.
+    #[must_use]
+    pub fn shader_problem(&self) -> Option<ShaderProblem> {
+        self.app.world().get_resource::<LiveShaders>()?.refused().cloned()
+    }
+
+    /// Draws frames until nothing is waiting to be loaded or compiled.
+    ///
+    /// # Errors
+    /// [`GpuError::TimedOut`] when that does not happen, e.g. because a shader cannot be compiled.
+    pub fn settle(&mut self) -> Result<(), GpuError> {
+        let start = std::time::Instant::now();
+        let mut ready = 0;
+        // The first frame is drawn before the target is, hence two.
+        while ready < 2 {
+            self.step();
+            ready = if self.is_waiting()? { 0 } else { ready + 1 };
+            if self.app.world().get_resource::<Bench>().is_some_and(Bench::is_waiting) {
+                // Another process has the processors for what it tries.
+                std::thread::sleep(Duration::from_millis(2));
+            }
+            if start.elapsed() > PATIENCE {
+                return Err(GpuError::TimedOut(PATIENCE));
+            }
+        }
+        Ok(())
+    }
+
+    /// True while something waits to be loaded or compiled.
+    pub(super) fn is_waiting(&self) -> Result<bool, GpuError> {
+        let Some(render_app) = self.app.get_sub_app(RenderApp) else { return Ok(false) };
+        let cache = render_app.world().resource::<PipelineCache>();
+        for pipeline in cache.pipelines() {
+            if let CachedPipelineState::Err(error) = &pipeline.state
+                && !matches!(
+                    error,
+                    ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable
+                )
+            {
+                return Err(GpuError::Shader(error.to_string()));
+            }
+        }
+        let trying = self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying);
+        // Bevy goes on listing a pipeline for one frame after it was made.
+        let made =
+            |id| matches!(cache.pipelines().nth(id).map(|p| &p.state), Some(CachedPipelineState::Ok(_)));
+        Ok(trying || !cache.waiting_pipelines().all(made))
+    }
+
+    /// The bytes of the picture as last drawn, rows without padding.
+    ///
+    /// # Errors
+    /// [`GpuError::Copy`] when the picture does not exist yet or the device was lost.
+    pub fn read(&mut self) -> Result<Vec<u8>, GpuError> {
+        let missing = || GpuError::Copy("nothing has been drawn yet".to_owned());
+        let render_app = self.app.get_sub_app(RenderApp).ok_or_else(missing)?;
+        let world = render_app.world();
+        let device = world.resource::<RenderDevice>();
+        let queue = world.resource::<RenderQueue>();
+        let image = world.resource::<RenderAssets<GpuImage>>().get(&self.target).ok_or_else(missing)?;
+
+        let row = self.width * self.output.bytes_per_pixel();
+        let padded = row.next_multiple_of(256);
+        let staging = self.staging.get_or_insert_with(|| {
+            device.create_buffer(&BufferDescriptor {
+                label: Some("picture"),
+                size: u64::from(padded) * u64::from(self.height),
+                usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            })
+        });
+        let mut encoder =
+            device.create_command_encoder(&CommandEncoderDescriptor { label: Some("read picture") });
+        encoder.copy_texture_to_buffer(
+            image.texture.as_image_copy(),
+            TexelCopyBufferInfo {
+                buffer: staging,
+                layout: TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded),
+                    rows_per_image: None,
+                },
+            },
+            Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 },
+        );
+        queue.submit([encoder.finish()]);
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        let bytes = read_back(device, staging, PATIENCE + Duration::from_micros(pixels))?;
+        Ok(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
+    }
+
+    /// The picture as last drawn, 8-bit RGB.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_rgb8(&mut self) -> Result<Vec<u8>, GpuError> {
+        Ok(self.read()?.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect())
+    }
+
+    /// The picture as last drawn, linear RGB; for [`Output::Linear`].
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_linear(&mut self) -> Result<Vec<Vec3>, GpuError> {
+        Ok(self.read()?.chunks_exact(16).map(vector).collect())
+    }
+}
+
+/// The bytes of a buffer to which everything submitted has been copied, if that is done in time.
+pub(super) fn read_back(
+    device: &RenderDevice,
+    staging: &Buffer,
+    patience: Duration,
+) -> Result<Vec<u8>, GpuError> {
+    let failed = |e: &dyn std::fmt::Display| GpuError::Copy(e.to_string());
+    let (sender, receiver) = std::sync::mpsc::channel();
+    staging.slice(..).map_async(MapMode::Read, move |result| {
+        let _ = sender.send(result);
+    });
+    match device.poll(PollType::Wait { submission_index: None, timeout: Some(patience) }) {
+        Ok(_) => {}
+        Err(PollError::Timeout) => return Err(GpuError::Stuck(patience)),
+        Err(e) => return Err(failed(&e)),
+    }
+    receiver.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
+    let bytes = staging.slice(..).get_mapped_range().to_vec();
+    staging.unmap();
+    Ok(bytes)
+}
+
+/// Three floats, little-endian.
+pub(super) fn vector(bytes: &[u8]) -> Vec3 {
+    let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+    Vec3::new(float(&bytes[..4]), float(&bytes[4..8]), float(&bytes[8..12]))
+}

@@ -1,0 +1,322 @@
+//! The process that tries shaders for another one ([`crate::render::trial::process`]): each is made into a pipeline,
+//! and a small picture is drawn with it.
+
+use std::{
+    io::{self, BufRead, Write},
+    sync::{Arc, Mutex, PoisonError},
+    thread,
+    time::{Duration, Instant},
+};
+
+use bevy::{
+    app::App,
+    asset::{Assets, Handle, RenderAssetUsages},
+    camera::visibility::Visibility,
+    ecs::{
+        prelude::*,
+        schedule::{Schedules, SingleThreadedExecutor},
+    },
+    mesh::{Mesh, Mesh3d, MeshTag},
+    render::{
+        RenderApp,
+        error_handler::{RenderErrorHandler, RenderErrorPolicy},
+        renderer::{RenderAdapter, RenderDevice},
+        storage::ShaderBuffer,
+    },
+    shader::{Shader, ValidateShader},
+    transform::components::Transform,
+};
+
+use super::gpu::{GpuError, GpuRenderer, Output};
+use crate::{
+    registry::Registry,
+    render::{
+        illumination::IlluminationBuffer,
+        material::{Attachments, Ingredients},
+        swap::{face_mesh, shared_mesh},
+        trial::{
+            Bench, COMPOSED, Tools, Verdict,
+            process::{Answer, Budget, Request, refused_whole},
+        },
+    },
+    scene::{Light, Scene},
+    shader::{check::ShaderProblem, compose::Composed, slim::slim, whole::judged},
+};
+
+/// The side of the small picture, pixels.
+const SIDE: u32 = 32;
+/// Bytes of the table of parameters: more than any row has.
+const ROW: usize = 1 << 16;
+/// The longest that drawing it again may take: a picture of the window has a thousand times its pixels, and the
+/// shipped models take a hundredth of this.
+const SLOWEST: Duration = Duration::from_millis(150);
+/// So many more pictures may be drawn to find one that is fast enough.
+const PATIENCE: usize = 5;
+
+/// Answers requests until there are no more, or until the renderer failed: then a new process is better.
+///
+/// # Errors
+/// [`GpuError`] when nothing can be drawn at all.
+pub fn serve(input: impl BufRead, mut output: impl Write) -> Result<(), GpuError> {
+    let mut stage = Stage::new()?;
+    let deadline = Deadline::watched(2 * Budget::default().time);
+    let mut say = |answer: &Answer| {
+        let line = serde_json::to_string(answer).unwrap_or_default();
+        writeln!(output, "{line}").and_then(|()| output.flush())
+    };
+    let gone = |e: io::Error| GpuError::Copy(e.to_string());
+    say(&Answer::Ready).map_err(gone)?;
+    for line in input.lines() {
+        let Ok(request) = serde_json::from_str::<Request>(&line.map_err(gone)?) else { continue };
+        deadline.begin();
+        let (answer, more) = stage.try_out(&request);
+        deadline.end();
+        say(&answer).map_err(gone)?;
+        if !more {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Ends this process should a trial not end, for who asked may be gone.
+#[derive(Clone)]
+struct Deadline(Arc<Mutex<Option<Instant>>>);
+
+impl Deadline {
+    fn watched(limit: Duration) -> Self {
+        let deadline = Self(Arc::new(Mutex::new(None)));
+        let since = deadline.0.clone();
+        thread::spawn(move || {
+            loop {
+                thread::sleep(limit / 4);
+                let since = *since.lock().unwrap_or_else(PoisonError::into_inner);
+                if since.is_some_and(|since| since.elapsed() > limit) {
+                    std::process::exit(3);
+                }
+            }
+        });
+        deadline
+    }
+
+    fn set(&self, since: Option<Instant>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = since;
+    }
+
+    fn begin(&self) {
+        self.set(Some(Instant::now()));
+    }
+
+    fn end(&self) {
+        self.set(None);
+    }
+}
+
+/// The small picture: one sphere for each kind of mesh, one of which is shown.
+struct Stage {
+    renderer: GpuRenderer,
+    /// For meshes that share vertices, and for those that know their polygons.
+    actors: [Actor; 2],
+    /// The one that is shown.
+    shown: usize,
+    /// What the renderer had against the last picture.
+    failure: Failure,
+}
+
+struct Actor {
+    entity: Entity,
+    shader: Handle<Shader>,
+    parameters: Handle<ShaderBuffer>,
+}
+
+/// What the renderer complained of, if it did.
+#[derive(Clone, Default, Resource)]
+struct Failure(Arc<Mutex<Option<String>>>);
+
+impl Failure {
+    fn take(&self) -> Option<String> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+impl Stage {
+    fn new() -> Result<Self, GpuError> {
+        let failure = Failure::default();
+        let mut renderer = GpuRenderer::extended(SIDE, SIDE, 1, Output::Display, |app| {
+            app.insert_resource(failure.clone()).insert_resource(RenderErrorHandler(|error, main, _| {
+                if let Some(failure) = main.get_resource::<Failure>() {
+                    let text = error.description.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+                    *failure.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
+                }
+                RenderErrorPolicy::Ignore
+            }));
+        })?;
+        on_one_thread(renderer.app());
+        renderer.set_scene(scene());
+        renderer.settle()?;
+        let actors = [false, true].map(|faces| Actor::new(renderer.app().world_mut(), faces));
+        Ok(Self { renderer, actors, shown: usize::MAX, failure })
+    }
+
+    /// Tries a shader; false if nothing more can be tried after it.
+    fn try_out(&mut self, request: &Request) -> (Answer, bool) {
+        let composed =
+            Composed { text: request.text.clone(), map: request.map.clone(), ..Composed::default() };
+        let known = match judged(&composed, request.faces) {
+            Some(Ok(())) => true,
+            Some(Err(problem)) => {
+                // The composer names places in more cases.
+                return (Answer::Bad(self.explained(&composed, request.faces).unwrap_or(problem)), true);
+            }
+            None => false,
+        };
+        if !known && let Some(problem) = self.explained(&composed, request.faces) {
+            return (Answer::Bad(problem), true);
+        }
+        match self.draw(request) {
+            Ok(time) if time <= SLOWEST => (Answer::Good, true),
+            Ok(time) => {
+                let message = format!(
+                    "drawing {SIDE} × {SIDE} pixels with it takes {} ms, at most {} ms are allowed; is there a loop of very many rounds?",
+                    time.as_millis(),
+                    SLOWEST.as_millis()
+                );
+                (Answer::Bad(refused_whole(request, message)), true)
+            }
+            Err(what) => {
+                let message = format!("the graphics driver failed while drawing with it: {what}");
+                let problem = self.explained(&composed, request.faces);
+                (Answer::Bad(problem.unwrap_or_else(|| refused_whole(request, message))), false)
+            }
+        }
+    }
+
+    /// What is wrong with a shader, found by making a pipeline with nothing drawn.
+    fn explained(&mut self, composed: &Composed, faces: bool) -> Option<Box<ShaderProblem>> {
+        let world = self.renderer.app().world_mut();
+        let device = world.get_resource::<RenderDevice>()?.clone();
+        let adapter = world.get_resource::<RenderAdapter>()?.clone();
+        let verdict = world.resource_scope(|world, mut bench: Mut<Bench>| {
+            let shaders = world.resource::<Assets<Shader>>();
+            bench.try_here(composed, faces, Tools { device: &device, adapter: &adapter, shaders })
+        });
+        match verdict {
+            Verdict::Bad(problem) => Some(problem),
+            Verdict::Good | Verdict::NotYet => None,
+        }
+    }
+
+    /// Draws a picture; the time that it takes.
+    fn picture(&mut self) -> Duration {
+        let start = Instant::now();
+        self.renderer.step();
+        self.renderer.wait();
+        start.elapsed()
+    }
+
+    /// Draws with a shader; the time of a picture once everything is compiled.
+    fn draw(&mut self, request: &Request) -> Result<Duration, String> {
+        self.failure.take();
+        let chosen = usize::from(request.faces);
+        let world = self.renderer.app().world_mut();
+        for (i, actor) in self.actors.iter().enumerate() {
+            let shown = if i == chosen { Visibility::Visible } else { Visibility::Hidden };
+            world.entity_mut(actor.entity).insert(shown);
+        }
+        self.actors[chosen].dress(world, request);
+        // The driver compiles for the first picture; if that takes long, the next ones show how much of it is drawing.
+        // A busy machine makes any of them slow, but not all. An actor that just came on may still miss its entrance.
+        let mut time = self.picture();
+        if chosen != std::mem::replace(&mut self.shown, chosen) {
+            time = self.picture();
+        }
+        for _ in 0..PATIENCE {
+            if time <= SLOWEST {
+                break;
+            }
+            time = time.min(self.picture());
+        }
+        if self.renderer.is_waiting().map_err(|e| e.to_string())? {
+            return Err("something that it imports is missing".to_owned());
+        }
+        match self.failure.take() {
+            Some(what) => Err(what),
+            None => Ok(time),
+        }
+    }
+}
+
+/// Lets all systems run one after the other: in a picture this small, each takes less time than handing it to another
+/// thread.
+fn on_one_thread(app: &mut App) {
+    let change = |world: &mut World| {
+        if let Some(mut schedules) = world.get_resource_mut::<Schedules>() {
+            for (_, schedule) in schedules.iter_mut() {
+                schedule.set_executor(SingleThreadedExecutor::new());
+            }
+        }
+    };
+    change(app.world_mut());
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        change(render_app.world_mut());
+    }
+}
+
+/// Every light type shines, so that all of the light loop is drawn with.
+fn scene() -> Scene {
+    let mut scene = Scene::default();
+    let registry = Registry::builtin();
+    let (corner, lamp) = (scene.scene_size.corner(), scene.lights.first().cloned().unwrap_or_default());
+    scene.lights = registry
+        .lights()
+        .iter()
+        .map(|entry| {
+            let mut light = Light { position: Some(corner * 0.8), ..lamp.clone() };
+            light.direction = Some(-corner);
+            light.set_type(entry, &registry, scene.scene_size);
+            light
+        })
+        .collect();
+    scene
+}
+
+impl Actor {
+    fn new(world: &mut World, faces: bool) -> Self {
+        let mesh =
+            world.resource::<Registry>().shape("sphere").map(|shape| shape.mesh(shape.tessellation(None)));
+        let mesh = mesh.map(|mesh| if faces { face_mesh(&mesh) } else { shared_mesh(&mesh) });
+        let mesh = mesh.map(|mesh| world.resource_mut::<Assets<Mesh>>().add(mesh));
+        let shader = world.resource_mut::<Assets<Shader>>().reserve_handle();
+        let at = Transform::from_translation(Scene::default().scene_size.corner() / 2.0)
+            .with_scale(glam::Vec3::splat(3.0));
+        let mut entity = world.spawn((MeshTag(0), at, Visibility::Hidden));
+        if let Some(mesh) = mesh {
+            entity.insert(Mesh3d(mesh));
+        }
+        let entity = entity.id();
+        let empty = ShaderBuffer::new(&[0; ROW], RenderAssetUsages::default());
+        let parameters = world.resource_mut::<Assets<ShaderBuffer>>().add(empty);
+        let illumination = world.resource::<IlluminationBuffer>().0.clone();
+        let ingredients =
+            Ingredients { parameters: parameters.clone(), illumination, shader: shader.clone(), faces };
+        // That of models from files.
+        let attachment = world.resource::<Attachments>().get("");
+        if let Some(attachment) = attachment {
+            (attachment.attach)(&mut world.entity_mut(entity), ingredients);
+        }
+        Self { entity, shader, parameters }
+    }
+
+    /// Gives it the shader and the parameters of a request.
+    fn dress(&self, world: &mut World, request: &Request) {
+        let mut shader = Shader::from_wgsl(slim(&request.text), format!("{COMPOSED}trial.wgsl"));
+        shader.validate_shader = ValidateShader::Enabled;
+        // The asset is there as long as its handle.
+        let _ = world.resource_mut::<Assets<Shader>>().insert(self.shader.id(), shader);
+        let mut row = request.row.clone();
+        row.resize(ROW, 0);
+        if let Some(mut buffer) = world.resource_mut::<Assets<ShaderBuffer>>().get_mut(&self.parameters) {
+            buffer.data = Some(row);
+        }
+    }
+}

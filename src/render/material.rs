@@ -1,0 +1,240 @@
+//! The Material implementation, generic over the model (rule 3): one Material type per model.
+//!
+//! A material holds the table of the parameters of all objects under its model, whose layout follows
+//! from the declaration, the shared buffer of lights, and the composed shader of its model and shading
+//! mode, which is part of the pipeline key. Each object knows its row of the table by its mesh tag, so
+//! all objects under one model and mode share one material and are drawn together.
+
+use std::{collections::HashMap, marker::PhantomData};
+
+use bevy::{
+    asset::{Asset, AssetId, Assets, Handle},
+    ecs::{
+        change_detection::Mut,
+        resource::Resource,
+        world::{EntityWorldMut, World},
+    },
+    mesh::{Mesh, MeshVertexAttribute, MeshVertexBufferLayoutRef},
+    pbr::{Material, MaterialPipeline, MaterialPipelineKey, MaterialPlugin, MeshMaterial3d},
+    prelude::App,
+    reflect::TypePath,
+    render::{
+        render_resource::{
+            AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError, VertexFormat,
+        },
+        storage::ShaderBuffer,
+    },
+    shader::Shader,
+};
+
+use super::trial::MARK;
+use crate::{custom::CustomFile, reflection::ReflectionModel};
+
+/// The tangent of the vertex. Three numbers, not Bevy's four: the bitangent is always `n × t`.
+pub const TANGENT: MeshVertexAttribute =
+    MeshVertexAttribute::new("BrushTangent", 0x4c43_4d03, VertexFormat::Float32x3);
+/// The normal of the polygon (DD8), on meshes for modes that calculate per polygon.
+pub const FACE_NORMAL: MeshVertexAttribute =
+    MeshVertexAttribute::new("FaceNormal", 0x4c43_4d01, VertexFormat::Float32x3);
+/// The tangent of the polygon, on meshes for modes that calculate per polygon.
+pub const FACE_TANGENT: MeshVertexAttribute =
+    MeshVertexAttribute::new("FaceTangent", 0x4c43_4d04, VertexFormat::Float32x3);
+/// The centre of the polygon, on meshes for modes that calculate per polygon.
+pub const FACE_CENTRE: MeshVertexAttribute =
+    MeshVertexAttribute::new("FaceCentre", 0x4c43_4d02, VertexFormat::Float32x3);
+
+/// What is the same for all model types: everything a material holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ingredients {
+    /// The parameters of all objects under the model.
+    pub parameters: Handle<ShaderBuffer>,
+    /// The lights of the scene, shared by all materials.
+    pub illumination: Handle<ShaderBuffer>,
+    /// The composed shader of model and mode.
+    pub shader: Handle<Shader>,
+    /// Whether the mesh carries [`FACE_NORMAL`], [`FACE_TANGENT`] and [`FACE_CENTRE`].
+    pub faces: bool,
+}
+
+/// The material of objects under the model `M`; models from files share [`CustomFile`].
+#[derive(Asset, AsBindGroup, Clone, Debug)]
+#[bind_group_data(PipelineKey)]
+pub struct ModelMaterial<M: Clone + 'static> {
+    #[storage(0, read_only)]
+    parameters: Handle<ShaderBuffer>,
+    #[storage(1, read_only)]
+    illumination: Handle<ShaderBuffer>,
+    shader: Handle<Shader>,
+    faces: bool,
+    model: PhantomData<fn() -> M>,
+}
+
+/// What tells pipelines of one model type apart.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct PipelineKey {
+    shader: Handle<Shader>,
+    faces: bool,
+}
+
+impl<M: Clone + 'static> From<&ModelMaterial<M>> for PipelineKey {
+    fn from(material: &ModelMaterial<M>) -> Self {
+        Self { shader: material.shader.clone(), faces: material.faces }
+    }
+}
+
+impl<M: Clone + 'static> From<Ingredients> for ModelMaterial<M> {
+    fn from(i: Ingredients) -> Self {
+        Self {
+            parameters: i.parameters,
+            illumination: i.illumination,
+            shader: i.shader,
+            faces: i.faces,
+            model: PhantomData,
+        }
+    }
+}
+
+// By hand, so that authors of models need not know Bevy's reflection.
+impl<M: Clone + 'static> TypePath for ModelMaterial<M> {
+    fn type_path() -> &'static str {
+        std::any::type_name::<Self>()
+    }
+
+    fn short_type_path() -> &'static str {
+        std::any::type_name::<Self>()
+    }
+}
+
+impl<M: Clone + 'static> Material for ModelMaterial<M> {
+    // Objects neither shadow nor light each other (AB5, AB6), so no depth-only passes.
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+
+    fn specialize(
+        _pipeline: &MaterialPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        layout: &MeshVertexBufferLayoutRef,
+        key: MaterialPipelineKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        let mut attributes = vec![
+            Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
+            Mesh::ATTRIBUTE_NORMAL.at_shader_location(1),
+            TANGENT.at_shader_location(2),
+        ];
+        if key.bind_group_data.faces {
+            attributes.push(FACE_NORMAL.at_shader_location(3));
+            attributes.push(FACE_TANGENT.at_shader_location(4));
+            attributes.push(FACE_CENTRE.at_shader_location(5));
+            descriptor.vertex.shader_defs.push("FACES".into());
+        }
+        // One pipeline so marked is the example with which edited shaders are tried.
+        descriptor.vertex.shader_defs.push(MARK.into());
+        descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
+        descriptor.vertex.shader = key.bind_group_data.shader.clone();
+        descriptor.vertex.entry_point = Some("vertex".into());
+        if let Some(fragment) = descriptor.fragment.as_mut() {
+            if key.bind_group_data.faces {
+                fragment.shader_defs.push("FACES".into());
+            }
+            fragment.shader_defs.push(MARK.into());
+            fragment.shader = key.bind_group_data.shader;
+            fragment.entry_point = Some("fragment".into());
+        }
+        Ok(())
+    }
+}
+
+/// Puts a material of some model type on an entity, or takes it off: the same two calls for every
+/// model, looked up by id.
+#[derive(Clone, Copy)]
+pub struct Attachment {
+    /// Puts the material on.
+    pub attach: fn(&mut EntityWorldMut, Ingredients),
+    /// Takes the material off.
+    pub detach: fn(&mut EntityWorldMut),
+}
+
+/// The [`Attachment`] of every registered model.
+#[derive(Default, Resource)]
+pub struct Attachments {
+    by_id: HashMap<&'static str, Attachment>,
+    /// That of all models from files, whose ids come and go.
+    own: Option<Attachment>,
+}
+
+impl Attachments {
+    /// The attachment of a model that is registered, or was.
+    #[must_use]
+    pub fn get(&self, id: &str) -> Option<Attachment> {
+        self.by_id.get(id).copied().or(self.own)
+    }
+}
+
+/// Makes Material types known to the renderer.
+pub trait MaterialApp {
+    /// Makes the Material type of the model `M` known.
+    fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self;
+    /// Makes the Material type of all models from files known.
+    fn add_custom_material(&mut self) -> &mut Self;
+}
+
+impl MaterialApp for App {
+    fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self {
+        let attachment = attachment::<M>(self);
+        self.world_mut().resource_mut::<Attachments>().by_id.insert(M::DECLARATION.id, attachment);
+        self
+    }
+
+    fn add_custom_material(&mut self) -> &mut Self {
+        let attachment = attachment::<CustomFile>(self);
+        self.world_mut().resource_mut::<Attachments>().own = Some(attachment);
+        self
+    }
+}
+
+/// The attachment of a type of material that the renderer now knows.
+fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
+    if !app.is_plugin_added::<MaterialPlugin<ModelMaterial<M>>>() {
+        app.add_plugins(MaterialPlugin::<ModelMaterial<M>>::default());
+    }
+    app.init_resource::<Attachments>();
+    Attachment { attach: attach::<M>, detach: detach::<M> }
+}
+
+/// The materials of one model by shader: one for each shading mode in use.
+#[derive(Resource)]
+struct SharedMaterials<M: Clone + 'static>(HashMap<AssetId<Shader>, Handle<ModelMaterial<M>>>);
+
+fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, ingredients: Ingredients) {
+    let handle = entity.world_scope(|world: &mut World| {
+        let key = ingredients.shader.id();
+        world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
+        world.resource_scope(|world, mut shared: Mut<SharedMaterials<M>>| {
+            let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
+            let Some(handle) = shared.0.get(&key) else {
+                let handle = materials.add(ModelMaterial::<M>::from(ingredients));
+                shared.0.insert(key, handle.clone());
+                return handle;
+            };
+            // A table that was made anew, for more objects.
+            if let Some(material) = materials.get(handle)
+                && material.parameters != ingredients.parameters
+            {
+                let _ = materials.insert(handle.id(), ModelMaterial::<M>::from(ingredients));
+            }
+            handle.clone()
+        })
+    });
+    if entity.get::<MeshMaterial3d<ModelMaterial<M>>>().map(|m| &m.0) != Some(&handle) {
+        entity.insert(MeshMaterial3d(handle));
+    }
+}
+
+fn detach<M: Clone + 'static>(entity: &mut EntityWorldMut) {
+    entity.remove::<MeshMaterial3d<ModelMaterial<M>>>();
+}

@@ -1,0 +1,192 @@
+//! Trying out a shader before it is drawn with.
+//!
+//! Bevy puts a changed shader on the picture whatever it is: when it cannot be compiled, the mesh or the whole
+//! frame is lost. So each one is first composed as Bevy would compose it, in a [`ShaderCache`] of our own that
+//! validates in release builds too, and then made into a pipeline that nothing is drawn with, inside an error
+//! scope of the graphics driver. What comes through both can be drawn with.
+//!
+//! A driver may also crash, or not come to an end. So the window has all this done, and something drawn as well,
+//! in a process of its own ([`process`]), and goes on meanwhile.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use bevy::{
+    app::{App, Plugin},
+    asset::Assets,
+    ecs::prelude::*,
+    render::{
+        Render, RenderApp, RenderSystems,
+        render_resource::{
+            BindGroupLayout, CachedPipelineState, PipelineCache, PipelineDescriptor, RenderPipelineDescriptor,
+        },
+        renderer::{RenderAdapter, RenderDevice},
+    },
+    shader::{Shader, ShaderCache},
+};
+use naga::Module;
+
+use crate::shader::{check::ShaderProblem, compose::Composed, limits};
+
+mod attempt;
+mod explain;
+pub mod process;
+
+pub(crate) use explain::refused;
+
+use attempt::{Refusal, quietly};
+use explain::without_place;
+use process::TrialProcess;
+
+/// The mark in the pipelines of our materials, by which one is found as an example.
+pub const MARK: &str = "LAB_SURFACE";
+/// How the paths of our own composed shaders begin.
+pub const COMPOSED: &str = "composed/";
+
+/// What became of trying.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It can be drawn with.
+    Good,
+    /// It cannot, and this is why.
+    Bad(Box<ShaderProblem>),
+    /// Not known yet: nothing has been drawn, or the process that tries is still at it. Ask again in the next
+    /// frame.
+    NotYet,
+}
+
+/// A pipeline of our materials as Bevy made it, to be made again with another shader.
+struct Example {
+    descriptor: RenderPipelineDescriptor,
+    layouts: Vec<BindGroupLayout>,
+}
+
+/// The example, filled by the renderer as soon as there is one.
+#[derive(Clone, Default, Resource)]
+struct SharedExample(Arc<Mutex<Option<Example>>>);
+
+impl SharedExample {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Option<Example>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Lets shaders be tried: makes [`Bench`] a resource.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TrialPlugin;
+
+impl Plugin for TrialPlugin {
+    fn build(&self, app: &mut App) {
+        let example = SharedExample::default();
+        app.insert_resource(Bench { example: example.clone(), cache: None, process: None });
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            render_app
+                .insert_resource(example)
+                .add_systems(Render, find_example.in_set(RenderSystems::Cleanup));
+        }
+    }
+}
+
+/// Keeps the first of our pipelines that works.
+fn find_example(example: Res<SharedExample>, cache: Res<PipelineCache>) {
+    let mut example = example.lock();
+    if example.is_some() {
+        return;
+    }
+    let found = cache.pipelines().find_map(|pipeline| match (&pipeline.descriptor, &pipeline.state) {
+        (PipelineDescriptor::RenderPipelineDescriptor(d), CachedPipelineState::Ok(_))
+            if d.vertex.shader_defs.iter().any(|def| *def == MARK.into()) =>
+        {
+            Some(d)
+        }
+        _ => None,
+    });
+    if let Some(descriptor) = found {
+        let layouts = descriptor.layout.iter().map(|l| cache.get_bind_group_layout(l)).collect();
+        *example = Some(Example { descriptor: (**descriptor).clone(), layouts });
+    }
+}
+
+/// Where shaders are tried.
+#[derive(Resource)]
+pub struct Bench {
+    example: SharedExample,
+    /// With Bevy's own shaders in it, which ours import.
+    cache: Option<ShaderCache<Module, ()>>,
+    /// Tries in our place, where there is one.
+    process: Option<TrialProcess>,
+}
+
+impl std::fmt::Debug for Bench {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Bench").finish_non_exhaustive()
+    }
+}
+
+/// What the renderer lends for a trial.
+#[derive(Clone, Copy)]
+pub struct Tools<'a> {
+    /// The graphics device.
+    pub device: &'a RenderDevice,
+    /// Where it comes from.
+    pub adapter: &'a RenderAdapter,
+    /// All shaders that are loaded, Bevy's own among them.
+    pub shaders: &'a Assets<Shader>,
+}
+impl Bench {
+    /// Has everything tried in another process from now on, and nothing here.
+    pub fn try_in(&mut self, process: TrialProcess) {
+        self.process = Some(process);
+    }
+
+    /// Begins a new frame: what was asked for before and is not asked for again is not tried any more.
+    pub fn begin_frame(&self) {
+        if let Some(process) = &self.process {
+            process.begin_frame();
+        }
+    }
+
+    /// True while another process tries something; it wakes who waits.
+    #[must_use]
+    pub fn is_waiting(&self) -> bool {
+        self.process.as_ref().is_some_and(TrialProcess::is_busy)
+    }
+
+    /// True if the renderer can draw with a composed source, on meshes that know their polygons or not. `row` is
+    /// what an object has in the table of parameters.
+    pub fn try_out(
+        &mut self,
+        composed: &Composed,
+        faces: bool,
+        row: impl FnOnce() -> Vec<u8>,
+        tools: Tools,
+    ) -> Verdict {
+        if let Some(problem) = &composed.problem {
+            return Verdict::Bad(problem.clone());
+        }
+        if let Err(problem) = limits::check_text(composed) {
+            return Verdict::Bad(problem);
+        }
+        if let Some(process) = &self.process {
+            return process.ask(composed, faces, row);
+        }
+        self.try_here(composed, faces, tools)
+    }
+
+    /// As [`try_out`](Self::try_out), in this process.
+    pub fn try_here(&mut self, composed: &Composed, faces: bool, tools: Tools) -> Verdict {
+        let example = self.example.clone();
+        let example = example.lock();
+        let Some(example) = example.as_ref() else { return Verdict::NotYet };
+        // What composes shaders unwraps here and there.
+        match quietly(|| self.attempt(composed, faces, example, tools)) {
+            Some(Ok(())) => Verdict::Good,
+            Some(Err(Refusal::NotYet)) => Verdict::NotYet,
+            Some(Err(Refusal::Problem(problem))) => Verdict::Bad(problem),
+            None => {
+                // The cache may be left half changed.
+                self.cache = None;
+                Verdict::Bad(without_place(composed))
+            }
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Rotations as scenes give them: Euler angles in degrees.
+
+use glam::{EulerRot, Quat, Vec3};
+
+/// The rotation of Euler angles in degrees: about the room's x first, then y, then z.
+#[must_use]
+pub fn rotation(degrees: Vec3) -> Quat {
+    let r = degrees.map(f32::to_radians);
+    Quat::from_euler(EulerRot::ZYX, r.z, r.y, r.x)
+}
+
+/// The Euler angles in degrees of a rotation, the inverse of [`rotation`].
+#[must_use]
+pub fn euler_degrees(rotation: Quat) -> Vec3 {
+    let (z, y, x) = rotation.to_euler(EulerRot::ZYX);
+    Vec3::new(x, y, z).map(f32::to_degrees)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotations_turn_about_x_first() {
+        let r = rotation(Vec3::new(90.0, 90.0, 0.0));
+        // y → z about x, then z → x about y.
+        assert!((r * Vec3::Y - Vec3::X).length() < 1e-6);
+    }
+
+    #[test]
+    fn euler_angles_and_rotations_are_inverse() {
+        for degrees in [Vec3::ZERO, Vec3::new(10.0, 20.0, 30.0), Vec3::new(-70.0, 45.0, 170.0)] {
+            let back = euler_degrees(rotation(degrees));
+            assert!((back - degrees).length() < 1e-3, "{degrees} came back as {back}");
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Words for people: lists, numbers, quotations, the nearest spelling.
+
+use serde_json::Value as Json;
+
+/// "a", "a or b", "a, b or c".
+#[must_use]
+pub fn listed(items: &[impl AsRef<str>], conjunction: &str) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.as_ref().to_owned(),
+        [first @ .., last] => {
+            let first: Vec<_> = first.iter().map(AsRef::as_ref).collect();
+            format!("{} {conjunction} {}", first.join(", "), last.as_ref())
+        }
+    }
+}
+
+/// The target whose spelling is nearest to what was written, if any is near. Each candidate is a
+/// spelling and what it stands for.
+#[must_use]
+pub fn nearest<'a>(written: &str, candidates: impl Iterator<Item = (&'a str, &'a str)>) -> Option<&'a str> {
+    // Names are short; comparing a book with each of them would take forever.
+    if written.len() > 64 {
+        return None;
+    }
+    // Case and separators are the commonest slips: sceneSize, scene-size.
+    let plain = |s: &str| s.to_lowercase().replace(['_', '-', ' '], "");
+    let wanted = plain(written);
+    let distance = |candidate: &str| {
+        let candidate = plain(candidate);
+        let edits = strsim::damerau_levenshtein(&wanted, &candidate);
+        // A third of the letters may differ: more is another word.
+        let letters = candidate.chars().count().max(wanted.chars().count());
+        (edits <= (letters + 1) / 3).then_some(edits)
+    };
+    let near = candidates.filter(|(spelling, _)| !spelling.is_empty());
+    near.filter_map(|(spelling, target)| Some((distance(spelling)?, target))).min_by_key(|n| n.0).map(|n| n.1)
+}
+
+/// A text in double quotes, with control characters escaped, and shortened: for messages.
+#[must_use]
+pub fn quoted(text: &str) -> String {
+    shortened(&format!("{text:?}"))
+}
+
+/// The beginning of a text that is too long for a message, on one line.
+#[must_use]
+pub fn shortened(text: &str) -> String {
+    /// What still reads well within a sentence.
+    const LONGEST: usize = 60;
+    let flat = |c: char| if c.is_control() { ' ' } else { c };
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => text[..end].chars().map(flat).chain(['…']).collect(),
+        None => text.chars().map(flat).collect(),
+    }
+}
+
+/// "1 light", "2 lights".
+#[must_use]
+pub fn plural(n: usize, what: &str) -> String {
+    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+}
+
+/// The number that a person would write: 0.1, and not its nearest 32-bit neighbour in 64 bits.
+#[must_use]
+pub fn number(v: f32) -> Json {
+    if v.fract() == 0.0 && v.abs() < 1e9 {
+        return (v as i64).into();
+    }
+    v.to_string().parse::<f64>().ok().and_then(serde_json::Number::from_f64).map_or(Json::Null, Json::Number)
+}

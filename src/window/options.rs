@@ -1,0 +1,45 @@
+//! The choices with which the window opens.
+
+use std::path::PathBuf;
+
+use crate::{
+    library::assets::Folders,
+    registry::Registry,
+    scene::{Scene, load::Stamp},
+};
+
+/// What the window starts with.
+#[derive(Clone, Debug)]
+pub struct ViewOptions {
+    /// The scene, checked.
+    pub scene: Scene,
+    /// The file that it came from, if any.
+    pub file: Option<PathBuf>,
+    /// The state of that file when it was read.
+    pub stamp: Option<Stamp>,
+    /// A file that the window must open itself, since there is something to ask first.
+    pub open: Option<PathBuf>,
+    /// True if the window shows the examples: it begins without a scene of the user's.
+    pub examples: bool,
+    /// Whether the defaults are used when the file comes to lack parts.
+    pub use_defaults: bool,
+    /// The size of the window in pixels; else 1280×720 points.
+    pub size: Option<[u32; 2]>,
+    /// Close the window after so many frames.
+    pub exit_after: Option<u32>,
+    /// Write the whole window to this file before it closes.
+    pub capture: Option<PathBuf>,
+    /// What is known, own models included.
+    pub registry: Registry,
+    /// Where shaders and own models are read from. The shaders are not read yet.
+    pub folders: Folders,
+    /// The program that tries shaders when it is called with
+    /// [`COMMAND`](crate::render::trial::process::COMMAND); without it the window itself does.
+    pub trial_program: Option<PathBuf>,
+    /// What there is to say when the window opens.
+    pub warnings: Vec<String>,
+    /// Log more.
+    pub verbose: bool,
+    /// Log errors only.
+    pub quiet: bool,
+}
