@@ -30,6 +30,7 @@
 //! The scene and its pictures:
 //!
 //! - [`scene`]: the scene as a value; reading, checking and writing JSON.
+//! - [`document`]: the one writer of the scene: edits, checks, undo and redo.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
 //! - [`library`]: the shader library: which file holds which text, and what is wrong with it.
 //! - [`recovery`]: copies of unsaved work, for the next start.
@@ -63,6 +64,8 @@ pub mod registry;
 pub mod custom;
 
 pub mod scene;
+
+pub mod document;
 
 pub mod library;
 pub mod recovery;

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::{limits::number, state::Lab};
+use super::state::Lab;
+use crate::document::limits::number;
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::{Parameter, Value},
@@ -17,7 +18,7 @@ const VALUES: usize = 4;
 /// The models, the shading and the display of the picture; with one object, its key values.
 #[must_use]
 pub fn caption_text(lab: &Lab, registry: &Registry) -> String {
-    let scene = &lab.scene;
+    let scene = &lab.document;
     let models: BTreeSet<_> = scene.shown().map(|o| scene.model_of(o)).collect();
     let modes: BTreeSet<_> = scene.shown().map(|o| scene.mode_of(o)).collect();
     let mut parts = Vec::new();

@@ -2,10 +2,8 @@
 
 use bevy_egui::egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
 
-use super::{
-    limits,
-    state::{Badge, Lab, Severity},
-};
+use super::state::{Badge, Lab, Severity};
+use crate::document::limits;
 
 /// Fields across and down in which clipped pixels are counted.
 pub const GRID: [usize; 2] = [128, 96];

@@ -98,7 +98,7 @@ pub fn run(lab: &mut Lab, registry: &Registry, effect: Effect, files: &mut dyn F
                 Vec::new()
             }
         },
-        Effect::SaveFile { path, overwrite } => match files.save(&path, &lab.scene, registry, overwrite) {
+        Effect::SaveFile { path, overwrite } => match files.save(&path, &lab.document, registry, overwrite) {
             Saved::Done => lab.saved(path, registry),
             Saved::ChangedOnDisk => {
                 lab.ask(Question::ChangedOnDisk { path });

@@ -5,14 +5,16 @@
 
 use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 
-use super::state::{Lab, Selection, Severity};
+use super::state::{Lab, Severity};
+use crate::document::Selection;
 use crate::{
+    document::PartId,
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
     registry::Registry,
 };
 
-/// An object by its index, and the name of a parameter.
-type Place = (usize, Cow<'static, str>);
+/// An object, and the name of a parameter.
+type Place = (PartId, Cow<'static, str>);
 
 /// A value that was put aside.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,23 +47,11 @@ impl Aside {
         self.0.clear();
     }
 
-    /// An object was copied to the next place in the list.
-    pub(super) fn object_copied(&mut self, from: usize) {
-        let old = std::mem::take(&mut self.0);
-        for ((object, name), kept) in old {
-            if object == from {
-                self.0.insert((from, name.clone()), kept.clone());
-            }
-            let object = if object >= from { object + 1 } else { object };
-            self.0.insert((object, name), kept);
-        }
-    }
-
-    /// An object was removed from the list.
-    pub(super) fn object_removed(&mut self, at: usize) {
-        let old = std::mem::take(&mut self.0);
-        let left = old.into_iter().filter(|((object, _), _)| *object != at);
-        self.0 = left.map(|((i, name), kept)| ((if i > at { i - 1 } else { i }, name), kept)).collect();
+    /// An object was copied.
+    pub(super) fn copied(&mut self, from: PartId, to: PartId) {
+        let theirs = self.0.iter().filter(|((object, _), _)| *object == from);
+        let copies: Vec<_> = theirs.map(|((_, name), kept)| ((to, name.clone()), kept.clone())).collect();
+        self.0.extend(copies);
     }
 }
 
@@ -89,13 +79,19 @@ pub fn follow_registry(mut lab: impl DerefMut<Target = Lab>, registry: &Registry
     }
     let news = told(&lab, registry, &changes);
     let lab = &mut *lab;
-    for Change { place: (i, name), to, .. } in changes {
-        let Some(object) = lab.scene.objects.get_mut(i) else { continue };
-        match to {
-            Some(value) => object.material.set(name, value),
-            None => drop(object.material.0.remove(&name)),
+    let changes: Vec<_> = changes
+        .into_iter()
+        .filter_map(|change| Some((lab.document.object(change.place.0)?, change.place.1, change.to)))
+        .collect();
+    // No step of the user's: undoing it would bring back what no model takes.
+    lab.document.amend(|scene| {
+        for (i, name, to) in changes {
+            match to {
+                Some(value) => scene.objects[i].material.set(name, value),
+                None => drop(scene.objects[i].material.0.remove(&name)),
+            }
         }
-    }
+    });
     for text in news {
         lab.say(Severity::Info, text);
     }
@@ -105,33 +101,40 @@ pub fn follow_registry(mut lab: impl DerefMut<Target = Lab>, registry: &Registry
 fn plan(lab: &Lab, registry: &Registry) -> (Vec<Change>, Aside) {
     let mut changes = Vec::new();
     let mut aside = Aside::default();
-    let mut place_value = |i: usize, name: &Cow<'static, str>, wanted: &Value, from: Option<&Value>| {
-        let Some(object) = lab.scene.objects.get(i) else { return };
-        let declarations = declarations(registry, lab.scene.model_of(object), name);
+    let mut gone = BTreeMap::new();
+    let mut place_value = |id: PartId, name: &Cow<'static, str>, wanted: &Value, from: Option<&Value>| {
+        let Some(object) = lab.document.object(id).and_then(|i| lab.document.objects.get(i)) else { return };
+        let declarations = declarations(registry, lab.document.model_of(object), name);
         let to = legal(&declarations, wanted);
         if to.as_ref() != Some(wanted) {
             let kept = Kept { wanted: wanted.clone(), instead: to.clone() };
-            aside.0.insert((i, name.clone()), kept);
+            aside.0.insert((id, name.clone()), kept);
         }
         if to.as_ref() != from {
             let declared = declarations.iter().find(|p| to.as_ref().is_some_and(|v| p.allows(v)));
             let declared = declared.or(declarations.first()).copied();
-            changes.push(Change { place: (i, name.clone()), wanted: wanted.clone(), to, declared });
+            changes.push(Change { place: (id, name.clone()), wanted: wanted.clone(), to, declared });
         }
     };
-    for (i, object) in lab.scene.objects.iter().enumerate() {
+    for (i, object) in lab.document.objects.iter().enumerate() {
+        let Some(id) = lab.document.object_id(i) else { continue };
         for (name, value) in &object.material.0 {
-            let kept = lab.aside.0.get(&(i, name.clone()));
+            let kept = lab.aside.0.get(&(id, name.clone()));
             let kept = kept.filter(|kept| kept.instead.as_ref() == Some(value));
-            place_value(i, name, kept.map_or(value, |kept| &kept.wanted), Some(value));
+            place_value(id, name, kept.map_or(value, |kept| &kept.wanted), Some(value));
         }
     }
-    for ((i, name), kept) in &lab.aside.0 {
-        let object = lab.scene.objects.get(*i);
-        if kept.instead.is_none() && object.is_some_and(|o| !o.material.0.contains_key(name)) {
-            place_value(*i, name, &kept.wanted, None);
+    for ((id, name), kept) in &lab.aside.0 {
+        match lab.document.object(*id).and_then(|i| lab.document.objects.get(i)) {
+            Some(object) if kept.instead.is_none() && !object.material.0.contains_key(name) => {
+                place_value(*id, name, &kept.wanted, None);
+            }
+            Some(_) => {}
+            // Undoing may bring the object back.
+            None => drop(gone.insert((*id, name.clone()), kept.clone())),
         }
     }
+    aside.0.extend(gone);
     (changes, aside)
 }
 
@@ -188,7 +191,10 @@ fn told(lab: &Lab, registry: &Registry, changes: &[Change]) -> Vec<String> {
     for change in changes {
         groups.entry(change.several()).or_insert((0, change)).0 += 1;
     }
-    let one = |change: &Change| change.single(&lab.name_of(Selection::Object(change.place.0), registry));
+    let name = |id| {
+        lab.document.object(id).map_or_else(String::new, |i| lab.name_of(Selection::Object(i), registry))
+    };
+    let one = |change: &Change| change.single(&name(change.place.0));
     groups
         .into_iter()
         .map(|((before, after), (count, first))| match count {
@@ -271,7 +277,8 @@ mod tests {
     use super::*;
     use crate::{
         custom,
-        scene::{Object, check, load, save},
+        document::Document,
+        scene::{Object, Scene, check, load, save},
     };
 
     /// Lambert's law with these parameters, of which it uses none.
@@ -294,10 +301,10 @@ mod tests {
         let mut registry = Registry::builtin();
         put(&mut registry, declaration);
         let mut lab = Lab::default();
-        lab.scene.reflection_model = "mine".to_owned();
-        lab.scene.objects[0].material.set(name, value);
-        lab.scene.objects[0].material.set("k_s", Value::Number(0.25));
-        lab.saved = lab.scene.clone();
+        let mut scene = Scene { reflection_model: "mine".to_owned(), ..Scene::default() };
+        scene.objects[0].material.set(name, value);
+        scene.objects[0].material.set("k_s", Value::Number(0.25));
+        lab.document = Document::new(scene);
         follow(&mut lab, &registry, &[]);
         assert!(!lab.is_dirty());
         (lab, registry)
@@ -309,20 +316,20 @@ mod tests {
         follow_registry(&mut *lab, registry);
         let texts: Vec<_> = lab.messages.iter().map(|m| m.text.as_str()).collect();
         assert_eq!(texts, said);
-        assert!(check::scene(&lab.scene, registry).is_empty());
-        let text = save::to_json(&lab.scene, None, registry);
+        assert!(check::scene(&lab.document, registry).is_empty());
+        let text = save::to_json(&lab.document, None, registry);
         let read = load::from_bytes(text.as_bytes(), "a.json", registry, load::Defaults::Ask)
             .unwrap_or_else(|e| panic!("{e}\n{text}"));
-        assert_eq!(read.scene.objects, lab.scene.objects);
-        assert_eq!(lab.scene.objects[0].material.0.get("k_s"), Some(&Value::Number(0.25)));
+        assert_eq!(read.scene.objects, lab.document.objects);
+        assert_eq!(lab.document.objects[0].material.0.get("k_s"), Some(&Value::Number(0.25)));
         // A second look finds nothing to do.
-        let before = (lab.scene.clone(), lab.aside.clone(), lab.messages.clone());
+        let before = (lab.document.scene().clone(), lab.aside.clone(), lab.messages.clone());
         follow_registry(&mut *lab, registry);
-        assert_eq!(before, (lab.scene.clone(), lab.aside.clone(), lab.messages.clone()));
+        assert_eq!(before, (lab.document.scene().clone(), lab.aside.clone(), lab.messages.clone()));
     }
 
     fn value<'a>(lab: &'a Lab, name: &str) -> Option<&'a Value> {
-        lab.scene.objects[0].material.0.get(name)
+        lab.document.objects[0].material.0.get(name)
     }
 
     #[test]
@@ -408,7 +415,7 @@ mod tests {
         let (mut lab, mut registry) = begin(&number("polish", 0.0, 200.0), "polish", Value::Number(150.0));
         put(&mut registry, &number("polish", 0.0, 100.0));
         follow_registry(&mut lab, &registry);
-        lab.scene.objects[0].material.set("polish", Value::Number(60.0));
+        lab.document.amend(|scene| scene.objects[0].material.set("polish", Value::Number(60.0)));
         put(&mut registry, &number("polish", 0.0, 200.0));
         follow(&mut lab, &registry, &[]);
         assert_eq!(value(&lab, "polish"), Some(&Value::Number(60.0)));
@@ -428,7 +435,7 @@ mod tests {
         );
         assert_eq!(value(&lab, "gloss"), None);
         // A choice of the user replaces what was put aside.
-        lab.scene.objects[0].material.set("gloss", Value::Choice("high".into()));
+        lab.document.amend(|scene| scene.objects[0].material.set("gloss", Value::Choice("high".into())));
         put(&mut registry, "{ \"name\": \"gloss\", \"type\": \"choice\", \"choices\": [\"low\", \"full\"] }");
         follow(
             &mut lab,
@@ -451,7 +458,7 @@ mod tests {
         for v in [0.25, 0.5] {
             let mut object = Object { reflection_model: Some("mine".to_owned()), ..Object::default() };
             object.material.set("gloss", Value::Number(v));
-            lab.scene.objects.push(object);
+            lab.document.amend(|scene| scene.objects.push(object));
         }
         put(&mut registry, "");
         follow(
@@ -467,7 +474,8 @@ mod tests {
         let _ = lab.apply(super::super::state::Action::Remove(part), &registry);
         put(&mut registry, &number("gloss", 0.0, 1.0));
         follow(&mut lab, &registry, &["gloss is as it was again at 3 objects."]);
-        let values: Vec<_> = lab.scene.objects.iter().map(|o| o.material.0.get("gloss").cloned()).collect();
+        let values: Vec<_> =
+            lab.document.objects.iter().map(|o| o.material.0.get("gloss").cloned()).collect();
         assert_eq!(values, [0.75, 0.25, 0.5].map(|v| Some(Value::Number(v))));
     }
 
@@ -476,7 +484,7 @@ mod tests {
         let (mut lab, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
         put(&mut registry, "");
         follow_registry(&mut lab, &registry);
-        let mut other = lab.scene.clone();
+        let mut other = lab.document.scene().clone();
         other.name = Some("Other".to_owned());
         let _ = lab.opened("other.json".into(), other);
         assert!(lab.aside.is_empty());

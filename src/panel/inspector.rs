@@ -4,11 +4,14 @@ use super::{
     Panel, Place, author, chooser,
     icon::{self, Icon},
     knob::{self, Caption},
-    limits::{self, Limits},
     maths, model_override, shader,
-    state::{Action, Edit, Lab, LightField, ObjectField, Selection, Severity, ViewChange},
+    state::{Action, Lab, Severity, ViewChange},
     theme::{self, Palette},
     top::segmented,
+};
+use crate::document::{
+    Edit, LightField, ObjectField, Selection,
+    limits::{self, Limits},
 };
 use crate::{
     light::LightEntry,
@@ -182,12 +185,12 @@ fn direction_knob(ui: &mut Ui, value: Vec3, help: &str) -> Option<Vec3> {
 // ── object ──
 
 fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Vec<Action>) {
-    let Some(object) = lab.scene.objects.get(i) else { return };
+    let Some(object) = lab.document.objects.get(i) else { return };
     let set = |field: ObjectField| Action::Edit(Edit::Object(i, field));
     header(ui, lab, registry, Selection::Object(i), object.name.as_deref(), actions);
 
-    let model = registry.model(lab.scene.model_of(object));
-    let mode = registry.mode(lab.scene.mode_of(object));
+    let model = registry.model(lab.document.model_of(object));
+    let mode = registry.mode(lab.document.mode_of(object));
     section(ui, "Reflection", true, |ui| {
         ui.horizontal(|ui| {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -204,7 +207,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
                 equation(ui, model);
                 terms(ui, lab, registry, actions);
             }
-            None => missing_model(ui, lab, registry, lab.scene.model_of(object), actions),
+            None => missing_model(ui, lab, registry, lab.document.model_of(object), actions),
         }
         if let Some(mode) = mode {
             stage(ui, mode);
@@ -254,7 +257,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             actions.push(set(ObjectField::Kind(kinds[k].id.to_owned())));
         }
         let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
-        let size_limits = limits::object_size(lab.scene.scene_size);
+        let size_limits = limits::object_size(lab.document.scene_size);
         let default = f64::from(crate::scene::DEFAULT_SIZE);
         if let Some(v) =
             knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
@@ -272,7 +275,7 @@ fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut V
             "position",
             &caption,
             object.position,
-            &position_limits(lab.scene.scene_size),
+            &position_limits(lab.document.scene_size),
         ) {
             actions.push(set(ObjectField::Position(p)));
         }
@@ -393,7 +396,7 @@ fn measurement(ui: &mut Ui, material: &Measured) {
 
 /// What follows from the values of the knobs.
 fn readouts(ui: &mut Ui, lab: &Lab, model: &ModelEntry, object: &Object) {
-    let readouts = model.instantiate(&object.material, lab.scene.display.encoding).readouts();
+    let readouts = model.instantiate(&object.material, lab.document.display.encoding).readouts();
     if readouts.is_empty() {
         return;
     }
@@ -523,7 +526,7 @@ fn stage(ui: &mut Ui, mode: &ModeEntry) {
 // ── light ──
 
 fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Vec<Action>) {
-    let Some(light) = lab.scene.lights.get(i) else { return };
+    let Some(light) = lab.document.lights.get(i) else { return };
     let set = |field: LightField| Action::Edit(Edit::Light(i, field));
     header(ui, lab, registry, Selection::Light(i), light.name.as_deref(), actions);
     let kinds: Vec<_> = registry.lights().iter().map(|l| l.declaration).collect();
@@ -572,7 +575,7 @@ fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Ve
                     "position",
                     &caption,
                     position,
-                    &position_limits(lab.scene.scene_size),
+                    &position_limits(lab.document.scene_size),
                 ) {
                     actions.push(set(LightField::Position(p)));
                 }
@@ -711,7 +714,7 @@ fn unit_help(unit: &str) -> &'static str {
 // ── observer ──
 
 fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
-    let o = lab.scene.observer;
+    let o = lab.document.observer;
     let set = |o: Observer| Action::Edit(Edit::Observer(o));
     ui.label(RichText::new("Observer").heading());
     ui.label(theme::small(ui, "The camera of the scene"));
@@ -724,7 +727,7 @@ fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
             ..Caption::default()
         };
         if let Some(position) =
-            knob::vector_knob(ui, "position", &caption, o.position, &position_limits(lab.scene.scene_size))
+            knob::vector_knob(ui, "position", &caption, o.position, &position_limits(lab.document.scene_size))
         {
             actions.push(set(Observer { position, ..o }));
         }
@@ -769,7 +772,7 @@ fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
 
 fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
     let width = ui.available_width();
-    let s = &lab.scene;
+    let s = &lab.document;
     text_field(
         ui,
         "scene name",
@@ -804,7 +807,7 @@ fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
             help: "Width along x, height along y, depth along z. One corner of the room is the origin; everything stands in it.",
             ..Caption::default()
         };
-        let limits = [0, 1, 2].map(|axis| lab.dimension_limits(axis, registry));
+        let limits = [0, 1, 2].map(|axis| lab.document.dimension_limits(axis, registry));
         if let Some(c) = knob::vector_knob(ui, "size", &caption, size.corner(), &limits) {
             actions.push(Action::Edit(Edit::SceneSize(SceneSize { width: c.x, height: c.y, depth: c.z })));
         }

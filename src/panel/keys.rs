@@ -75,6 +75,9 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
     add("File", true, false, Key::S, "Save", Action::Save);
     add("File", true, true, Key::S, "Save as…", Action::SaveAsDialog);
     add("File", true, false, Key::Q, "Quit", Action::Quit);
+    add("Edit", true, false, Key::Z, "Undo", Action::Undo);
+    add("Edit", true, true, Key::Z, "Redo", Action::Redo);
+    add("Edit", true, false, Key::Y, "Redo", Action::Redo);
     add("Edit", true, false, Key::D, "Duplicate", Action::Duplicate(lab.selection));
     add("Edit", false, false, Key::Delete, "Delete", Action::Remove(lab.selection));
     let toggle = "Hide or show the object, switch the light off or on";
@@ -235,7 +238,7 @@ pub fn pressed(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Actio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panel::state::Edit;
+    use crate::document::Edit;
 
     #[test]
     fn no_key_does_two_things() {

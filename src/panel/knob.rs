@@ -11,11 +11,10 @@ use bevy_egui::egui::{
 use glam::Vec3;
 
 use super::{
-    chooser,
-    limits::{Limits, number},
-    maths,
+    chooser, maths,
     theme::{self, Palette},
 };
+use crate::document::limits::{Limits, number};
 use crate::{
     parameter::{Parameter, ParameterKind, Value},
     reflection::{Readout, ReadoutValue},

@@ -11,9 +11,10 @@ use bevy_egui::egui::{
 use glam::{Quat, Vec3};
 
 use super::{
-    state::{Action, Lab, Selection},
+    state::{Action, Lab},
     theme,
 };
+use crate::document::Selection;
 use crate::{
     light::LightEntry,
     registry::Registry,
@@ -74,7 +75,7 @@ impl Lens {
     /// The camera of the window.
     #[must_use]
     pub fn of(lab: &Lab, rect: Rect) -> Self {
-        let degrees = lab.scene.observer.field_of_view;
+        let degrees = lab.document.observer.field_of_view;
         let angle = vertical_field_of_view(degrees, rect.width() / rect.height().max(1.0), true);
         Self {
             eye: lab.eye,
@@ -203,7 +204,7 @@ pub fn marks(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action
     if !lab.view.show_gizmos {
         return (Vec::new(), Vec::new());
     }
-    let scene = &lab.scene;
+    let scene = &lab.document;
     let lens = Lens::of(lab, rect);
     let painter = ui.painter_at(rect);
     let mut ink = Ink { lens, below: Vec::new(), above: Vec::new() };
@@ -359,7 +360,7 @@ fn arrows(
     for (way, at, mut lights) in groups {
         lights.sort_unstable();
         let chosen = lights.iter().position(|i| lab.selection == Selection::Light(*i));
-        let colour = match lights.iter().any(|i| lab.scene.lights[*i].enabled) {
+        let colour = match lights.iter().any(|i| lab.document.lights[*i].enabled) {
             _ if chosen.is_some() => SELECTED,
             true => LIGHT,
             false => OFF,

@@ -37,17 +37,16 @@ mod focus;
 pub mod follow;
 pub mod formula;
 pub mod help;
+pub mod history;
 pub mod icon;
 pub mod inspector;
 pub mod keys;
 pub mod knob;
 pub mod laws;
-pub mod limits;
 pub mod marks;
 pub mod maths;
 pub mod messages;
 pub mod model_override;
-pub mod names;
 pub mod picture;
 mod placing;
 pub mod presentation;
@@ -72,6 +71,7 @@ pub fn register_builtin(to: &mut Panels) {
     to.add(status::StatusLine);
     to.add(messages::Messages);
     to.add(shader::Shader);
+    to.add(history::History);
     to.add(tree::Tree);
     to.add(inspector::Inspector);
 }
@@ -269,6 +269,7 @@ pub fn show(
     for action in actions {
         effects.extend(lab.apply(action, registry));
     }
+    end_gesture(&ctx, lab);
     effects.extend(lab.wanted_dialog.take());
     effects.retain(|effect| !dialogs.start(&ctx, effect, lab));
     for effect in &effects {
@@ -278,6 +279,18 @@ pub fn show(
     }
     effects.retain(|effect| !matches!(effect, Effect::CopyText(_)));
     effects
+}
+
+/// A drag is one step of the history, and so is typing in one field.
+fn end_gesture(ctx: &egui::Context, lab: &mut Lab) {
+    let focus = ctx.memory(egui::Memory::focused);
+    let key = Id::new("focus of the gesture");
+    let before = ctx.data(|data| data.get_temp::<Option<Id>>(key)).flatten();
+    ctx.data_mut(|data| data.insert_temp(key, focus));
+    let typing = focus.is_some() && focus == before;
+    if !typing && !ctx.input(|input| input.pointer.any_down()) {
+        lab.document.end_gesture();
+    }
 }
 
 /// The strip at the bottom. Tabs appear when there is more than one panel.

@@ -4,10 +4,11 @@ use bevy_egui::egui::{Button, Popup, RichText, Ui, WidgetInfo, WidgetType};
 
 use super::{
     chooser, knob,
-    state::{Lab, ObjectField},
+    state::Lab,
     theme::{self, Palette},
     top::segmented,
 };
+use crate::document::ObjectField;
 use crate::{registry::Registry, scene::Object};
 
 /// The button, and what it opens. Returns the change that was asked for.
@@ -35,8 +36,8 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
     });
 
     let id = ui.make_persistent_id("model override");
-    let scene_model = model_name(&lab.scene.reflection_model);
-    let scene_mode = mode_name(&lab.scene.shading_model);
+    let scene_model = model_name(&lab.document.reflection_model);
+    let scene_mode = mode_name(&lab.document.shading_model);
     let out = knob::drop_down(&button, id, |ui, list| {
         let mut out = None;
         ui.label(theme::strong(ui, "Override model and shading"));

@@ -262,9 +262,9 @@ fn axes(ui: &Ui, rect: Rect, lab: &Lab) {
 
 /// What to do, or what is going on, where there is no picture.
 fn hint(ui: &Ui, rect: Rect, lab: &Lab) {
-    let text = if lab.scene.objects.is_empty() {
+    let text = if lab.document.objects.is_empty() {
         "There is nothing to light. Add an object: + beside “Objects”."
-    } else if lab.scene.lights.is_empty() {
+    } else if lab.document.lights.is_empty() {
         "It is dark. Add a light: + beside “Lights”."
     } else if lab.status.shaders == Shaders::Compiling && lab.status.frame_ms == 0.0 {
         "Compiling shaders…"

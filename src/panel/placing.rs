@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use glam::{Quat, Vec3};
 
-use super::limits::significant;
+use crate::document::limits::significant;
 use crate::{
     light::LightEntry,
     optics::tone::exposure_factor,

@@ -114,7 +114,7 @@ mod tests {
             let effects = answered(&mut lab, offer(Ok(scene.clone())), Answer::Recover);
             assert_eq!(effects, [Effect::DocumentChanged, Effect::Recovery(Choice::Recovered)]);
             assert!(lab.is_dirty());
-            assert_eq!(lab.scene, scene);
+            assert_eq!(lab.document, scene);
             let path = PathBuf::from("/scenes/room.json");
             let save = lab.apply(Action::Save, &registry);
             assert_eq!(save, [Effect::SaveFile { path: path.clone(), overwrite: false }]);

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use super::{
     files::{Files, Looked, Opened},
-    state::{Badge, Effect, Lab, MissingPart, Note, Question, Selection, Severity},
+    state::{Badge, Effect, Lab, MissingPart, Note, Question, Severity},
 };
+use crate::document::Selection;
 use crate::{
     files::printable,
     registry::Registry,
@@ -95,8 +96,8 @@ fn take(
     discard: bool,
 ) -> Vec<Effect> {
     // What a recovered document began with is not known.
-    let edited = (lab.recovered || lab.scene != lab.saved) && lab.scene != scene;
-    if edited && !discard && (lab.recovered || scene != lab.saved) {
+    let edited = (lab.recovered || lab.document.differs()) && lab.document != scene;
+    if edited && !discard && (lab.recovered || scene != *lab.document.saved()) {
         if lab.disk.asked != Some(Some(version)) {
             lab.disk_settled();
             lab.disk.asked = Some(Some(version));
@@ -110,7 +111,7 @@ fn take(
         // Only the layout of the file is another: what is in it is what the changes began with.
         return Vec::new();
     }
-    let news = lab.scene != scene;
+    let news = lab.document != scene;
     lab.reloaded(scene, defaulted);
     if news {
         lab.say_of_disk(Severity::Info, format!("{} was read again: it changed on disk.", path.display()));
@@ -210,47 +211,36 @@ impl Lab {
     /// The scene in the document's file becomes the document. Camera and terms stay as they are, and so
     /// does the selection where it still means something.
     fn reloaded(&mut self, scene: Scene, defaulted: Vec<String>) {
-        let selection = follow(&self.scene, &scene, self.selection);
+        let id = match self.selection {
+            Selection::Light(i) => self.document.light_id(i),
+            Selection::Object(i) => self.document.object_id(i),
+            Selection::Room | Selection::Observer => None,
+        };
+        if self.document.reflection_model != scene.reflection_model {
+            self.use_slot(&scene.reflection_model);
+        }
+        self.document.set_saved(scene.clone());
+        self.document.replace("Reload from disk", self.selection, scene);
+        self.document.end_gesture();
+        let selection = match self.selection {
+            Selection::Light(i) => {
+                let last = self.document.lights.len().checked_sub(1);
+                let at = id.and_then(|id| self.document.light(id)).or(last.map(|last| i.min(last)));
+                at.map_or(Selection::Room, Selection::Light)
+            }
+            Selection::Object(i) => {
+                let last = self.document.objects.len().checked_sub(1);
+                let at = id.and_then(|id| self.document.object(id)).or(last.map(|last| i.min(last)));
+                at.map_or(Selection::Room, Selection::Object)
+            }
+            other => other,
+        };
         if selection != self.selection {
             self.renaming = None;
         }
         self.selection = selection;
-        self.saved = scene.clone();
+        self.document.selected(selection);
         self.recovered = false;
-        self.aside.clear();
         self.defaulted = defaulted;
-        if self.scene.reflection_model != scene.reflection_model {
-            self.use_slot(&scene.reflection_model);
-        }
-        self.scene = scene;
     }
-}
-
-/// Where a selected part is in another version of the scene: the same part at another place in its
-/// list, else what is at its place now, else the nearest there is.
-fn follow(old: &Scene, new: &Scene, selection: Selection) -> Selection {
-    match selection {
-        Selection::Light(i) => {
-            let place = place_in(&old.lights, &new.lights, i, |l| l.name.as_deref());
-            place.map_or(Selection::Room, Selection::Light)
-        }
-        Selection::Object(i) => {
-            let place = place_in(&old.objects, &new.objects, i, |o| o.name.as_deref());
-            place.map_or(Selection::Room, Selection::Object)
-        }
-        other => other,
-    }
-}
-
-fn place_in<T: PartialEq>(old: &[T], new: &[T], at: usize, name: fn(&T) -> Option<&str>) -> Option<usize> {
-    let last = new.len().checked_sub(1)?;
-    let Some(part) = old.get(at) else { return Some(at.min(last)) };
-    if new.get(at) == Some(part) {
-        return Some(at);
-    }
-    let named = |p: &T| name(part).is_some() && name(p) == name(part);
-    if new.get(at).is_some_and(named) {
-        return Some(at);
-    }
-    new.iter().position(|p| p == part).or_else(|| new.iter().position(named)).or(Some(at.min(last)))
 }

@@ -16,24 +16,22 @@ use super::{
     author::{Ask, LawCheck, ModelDraft},
     clipping::Clipping,
     follow::Aside,
-    limits,
-    names::{Names, free_name, name_of},
     placing::Stand,
     recovery::{Choice, Offer},
     reload::OnDisk,
     settings::{SCALES, Settings, nearest_scale},
     terms::KnownTerms,
 };
+use crate::document::limits;
 use crate::{
+    document::{Document, Edit, Extent, LightField, ObjectField, Selection, names::free_name},
     files::printable,
     library::status::ShaderStatus,
     light::MAX_LIGHTS,
     optics::TermSelection,
-    parameter::Value,
     registry::Registry,
     scene::{
-        Display, Light, MAX_OBJECTS, Object, Observer, Scene, SceneSize, examples::EXAMPLES, load::Stamp,
-        observer::rotation,
+        Display, Light, MAX_OBJECTS, Object, Scene, examples::EXAMPLES, load::Stamp, observer::rotation,
     },
 };
 
@@ -43,28 +41,11 @@ pub const MODEL_SLOTS: usize = 9;
 pub const RECENT_FILES: usize = 10;
 /// The most messages that are kept; the oldest give way.
 pub const MAX_MESSAGES: usize = 500;
-/// Two positions nearer than this are the same place, metres.
-const SAME_PLACE: f32 = 1e-6;
-
-/// What the inspector shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Selection {
-    /// The room and the display: what is there when nothing in particular is selected.
-    #[default]
-    Room,
-    /// The observer.
-    Observer,
-    /// A light, by its index in the scene.
-    Light(usize),
-    /// An object, by its index in the scene.
-    Object(usize),
-}
-
 /// The state of the window.
 #[derive(Clone, Debug, Resource)]
 pub struct Lab {
-    /// The document.
-    pub scene: Scene,
+    /// The document: the scene and the way to it.
+    pub document: Document,
     /// The file that the document came from or was last saved to.
     pub path: Option<PathBuf>,
     /// What the inspector shows.
@@ -113,8 +94,6 @@ pub struct Lab {
     pub panels: Vec<PanelInfo>,
     /// The part whose name is being typed in the tree.
     pub renaming: Option<Selection>,
-    /// The document as it is in the file.
-    pub(super) saved: Scene,
     /// The document came from a recovery copy: no file is known to have it.
     pub(super) recovered: bool,
     /// What waits for the document to be saved first.
@@ -417,6 +396,12 @@ pub enum Action {
     CancelRename,
     /// Change the scene.
     Edit(Edit),
+    /// Take the last step back.
+    Undo,
+    /// Do the step again that was taken back last.
+    Redo,
+    /// Take steps back, or do them again, until so many are done.
+    GoToStep(usize),
     /// Choose the n-th of the recent models, from 0.
     RecentModel(usize),
     /// Change the exposure by so many EV.
@@ -504,81 +489,6 @@ pub enum ViewChange {
     About(bool),
     /// See [`View::chooser_open`].
     Chooser(bool),
-}
-
-/// A change of the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Edit {
-    /// The name of the scene; empty for none.
-    SceneName(String),
-    /// What the scene shows; empty for none.
-    SceneDescription(String),
-    /// The extent of the room.
-    SceneSize(SceneSize),
-    /// Tone mapping, exposure, encoding.
-    Display(Display),
-    /// The reflection model of the scene.
-    Model(String),
-    /// The shading mode of the scene.
-    Mode(String),
-    /// The observer.
-    Observer(Observer),
-    /// A field of a light.
-    Light(usize, LightField),
-    /// A field of an object.
-    Object(usize, ObjectField),
-}
-
-/// A field of a light with its new value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LightField {
-    /// The name; empty for none.
-    Name(String),
-    /// False switches it off.
-    Enabled(bool),
-    /// The type.
-    Kind(String),
-    /// Where it stands.
-    Position(Vec3),
-    /// Where it shines.
-    Direction(Vec3),
-    /// Colour, instead of a colour temperature.
-    Colour([u8; 3]),
-    /// Colour temperature in kelvin, instead of a colour.
-    ColourTemperature(f32),
-    /// Intensity, instead of a luminous flux.
-    Intensity(f32),
-    /// Luminous flux in lumen, instead of an intensity.
-    LuminousFlux(f32),
-    /// A parameter of the type.
-    Parameter(&'static str, Value),
-}
-
-/// A field of an object with its new value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ObjectField {
-    /// The name; empty for none.
-    Name(String),
-    /// False hides it.
-    Visible(bool),
-    /// The type.
-    Kind(String),
-    /// Where its centre is.
-    Position(Vec3),
-    /// Largest extent.
-    Size(f32),
-    /// Euler angles XYZ, degrees.
-    Rotation(Vec3),
-    /// How finely it is cut; `None` for the default of the type.
-    Tessellation(Option<u32>),
-    /// Its own reflection model; `None` for the scene's.
-    Model(Option<String>),
-    /// Its own shading mode; `None` for the scene's.
-    Mode(Option<String>),
-    /// A parameter of the material.
-    Material(&'static str, Value),
-    /// Several parameters of the material at once: a measured material.
-    Preset(Vec<(&'static str, Value)>),
 }
 
 /// What needs files, entities or the operating system; the app carries these out.
@@ -677,7 +587,6 @@ impl Lab {
     #[must_use]
     pub fn new(scene: Scene) -> Self {
         let mut lab = Self {
-            saved: scene.clone(),
             selection: Selection::Room,
             path: None,
             messages: Vec::new(),
@@ -711,17 +620,17 @@ impl Lab {
             aside: Aside::default(),
             known_terms: KnownTerms::default(),
             camera_left: false,
-            scene,
+            document: Document::new(scene),
         };
         lab.select_first();
-        lab.use_slot(&lab.scene.reflection_model.clone());
+        lab.use_slot(&lab.document.reflection_model.clone());
         lab
     }
 
     /// Whether the document differs from its file.
     #[must_use]
     pub fn is_dirty(&self) -> bool {
-        self.recovered || !self.defaulted.is_empty() || self.disk.gone || self.scene != self.saved
+        self.recovered || !self.defaulted.is_empty() || self.disk.gone || self.document.differs()
     }
 
     /// True while the user is asked about unsaved changes, or saves them, in order to close the window.
@@ -735,13 +644,13 @@ impl Lab {
     #[must_use]
     pub fn title(&self) -> String {
         let file = || Some(printable(&self.path.as_ref()?.file_stem()?.to_string_lossy()).into_owned());
-        self.scene.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
+        self.document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
     }
 
     /// What people call a part of the scene: its name, or its type and its number among its type.
     #[must_use]
     pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
-        name_of(&self.scene, part, registry)
+        self.document.name_of(part, registry)
     }
 
     /// The selected object, if it has a reflection model of its own: the choice at the top is then about
@@ -749,26 +658,26 @@ impl Lab {
     #[must_use]
     pub fn own_model(&self) -> Option<(usize, &str)> {
         let Selection::Object(i) = self.selection else { return None };
-        Some((i, self.scene.objects.get(i)?.reflection_model.as_deref()?))
+        Some((i, self.document.objects.get(i)?.reflection_model.as_deref()?))
     }
 
     /// The same for its shading mode.
     #[must_use]
     pub fn own_mode(&self) -> Option<(usize, &str)> {
         let Selection::Object(i) = self.selection else { return None };
-        Some((i, self.scene.objects.get(i)?.shading_model.as_deref()?))
+        Some((i, self.document.objects.get(i)?.shading_model.as_deref()?))
     }
 
     /// Id of the reflection model that the top of the window shows and changes.
     #[must_use]
     pub fn model_shown(&self) -> &str {
-        self.own_model().map_or(&self.scene.reflection_model, |(_, id)| id)
+        self.own_model().map_or(&self.document.reflection_model, |(_, id)| id)
     }
 
     /// Id of the shading mode that the top of the window shows and changes.
     #[must_use]
     pub fn mode_shown(&self) -> &str {
-        self.own_mode().map_or(&self.scene.shading_model, |(_, id)| id)
+        self.own_mode().map_or(&self.document.shading_model, |(_, id)| id)
     }
 
     /// The edit that chooses another reflection model at the top of the window.
@@ -792,7 +701,7 @@ impl Lab {
     /// The terms that the picture can show alone, and all of them; the terms that are 0 everywhere are left out.
     #[must_use]
     pub fn offered_terms(&self, registry: &Registry) -> Vec<TermSelection> {
-        self.known_terms.offered(&self.scene, registry)
+        self.known_terms.offered(&self.document, registry)
     }
 
     /// The change that folds the strip at the bottom away, or unfolds it with the messages.
@@ -844,7 +753,7 @@ impl Lab {
         self.remember_file(&path);
         self.note_saved(&path);
         self.path = Some(path);
-        self.saved = self.scene.clone();
+        self.document.mark_saved();
         self.recovered = false;
         self.defaulted.clear();
         self.disk_settled();
@@ -907,8 +816,9 @@ impl Lab {
             Action::SaveAsDialog => return vec![Effect::PickSave],
             Action::SaveAs(path) => {
                 // The default scene is called as its file from now on.
-                if self.path.is_none() && self.scene.name == Scene::default().name {
-                    self.change(|scene| scene.name = None);
+                if self.path.is_none() && self.document.name == Scene::default().name {
+                    self.document
+                        .change("Name of the scene", Extent::Rest, self.selection, |scene| scene.name = None);
                 }
                 // The dialog adds an extension to whatever is typed, and asked about that file only.
                 let typed =
@@ -938,11 +848,11 @@ impl Lab {
             Action::Remove(part) => self.remove(part, registry),
             Action::Toggle(part) => match part {
                 Selection::Light(i) if self.exists(part) => {
-                    let on = !self.scene.lights[i].enabled;
+                    let on = !self.document.lights[i].enabled;
                     self.edit(Edit::Light(i, LightField::Enabled(on)), registry);
                 }
                 Selection::Object(i) if self.exists(part) => {
-                    let on = !self.scene.objects[i].visible;
+                    let on = !self.document.objects[i].visible;
                     self.edit(Edit::Object(i, ObjectField::Visible(on)), registry);
                 }
                 _ => self.say(Severity::Info, "Select an object to hide it, or a light to switch it off."),
@@ -953,15 +863,24 @@ impl Lab {
             }
             Action::CancelRename => self.renaming = None,
             Action::Edit(edit) => self.edit(edit, registry),
+            Action::Undo => match self.document.done().checked_sub(1) {
+                Some(done) => self.go_to_step(done, registry),
+                None => self.say(Severity::Info, "There is nothing to undo."),
+            },
+            Action::Redo if self.document.done() == self.document.steps().len() => {
+                self.say(Severity::Info, "There is nothing to redo.");
+            }
+            Action::Redo => self.go_to_step(self.document.done() + 1, registry),
+            Action::GoToStep(done) => self.go_to_step(done, registry),
             Action::RecentModel(slot) => {
                 if let Some(edit) = self.model_slots.get(slot).map(|id| self.edit_model(id)) {
                     self.edit(edit, registry);
                 }
             }
             Action::Expose(ev) => {
-                let exposure = self.scene.display.exposure + ev;
+                let exposure = self.document.display.exposure + ev;
                 if limits::exposure().allows(f64::from(exposure)) {
-                    self.edit(Edit::Display(Display { exposure, ..self.scene.display }), registry);
+                    self.edit(Edit::Display(Display { exposure, ..self.document.display }), registry);
                 }
             }
             Action::NextTerms => {
@@ -1018,12 +937,6 @@ impl Lab {
         self.view.bottom_height = settings.bottom_height;
         self.recent_files = settings.recent_files;
         self.recent_files.truncate(RECENT_FILES);
-    }
-
-    /// The limits of one extent of the room.
-    #[must_use]
-    pub fn dimension_limits(&self, axis: usize, registry: &Registry) -> limits::Limits {
-        limits::dimension(&self.scene, axis, |part| self.name_of(part, registry))
     }
 
     // ── documents ──
@@ -1091,8 +1004,7 @@ impl Lab {
     }
 
     fn replace_document(&mut self, path: Option<PathBuf>, scene: Scene) {
-        self.saved = scene.clone();
-        self.scene = scene;
+        self.document = Document::new(scene);
         self.path = path;
         self.aside.clear();
         self.renaming = None;
@@ -1103,7 +1015,7 @@ impl Lab {
         self.disk_settled();
         self.view.terms = TermSelection::All;
         self.select_first();
-        self.use_slot(&self.scene.reflection_model.clone());
+        self.use_slot(&self.document.reflection_model.clone());
     }
 
     /// The scene of a recovery copy becomes the document; it is unsaved.
@@ -1151,7 +1063,7 @@ impl Lab {
             }
             (Question::NewerOnDisk { path, scene, version }, Answer::Keep) => {
                 // What is on disk is known now: saving replaces it.
-                self.saved = *scene;
+                self.document.set_saved(*scene);
                 self.recovered = false;
                 self.disk_settled();
                 vec![Effect::ExpectFile { path, version }]
@@ -1171,14 +1083,15 @@ impl Lab {
     // ── selection ──
 
     fn select_first(&mut self) {
-        self.selection = if self.scene.objects.is_empty() { Selection::Room } else { Selection::Object(0) };
+        self.selection =
+            if self.document.objects.is_empty() { Selection::Room } else { Selection::Object(0) };
     }
 
     fn exists(&self, part: Selection) -> bool {
         match part {
             Selection::Room | Selection::Observer => true,
-            Selection::Light(i) => i < self.scene.lights.len(),
-            Selection::Object(i) => i < self.scene.objects.len(),
+            Selection::Light(i) => i < self.document.lights.len(),
+            Selection::Object(i) => i < self.document.objects.len(),
         }
     }
 
@@ -1191,8 +1104,14 @@ impl Lab {
         }
     }
 
+    /// Selects what the last step made or left.
+    fn select_new(&mut self, selection: Selection) {
+        self.select(selection);
+        self.document.selected(self.selection);
+    }
+
     fn step_selection(&mut self, by: isize) {
-        let count = self.scene.objects.len() as isize;
+        let count = self.document.objects.len() as isize;
         if count == 0 {
             return;
         }
@@ -1208,7 +1127,7 @@ impl Lab {
 
     fn add_light(&mut self, kind: &str, registry: &Registry) {
         let Some(entry) = registry.light(kind) else { return };
-        if self.scene.lights.len() >= MAX_LIGHTS {
+        if self.document.lights.len() >= MAX_LIGHTS {
             self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
             return;
         }
@@ -1223,62 +1142,53 @@ impl Lab {
             ..Light::default()
         };
         light.intensity = stand.intensity(&light, entry);
-        let at = self.scene.lights.len();
-        self.change_parts(registry, |scene, names| {
-            scene.lights.push(light);
-            names.lights.push(None);
-        });
-        self.select(Selection::Light(at));
+        let at = self.document.lights.len();
+        self.document.insert_light(at, light, "Add", self.selection, registry);
+        self.select_new(Selection::Light(at));
     }
 
     fn add_object(&mut self, kind: &str, registry: &Registry) {
         if registry.shape(kind).is_none() {
             return;
         }
-        if self.scene.objects.len() >= MAX_OBJECTS {
+        if self.document.objects.len() >= MAX_OBJECTS {
             self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
             return;
         }
         let (position, size) = self.stand(registry).object(kind);
         let object = Object { kind: kind.to_owned(), position, size, ..Object::default() };
-        let at = self.scene.objects.len();
-        self.change_parts(registry, |scene, names| {
-            scene.objects.push(object);
-            names.objects.push(None);
-        });
-        self.select(Selection::Object(at));
+        let at = self.document.objects.len();
+        self.document.insert_object(at, object, "Add", self.selection, registry);
+        self.select_new(Selection::Object(at));
     }
 
     fn duplicate(&mut self, part: Selection, registry: &Registry) {
         match part {
-            Selection::Light(i) if i < self.scene.lights.len() => {
-                if self.scene.lights.len() >= MAX_LIGHTS {
+            Selection::Light(i) if i < self.document.lights.len() => {
+                if self.document.lights.len() >= MAX_LIGHTS {
                     self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
                     return;
                 }
-                let mut copy = self.scene.lights[i].clone();
+                let mut copy = self.document.lights[i].clone();
                 copy.position = copy.position.map(|p| self.stand(registry).light(Some(p)));
-                copy.name = copy.name.map(|n| free_name(&self.scene, &n));
-                self.change_parts(registry, |scene, names| {
-                    scene.lights.insert(i + 1, copy);
-                    names.lights.insert(i + 1, None);
-                });
-                self.select(Selection::Light(i + 1));
+                copy.name = copy.name.map(|n| free_name(&self.document, &n));
+                self.document.insert_light(i + 1, copy, "Duplicate", self.selection, registry);
+                self.select_new(Selection::Light(i + 1));
             }
-            Selection::Object(i) if i < self.scene.objects.len() => {
-                if self.scene.objects.len() >= MAX_OBJECTS {
+            Selection::Object(i) if i < self.document.objects.len() => {
+                if self.document.objects.len() >= MAX_OBJECTS {
                     self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
                     return;
                 }
-                let mut copy = self.scene.objects[i].clone();
+                let mut copy = self.document.objects[i].clone();
                 copy.position = self.stand(registry).copy(&copy);
-                copy.name = copy.name.map(|n| free_name(&self.scene, &n));
-                self.change_parts(registry, |scene, names| {
-                    scene.objects.insert(i + 1, copy);
-                    names.objects.insert(i + 1, None);
-                });
-                self.aside.object_copied(i);
-                self.select(Selection::Object(i + 1));
+                copy.name = copy.name.map(|n| free_name(&self.document, &n));
+                let from = self.document.object_id(i);
+                self.document.insert_object(i + 1, copy, "Duplicate", self.selection, registry);
+                if let Some((from, to)) = from.zip(self.document.object_id(i + 1)) {
+                    self.aside.copied(from, to);
+                }
+                self.select_new(Selection::Object(i + 1));
             }
             _ => self.say(Severity::Info, "Select a light or an object to duplicate it."),
         }
@@ -1286,30 +1196,23 @@ impl Lab {
 
     fn remove(&mut self, part: Selection, registry: &Registry) {
         match part {
-            Selection::Light(_) if self.scene.lights.len() <= 1 => {
+            Selection::Light(_) if self.document.lights.len() <= 1 => {
                 self.say(
                     Severity::Info,
                     "The last light stays: a scene needs at least one to show anything.",
                 );
             }
-            Selection::Object(_) if self.scene.objects.len() <= 1 => {
+            Selection::Object(_) if self.document.objects.len() <= 1 => {
                 self.say(Severity::Info, "Can’t delete the last object: a scene needs at least one.");
             }
-            Selection::Light(i) if i < self.scene.lights.len() => {
-                self.change_parts(registry, |scene, names| {
-                    scene.lights.remove(i);
-                    names.lights.remove(i);
-                });
-                self.selection = Selection::Light(i.min(self.scene.lights.len() - 1));
+            Selection::Light(i) if i < self.document.lights.len() => {
+                self.document.remove(part, registry);
+                self.select_new(Selection::Light(i.min(self.document.lights.len() - 1)));
                 self.renaming = None;
             }
-            Selection::Object(i) if i < self.scene.objects.len() => {
-                self.change_parts(registry, |scene, names| {
-                    scene.objects.remove(i);
-                    names.objects.remove(i);
-                });
-                self.aside.object_removed(i);
-                self.selection = Selection::Object(i.min(self.scene.objects.len() - 1));
+            Selection::Object(i) if i < self.document.objects.len() => {
+                self.document.remove(part, registry);
+                self.select_new(Selection::Object(i.min(self.document.objects.len() - 1)));
                 self.renaming = None;
             }
             Selection::Observer => {
@@ -1321,254 +1224,75 @@ impl Lab {
 
     /// The scene before the camera, as a place for what is added.
     fn stand<'a>(&'a self, registry: &'a Registry) -> Stand<'a> {
-        Stand::new(&self.scene, registry, self.eye, self.camera)
+        Stand::new(&self.document, registry, self.eye, self.camera)
     }
 
     // ── changing the scene ──
 
-    /// The one place where the scene changes: where a stack of snapshots for undoing would be fed.
-    fn change(&mut self, f: impl FnOnce(&mut Scene)) {
-        f(&mut self.scene);
-    }
-
-    /// Changes which parts there are, or of which types: those that stay keep what they are called. `f` makes the same
-    /// change in both; a part without a name there is new.
-    fn change_parts(&mut self, registry: &Registry, f: impl FnOnce(&mut Scene, &mut Names)) {
-        let mut names = Names::of(&self.scene, registry);
-        self.change(|scene| {
-            f(scene, &mut names);
-            names.keep(scene, registry);
-        });
-    }
+    // ── changing the scene ──
 
     fn edit(&mut self, edit: Edit, registry: &Registry) {
-        if let Err(why) = self.check(&edit, registry) {
-            self.say(Severity::Warning, why);
-            return;
-        }
-        if let Edit::Model(id) = &edit {
-            self.use_slot(id);
-        }
-        if let Edit::Object(_, ObjectField::Model(Some(id))) = &edit {
-            self.use_slot(id);
-        }
-        let named = |text: String| Some(text.trim().to_owned()).filter(|t| !t.is_empty());
-        match edit {
-            Edit::SceneName(name) => self.change(|s| s.name = named(name)),
-            Edit::SceneDescription(text) => self.change(|s| s.description = named(text)),
-            Edit::SceneSize(size) => self.change(|s| s.scene_size = size),
-            Edit::Display(display) => self.change(|s| s.display = display),
-            Edit::Model(id) => self.change(|s| s.reflection_model = id),
-            Edit::Mode(id) => self.change(|s| s.shading_model = id),
-            Edit::Observer(observer) => self.change(|s| s.observer = observer),
-            Edit::Light(i, LightField::Kind(kind)) => self.change_light_kind(i, &kind, registry),
-            Edit::Light(i, field) => {
-                if let LightField::Name(_) = field {
-                    self.renaming = None;
-                }
-                self.change(|s| {
-                    let light = &mut s.lights[i];
-                    // What is not given has the value that it has when the file is read again.
-                    match field {
-                        LightField::Name(name) => light.name = named(name),
-                        LightField::Enabled(on) => light.enabled = on,
-                        LightField::Kind(kind) => light.kind = kind,
-                        LightField::Position(p) => light.position = Some(p),
-                        LightField::Direction(d) => light.direction = Some(d),
-                        LightField::Colour(c) => (light.colour, light.colour_temperature) = (c, None),
-                        LightField::ColourTemperature(kelvin) => {
-                            (light.colour, light.colour_temperature) =
-                                (Light::default().colour, Some(kelvin));
-                        }
-                        LightField::Intensity(v) => (light.intensity, light.luminous_flux) = (v, None),
-                        LightField::LuminousFlux(v) => {
-                            let kind = registry.light(&light.kind);
-                            light.intensity =
-                                kind.map_or(light.intensity, |k| k.declaration.default_intensity);
-                            light.luminous_flux = Some(v);
-                        }
-                        LightField::Parameter(name, value) => light.parameters.set(name, value),
-                    }
-                });
+        let model = match &edit {
+            Edit::Model(id) | Edit::Object(_, ObjectField::Model(Some(id))) => Some(id.clone()),
+            _ => None,
+        };
+        let named =
+            matches!(edit, Edit::Light(_, LightField::Name(_)) | Edit::Object(_, ObjectField::Name(_)));
+        let done = match edit {
+            Edit::Light(i, LightField::Kind(kind)) if registry.light(&kind).is_some() => {
+                self.change_light_kind(i, &kind, registry);
+                Ok(())
             }
-            Edit::Object(i, field) => {
-                if let ObjectField::Name(_) = field {
-                    self.renaming = None;
-                }
-                // Others keep their numbers; calculated only where there may be others.
-                let names = matches!(field, ObjectField::Name(_) | ObjectField::Kind(_))
-                    .then(|| Names::of(&self.scene, registry));
-                self.change(|s| {
-                    let o = &mut s.objects[i];
-                    match field {
-                        ObjectField::Name(name) => o.name = named(name),
-                        ObjectField::Visible(on) => o.visible = on,
-                        ObjectField::Kind(kind) => {
-                            // What the number counts differs from type to type.
-                            o.tessellation = None;
-                            o.kind = kind;
-                        }
-                        ObjectField::Position(p) => o.position = p,
-                        ObjectField::Size(v) => o.size = v,
-                        ObjectField::Rotation(r) => o.rotation = r,
-                        ObjectField::Tessellation(n) => o.tessellation = n,
-                        ObjectField::Model(id) => o.reflection_model = id,
-                        ObjectField::Mode(id) => o.shading_model = id,
-                        ObjectField::Material(name, value) => o.material.set(name, value),
-                        ObjectField::Preset(all) => {
-                            all.into_iter().for_each(|(name, value)| o.material.set(name, value));
-                        }
-                    }
-                    if let Some(mut names) = names {
-                        names.objects[i] = None;
-                        names.keep(s, registry);
-                    }
-                });
-            }
+            edit => self.document.edit(edit, self.selection, registry),
+        };
+        if let Err(why) = done {
+            return self.say(Severity::Warning, why);
         }
+        if let Some(id) = model {
+            self.use_slot(&id);
+        }
+        if named {
+            self.renaming = None;
+        }
+    }
+
+    /// Takes over what something other than the panels changed: a system that changed a component.
+    ///
+    /// # Errors
+    /// Why it is refused; the document stays as it is.
+    pub fn submit(&mut self, scene: Scene, registry: &Registry) -> Result<(), String> {
+        self.document.submit(scene, self.selection, registry)?;
+        if !self.exists(self.selection) {
+            self.selection = Selection::Room;
+        }
+        Ok(())
     }
 
     fn change_light_kind(&mut self, i: usize, kind: &str, registry: &Registry) {
-        let Some(new) = registry.light(kind) else { return };
-        let light = &self.scene.lights[i];
+        let Some(light) = self.document.lights.get(i) else { return };
         let stand = self.stand(registry);
         let position = light.position.unwrap_or_else(|| stand.light(None));
         let direction = light.direction.unwrap_or_else(|| stand.towards_middle(position));
-        self.change_parts(registry, |s, names| {
-            names.lights[i] = None;
-            let room = s.scene_size;
-            let light = &mut s.lights[i];
-            (light.position, light.direction) = (Some(position), Some(direction));
-            light.set_type(new, registry, room);
-        });
+        self.document.change_light_type(i, kind, (position, direction), self.selection, registry);
     }
 
-    /// Whether an edit keeps the scene legal; the widgets ask the same limits before.
-    fn check(&self, edit: &Edit, registry: &Registry) -> Result<(), String> {
-        let light = |i: usize| self.scene.lights.get(i).ok_or_else(|| "there is no such light".to_owned());
-        let object = |i: usize| self.scene.objects.get(i).ok_or_else(|| "there is no such object".to_owned());
-        let name = |part| self.name_of(part, registry);
-        let known = |yes: bool, what: &str, id: &str| {
-            if yes { Ok(()) } else { Err(format!("There is no {what} called “{id}”.")) }
-        };
-        let legal = |what: String, value: f32, limits: limits::Limits| {
-            if limits.allows(f64::from(value)) {
-                return Ok(());
-            }
-            Err(format!("{what} is {}, but must be {}.", limits::number(f64::from(value)), limits.rule()))
-        };
-        let model = |id: &str| known(registry.model(id).is_some(), "reflection model", id);
-        let mode = |id: &str| known(registry.mode(id).is_some(), "shading model", id);
-        let place = |part: Selection, p: Vec3| {
-            for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
-                let what = format!("{}: {letter}", name(part));
-                legal(what, p.to_array()[axis], limits::position(self.scene.scene_size, axis))?;
-            }
-            match places(&self.scene)
-                .find(|(q, at)| may_not_meet(part, *q) && (*at - p).length() < SAME_PLACE)
-            {
-                Some((other, _)) => {
-                    Err(format!("{} cannot stand exactly where {} stands.", name(part), name(other)))
-                }
-                None => Ok(()),
-            }
-        };
-        let material = |id: &str, value: &Value| match registry.material_parameter(id) {
-            Some(p) if p.allows(value) => Ok(()),
-            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
-            None => Err(format!("No model has a parameter “{id}”.")),
-        };
-        let direction = |part: Selection, d: Vec3| {
-            if d.is_finite() && d.length() > SAME_PLACE {
-                return Ok(());
-            }
-            Err(format!("{}: the direction (0, 0, 0) points nowhere.", name(part)))
-        };
-        match edit {
-            Edit::SceneName(_) | Edit::SceneDescription(_) => Ok(()),
-            Edit::SceneSize(size) => {
-                for (axis, what) in ["width", "height", "depth"].into_iter().enumerate() {
-                    let value = size.corner().to_array()[axis];
-                    legal(format!("The {what} of the room"), value, self.dimension_limits(axis, registry))?;
-                }
-                Ok(())
-            }
-            Edit::Display(d) => legal("The exposure".to_owned(), d.exposure, limits::exposure()),
-            Edit::Model(id) => model(id),
-            Edit::Mode(id) => mode(id),
-            Edit::Observer(o) => {
-                place(Selection::Observer, o.position)?;
-                direction(Selection::Observer, o.direction)?;
-                legal("The field of view".to_owned(), o.field_of_view, limits::field_of_view())
-            }
-            Edit::Light(i, field) => {
-                let light = light(*i)?;
-                let part = Selection::Light(*i);
-                let entry = registry.light(&light.kind);
-                let declaration = entry.map(|e| e.declaration);
-                match field {
-                    LightField::Name(_) | LightField::Enabled(_) | LightField::Colour(_) => Ok(()),
-                    LightField::Kind(id) => known(registry.light(id).is_some(), "light type", id),
-                    LightField::Position(p) => place(part, *p),
-                    LightField::Direction(d) => direction(part, *d),
-                    LightField::Intensity(v) => match declaration {
-                        Some(d) => legal(format!("{}: the intensity", name(part)), *v, limits::intensity(d)),
-                        None => Ok(()),
-                    },
-                    LightField::LuminousFlux(v) => match entry {
-                        Some(e) if !e.has_flux() => Err(format!("{} has no luminous flux.", name(part))),
-                        Some(e) => legal(
-                            format!("{}: the luminous flux", name(part)),
-                            *v,
-                            limits::luminous_flux(e.declaration),
-                        ),
-                        None => Ok(()),
-                    },
-                    LightField::ColourTemperature(v) => legal(
-                        format!("{}: the colour temperature", name(part)),
-                        *v,
-                        limits::colour_temperature(),
-                    ),
-                    LightField::Parameter(id, value) => {
-                        let parameter = declaration.and_then(|d| d.parameters.iter().find(|p| p.name == *id));
-                        match parameter {
-                            Some(p) if p.allows(value) => Ok(()),
-                            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
-                            None => Err(format!("{} has no parameter “{id}”.", name(part))),
-                        }
-                    }
-                }
-            }
-            Edit::Object(i, field) => {
-                let object = object(*i)?;
-                let part = Selection::Object(*i);
-                match field {
-                    ObjectField::Name(_) | ObjectField::Visible(_) => Ok(()),
-                    ObjectField::Kind(id) => known(registry.shape(id).is_some(), "object type", id),
-                    ObjectField::Position(p) => place(part, *p),
-                    ObjectField::Size(v) => legal(
-                        format!("{}: the size", name(part)),
-                        *v,
-                        limits::object_size(self.scene.scene_size),
-                    ),
-                    ObjectField::Rotation(r) if r.is_finite() => Ok(()),
-                    ObjectField::Rotation(_) => Err(format!("{}: the rotation must be finite.", name(part))),
-                    ObjectField::Tessellation(None) => Ok(()),
-                    ObjectField::Tessellation(Some(n)) => match registry.shape(&object.kind) {
-                        Some(s) => legal(
-                            format!("{}: the tessellation", name(part)),
-                            *n as f32,
-                            limits::tessellation(s.declaration),
-                        ),
-                        None => Ok(()),
-                    },
-                    ObjectField::Model(id) => id.as_deref().map_or(Ok(()), model),
-                    ObjectField::Mode(id) => id.as_deref().map_or(Ok(()), mode),
-                    ObjectField::Material(id, value) => material(id, value),
-                    ObjectField::Preset(all) => all.iter().try_for_each(|(id, value)| material(id, value)),
-                }
-            }
+    /// Takes a step back, or does it again, until so many are done.
+    fn go_to_step(&mut self, done: usize, registry: &Registry) {
+        let model = self.document.reflection_model.clone();
+        while self.document.done() != done.min(self.document.steps().len()) {
+            let step = if self.document.done() > done { self.document.undo() } else { self.document.redo() };
+            let Some((_, selection)) = step else { break };
+            self.selection = selection;
         }
+        if !self.exists(self.selection) {
+            self.selection = Selection::Room;
+        }
+        self.renaming = None;
+        if self.document.reflection_model != model {
+            self.use_slot(&self.document.reflection_model.clone());
+        }
+        // The models may be others than when the step was made.
+        super::follow::follow_registry(self, registry);
     }
 
     /// Gives a model one of the keys 1–9: the one that it has, a free one, or that of the model that
@@ -1629,18 +1353,4 @@ impl Lab {
         }
         if before == self.settings() { Vec::new() } else { vec![Effect::SaveSettings] }
     }
-}
-
-/// Where everything stands that has a place.
-fn places(scene: &Scene) -> impl Iterator<Item = (Selection, Vec3)> + '_ {
-    let lights =
-        scene.lights.iter().enumerate().filter_map(|(i, l)| Some((Selection::Light(i), l.position?)));
-    let objects = scene.objects.iter().enumerate().map(|(i, o)| (Selection::Object(i), o.position));
-    lights.chain(objects).chain([(Selection::Observer, scene.observer.position)])
-}
-
-/// Which parts must not stand in the same place: lights, objects and the observer exclude each other;
-/// two lights or two objects may share theirs.
-fn may_not_meet(a: Selection, b: Selection) -> bool {
-    std::mem::discriminant(&a) != std::mem::discriminant(&b)
 }

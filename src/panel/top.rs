@@ -6,11 +6,13 @@ use super::{
     Panel, Place,
     author::{Ask, SHADER_TAB},
     chooser, focus,
+    history::HISTORY_TAB,
     keys::{self, Binding},
-    state::{Action, Lab, Selection, ThemeChoice, ViewChange},
+    state::{Action, Lab, ThemeChoice, ViewChange},
     theme::{self, Palette},
     welcome,
 };
+use crate::document::Selection;
 use crate::{optics::TermSelection, registry::Registry};
 
 /// See the module.
@@ -98,7 +100,7 @@ fn document(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     }
     response.on_hover_ui(|ui| {
         ui.label(theme::strong(ui, lab.title()));
-        if let Some(description) = &lab.scene.description {
+        if let Some(description) = &lab.document.description {
             ui.label(description);
         }
         let file = lab.path.as_ref().map_or("in no file yet".to_owned(), |p| p.display().to_string());
@@ -167,6 +169,18 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
         });
         let edit = ui.menu_button("Edit", |ui| {
             ui.set_width(1.3 * MENU_WIDTH);
+            let (done, steps) = (lab.document.done(), lab.document.steps().len());
+            let step = |verb: &str, at: Option<usize>| match at.and_then(|at| lab.document.steps().nth(at)) {
+                Some(name) => format!("{verb}: {name}"),
+                None => verb.to_owned(),
+            };
+            let undo = done.checked_sub(1);
+            ui.add_enabled_ui(undo.is_some(), |ui| item(ui, &step("Undo", undo), Action::Undo, actions));
+            let redo = Some(done).filter(|done| *done < steps);
+            ui.add_enabled_ui(redo.is_some(), |ui| item(ui, &step("Redo", redo), Action::Redo, actions));
+            let history = Action::View(ViewChange::BottomTab(HISTORY_TAB.to_owned()));
+            item(ui, "History…", history, actions);
+            ui.separator();
             ui.menu_button("Add a light", |ui| {
                 for light in registry.lights() {
                     let d = light.declaration;
@@ -367,8 +381,8 @@ fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
             "{name} has its own {what}, so the choice here changes that of {name} alone. At the end of the \
              panel at the right it can be made to follow the scene again."
         ));
-        let model = registry.model(&lab.scene.reflection_model).map_or("–", |m| m.declaration.name);
-        let mode = registry.mode(&lab.scene.shading_model).map_or("–", |m| m.declaration.name);
+        let model = registry.model(&lab.document.reflection_model).map_or("–", |m| m.declaration.name);
+        let mode = registry.mode(&lab.document.shading_model).map_or("–", |m| m.declaration.name);
         ui.label(theme::small(ui, format!("The scene: {model}, {mode} shading")));
     });
 }

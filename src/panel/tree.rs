@@ -8,9 +8,10 @@ use bevy_egui::egui::{
 use super::{
     Panel, Place,
     icon::{self, Icon},
-    state::{Action, Edit, Lab, LightField, ObjectField, Selection},
+    state::{Action, Lab},
     theme::{self, Palette},
 };
+use crate::document::{Edit, LightField, ObjectField, Selection};
 use crate::{
     optics::colour::Encoding,
     parameter::{BASE_COLOUR, Value},
@@ -43,7 +44,7 @@ impl Panel for Tree {
 
     fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
-        let (lights, objects) = (lab.scene.lights.len(), lab.scene.objects.len());
+        let (lights, objects) = (lab.document.lights.len(), lab.document.objects.len());
         // Rows are addressed by number, so that ten thousand objects cost no more than those on screen.
         let row = |i: usize| match i {
             0 => Row::Part(Selection::Room),
@@ -193,12 +194,12 @@ fn part_row(
         Selection::Room => icon::paint(&painter, square, Icon::Room, palette.text),
         Selection::Observer => icon::paint(&painter, square, Icon::Eye, palette.text),
         Selection::Light(i) => {
-            let light = &lab.scene.lights[i];
+            let light = &lab.document.lights[i];
             glyph(registry.light(&light.kind).map_or("?", |e| e.declaration.glyph));
             dot = Some(light.rgb8());
         }
         Selection::Object(i) => {
-            let object = &lab.scene.objects[i];
+            let object = &lab.document.objects[i];
             glyph(registry.shape(&object.kind).map_or("?", |e| e.declaration.glyph));
             let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
             dot = Some([colour.x as u8, colour.y as u8, colour.z as u8]);
@@ -261,8 +262,8 @@ fn part_row(
 /// True unless it is hidden or switched off.
 fn is_there(lab: &Lab, part: Selection) -> bool {
     match part {
-        Selection::Light(i) => lab.scene.lights.get(i).is_none_or(|light| light.enabled),
-        Selection::Object(i) => lab.scene.objects.get(i).is_none_or(|object| object.visible),
+        Selection::Light(i) => lab.document.lights.get(i).is_none_or(|light| light.enabled),
+        Selection::Object(i) => lab.document.objects.get(i).is_none_or(|object| object.visible),
         Selection::Room | Selection::Observer => true,
     }
 }
@@ -348,8 +349,8 @@ fn colour_dot(
 fn rename(ui: &mut Ui, lab: &Lab, part: Selection, name: &str, place: Rect, actions: &mut Vec<Action>) {
     let id = ui.id().with(("rename", part));
     let own = match part {
-        Selection::Light(i) => lab.scene.lights[i].name.clone(),
-        Selection::Object(i) => lab.scene.objects[i].name.clone(),
+        Selection::Light(i) => lab.document.lights[i].name.clone(),
+        Selection::Object(i) => lab.document.objects[i].name.clone(),
         _ => None,
     };
     let first = ui.data(|d| d.get_temp::<String>(id)).is_none();

@@ -15,7 +15,8 @@ use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraSystemSet};
 use glam::{Quat, Vec3};
 
 use crate::{
-    panel::state::{Action, Edit, Lab, Selection, Severity, Steer},
+    document::{Edit, Selection},
+    panel::state::{Action, Lab, Severity, Steer},
     registry::Registry,
     render::{camera::PictureCamera, entities::CurrentScene},
     scene::{Observer, Scene, check, observer::rotation},
@@ -225,9 +226,9 @@ impl CameraControl<'_, '_> {
         let observer = Observer {
             position: transform.translation,
             direction: transform.rotation * Vec3::NEG_Z,
-            field_of_view: lab.scene.observer.field_of_view,
+            field_of_view: lab.document.observer.field_of_view,
         };
-        let mut wanted = lab.scene.clone();
+        let mut wanted = lab.document.scene().clone();
         wanted.observer = observer;
         match check::scene(&wanted, registry).first() {
             Some(problem) => {

@@ -437,16 +437,21 @@ fn lab_to_scene(lab: Res<Lab>, mut scene: ResMut<CurrentScene>, mut terms: ResMu
     if !lab.is_changed() {
         return;
     }
-    if scene.0 != lab.scene {
-        scene.0 = lab.scene.clone();
+    if lab.document != scene.0 {
+        scene.0 = lab.document.scene().clone();
     }
     terms.set_if_neq(ShownTerms(lab.view.terms));
 }
 
-/// What others changed in the entities goes into the document.
-fn scene_to_lab(scene: Res<CurrentScene>, mut lab: ResMut<Lab>) {
-    if scene.is_changed() && lab.scene != scene.0 {
-        lab.scene = scene.0.clone();
+/// What others changed in the entities is submitted to the document; what it refuses goes back.
+fn scene_to_lab(mut scene: ResMut<CurrentScene>, registry: Res<Registry>, mut lab: ResMut<Lab>) {
+    if scene.is_changed() && lab.document != scene.0 {
+        if let Err(why) = lab.submit(scene.0.clone(), &registry) {
+            lab.say(Severity::Warning, why);
+        }
+        if lab.document != scene.0 {
+            scene.0 = lab.document.scene().clone();
+        }
     }
 }
 
@@ -590,7 +595,7 @@ fn redraw(
 ) {
     let rect = lab.picture_rect;
     let now = Snapshot {
-        scene: lab.scene.clone(),
+        scene: lab.document.scene().clone(),
         rect: [rect.min.x, rect.min.y, rect.max.x, rect.max.y],
         camera: cameras.iter().next().copied(),
         terms: *terms,

@@ -13,9 +13,10 @@ use glam::Vec2;
 
 use super::PicturePlace;
 use crate::{
+    document::Selection,
     panel::{
         marks::anchor,
-        state::{Action, Lab, Selection},
+        state::{Action, Lab},
     },
     registry::Registry,
     render::{

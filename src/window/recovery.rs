@@ -150,7 +150,7 @@ impl Recovery {
 
 /// The document with its unsaved changes.
 fn document(lab: &Lab, files: &DiskFiles, registry: Arc<Registry>) -> Document {
-    Document { about: about(lab, files), scene: lab.scene.clone(), registry }
+    Document { about: about(lab, files), scene: lab.document.scene().clone(), registry }
 }
 
 fn about(lab: &Lab, files: &DiskFiles) -> About {
@@ -230,11 +230,11 @@ pub(super) fn keep(
         return;
     }
     let now = about(&lab, &files);
-    if !recovery.farewell.keeper.keeps(|kept| kept.about == now && kept.scene == lab.scene) {
+    if !recovery.farewell.keeper.keeps(|kept| kept.about == now && lab.document == kept.scene) {
         let registry = recovery.registry.get_or_insert_with(|| Arc::new(registry.clone()));
         recovery.farewell.keeper.keep(Document {
             about: now,
-            scene: lab.scene.clone(),
+            scene: lab.document.scene().clone(),
             registry: registry.clone(),
         });
     }

@@ -4,9 +4,10 @@ use std::time::{Duration, Instant};
 
 use bevy_egui::egui::{Key, Modifiers, vec2};
 use lights_camera_models::{
+    document::Edit,
     panel::{
         preview::{self, Preview, Source},
-        state::{Action, Answer, Edit, Effect, Lab, Question, ViewChange},
+        state::{Action, Answer, Effect, Lab, Question, ViewChange},
     },
     reference::{self, Settings},
     registry::Registry,

@@ -1,9 +1,12 @@
 //! The window by keyboard alone, without a window: where the focus goes, and that it is seen.
 
 use bevy_egui::egui::{self, Key, Modifiers, Rect};
-use lights_camera_models::panel::{
-    state::{Action, Effect, Lab, Selection, Steer},
-    theme::DARK,
+use lights_camera_models::{
+    document::Selection,
+    panel::{
+        state::{Action, Effect, Lab, Steer},
+        theme::DARK,
+    },
 };
 
 use crate::panels::Bench;
@@ -114,7 +117,7 @@ fn a_new_name_takes_the_place_of_the_old_one() {
     bench.frame(vec![egui::Event::Text("ball".to_owned())]);
     bench.settle();
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.objects[0].name.as_deref(), Some("ball"));
+    assert_eq!(bench.lab.document.objects[0].name.as_deref(), Some("ball"));
 }
 
 #[test]
@@ -133,7 +136,7 @@ fn the_menus_open_with_alt_and_with_f10() {
     bench.key(Key::F10, Modifiers::NONE);
     assert!(!bench.says("New default scene"), "and closes it");
     // A letter with Alt is no command of the picture.
-    let mode = bench.lab.scene.shading_model.clone();
+    let mode = bench.lab.document.shading_model.clone();
     bench.key(Key::F, Modifiers::ALT);
-    assert_eq!(bench.lab.scene.shading_model, mode);
+    assert_eq!(bench.lab.document.shading_model, mode);
 }

@@ -1,9 +1,12 @@
 //! The lines of the knobs: what can be seen without scrolling, and that there is more where there is.
 
 use bevy_egui::egui::{PointerButton, Rect, Shape, accesskit::Role, vec2};
-use lights_camera_models::panel::{
-    state::{Action, Edit, Selection, ThemeChoice, ViewChange},
-    theme,
+use lights_camera_models::{
+    document::{Edit, Selection},
+    panel::{
+        state::{Action, ThemeChoice, ViewChange},
+        theme,
+    },
 };
 
 use crate::panels::{Bench, Seen};
@@ -112,16 +115,16 @@ fn model_and_shading_of_one_object_are_overridden_beside_the_name_of_the_model()
     assert!(at.bottom() < terms.top() && at.height() < 30.0);
     bench.click(control);
     bench.click("Shading of this object: Flat");
-    assert_eq!(bench.lab.scene.objects[0].shading_model.as_deref(), Some("flat"));
+    assert_eq!(bench.lab.document.objects[0].shading_model.as_deref(), Some("flat"));
     assert!(bench.says("Override model and shading: Flat shading"));
     bench.click("Lambert");
-    assert_eq!(bench.lab.scene.objects[0].reflection_model.as_deref(), Some("lambert"));
-    assert_eq!(bench.lab.scene.reflection_model, "phong");
+    assert_eq!(bench.lab.document.objects[0].reflection_model.as_deref(), Some("lambert"));
+    assert_eq!(bench.lab.document.reflection_model, "phong");
     assert!(bench.find("Shading of this object: Flat").is_none(), "choosing a model closes the list");
     bench.click("Override model and shading: Lambert, Flat shading");
     bench.click("Shading of this object: Scene default");
     bench.click("Scene default (Phong)");
-    let object = &bench.lab.scene.objects[0];
+    let object = &bench.lab.document.objects[0];
     assert_eq!((&object.reflection_model, &object.shading_model), (&None, &None));
     bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
     bench.click_at(bench.lab.picture_rect.center(), PointerButton::Primary);

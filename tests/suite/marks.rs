@@ -3,10 +3,11 @@
 use bevy_egui::egui::{Color32, Event, PointerButton};
 use glam::Vec3;
 use lights_camera_models::{
+    document::Selection,
     optics::colour::srgb_decode,
     panel::{
         marks::{Lens, anchor},
-        state::{Action, Lab, Selection, ThemeChoice, ViewChange},
+        state::{Action, Lab, ThemeChoice, ViewChange},
         theme,
     },
     scene::{Light, Scene},
@@ -98,8 +99,8 @@ fn each_kind_of_light_in_view_has_its_mark_in_the_room() {
     let mut bench = bench(marked());
     let picture = shown(&mut bench, Color32::BLACK);
     let lens = Lens::of(&bench.lab, bench.lab.picture_rect);
-    for light in &bench.lab.scene.lights {
-        let at = anchor(light, &bench.lab.scene).and_then(|p| lens.project(p)).unwrap();
+    for light in &bench.lab.document.lights {
+        let at = anchor(light, &bench.lab.document).and_then(|p| lens.project(p)).unwrap();
         assert!(bench.lab.picture_rect.contains(at), "{}: {at:?}", light.kind);
         let (x, y) = (at.x as u32, at.y as u32);
         let yellow = |p: [u8; 3]| p[0] > 200 && p[1] > 190 && p[2] < 110;
@@ -124,7 +125,7 @@ fn a_light_outside_the_view_has_an_arrow_that_selects_it() {
     assert_eq!(bench.lab.selection, Selection::Light(0));
     bench.hover(arrow);
     assert!(bench.says("Point 1"), "the tooltip names it");
-    bench.lab.scene.lights[0].position = Some(Vec3::new(5.0, 6.0, 5.0));
+    bench.lab.document.amend(|scene| scene.lights[0].position = Some(Vec3::new(5.0, 6.0, 5.0)));
     bench.settle();
     assert!(!bench.says("Outside the view"));
 }

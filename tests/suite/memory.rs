@@ -12,12 +12,13 @@ use bevy::{
 use glam::Vec3;
 use lights_camera_models::{
     custom::CustomFile,
+    document::{Edit, LightField, ObjectField, Selection},
     light,
     optics::{
         TermSelection,
         colour::{BACKGROUND, srgb_decode},
     },
-    panel::state::{Action, Edit, Lab as Window, LightField, MAX_MESSAGES, ObjectField, Selection, Severity},
+    panel::state::{Action, Lab as Window, MAX_MESSAGES, Severity},
     reference,
     registry::Registry,
     render::{
@@ -205,8 +206,8 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
         for _ in 0..actions {
             let mut any = |list: &[String]| list[numbers.below(list.len())].clone();
             let (shape, light, model, mode) = (any(&shapes), any(&lights), any(&models), any(&modes));
-            let i = numbers.below(window.scene.objects.len());
-            let l = numbers.below(window.scene.lights.len());
+            let i = numbers.below(window.document.objects.len());
+            let l = numbers.below(window.document.lights.len());
             let number = numbers.below(60);
             let object = |field| Action::Edit(Edit::Object(i, field));
             let action = match numbers.below(12) {
@@ -223,8 +224,8 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
                 _ => object(ObjectField::Tessellation(Some(3 + number as u32))),
             };
             window.apply(action, &registry);
-            assert!(window.scene.lights.len() <= light::MAX_LIGHTS);
-            renderer.set_scene(window.scene.clone());
+            assert!(window.document.lights.len() <= light::MAX_LIGHTS);
+            renderer.set_scene(window.document.scene().clone());
             renderer.step();
         }
         held(renderer)
@@ -233,7 +234,7 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
     let after = random(&mut window, &mut renderer, 300);
     // Two meshes for each kind and fineness of the scene, and for some that were there before.
     let most = |objects: usize| 2 * (objects + 17) + 8;
-    assert!(after.meshes <= most(window.scene.objects.len()), "{before:?} {after:?}");
+    assert!(after.meshes <= most(window.document.objects.len()), "{before:?} {after:?}");
     assert!(after.tables <= models.len() + 2, "{after:?}");
     assert!(after.large <= models.len() * modes.len() + 2, "{after:?}");
     let entities = renderer.app().world().entities().len() as usize;
@@ -317,6 +318,6 @@ fn sizes_that_no_picture_can_show_are_refused() {
         assert!(problem.to_string().ends_with("but a size must be at most 1e9 m"), "{problem}");
         let mut window = Window::default();
         window.apply(Action::Edit(Edit::Object(0, ObjectField::Size(size))), &Registry::builtin());
-        assert!(window.scene == Scene::default(), "the window refuses it too");
+        assert!(window.document == Scene::default(), "the window refuses it too");
     }
 }

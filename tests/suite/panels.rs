@@ -14,12 +14,13 @@ use bevy_egui::egui::{
     vec2,
 };
 use lights_camera_models::{
+    document::{Edit, LightField, ObjectField, Selection},
     optics::{Frame, TermSelection, Terms, colour::Encoding, fresnel, tone::ToneMapping},
     panel::{
         self, Dialogs, Panels,
         state::{
-            Action, Answer, Badge, Edit, Effect, Lab, LightField, MissingPart, ObjectField, Question,
-            Selection, Severity, Shaders, ThemeChoice, ViewChange,
+            Action, Answer, Badge, Effect, Lab, MissingPart, Question, Severity, Shaders, ThemeChoice,
+            ViewChange,
         },
     },
     parameter::{
@@ -407,18 +408,18 @@ fn parameters_that_the_model_does_not_use_are_disabled_and_kept() {
     assert!(bench.says("Not used by Lambert"));
     bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
     assert!(!bench.field("shininess").disabled);
-    assert_eq!(bench.lab.scene.objects[0].material.0.get("alpha"), Some(&Value::Integer(64)));
+    assert_eq!(bench.lab.document.objects[0].material.0.get("alpha"), Some(&Value::Integer(64)));
 }
 
 #[test]
 fn typing_a_legal_value_changes_the_scene_at_once() {
     let mut bench = Bench::with_model("phong");
     bench.type_into("diffuse coefficient", "0,65");
-    assert_eq!(bench.lab.scene.objects[0].material.0.get("k_d"), Some(&Value::Number(0.65)));
+    assert_eq!(bench.lab.document.objects[0].material.0.get("k_d"), Some(&Value::Number(0.65)));
     assert!(bench.lab.is_dirty());
     bench.key(Key::Escape, Modifiers::NONE);
     assert_eq!(
-        bench.lab.scene.objects[0].material.0.get("k_d"),
+        bench.lab.document.objects[0].material.0.get("k_d"),
         Some(&Value::Number(0.8)),
         "Escape goes back"
     );
@@ -428,9 +429,9 @@ fn typing_a_legal_value_changes_the_scene_at_once() {
 fn typing_an_illegal_value_shows_the_rule_and_leaves_the_scene_alone() {
     for text in ["0.2", "7", "abc", ""] {
         let mut bench = Bench::with_model("phong");
-        let before = bench.lab.scene.clone();
+        let before = bench.lab.document.scene().clone();
         bench.type_into("diffuse coefficient", text);
-        assert_eq!(bench.lab.scene, before, "{text:?}");
+        assert_eq!(*bench.lab.document, before, "{text:?}");
         assert!(bench.says("between 0.5 and 1"), "{text:?}: the rule is not shown");
         assert!(bench.says("the picture keeps 0.8"), "{text:?}");
     }
@@ -439,12 +440,12 @@ fn typing_an_illegal_value_shows_the_rule_and_leaves_the_scene_alone() {
 #[test]
 fn positions_stay_in_the_room() {
     let mut bench = Bench::new(Lab::default());
-    let before = bench.lab.scene.clone();
+    let before = bench.lab.document.scene().clone();
     bench.type_into("position x", "11");
-    assert_eq!(bench.lab.scene, before);
+    assert_eq!(*bench.lab.document, before);
     assert!(bench.says("greater than 0 and at most 10"));
     bench.type_into("position x", "3.5");
-    assert_eq!(bench.lab.scene.objects[0].position.x, 3.5);
+    assert_eq!(bench.lab.document.objects[0].position.x, 3.5);
 }
 
 #[test]
@@ -453,7 +454,7 @@ fn arrow_keys_turn_the_value_of_a_field() {
     let at = bench.field("shininess").rect.center();
     bench.click_at(at, PointerButton::Primary);
     bench.key(Key::ArrowUp, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.objects[0].material.0.get("alpha"), Some(&Value::Integer(33)));
+    assert_eq!(bench.lab.document.objects[0].material.0.get("alpha"), Some(&Value::Integer(33)));
 }
 
 #[test]
@@ -468,7 +469,7 @@ fn sliders_are_dragged_and_a_double_click_sets_the_default() {
     let Some(seen) = slider(&bench) else { panic!("no slider") };
     let at = pos2(seen.rect.left() + 0.9 * seen.rect.width(), seen.rect.center().y);
     bench.click_at(at, PointerButton::Primary);
-    let value = |b: &Bench| match b.lab.scene.objects[0].material.0.get("k_s") {
+    let value = |b: &Bench| match b.lab.document.objects[0].material.0.get("k_s") {
         Some(Value::Number(v)) => *v,
         other => panic!("{other:?}"),
     };
@@ -518,7 +519,7 @@ fn a_slider_that_ends_before_the_range_does_says_that_more_can_be_typed() {
 #[test]
 fn three_numbers_are_typed_one_by_one_or_at_once() {
     let mut bench = Bench::with_everything();
-    let value = |b: &Bench| b.lab.scene.objects[0].material.get(&IOR);
+    let value = |b: &Bench| b.lab.document.objects[0].material.get(&IOR);
     bench.type_into("refractive index: all three", "1.33");
     assert_eq!(value(&bench), Value::Triple([1.33; 3]));
     bench.type_into("refractive index G", "2");
@@ -543,7 +544,7 @@ fn a_measured_material_sets_what_was_measured_in_one_edit() {
     bench.frame(vec![Event::Text("johnson gold".to_owned())]);
     bench.settle();
     bench.key(Key::Enter, Modifiers::NONE);
-    let material = bench.lab.scene.objects[0].material.clone();
+    let material = bench.lab.document.objects[0].material.clone();
     let gold = preset::by_id("gold").unwrap();
     assert_eq!(material.get(&IOR), Value::Triple(gold.n));
     assert_eq!(material.get(&EXTINCTION), Value::Triple(gold.k));
@@ -553,10 +554,10 @@ fn a_measured_material_sets_what_was_measured_in_one_edit() {
     bench.type_into("extinction coefficient R", "3");
     assert!(bench.says("measured material: none"));
     // Nothing illegal gets in this way, not even in part.
-    let before = bench.lab.scene.clone();
+    let before = bench.lab.document.scene().clone();
     let bad = vec![("ior", Value::Triple([2.0; 3])), ("extinction", Value::Triple([99.0; 3]))];
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Preset(bad))));
-    assert_eq!(bench.lab.scene, before);
+    assert_eq!(*bench.lab.document, before);
     // A model that cannot be a measured material has no such knob.
     bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
     assert!(!bench.says("measured material"));
@@ -598,10 +599,10 @@ fn what_the_top_shows_is_what_the_selected_object_has() {
     bench.frame(vec![Event::Text("1977".to_owned())]);
     bench.settle();
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.objects[1].reflection_model.as_deref(), Some("blinn_phong"));
-    assert_eq!(bench.lab.scene.reflection_model, "lambert", "the scene keeps its own");
+    assert_eq!(bench.lab.document.objects[1].reflection_model.as_deref(), Some("blinn_phong"));
+    assert_eq!(bench.lab.document.reflection_model, "lambert", "the scene keeps its own");
     bench.key(Key::F, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.shading_model, "flat", "the shading of the cube is that of the scene");
+    assert_eq!(bench.lab.document.shading_model, "flat", "the shading of the cube is that of the scene");
     bench.apply(Action::Select(Selection::Object(0)));
     assert!(bench.says("Reflection model: Lambert") && !bench.says("overrides reflection"));
 }
@@ -633,7 +634,7 @@ fn nothing_is_lost_without_a_question() {
         assert!(bench.says("Save the changes?"), "{action:?}");
         bench.key(Key::Escape, Modifiers::NONE);
         assert_eq!(bench.lab.question, None);
-        assert_eq!(bench.lab.scene.shading_model, "flat", "cancelling keeps everything");
+        assert_eq!(bench.lab.document.shading_model, "flat", "cancelling keeps everything");
         assert!(bench.effects.is_empty(), "{action:?}");
     }
 }
@@ -664,11 +665,11 @@ fn missing_parts_are_named_and_defaults_used_on_yes_only() {
     ask(&mut bench);
     assert!(bench.says("the scene size") && bench.says("10 × 10 × 10 m"));
     bench.click("Do not open");
-    assert_eq!(bench.lab.scene.shading_model, "gouraud");
+    assert_eq!(bench.lab.document.shading_model, "gouraud");
     assert!(bench.lab.messages.iter().any(|m| m.text.contains("the scene size")));
     ask(&mut bench);
     bench.click("Use the defaults");
-    assert_eq!(bench.lab.scene.shading_model, "phong");
+    assert_eq!(bench.lab.document.shading_model, "phong");
     assert_eq!(bench.lab.path, Some(PathBuf::from("c.json")));
 }
 
@@ -701,7 +702,7 @@ fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
     let (mut bench, _) = ask();
     bench.key(Key::Escape, Modifiers::NONE);
     assert!(bench.effects.is_empty() && bench.lab.question.is_none());
-    assert_eq!(bench.lab.scene.shading_model, "flat");
+    assert_eq!(bench.lab.document.shading_model, "flat");
     assert!(bench.lab.disk.badge.as_ref().is_some_and(|b| b.text.contains("room.json changed on disk")));
 }
 
@@ -724,21 +725,21 @@ fn every_registered_kind_can_be_added() {
     let registry = Registry::builtin();
     for light in registry.lights() {
         bench.apply(Action::AddLight(light.declaration.id.to_owned()));
-        let Some(added) = bench.lab.scene.lights.last() else { panic!("none") };
+        let Some(added) = bench.lab.document.lights.last() else { panic!("none") };
         assert_eq!(added.kind, light.declaration.id);
         assert_eq!(added.position.is_some(), light.declaration.has_position);
         assert_eq!(added.direction.is_some(), light.declaration.has_direction);
-        assert!(added.position.is_none_or(|p| bench.lab.scene.scene_size.contains(p)));
+        assert!(added.position.is_none_or(|p| bench.lab.document.scene_size.contains(p)));
     }
     for shape in registry.shapes() {
         bench.apply(Action::AddObject(shape.declaration.id.to_owned()));
-        assert_eq!(bench.lab.scene.objects.last().map(|o| o.kind.as_str()), Some(shape.declaration.id));
+        assert_eq!(bench.lab.document.objects.last().map(|o| o.kind.as_str()), Some(shape.declaration.id));
     }
     let mut places: Vec<_> =
-        bench.lab.scene.objects.iter().map(|o| o.position.to_array().map(f32::to_bits)).collect();
+        bench.lab.document.objects.iter().map(|o| o.position.to_array().map(f32::to_bits)).collect();
     places.sort_unstable();
     places.dedup();
-    assert_eq!(places.len(), bench.lab.scene.objects.len(), "each stands in a place of its own");
+    assert_eq!(places.len(), bench.lab.document.objects.len(), "each stands in a place of its own");
 }
 
 #[test]
@@ -752,7 +753,7 @@ fn the_last_light_and_the_last_object_stay_and_say_why() {
         bench.apply(Action::Remove(part));
         assert!(bench.lab.messages.iter().any(|m| m.text.contains(words)));
     }
-    assert_eq!((bench.lab.scene.lights.len(), bench.lab.scene.objects.len()), (1, 1));
+    assert_eq!((bench.lab.document.lights.len(), bench.lab.document.objects.len()), (1, 1));
 }
 
 #[test]
@@ -770,8 +771,8 @@ fn removing_and_duplicating_keep_the_selection_on_something_that_exists() {
 #[test]
 fn illegal_edits_are_refused_with_the_reason() {
     let mut bench = Bench::new(Lab::default());
-    let before = bench.lab.scene.clone();
-    let observer = bench.lab.scene.observer.position;
+    let before = bench.lab.document.scene().clone();
+    let observer = bench.lab.document.observer.position;
     for edit in [
         Edit::Model("nonsense".to_owned()),
         Edit::Light(0, LightField::Position(observer)),
@@ -785,7 +786,7 @@ fn illegal_edits_are_refused_with_the_reason() {
     ] {
         let messages = bench.lab.messages.len();
         bench.apply(Action::Edit(edit.clone()));
-        assert_eq!(bench.lab.scene, before, "{edit:?}");
+        assert_eq!(*bench.lab.document, before, "{edit:?}");
         assert_eq!(bench.lab.messages.len(), messages + 1, "{edit:?}");
     }
 }
@@ -795,7 +796,7 @@ fn another_type_of_light_has_what_the_type_needs() {
     let mut bench = Bench::new(Lab::default());
     for light in Registry::builtin().lights() {
         bench.apply(Action::Edit(Edit::Light(0, LightField::Kind(light.declaration.id.to_owned()))));
-        let now = &bench.lab.scene.lights[0];
+        let now = &bench.lab.document.lights[0];
         assert_eq!(now.position.is_some(), light.declaration.has_position);
         assert_eq!(now.direction.is_some(), light.declaration.has_direction);
         assert_eq!(now.intensity, light.declaration.default_intensity);
@@ -809,15 +810,15 @@ fn brightness_is_read_and_typed_in_candela_or_lumen() {
     assert!(bench.says("= 251.3 lm"), "20 cd are 80π lm");
     bench.click("unit: candela");
     bench.click("lm  lumen");
-    let light = |b: &Bench| b.lab.scene.lights[0].clone();
+    let light = |b: &Bench| b.lab.document.lights[0].clone();
     assert_eq!(light(&bench).luminous_flux, Some(251.327));
     bench.type_into("luminous flux", "800");
     assert_eq!(light(&bench).luminous_flux, Some(800.0));
     assert!(bench.says("= 63.66 cd"));
     // What is saved is what was typed, and reading it gives the same light.
-    let text = crate::support::written(&bench.lab.scene);
+    let text = crate::support::written(&bench.lab.document);
     assert!(text.contains("\"luminous_flux\": 800") && !text.contains("intensity"), "{text}");
-    assert_eq!(crate::support::read(&text), bench.lab.scene);
+    assert_eq!(crate::support::read(&text), *bench.lab.document);
     bench.click("unit: lumen");
     bench.click("cd  candela");
     assert_eq!((light(&bench).luminous_flux, light(&bench).intensity), (None, 63.662));
@@ -834,7 +835,7 @@ fn a_lamp_keeps_its_lumen_while_it_is_point_or_spot() {
     let mut bench = Bench::new(Lab::default());
     let mut now = |field: LightField| {
         bench.apply(Action::Edit(Edit::Light(0, field)));
-        let light = bench.lab.scene.lights[0].clone();
+        let light = bench.lab.document.lights[0].clone();
         (light.luminous_flux, light.intensity)
     };
     assert_eq!(now(LightField::LuminousFlux(800.0)), (Some(800.0), 20.0));
@@ -848,7 +849,7 @@ fn a_light_is_coloured_by_temperature_and_back() {
     let mut bench = Bench::new(Lab::default());
     bench.apply(Action::Select(Selection::Light(0)));
     bench.click("Colour by: temperature");
-    let light = |b: &Bench| b.lab.scene.lights[0].clone();
+    let light = |b: &Bench| b.lab.document.lights[0].clone();
     let kelvin = light(&bench).colour_temperature;
     assert!(kelvin.is_some_and(|k| (6200.0..=6800.0).contains(&k)), "white is about 6500 K: {kelvin:?}");
     bench.type_into("colour temperature", "2700");
@@ -865,12 +866,12 @@ fn exposure_and_every_tone_mapping_can_be_chosen() {
     let mut bench = Bench::new(Lab::default());
     bench.apply(Action::Select(Selection::Room));
     bench.type_into("exposure", "1.5");
-    assert_eq!(bench.lab.scene.display.exposure, 1.5);
+    assert_eq!(bench.lab.document.display.exposure, 1.5);
     let mut shown = ToneMapping::None;
     for tone in ToneMapping::ALL.into_iter().skip(1) {
         bench.click(&format!("tone mapping: {}", shown.name()));
         bench.click(tone.name());
-        assert_eq!(bench.lab.scene.display.tone_mapping, tone);
+        assert_eq!(bench.lab.document.display.tone_mapping, tone);
         shown = tone;
     }
 }
@@ -884,15 +885,15 @@ fn keys_choose_the_shading_but_not_while_typing() {
         [(Key::F, "f", "flat"), (Key::P, "p", "phong"), (Key::D, "d", "derivative"), (Key::G, "g", "gouraud")]
     {
         bench.letter(key, text);
-        assert_eq!(bench.lab.scene.shading_model, mode);
+        assert_eq!(bench.lab.document.shading_model, mode);
     }
     let at = bench.field("Name").rect.center();
     bench.click_at(at, PointerButton::Primary);
     bench.letter(Key::F, "f");
     bench.key(Key::Delete, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.shading_model, "gouraud");
+    assert_eq!(bench.lab.document.shading_model, "gouraud");
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.objects[0].name.as_deref(), Some("f"));
+    assert_eq!(bench.lab.document.objects[0].name.as_deref(), Some("f"));
 }
 
 #[test]
@@ -902,10 +903,10 @@ fn delete_removes_the_selection_but_not_from_within_a_knob() {
     let slider = bench.tree.iter().find(|s| s.role == accesskit::Role::Slider).map(|s| s.rect.center());
     bench.click_at(slider.unwrap_or_default(), PointerButton::Primary);
     bench.key(Key::Delete, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.objects.len(), 2);
+    assert_eq!(bench.lab.document.objects.len(), 2);
     bench.key(Key::Escape, Modifiers::NONE);
     bench.key(Key::Delete, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.objects.len(), 1);
+    assert_eq!(bench.lab.document.objects.len(), 1);
 }
 
 #[test]
@@ -931,7 +932,7 @@ fn numbers_choose_recent_models_and_keep_their_places() {
         [(Key::Num2, "phong"), (Key::Num1, "lambert"), (Key::Num3, "blinn_phong"), (Key::Num2, "phong")]
     {
         bench.key(key, Modifiers::NONE);
-        assert_eq!(bench.lab.scene.reflection_model, model);
+        assert_eq!(bench.lab.document.reflection_model, model);
     }
 }
 
@@ -943,7 +944,7 @@ fn the_chooser_finds_by_typing_and_chooses_with_enter() {
     bench.frame(vec![Event::Text("1977".to_owned())]);
     bench.settle();
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.reflection_model, "blinn_phong");
+    assert_eq!(bench.lab.document.reflection_model, "blinn_phong");
     assert!(!bench.lab.view.chooser_open);
 }
 
@@ -964,7 +965,7 @@ fn many_models_are_listed_by_family_within_the_window() {
     (0..20).for_each(|_| bench.key(Key::ArrowUp, Modifiers::NONE));
     assert!(inside(&bench, "Lambert"));
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.scene.reflection_model, "lambert");
+    assert_eq!(bench.lab.document.reflection_model, "lambert");
 }
 
 #[test]
@@ -973,10 +974,10 @@ fn nothing_but_the_question_can_be_used_while_it_is_open() {
     bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
     bench.apply(Action::New);
     bench.letter(Key::P, "p");
-    assert_eq!(bench.lab.scene.shading_model, "flat");
+    assert_eq!(bench.lab.document.shading_model, "flat");
     assert!(!bench.lab.pointer_in_picture);
     bench.apply(Action::Answer(Answer::Discard));
-    assert_eq!(bench.lab.scene, Scene::default());
+    assert_eq!(*bench.lab.document, Scene::default());
 }
 
 // ── the window ──
@@ -1072,7 +1073,7 @@ fn a_panel_from_outside_gets_a_tab() {
 /// A spotlight as printed on its box.
 fn lamp(bench: &mut Bench) {
     bench.apply(Action::AddLight("spot".to_owned()));
-    let light = bench.lab.scene.lights.len() - 1;
+    let light = bench.lab.document.lights.len() - 1;
     for field in [LightField::LuminousFlux(800.0), LightField::ColourTemperature(2700.0)] {
         bench.apply(Action::Edit(Edit::Light(light, field)));
     }

@@ -3,10 +3,11 @@
 use bevy_egui::egui::{Pos2, Rect, vec2};
 use glam::{Quat, Vec3};
 use lights_camera_models::{
+    document::Selection,
     optics::tone::{ToneMapping, exposure_factor},
     panel::{
         marks::{Lens, anchor},
-        state::{Action, Lab, Selection},
+        state::{Action, Lab},
     },
     reference,
     registry::Registry,
@@ -26,17 +27,17 @@ fn sees(lab: &Lab, p: Vec3) -> bool {
 }
 
 fn touches_nothing(what: &str, lab: &Lab, added: usize, registry: &Registry) {
-    let object = &lab.scene.objects[added];
+    let object = &lab.document.objects[added];
     let r = radius(object, registry);
-    for (i, other) in lab.scene.objects.iter().enumerate().filter(|(i, _)| *i != added) {
+    for (i, other) in lab.document.objects.iter().enumerate().filter(|(i, _)| *i != added) {
         let apart = object.position.distance(other.position) - r - radius(other, registry);
         assert!(apart > 0.0, "{what}: {added} ({}) is in {i} by {} m", object.kind, -apart);
     }
-    for light in lab.scene.lights.iter().filter_map(|l| l.position) {
+    for light in lab.document.lights.iter().filter_map(|l| l.position) {
         assert!(object.position.distance(light) > r, "{added} is around a light");
     }
     assert!(object.position.distance(lab.eye) > r);
-    assert!(lab.scene.scene_size.contains(object.position));
+    assert!(lab.document.scene_size.contains(object.position));
 }
 
 /// Rooms and cameras of several kinds.
@@ -62,9 +63,9 @@ fn new_objects_stand_free_and_in_view() {
         for i in 0..9 {
             let kind = registry.shapes()[i % registry.shapes().len()].declaration.id;
             lab.apply(Action::AddObject(kind.to_owned()), &registry);
-            let added = lab.scene.objects.len() - 1;
+            let added = lab.document.objects.len() - 1;
             touches_nothing(&format!("{which}"), &lab, added, &registry);
-            assert!(sees(&lab, lab.scene.objects[added].position), "{which}: {kind} {i}");
+            assert!(sees(&lab, lab.document.objects[added].position), "{which}: {kind} {i}");
         }
     }
 }
@@ -74,7 +75,7 @@ fn a_new_object_hides_nothing_where_there_is_room() {
     let registry = Registry::builtin();
     let mut lab = Lab::default();
     lab.apply(Action::AddObject("cube".to_owned()), &registry);
-    let [old, new] = [0, 1].map(|i| &lab.scene.objects[i]);
+    let [old, new] = [0, 1].map(|i| &lab.document.objects[i]);
     let rect = Rect::from_min_size(Pos2::ZERO, vec2(1600.0, 900.0));
     let [a, b] = [old, new].map(|o| Lens::of(&lab, rect).project(o.position).unwrap());
     assert!(a.distance(b) > 300.0, "{a:?} and {b:?}");
@@ -87,11 +88,11 @@ fn copies_stand_free_too() {
     for i in 0..4 {
         lab.apply(Action::Duplicate(Selection::Object(0)), &registry);
         touches_nothing("copy", &lab, 1, &registry);
-        assert!(sees(&lab, lab.scene.objects[1].position), "copy {i}");
-        assert_eq!(lab.scene.objects[1].size, lab.scene.objects[0].size);
+        assert!(sees(&lab, lab.document.objects[1].position), "copy {i}");
+        assert_eq!(lab.document.objects[1].size, lab.document.objects[0].size);
     }
     lab.apply(Action::Duplicate(Selection::Light(0)), &registry);
-    let [a, b] = [0, 1].map(|i| lab.scene.lights[i].position.unwrap());
+    let [a, b] = [0, 1].map(|i| lab.document.lights[i].position.unwrap());
     assert!(a.distance(b) > 0.2);
 }
 
@@ -101,15 +102,15 @@ fn new_lights_stand_free_and_in_view() {
     for (which, mut lab) in labs().into_iter().enumerate() {
         for kind in ["point", "spot", "point", "directional", "spot"] {
             lab.apply(Action::AddLight(kind.to_owned()), &registry);
-            let Some(light) = lab.scene.lights.last() else { panic!("none") };
+            let Some(light) = lab.document.lights.last() else { panic!("none") };
             let Some(at) = light.position else { continue };
             assert!(sees(&lab, at), "{which}: a {kind} at {at}");
-            assert_eq!(anchor(light, &lab.scene), Some(at));
-            for object in &lab.scene.objects {
+            assert_eq!(anchor(light, &lab.document), Some(at));
+            for object in &lab.document.objects {
                 let apart = at.distance(object.position) - radius(object, &registry);
                 assert!(apart > 0.0, "{which}: a {kind} stands in an object");
             }
-            let others = &lab.scene.lights[..lab.scene.lights.len() - 1];
+            let others = &lab.document.lights[..lab.document.lights.len() - 1];
             assert!(others.iter().filter_map(|l| l.position).all(|p| p.distance(at) > 0.02), "{which}");
         }
     }
@@ -118,8 +119,8 @@ fn new_lights_stand_free_and_in_view() {
 /// The brightest channel of each pixel that shows an object, as a factor of what the display can show.
 fn brightness(lab: &Lab, registry: &Registry) -> Vec<f32> {
     let settings = reference::Settings { width: 320, height: 180, samples: 1, ..Default::default() };
-    let picture = reference::render(&lab.scene, registry, &settings);
-    let exposure = exposure_factor(lab.scene.display.exposure);
+    let picture = reference::render(&lab.document, registry, &settings);
+    let exposure = exposure_factor(lab.document.display.exposure);
     let lit = picture.pixels.iter().filter(|p| p.w > 0.0);
     lit.map(|p| exposure * p.truncate().max_element()).collect()
 }
@@ -176,6 +177,6 @@ fn a_curve_of_tone_mapping_leaves_a_new_light_more_room() {
     mapped.display.tone_mapping = ToneMapping::Reinhard;
     let mut lab2 = Lab::new(mapped);
     lab2.apply(Action::AddLight("point".to_owned()), &registry);
-    let of = |lab: &Lab| lab.scene.lights.last().map_or(0.0, |l: &Light| l.intensity);
+    let of = |lab: &Lab| lab.document.lights.last().map_or(0.0, |l: &Light| l.intensity);
     assert!(of(&lab2) > 2.0 * of(&lab), "{} and {}", of(&lab2), of(&lab));
 }

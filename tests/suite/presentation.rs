@@ -4,10 +4,11 @@ use std::collections::HashMap;
 
 use bevy_egui::egui::{self, Key, Modifiers, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
+    document::Selection,
     optics::TermSelection,
     panel::{
         settings::SCALES,
-        state::{Action, Effect, Lab, Selection, ViewChange},
+        state::{Action, Effect, Lab, ViewChange},
     },
     scene::Scene,
 };
@@ -86,7 +87,7 @@ fn a_narrow_bar_has_a_menu_of_the_shading_modes() {
     assert_eq!(shown, Role::ComboBox);
     bench.click("Shading: Gouraud");
     bench.click("Flat");
-    assert_eq!(bench.lab.scene.shading_model, "flat");
+    assert_eq!(bench.lab.document.shading_model, "flat");
 }
 
 #[test]
@@ -101,7 +102,7 @@ fn a_presentation_is_the_picture_alone_and_the_keys_go_on() {
         assert!(bench.find(gone).is_none(), "{gone} is still there");
     }
     bench.letter(Key::F, "f");
-    assert_eq!(bench.lab.scene.shading_model, "flat");
+    assert_eq!(bench.lab.document.shading_model, "flat");
     bench.letter(Key::T, "t");
     assert_ne!(bench.lab.view.terms, TermSelection::All);
     bench.letter(Key::H, "h");
@@ -109,7 +110,7 @@ fn a_presentation_is_the_picture_alone_and_the_keys_go_on() {
     bench.lab.fill_model_slots(&bench.registry.clone());
     let model = bench.lab.model_slots[1].clone();
     bench.letter(Key::Num2, "2");
-    assert_eq!(bench.lab.scene.reflection_model, model);
+    assert_eq!(bench.lab.document.reflection_model, model);
     // The list of keys closes before the presentation does.
     bench.key(Key::F1, Modifiers::NONE);
     bench.key(Key::Escape, Modifiers::NONE);

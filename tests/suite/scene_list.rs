@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use bevy_egui::egui::{Key, Modifiers, PointerButton};
 use lights_camera_models::{
+    document::{Edit, LightField, ObjectField, Selection, names::name_of},
     optics::TermSelection,
     panel::{
         caption::caption_text,
-        names::name_of,
-        state::{Action, Edit, Effect, Lab, LightField, ObjectField, Selection, ViewChange},
+        state::{Action, Effect, Lab, ViewChange},
     },
     parameter::{BASE_COLOUR, Value},
     reference,
@@ -36,7 +36,7 @@ fn with_objects(kinds: &[&str]) -> Lab {
 }
 
 fn names(bench: &Bench) -> Vec<String> {
-    let scene = &bench.lab.scene;
+    let scene = &bench.lab.document;
     (0..scene.objects.len()).map(|i| name_of(scene, Selection::Object(i), &bench.registry)).collect()
 }
 
@@ -53,7 +53,7 @@ fn a_click_in_a_row_never_deletes() {
     for x in (row.left() as i32..row.right() as i32).step_by(6) {
         bench.click_at(bevy_egui::egui::pos2(x as f32, row.center().y), PointerButton::Primary);
         bench.key(Key::Escape, Modifiers::NONE);
-        assert_eq!(bench.lab.scene.objects.len(), 2, "a click at {x}");
+        assert_eq!(bench.lab.document.objects.len(), 2, "a click at {x}");
     }
 }
 
@@ -61,38 +61,38 @@ fn a_click_in_a_row_never_deletes() {
 fn the_dot_changes_the_colour() {
     let mut bench = Bench::new(with_objects(&["sphere"]));
     for (dot, colour) in [("Colour of Sphere 1", "object"), ("Colour of Point 1", "light")] {
-        let before = bench.lab.scene.clone();
+        let before = bench.lab.document.scene().clone();
         bench.click(dot);
         // The field of saturation and value is the largest slider of the picker, below the dot.
         let place = bench.find(dot).expect("there").rect.center();
         bench.click_at(place + bevy_egui::egui::vec2(60.0, 150.0), PointerButton::Primary);
-        assert_ne!(bench.lab.scene, before, "the colour of the {colour} did not change");
+        assert_ne!(*bench.lab.document, before, "the colour of the {colour} did not change");
         bench.key(Key::Escape, Modifiers::NONE);
         bench.click_at(bevy_egui::egui::pos2(640.0, 800.0), PointerButton::Primary);
     }
-    let material = &bench.lab.scene.objects[0].material;
+    let material = &bench.lab.document.objects[0].material;
     assert!(matches!(material.get(&BASE_COLOUR), Value::Colour(rgb) if rgb != [255; 3]));
-    assert_ne!(bench.lab.scene.lights[0].colour, [255; 3]);
+    assert_ne!(bench.lab.document.lights[0].colour, [255; 3]);
 }
 
 #[test]
 fn objects_are_hidden_and_lights_switched_off_by_click_key_and_menu() {
     let mut bench = Bench::new(with_objects(&["sphere", "cube"]));
     bench.click("Hide Cube 1");
-    assert!(bench.lab.scene.objects[0].visible && !bench.lab.scene.objects[1].visible);
+    assert!(bench.lab.document.objects[0].visible && !bench.lab.document.objects[1].visible);
     bench.click("Show Cube 1");
-    assert!(bench.lab.scene.objects[1].visible);
+    assert!(bench.lab.document.objects[1].visible);
     bench.click("Switch off Point 1");
-    assert!(!bench.lab.scene.lights[0].enabled);
+    assert!(!bench.lab.document.lights[0].enabled);
     bench.click("Switch on Point 1");
-    assert!(bench.lab.scene.lights[0].enabled);
+    assert!(bench.lab.document.lights[0].enabled);
     bench.apply(Action::Select(Selection::Object(0)));
     bench.key(Key::V, Modifiers::NONE);
-    assert!(!bench.lab.scene.objects[0].visible && bench.lab.is_dirty());
+    assert!(!bench.lab.document.objects[0].visible && bench.lab.is_dirty());
     let row = bench.find("Sphere 1").expect("there").rect.center();
     bench.click_at(row, PointerButton::Secondary);
     bench.click("Show");
-    assert!(bench.lab.scene.objects[0].visible);
+    assert!(bench.lab.document.objects[0].visible);
     bench.click_at(row, PointerButton::Secondary);
     bench.click("Delete");
     assert_eq!(names(&bench), ["Cube 1"]);
@@ -161,14 +161,14 @@ fn a_part_keeps_its_name_for_life() {
     let all = names(&bench);
     assert_eq!(all.iter().collect::<std::collections::BTreeSet<_>>().len(), all.len(), "{all:?}");
     // The file has them too.
-    let again = Bench::new(Lab::new(read(&written(&bench.lab.scene))));
+    let again = Bench::new(Lab::new(read(&written(&bench.lab.document))));
     assert_eq!(names(&again), all);
     // Lights as well.
     bench.apply(Action::AddLight("point".to_owned()));
     bench.apply(Action::AddLight("spot".to_owned()));
     bench.apply(Action::Remove(Selection::Light(0)));
     let lights: Vec<_> =
-        (0..2).map(|i| name_of(&bench.lab.scene, Selection::Light(i), &bench.registry)).collect();
+        (0..2).map(|i| name_of(&bench.lab.document, Selection::Light(i), &bench.registry)).collect();
     assert_eq!(lights, ["Point 2", "Spot 1"]);
 }
 
@@ -185,18 +185,18 @@ fn the_caption_says_what_the_picture_shows() {
         "Phong · Phong shading · computed per pixel · α 32 · k_s 0.5 · k_d 0.8 · k_a 0.1"
     );
     // The scene's shading reaches no object that has its own.
-    lab.scene.objects[0].shading_model = Some("gouraud".to_owned());
-    lab.scene.shading_model = "flat".to_owned();
+    lab.document.amend(|scene| scene.objects[0].shading_model = Some("gouraud".to_owned()));
+    lab.document.amend(|scene| scene.shading_model = "flat".to_owned());
     lab.selection = Selection::Room;
     assert!(caption_text(&lab, &registry).contains("Gouraud shading · computed per vertex"));
     let mut lab = with_objects(&["sphere", "sphere", "sphere"]);
-    lab.scene.objects[1].reflection_model = Some("phong".to_owned());
-    lab.scene.objects[2].shading_model = Some("flat".to_owned());
+    lab.document.amend(|scene| scene.objects[1].reflection_model = Some("phong".to_owned()));
+    lab.document.amend(|scene| scene.objects[2].shading_model = Some("flat".to_owned()));
     assert_eq!(caption_text(&lab, &registry), "2 models · 2 shading models");
-    lab.scene.objects[1].visible = false;
-    lab.scene.objects[2].visible = false;
+    lab.document.amend(|scene| scene.objects[1].visible = false);
+    lab.document.amend(|scene| scene.objects[2].visible = false);
     assert!(caption_text(&lab, &registry).starts_with("Lambert · Gouraud shading"));
-    lab.scene.objects[0].visible = false;
+    lab.document.amend(|scene| scene.objects[0].visible = false);
     assert_eq!(caption_text(&lab, &registry), "nothing visible");
 }
 
@@ -267,5 +267,5 @@ fn a_light_that_is_off_is_no_light_from_everywhere() {
     let edit = Edit::Light(1, LightField::Enabled(false));
     let mut bench = Bench::new(Lab::new(scene));
     bench.apply(Action::Edit(edit));
-    assert_eq!(bench.lab.scene.shining().count(), 0);
+    assert_eq!(bench.lab.document.shining().count(), 0);
 }

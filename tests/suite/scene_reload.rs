@@ -5,11 +5,12 @@ use std::{fs, path::PathBuf};
 
 use bevy::ecs::{entity::Entity, schedule::Schedule, world::World};
 use lights_camera_models::{
+    document::{Edit, ObjectField, Selection},
     optics::TermSelection,
     panel::{
         files::{self, Files as _, Looked},
         recovery::Offer,
-        state::{Action, Answer, Edit, Effect, Lab, ObjectField, Question, Selection, Severity, ViewChange},
+        state::{Action, Answer, Effect, Lab, Question, Severity, ViewChange},
     },
     registry::Registry,
     render::entities::{CurrentScene, SceneEntities, reconcile},
@@ -150,7 +151,7 @@ fn an_edit_elsewhere_becomes_the_document_and_the_view_stays() {
     desk.left.clear();
     desk.write(&text(&grown(0, 2.0)));
     assert!(!desk.report(), "nothing to wait for");
-    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    assert_eq!(desk.lab.document, grown(0, 2.0));
     assert!(!desk.lab.is_dirty());
     assert_eq!(desk.lab.selection, Selection::Object(2));
     assert_eq!(desk.lab.view.terms, TermSelection::Diffuse);
@@ -163,7 +164,7 @@ fn an_edit_elsewhere_becomes_the_document_and_the_view_stays() {
     assert_eq!(desk.said("room.json was read again"), 1);
     // Another version: the message is not piled up.
     desk.edited(&text(&grown(0, 3.0)));
-    assert_eq!(desk.lab.scene, grown(0, 3.0));
+    assert_eq!(desk.lab.document, grown(0, 3.0));
     assert_eq!(desk.lab.messages.len(), 1);
     // The next save has nothing to ask.
     desk.change();
@@ -228,11 +229,11 @@ fn objects_that_did_not_change_keep_their_entities() {
         let entities = world.resource::<SceneEntities>();
         (entities.objects.clone(), entities.lights.clone())
     };
-    let before = entities(&desk.lab.scene);
+    let before = entities(&desk.lab.document);
     let mut scene = grown(1, 2.5);
     scene.objects.push(Object { position: glam::Vec3::splat(2.0), size: 1.0, ..Object::default() });
     desk.edited(&text(&scene));
-    let after = entities(&desk.lab.scene);
+    let after = entities(&desk.lab.document);
     assert_eq!(after.0[..3], before.0[..]);
     assert_eq!(after.0.len(), 4);
     assert_eq!(after.1, before.1);
@@ -245,7 +246,7 @@ fn the_selection_follows_what_it_points_at() {
         let mut desk = Desk::new();
         desk.act(Action::Select(Selection::Object(at)));
         desk.edited(&text(scene));
-        assert_eq!(desk.lab.scene, *scene);
+        assert_eq!(desk.lab.document, *scene);
         desk.lab.selection
     };
     // The first was removed: what was third is second now.
@@ -272,10 +273,10 @@ fn an_empty_or_half_written_file_is_given_a_moment() {
         desk.write(half);
         assert!(desk.report(), "looks again");
         assert!(desk.lab.messages.is_empty() && desk.badge().is_empty() && desk.left.is_empty());
-        assert_eq!(desk.lab.scene, three());
+        assert_eq!(desk.lab.document, three());
         desk.write(&whole);
         assert!(!desk.report());
-        assert_eq!(desk.lab.scene, grown(0, 2.0));
+        assert_eq!(desk.lab.document, grown(0, 2.0));
         assert_eq!(desk.badge(), "");
         assert!(desk.complaints().is_empty());
     }
@@ -297,7 +298,7 @@ fn a_broken_file_leaves_the_scene_and_says_where() {
         text(&three()).replace("\"size\": 1", &format!("\"size\": 1, \"material\": {{ \"k_d\": {k_d} }}"))
     };
     desk.edited(&broken("7"));
-    assert_eq!(desk.lab.scene, three());
+    assert_eq!(desk.lab.document, three());
     assert!(!desk.lab.is_dirty(), "nothing was changed here");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
     let name = desk.path().display().to_string();
@@ -359,7 +360,7 @@ fn missing_parts_are_not_taken_unasked() {
     };
     let mut desk = Desk::new();
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
-    assert_eq!(desk.lab.scene, three());
+    assert_eq!(desk.lab.document, three());
     assert_eq!(desk.lab.question, None, "who types elsewhere is not stopped by a question");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
     assert_eq!(desk.said("shading_model is missing"), 1);
@@ -370,22 +371,22 @@ fn missing_parts_are_not_taken_unasked() {
     desk.act(Action::Answer(Answer::UseDefaults));
     assert!(desk.lab.is_dirty(), "the file lacks what the document has");
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
-    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    assert_eq!(desk.lab.document, grown(0, 2.0));
     assert!(desk.lab.is_dirty());
     // But to that one only.
     let two = lacking(&grown(0, 3.0), "shading_model");
     let two: Vec<_> = two.lines().filter(|l| !l.contains("reflection_model")).collect();
     desk.edited(&two.join("\n"));
-    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    assert_eq!(desk.lab.document, grown(0, 2.0));
     // Once the part is there, nothing is missing.
     desk.edited(&text(&grown(0, 4.0)));
-    assert_eq!(desk.lab.scene, grown(0, 4.0));
+    assert_eq!(desk.lab.document, grown(0, 4.0));
     assert!(!desk.lab.is_dirty());
     // `--use-defaults` agrees to all.
     let mut desk = Desk::new();
     desk.lab.disk.use_defaults = true;
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
-    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    assert_eq!(desk.lab.document, grown(0, 2.0));
 }
 
 #[test]
@@ -397,7 +398,7 @@ fn a_deleted_file_leaves_the_scene_which_is_unsaved_then() {
     assert!(!desk.report());
     assert_eq!(desk.badge(), "room.json was deleted: showing its last version");
     assert_eq!(desk.said("no longer there"), 1);
-    assert_eq!(desk.lab.scene, three());
+    assert_eq!(desk.lab.document, three());
     desk.act(Action::Quit);
     assert!(matches!(desk.lab.question, Some(Question::Unsaved { .. })), "nobody else has the scene");
     desk.act(Action::Answer(Answer::Cancel));
@@ -410,7 +411,7 @@ fn a_deleted_file_leaves_the_scene_which_is_unsaved_then() {
     assert!(desk.report() && !desk.report());
     desk.edited(&text(&grown(0, 2.0)));
     assert_eq!((desk.badge(), desk.lab.is_dirty()), ("", false));
-    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    assert_eq!(desk.lab.document, grown(0, 2.0));
     // Saving writes it anew, without a question.
     fs::remove_file(desk.path()).unwrap();
     assert!(desk.report() && !desk.report());
@@ -443,7 +444,7 @@ fn conflict() -> Desk {
         panic!("{:?}", desk.lab.question)
     };
     assert_eq!(**scene, grown(0, 2.0));
-    assert_eq!(desk.lab.scene, grown(1, 0.5), "nothing is lost without a question");
+    assert_eq!(desk.lab.document, grown(1, 0.5), "nothing is lost without a question");
     desk
 }
 
@@ -451,7 +452,7 @@ fn conflict() -> Desk {
 fn unsaved_changes_are_kept_when_the_user_says_so_and_saving_replaces_the_file() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Keep));
-    assert_eq!(desk.lab.scene, grown(1, 0.5));
+    assert_eq!(desk.lab.document, grown(1, 0.5));
     assert!(desk.lab.is_dirty());
     assert!(!desk.report());
     assert_eq!(desk.lab.question, None, "asked once about a version");
@@ -471,7 +472,7 @@ fn who_kept_a_version_and_undoes_all_is_still_unsaved() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Keep));
     desk.act(Action::Edit(Edit::Object(1, ObjectField::Size(1.0))));
-    assert_eq!(desk.lab.scene, three());
+    assert_eq!(desk.lab.document, three());
     assert!(desk.lab.is_dirty(), "the file holds something else");
 }
 
@@ -479,7 +480,7 @@ fn who_kept_a_version_and_undoes_all_is_still_unsaved() {
 fn unsaved_changes_are_lost_only_on_yes() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Reload));
-    assert_eq!(desk.lab.scene, grown(0, 2.0));
+    assert_eq!(desk.lab.document, grown(0, 2.0));
     assert!(!desk.lab.is_dirty());
     assert_eq!(desk.lab.question, None);
     assert!(!desk.left.contains(&Effect::DocumentChanged), "the camera stays");
@@ -495,12 +496,12 @@ fn reading_again_takes_what_is_on_disk_by_then() {
     desk.act(Action::Answer(Answer::Reload));
     assert_eq!(desk.left.pop(), Some(Effect::LookAgain(desk.path())));
     assert!(!desk.report());
-    assert_eq!(desk.lab.scene, grown(1, 0.5), "a broken file costs nothing");
+    assert_eq!(desk.lab.document, grown(1, 0.5), "a broken file costs nothing");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
     let mut desk = conflict();
     desk.write(&text(&grown(0, 4.0)));
     desk.act(Action::Answer(Answer::Reload));
-    assert_eq!(desk.lab.scene, grown(0, 4.0));
+    assert_eq!(desk.lab.document, grown(0, 4.0));
 }
 
 #[test]
@@ -508,7 +509,7 @@ fn who_decides_later_is_asked_when_saving() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Cancel));
     assert_eq!(desk.badge(), "room.json changed on disk: showing yours");
-    assert_eq!(desk.lab.scene, grown(1, 0.5));
+    assert_eq!(desk.lab.document, grown(1, 0.5));
     assert!(!desk.report());
     assert_eq!(desk.lab.question, None, "not asked again about the same version");
     desk.act(Action::Save);
@@ -522,7 +523,7 @@ fn who_decides_later_is_asked_when_saving() {
     desk.act(Action::Answer(Answer::Cancel));
     desk.edited(&text(&three()));
     assert_eq!((desk.badge(), &desk.lab.question), ("", &None));
-    assert_eq!(desk.lab.scene, grown(1, 0.5));
+    assert_eq!(desk.lab.document, grown(1, 0.5));
 }
 
 #[test]
@@ -536,7 +537,7 @@ fn where_both_did_the_same_or_only_the_layout_changed_there_is_nothing_to_ask() 
     desk.change();
     desk.edited(&text(&three()).replace("  ", "\t"));
     assert_eq!(desk.lab.question, None);
-    assert_eq!(desk.lab.scene, grown(1, 0.5));
+    assert_eq!(desk.lab.document, grown(1, 0.5));
     assert!(desk.lab.is_dirty());
     desk.act(Action::Save);
     assert_eq!(desk.lab.question, None);
@@ -628,7 +629,7 @@ fn what_is_recovered_never_replaces_the_changes_of_others_unasked() {
         desk.write(&text(&other));
         desk.report();
         assert!(matches!(desk.lab.question, Some(Question::NewerOnDisk { .. })), "{:?}", desk.lab.question);
-        assert_eq!(desk.lab.scene, grown(1, 0.5));
+        assert_eq!(desk.lab.document, grown(1, 0.5));
         desk.act(Action::Answer(Answer::Keep));
         assert!(desk.lab.is_dirty());
         desk.act(Action::Save);

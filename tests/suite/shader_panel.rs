@@ -11,12 +11,13 @@ use std::{
 use bevy_egui::egui::{self, Color32, Event, Key, Modifiers, PointerButton, Shape, pos2, vec2};
 use lights_camera_models::{
     custom,
+    document::{Edit, ObjectField},
     library::status::{Reloaded, ShaderStatus, Trouble},
     panel::{
         author::{Ask, ModelDraft},
         picture,
         shader::consequence,
-        state::{Action, Edit, Effect, Lab, ObjectField, ThemeChoice, ViewChange},
+        state::{Action, Effect, Lab, ThemeChoice, ViewChange},
         theme::Palette,
     },
     registry::Registry,
@@ -386,7 +387,7 @@ fn the_chooser_leads_to_own_models() {
     }
     bench.click("New model…");
     assert!(bench.lab.draft.is_some() && !bench.lab.view.chooser_open);
-    assert_eq!(bench.lab.scene, Scene::default(), "no model was chosen on the way");
+    assert_eq!(*bench.lab.document, Scene::default(), "no model was chosen on the way");
     let mut bench = bench_with(Vec::new());
     bench.key(Key::R, Modifiers::NONE);
     bench.click("Open in editor");
@@ -400,13 +401,13 @@ fn a_model_that_was_asked_for_is_chosen_once_it_is_there() {
     bench.registry = Registry::default();
     bench.lab.wanted_model = Some("phong".to_owned());
     bench.settle();
-    assert_eq!(bench.lab.scene.reflection_model, "lambert", "not there yet");
+    assert_eq!(bench.lab.document.reflection_model, "lambert", "not there yet");
     bench.registry = Registry::builtin();
     bench.settle();
-    assert_eq!(bench.lab.scene.reflection_model, "phong");
+    assert_eq!(bench.lab.document.reflection_model, "phong");
     bench.apply(Action::Edit(Edit::Model("ward".to_owned())));
     bench.settle();
-    assert_eq!(bench.lab.scene.reflection_model, "ward", "it was asked for once");
+    assert_eq!(bench.lab.document.reflection_model, "ward", "it was asked for once");
 }
 
 #[test]
@@ -538,7 +539,7 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     let model = custom::read(&file, &text, &bench.registry).map_err(|all| all[0].to_string())?;
     bench.registry.put_custom_model(model);
     bench.settle();
-    assert_eq!(bench.lab.scene.reflection_model, "my_velvet");
+    assert_eq!(bench.lab.document.reflection_model, "my_velvet");
     assert!(bench.says("My velvet"), "the name that its file says");
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     assert!(bench.says("the model: models/my_velvet.wgsl") && !bench.says("my_velvet.wgsl: edited"));
@@ -683,7 +684,7 @@ fn pictures_of_the_shader_panel() -> Result<(), Box<dyn std::error::Error>> {
         b.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     }
     fn vanished(b: &mut Bench) {
-        b.lab.scene.reflection_model = "my_velvet".to_owned();
+        b.lab.document.amend(|scene| scene.reflection_model = "my_velvet".to_owned());
         b.lab.shaders.troubles = vec![trouble(
             "models/my_velvet.wgsl",
             3,

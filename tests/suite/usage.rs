@@ -5,10 +5,8 @@ use std::path::Path;
 use bevy_egui::egui::{PointerButton, accesskit::Role};
 use lights_camera_models::{
     custom,
-    panel::{
-        caption::caption_text,
-        state::{Action, Edit, ObjectField},
-    },
+    document::{Edit, ObjectField},
+    panel::{caption::caption_text, state::Action},
     parameter::{UsedWhen, Value},
     registry::Registry,
 };
@@ -26,9 +24,9 @@ fn a_knob_without_effect_is_disabled_and_says_why() {
     assert!(gamma.disabled, "the distribution is GGX");
     bench.hover(gamma.rect.center());
     assert!(bench.says("Not used with GGX: only GTR has γ"));
-    let value = bench.lab.scene.objects[0].material.clone();
+    let value = bench.lab.document.objects[0].material.clone();
     bench.click_at(gamma.rect.center(), PointerButton::Primary);
-    assert_eq!(bench.lab.scene.objects[0].material, value);
+    assert_eq!(bench.lab.document.objects[0].material, value);
     assert!(!caption_text(&bench.lab, &bench.registry).contains('γ'), "nor does the caption show it");
     choose(&mut bench, "distribution", "gtr");
     assert!(!bench.field("exponent of GTR").disabled);

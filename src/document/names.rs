@@ -3,7 +3,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::state::Selection;
+use super::Selection;
 use crate::{registry::Registry, scene::Scene};
 
 /// The name of a part: its own, or its type and its number among its type.
@@ -40,7 +40,7 @@ fn object_type<'a>(kind: &'a str, registry: &Registry) -> &'a str {
 }
 
 /// "lamp" → "lamp 2", "lamp 2" → "lamp 3": the next number that is free.
-pub(super) fn free_name(scene: &Scene, name: &str) -> String {
+pub fn free_name(scene: &Scene, name: &str) -> String {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
     let stem = if stem.is_empty() { name } else { stem };
     let names: HashSet<_> = (scene.lights.iter().filter_map(|l| l.name.as_deref()))

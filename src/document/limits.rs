@@ -1,5 +1,5 @@
 //! What the fields of a scene may hold: one place for the widgets, which show the rule while a value
-//! is typed, and for [`Lab::apply`](super::state::Lab::apply), which refuses what breaks it.
+//! is typed, and for [`Document::edit`](super::Document::edit), which refuses what breaks it.
 
 use crate::{
     light,
@@ -191,8 +191,8 @@ pub fn exposure() -> Limits {
 /// An extent of the room, metres: what stands in the room must stay in it. `name` is what the user
 /// calls a part of the scene.
 #[must_use]
-pub fn dimension(scene: &Scene, axis: usize, name: impl Fn(super::state::Selection) -> String) -> Limits {
-    use super::state::Selection;
+pub fn dimension(scene: &Scene, axis: usize, name: impl Fn(super::Selection) -> String) -> Limits {
+    use super::Selection;
     let at = |p: glam::Vec3| p.to_array()[axis.min(2)];
     let lights =
         scene.lights.iter().enumerate().filter_map(|(i, l)| Some((Selection::Light(i), l.position?)));

@@ -1,0 +1,356 @@
+//! The changes that can be made to a scene, and their names in the history.
+
+use glam::Vec3;
+
+use super::{
+    Document, Extent, Selection,
+    names::{Names, name_of},
+};
+use crate::{
+    parameter::Value,
+    registry::Registry,
+    scene::{Display, Light, Object, Observer, SceneSize},
+};
+
+/// A change of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// The name of the scene; empty for none.
+    SceneName(String),
+    /// What the scene shows; empty for none.
+    SceneDescription(String),
+    /// The extent of the room.
+    SceneSize(SceneSize),
+    /// Tone mapping, exposure, encoding.
+    Display(Display),
+    /// The reflection model of the scene.
+    Model(String),
+    /// The shading mode of the scene.
+    Mode(String),
+    /// The observer.
+    Observer(Observer),
+    /// A field of a light.
+    Light(usize, LightField),
+    /// A field of an object.
+    Object(usize, ObjectField),
+}
+
+/// A field of a light with its new value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightField {
+    /// The name; empty for none.
+    Name(String),
+    /// False switches it off.
+    Enabled(bool),
+    /// The type.
+    Kind(String),
+    /// Where it stands.
+    Position(Vec3),
+    /// Where it shines.
+    Direction(Vec3),
+    /// Colour, instead of a colour temperature.
+    Colour([u8; 3]),
+    /// Colour temperature in kelvin, instead of a colour.
+    ColourTemperature(f32),
+    /// Intensity, instead of a luminous flux.
+    Intensity(f32),
+    /// Luminous flux in lumen, instead of an intensity.
+    LuminousFlux(f32),
+    /// A parameter of the type.
+    Parameter(&'static str, Value),
+}
+
+/// A field of an object with its new value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ObjectField {
+    /// The name; empty for none.
+    Name(String),
+    /// False hides it.
+    Visible(bool),
+    /// The type.
+    Kind(String),
+    /// Where its centre is.
+    Position(Vec3),
+    /// Largest extent.
+    Size(f32),
+    /// Euler angles XYZ, degrees.
+    Rotation(Vec3),
+    /// How finely it is cut; `None` for the default of the type.
+    Tessellation(Option<u32>),
+    /// Its own reflection model; `None` for the scene's.
+    Model(Option<String>),
+    /// Its own shading mode; `None` for the scene's.
+    Mode(Option<String>),
+    /// A parameter of the material.
+    Material(&'static str, Value),
+    /// Several parameters of the material at once: a measured material.
+    Preset(Vec<(&'static str, Value)>),
+}
+
+/// A text as a name; nothing is none.
+fn named(text: &str) -> Option<String> {
+    Some(text.trim().to_owned()).filter(|text| !text.is_empty())
+}
+
+impl LightField {
+    /// The words for it in the name of a step.
+    fn label(&self, light: &Light, registry: &Registry) -> String {
+        match self {
+            Self::Name(_) => "Name",
+            Self::Enabled(true) => "Switch on",
+            Self::Enabled(false) => "Switch off",
+            Self::Kind(_) => "Type",
+            Self::Position(_) => "Position",
+            Self::Direction(_) => "Direction",
+            Self::Colour(_) => "Colour",
+            Self::ColourTemperature(_) => "Colour temperature",
+            Self::Intensity(_) => "Intensity",
+            Self::LuminousFlux(_) => "Luminous flux",
+            Self::Parameter(id, _) => {
+                let declared =
+                    registry.light(&light.kind).map_or(&[][..], |entry| entry.declaration.parameters);
+                return declared.iter().find(|p| p.name == *id).map_or(*id, |p| p.label).to_owned();
+            }
+        }
+        .to_owned()
+    }
+
+    fn put(self, light: &mut Light, registry: &Registry) {
+        // A field that is not given has the value that it has when the file is read again.
+        match self {
+            Self::Name(name) => light.name = named(&name),
+            Self::Enabled(on) => light.enabled = on,
+            Self::Kind(kind) => light.kind = kind,
+            Self::Position(p) => light.position = Some(p),
+            Self::Direction(d) => light.direction = Some(d),
+            Self::Colour(c) => (light.colour, light.colour_temperature) = (c, None),
+            Self::ColourTemperature(kelvin) => {
+                (light.colour, light.colour_temperature) = (Light::default().colour, Some(kelvin));
+            }
+            Self::Intensity(v) => (light.intensity, light.luminous_flux) = (v, None),
+            Self::LuminousFlux(v) => {
+                let kind = registry.light(&light.kind);
+                light.intensity = kind.map_or(light.intensity, |k| k.declaration.default_intensity);
+                light.luminous_flux = Some(v);
+            }
+            Self::Parameter(name, value) => light.parameters.set(name, value),
+        }
+    }
+}
+
+impl ObjectField {
+    /// The words for it in the name of a step.
+    fn label(&self, registry: &Registry) -> String {
+        match self {
+            Self::Name(_) => "Name",
+            Self::Visible(true) => "Show",
+            Self::Visible(false) => "Hide",
+            Self::Kind(_) => "Type",
+            Self::Position(_) => "Position",
+            Self::Size(_) => "Size",
+            Self::Rotation(_) => "Rotation",
+            Self::Tessellation(_) => "Tessellation",
+            Self::Model(_) => "Reflection model",
+            Self::Mode(_) => "Shading model",
+            Self::Material(id, _) => registry.material_parameter(id).map_or(*id, |p| p.label),
+            Self::Preset(_) => "Measured material",
+        }
+        .to_owned()
+    }
+
+    fn put(self, o: &mut Object) {
+        match self {
+            Self::Name(name) => o.name = named(&name),
+            Self::Visible(on) => o.visible = on,
+            Self::Kind(kind) => {
+                // The number counts something else in each type.
+                o.tessellation = None;
+                o.kind = kind;
+            }
+            Self::Position(p) => o.position = p,
+            Self::Size(v) => o.size = v,
+            Self::Rotation(r) => o.rotation = r,
+            Self::Tessellation(n) => o.tessellation = n,
+            Self::Model(id) => o.reflection_model = id,
+            Self::Mode(id) => o.shading_model = id,
+            Self::Material(name, value) => o.material.set(name, value),
+            Self::Preset(all) => all.into_iter().for_each(|(name, value)| o.material.set(name, value)),
+        }
+    }
+}
+
+/// The name of a step: "Hide Sphere 1", "Size of Sphere 1".
+fn step(label: &str, part: &str) -> String {
+    match label {
+        "Show" | "Hide" | "Switch on" | "Switch off" => format!("{label} {part}"),
+        _ => {
+            let mut letters = label.chars();
+            let first = letters.next().into_iter().flat_map(char::to_uppercase);
+            format!("{}{} of {part}", first.collect::<String>(), letters.as_str())
+        }
+    }
+}
+
+impl Document {
+    /// The name of a part.
+    #[must_use]
+    pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
+        name_of(&self.scene, part, registry)
+    }
+
+    /// Makes a change, if the rules of scenes allow it. `selection` is what is selected now.
+    ///
+    /// # Errors
+    /// Why it is refused; the scene stays as it is.
+    pub fn edit(&mut self, edit: Edit, selection: Selection, registry: &Registry) -> Result<(), String> {
+        self.check(&edit, registry)?;
+        let rest = |document: &mut Self, name: &str, change: &mut dyn FnMut(&mut crate::scene::Scene)| {
+            document.change(name, Extent::Rest, selection, change);
+        };
+        match edit {
+            Edit::SceneName(name) => rest(self, "Name of the scene", &mut |s| s.name = named(&name)),
+            Edit::SceneDescription(text) => {
+                rest(self, "Description of the scene", &mut |s| s.description = named(&text));
+            }
+            Edit::SceneSize(size) => rest(self, "Size of the room", &mut |s| s.scene_size = size),
+            Edit::Display(display) => {
+                let now = self.scene.display;
+                let name = if now.exposure != display.exposure {
+                    "Exposure"
+                } else if now.tone_mapping != display.tone_mapping {
+                    "Tone mapping"
+                } else {
+                    "Display"
+                };
+                rest(self, name, &mut |s| s.display = display);
+            }
+            Edit::Model(id) => {
+                rest(self, "Reflection model", &mut |s| s.reflection_model.clone_from(&id));
+            }
+            Edit::Mode(id) => rest(self, "Shading model", &mut |s| s.shading_model.clone_from(&id)),
+            Edit::Observer(observer) => rest(self, "Observer", &mut |s| s.observer = observer),
+            Edit::Light(i, field) => {
+                let label = field.label(&self.scene.lights[i], registry);
+                let name = step(&label, &self.name_of(Selection::Light(i), registry));
+                self.change(name, Extent::Light(i), selection, |s| field.put(&mut s.lights[i], registry));
+            }
+            // The others keep their numbers.
+            Edit::Object(i, field @ (ObjectField::Name(_) | ObjectField::Kind(_))) => {
+                let name = step(&field.label(registry), &self.name_of(Selection::Object(i), registry));
+                self.change_parts(name, selection, registry, |document, names| {
+                    field.put(&mut document.scene.objects[i]);
+                    names.objects[i] = None;
+                });
+            }
+            Edit::Object(i, field) => {
+                let name = step(&field.label(registry), &self.name_of(Selection::Object(i), registry));
+                self.change(name, Extent::Object(i), selection, |s| field.put(&mut s.objects[i]));
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes a light one of another type. What the type needs and the light lacks is `position` and `direction`.
+    pub fn change_light_type(
+        &mut self,
+        i: usize,
+        kind: &str,
+        (position, direction): (Vec3, Vec3),
+        selection: Selection,
+        registry: &Registry,
+    ) {
+        let Some(new) = registry.light(kind).filter(|_| i < self.scene.lights.len()) else { return };
+        let name = step("Type", &self.name_of(Selection::Light(i), registry));
+        self.change_parts(name, selection, registry, |document, names| {
+            names.lights[i] = None;
+            let room = document.scene.scene_size;
+            let light = &mut document.scene.lights[i];
+            (light.position, light.direction) = (Some(position), Some(direction));
+            light.set_type(new, registry, room);
+        });
+    }
+
+    /// Adds a light at a place in the list. `verb` says how: "Add", "Duplicate".
+    pub fn insert_light(
+        &mut self,
+        i: usize,
+        light: Light,
+        verb: &str,
+        selection: Selection,
+        registry: &Registry,
+    ) {
+        let id = self.next_id();
+        self.insert(verb, Selection::Light(i), selection, registry, |document, names| {
+            document.scene.lights.insert(i, light);
+            document.ids.lights.insert(i, id);
+            names.lights.insert(i, None);
+        });
+    }
+
+    /// Adds an object at a place in the list.
+    pub fn insert_object(
+        &mut self,
+        i: usize,
+        object: Object,
+        verb: &str,
+        selection: Selection,
+        registry: &Registry,
+    ) {
+        let id = self.next_id();
+        self.insert(verb, Selection::Object(i), selection, registry, |document, names| {
+            document.scene.objects.insert(i, object);
+            document.ids.objects.insert(i, id);
+            names.objects.insert(i, None);
+        });
+    }
+
+    fn insert(
+        &mut self,
+        verb: &str,
+        part: Selection,
+        selection: Selection,
+        registry: &Registry,
+        change: impl FnOnce(&mut Self, &mut Names),
+    ) {
+        self.end_gesture();
+        self.change_parts(String::new(), selection, registry, change);
+        let name = self.name_of(part, registry);
+        self.history.rename_last(format!("{verb} {name}"));
+    }
+
+    /// Removes a light or an object.
+    pub fn remove(&mut self, part: Selection, registry: &Registry) {
+        self.end_gesture();
+        let name = format!("Delete {}", self.name_of(part, registry));
+        self.change_parts(name, part, registry, |document, names| match part {
+            Selection::Light(i) if i < document.scene.lights.len() => {
+                document.scene.lights.remove(i);
+                document.ids.lights.remove(i);
+                names.lights.remove(i);
+            }
+            Selection::Object(i) if i < document.scene.objects.len() => {
+                document.scene.objects.remove(i);
+                document.ids.objects.remove(i);
+                names.objects.remove(i);
+            }
+            _ => {}
+        });
+    }
+
+    /// Changes which parts there are, or of which types: those that stay keep their names. `change` does the same to
+    /// scene, ids and names; a part without a name there is new.
+    fn change_parts(
+        &mut self,
+        name: String,
+        selection: Selection,
+        registry: &Registry,
+        change: impl FnOnce(&mut Self, &mut Names),
+    ) {
+        let mut names = Names::of(&self.scene, registry);
+        let (mut old, ids) = (self.scene.clone(), self.ids.clone());
+        change(self, &mut names);
+        names.keep(&mut self.scene, registry);
+        let patch = super::Patch::between((&mut old, &ids), (&mut self.scene, &self.ids));
+        self.history.record(name, self.gesture, patch, selection);
+    }
+}

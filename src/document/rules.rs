@@ -1,0 +1,159 @@
+//! The rules that an edit must keep, by the same limits that widgets show.
+
+use glam::Vec3;
+
+use super::{Document, Edit, LightField, ObjectField, Selection, limits, names::name_of};
+use crate::{parameter::Value, registry::Registry, scene::Scene};
+
+/// Two positions nearer than this are the same place, metres.
+const SAME_PLACE: f32 = 1e-6;
+
+impl Document {
+    /// The limits of one extent of the room.
+    #[must_use]
+    pub fn dimension_limits(&self, axis: usize, registry: &Registry) -> limits::Limits {
+        limits::dimension(&self.scene, axis, |part| name_of(&self.scene, part, registry))
+    }
+
+    /// True to the rules of scenes, or why an edit is refused; the widgets ask the same limits before.
+    pub(super) fn check(&self, edit: &Edit, registry: &Registry) -> Result<(), String> {
+        let light = |i: usize| self.scene.lights.get(i).ok_or_else(|| "there is no such light".to_owned());
+        let object = |i: usize| self.scene.objects.get(i).ok_or_else(|| "there is no such object".to_owned());
+        let name = |part| name_of(&self.scene, part, registry);
+        let known = |yes: bool, what: &str, id: &str| {
+            if yes { Ok(()) } else { Err(format!("There is no {what} called “{id}”.")) }
+        };
+        let legal = |what: String, value: f32, limits: limits::Limits| {
+            if limits.allows(f64::from(value)) {
+                return Ok(());
+            }
+            Err(format!("{what} is {}, but must be {}.", limits::number(f64::from(value)), limits.rule()))
+        };
+        let model = |id: &str| known(registry.model(id).is_some(), "reflection model", id);
+        let mode = |id: &str| known(registry.mode(id).is_some(), "shading model", id);
+        let place = |part: Selection, p: Vec3| {
+            for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+                let what = format!("{}: {letter}", name(part));
+                legal(what, p.to_array()[axis], limits::position(self.scene.scene_size, axis))?;
+            }
+            match places(&self.scene)
+                .find(|(q, at)| may_not_meet(part, *q) && (*at - p).length() < SAME_PLACE)
+            {
+                Some((other, _)) => {
+                    Err(format!("{} cannot stand exactly where {} stands.", name(part), name(other)))
+                }
+                None => Ok(()),
+            }
+        };
+        let material = |id: &str, value: &Value| match registry.material_parameter(id) {
+            Some(p) if p.allows(value) => Ok(()),
+            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+            None => Err(format!("No model has a parameter “{id}”.")),
+        };
+        let direction = |part: Selection, d: Vec3| {
+            if d.is_finite() && d.length() > SAME_PLACE {
+                return Ok(());
+            }
+            Err(format!("{}: the direction (0, 0, 0) points nowhere.", name(part)))
+        };
+        match edit {
+            Edit::SceneName(_) | Edit::SceneDescription(_) => Ok(()),
+            Edit::SceneSize(size) => {
+                for (axis, what) in ["width", "height", "depth"].into_iter().enumerate() {
+                    let value = size.corner().to_array()[axis];
+                    legal(format!("The {what} of the room"), value, self.dimension_limits(axis, registry))?;
+                }
+                Ok(())
+            }
+            Edit::Display(d) => legal("The exposure".to_owned(), d.exposure, limits::exposure()),
+            Edit::Model(id) => model(id),
+            Edit::Mode(id) => mode(id),
+            Edit::Observer(o) => {
+                place(Selection::Observer, o.position)?;
+                direction(Selection::Observer, o.direction)?;
+                legal("The field of view".to_owned(), o.field_of_view, limits::field_of_view())
+            }
+            Edit::Light(i, field) => {
+                let light = light(*i)?;
+                let part = Selection::Light(*i);
+                let entry = registry.light(&light.kind);
+                let declaration = entry.map(|e| e.declaration);
+                match field {
+                    LightField::Name(_) | LightField::Enabled(_) | LightField::Colour(_) => Ok(()),
+                    LightField::Kind(id) => known(registry.light(id).is_some(), "light type", id),
+                    LightField::Position(p) => place(part, *p),
+                    LightField::Direction(d) => direction(part, *d),
+                    LightField::Intensity(v) => match declaration {
+                        Some(d) => legal(format!("{}: the intensity", name(part)), *v, limits::intensity(d)),
+                        None => Ok(()),
+                    },
+                    LightField::LuminousFlux(v) => match entry {
+                        Some(e) if !e.has_flux() => Err(format!("{} has no luminous flux.", name(part))),
+                        Some(e) => legal(
+                            format!("{}: the luminous flux", name(part)),
+                            *v,
+                            limits::luminous_flux(e.declaration),
+                        ),
+                        None => Ok(()),
+                    },
+                    LightField::ColourTemperature(v) => legal(
+                        format!("{}: the colour temperature", name(part)),
+                        *v,
+                        limits::colour_temperature(),
+                    ),
+                    LightField::Parameter(id, value) => {
+                        let parameter = declaration.and_then(|d| d.parameters.iter().find(|p| p.name == *id));
+                        match parameter {
+                            Some(p) if p.allows(value) => Ok(()),
+                            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+                            None => Err(format!("{} has no parameter “{id}”.", name(part))),
+                        }
+                    }
+                }
+            }
+            Edit::Object(i, field) => {
+                let object = object(*i)?;
+                let part = Selection::Object(*i);
+                match field {
+                    ObjectField::Name(_) | ObjectField::Visible(_) => Ok(()),
+                    ObjectField::Kind(id) => known(registry.shape(id).is_some(), "object type", id),
+                    ObjectField::Position(p) => place(part, *p),
+                    ObjectField::Size(v) => legal(
+                        format!("{}: the size", name(part)),
+                        *v,
+                        limits::object_size(self.scene.scene_size),
+                    ),
+                    ObjectField::Rotation(r) if r.is_finite() => Ok(()),
+                    ObjectField::Rotation(_) => Err(format!("{}: the rotation must be finite.", name(part))),
+                    ObjectField::Tessellation(None) => Ok(()),
+                    ObjectField::Tessellation(Some(n)) => match registry.shape(&object.kind) {
+                        Some(s) => legal(
+                            format!("{}: the tessellation", name(part)),
+                            *n as f32,
+                            limits::tessellation(s.declaration),
+                        ),
+                        None => Ok(()),
+                    },
+                    ObjectField::Model(id) => id.as_deref().map_or(Ok(()), model),
+                    ObjectField::Mode(id) => id.as_deref().map_or(Ok(()), mode),
+                    ObjectField::Material(id, value) => material(id, value),
+                    ObjectField::Preset(all) => all.iter().try_for_each(|(id, value)| material(id, value)),
+                }
+            }
+        }
+    }
+}
+
+/// Where everything stands that has a place.
+fn places(scene: &Scene) -> impl Iterator<Item = (Selection, Vec3)> + '_ {
+    let lights =
+        scene.lights.iter().enumerate().filter_map(|(i, l)| Some((Selection::Light(i), l.position?)));
+    let objects = scene.objects.iter().enumerate().map(|(i, o)| (Selection::Object(i), o.position));
+    lights.chain(objects).chain([(Selection::Observer, scene.observer.position)])
+}
+
+/// Which parts must not stand in the same place: lights, objects and the observer exclude each other;
+/// two lights or two objects may share theirs.
+fn may_not_meet(a: Selection, b: Selection) -> bool {
+    std::mem::discriminant(&a) != std::mem::discriminant(&b)
+}

@@ -1,0 +1,64 @@
+//! The steps by which the scene came to be, as a list: a click goes back to a step, or forward again.
+
+use bevy_egui::egui::{self, Align, RichText, ScrollArea, Ui};
+
+use super::{
+    Panel, Place,
+    state::{Action, Lab},
+    theme::Palette,
+};
+use crate::registry::Registry;
+
+/// The id of the tab.
+pub const HISTORY_TAB: &str = "history";
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct History;
+
+impl Panel for History {
+    fn id(&self) -> &'static str {
+        HISTORY_TAB
+    }
+
+    fn title(&self) -> &'static str {
+        "History"
+    }
+
+    fn place(&self) -> Place {
+        Place::Bottom
+    }
+
+    fn show(&self, ui: &mut Ui, lab: &Lab, _registry: &Registry) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let palette = Palette::here(ui);
+        let done = lab.document.done();
+        let steps: Vec<_> = std::iter::once("Scene as it was opened").chain(lab.document.steps()).collect();
+        let height = ui.spacing().interact_size.y;
+        // The step that was made last is always in view.
+        let shown = ui.id().with("shown step");
+        let news = ui.data(|data| data.get_temp(shown)) != Some((done, steps.len()));
+        ui.data_mut(|data| data.insert_temp(shown, (done, steps.len())));
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for (i, name) in steps.into_iter().enumerate() {
+                let colour = if i > done { palette.weak } else { palette.text };
+                let text = RichText::new(name).color(colour);
+                let row = egui::Button::selectable(i == done, text)
+                    .min_size(egui::vec2(ui.available_width(), height));
+                let row = ui.add(row.truncate());
+                if i == done && news {
+                    row.scroll_to_me(Some(Align::Center));
+                }
+                let help = if i > done {
+                    "Undone: click to redo up to here"
+                } else {
+                    "Click to undo what came after"
+                };
+                if row.on_hover_text(help).clicked() && i != done {
+                    actions.push(Action::GoToStep(i));
+                }
+            }
+        });
+        actions
+    }
+}
