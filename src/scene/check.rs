@@ -2,7 +2,7 @@
 //!
 //! A rule for one field is a function that returns `Err` with the rule as a clause, so that it can end
 //! a sentence: "k_d is 0.2, but **the diffuse coefficient must be between 0.5 and 1**". [`scene`]
-//! applies them all to a whole scene.
+//! applies them all to a whole scene, [`light`], [`object`] and their like to one part of it.
 
 use super::{
     Light, MAX_DIMENSION, MAX_OBJECTS, Object, Observer, Scene, SceneSize,
@@ -21,7 +21,7 @@ use crate::{
     shape::ShapeEntry,
     text::{listed, nearest, quoted},
 };
-use std::{borrow::Cow, collections::HashMap, fmt};
+use std::{collections::HashMap, fmt};
 
 use glam::Vec3;
 
@@ -290,44 +290,94 @@ impl fmt::Display for Written {
 /// Everything that is wrong with a scene; empty if it is valid. The order is that of the scene.
 #[must_use]
 pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
-    let mut problems = Problems(Vec::new());
-    let root = Path::root();
-    let room = root.key("scene_size");
-    let SceneSize { height, width, depth } = scene.scene_size;
-    for (axis, metres) in [("height", height), ("width", width), ("depth", depth)] {
-        problems.add(dimension(axis, metres), || (room.key(axis), metres.to_string()));
-    }
-    let id = |key: &'static str, id: &str| (Path::root().key(key), quoted(id));
-    problems.add(reflection_model(registry, &scene.reflection_model), || {
-        id("reflection_model", &scene.reflection_model)
-    });
-    problems.add(shading_model(registry, &scene.shading_model), || id("shading_model", &scene.shading_model));
-
+    let mut check = Check::new(scene, registry);
+    check.dimensions();
+    check.models();
     let count = |n: usize, what: &str| match n {
         0 => "empty".to_owned(),
         _ => format!("a list of {n} {what}"),
     };
-    problems.add(light_count(scene.lights.len()), || {
-        (Path::root().key("lights"), count(scene.lights.len(), "lights"))
-    });
-    let lights = root.key("lights");
-    let room = plausible(scene.scene_size);
-    for (i, l) in scene.lights.iter().enumerate() {
-        problems.0.extend(light_at(l, room, registry, || lights.index(i)));
+    let lights = scene.lights.len();
+    check.rule(light_count(lights), || (Path::root().key("lights"), count(lights, "lights")));
+    for (i, light) in scene.lights.iter().enumerate() {
+        check.light(light, i);
     }
-    problems.0.extend(observer(&scene.observer, room));
-    problems.add(object_count(scene.objects.len()), || {
-        (Path::root().key("objects"), count(scene.objects.len(), "objects"))
-    });
-    let objects = root.key("objects");
-    for (i, o) in scene.objects.iter().enumerate() {
-        problems.0.extend(object_at(o, scene, room, registry, || objects.index(i)));
+    check.observer();
+    let objects = scene.objects.len();
+    check.rule(object_count(objects), || (Path::root().key("objects"), count(objects, "objects")));
+    for (i, object) in scene.objects.iter().enumerate() {
+        check.object(object, i);
     }
-    let display = root.key("display").key("exposure");
-    let ev = scene.display.exposure;
-    problems.add(exposure(ev), || (display, ev.to_string()));
-    problems.0.extend(coincidences(scene));
-    problems.0
+    check.display();
+    check.problems
+}
+
+/// Everything that is wrong with one light, also where it meets other parts. Nothing where there is no such light.
+#[must_use]
+pub fn light(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
+    let mut check = Check::new(scene, registry);
+    if let Some(light) = scene.lights.get(index) {
+        check.light(light, index);
+        if let Some(p) = light.position {
+            check.meets(p, object_there(scene, p), "a light", "an object", || light_path(index));
+        }
+    }
+    check.problems
+}
+
+/// Everything that is wrong with one object, also where it meets other parts. Nothing where there is no such object.
+#[must_use]
+pub fn object(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
+    let mut check = Check::new(scene, registry);
+    if let Some(object) = scene.objects.get(index) {
+        check.object(object, index);
+    }
+    check.problems
+}
+
+/// Everything that is wrong with the observer, also where it meets other parts.
+#[must_use]
+pub fn observer(scene: &Scene, registry: &Registry) -> Vec<Problem> {
+    let mut check = Check::new(scene, registry);
+    let p = scene.observer.position;
+    check.observer();
+    check.meets(p, check.light_there(p), "the observer", "a light", observer_path);
+    check.meets(p, object_there(scene, p), "the observer", "an object", observer_path);
+    check.problems
+}
+
+/// Everything that is wrong with the room, and everything that stands outside it.
+#[must_use]
+pub fn room(scene: &Scene, registry: &Registry) -> Vec<Problem> {
+    let mut check = Check::new(scene, registry);
+    check.dimensions();
+    for (i, light) in scene.lights.iter().enumerate() {
+        if let Some(p) = light.position {
+            check.within(p, || light_path(i));
+        }
+    }
+    check.within(scene.observer.position, observer_path);
+    for (i, object) in scene.objects.iter().enumerate() {
+        check.within(object.position, || object_path(i));
+    }
+    check.problems
+}
+
+/// Everything that is wrong with the reflection model and the shading model of a scene. The materials of objects that
+/// have no reflection model themselves are judged by the scene's: [`object`] tells.
+#[must_use]
+pub fn models(scene: &Scene, registry: &Registry) -> Vec<Problem> {
+    let mut check = Check::new(scene, registry);
+    check.models();
+    check.problems
+}
+
+/// Everything that is wrong with the display.
+#[must_use]
+pub fn display(scene: &Scene, registry: &Registry) -> Vec<Problem> {
+    let mut check = Check::new(scene, registry);
+    check.display();
+    check.problems
 }
 
 /// The room to judge positions by: an extent that is itself wrong is as large as may be, so that one
@@ -341,87 +391,196 @@ pub(super) fn plausible(mut room: SceneSize) -> SceneSize {
     room
 }
 
-/// Everything that is wrong with one light; `index` is its place in the list.
-#[must_use]
-pub fn light(light: &Light, index: usize, room: SceneSize, registry: &Registry) -> Vec<Problem> {
-    light_at(light, room, registry, || Path::root().key("lights").index(index))
+/// The identity of a place: two parts are in the same place if their coordinates are the same numbers in 32 bits, as
+/// scene files hold them. What is not finite is nowhere.
+fn place(p: Vec3) -> Option<[u32; 3]> {
+    // Adding 0 makes −0 and 0 the same bits.
+    p.is_finite().then(|| (p + Vec3::ZERO).to_array().map(f32::to_bits))
 }
 
-/// Everything that is wrong with one object of a scene, coincidences apart.
+/// True if lights, objects and the observer exclude each other here (CA AR4, AR10, AR15); two lights or two objects
+/// may share a place.
 #[must_use]
-pub fn object(object: &Object, index: usize, scene: &Scene, registry: &Registry) -> Vec<Problem> {
-    object_at(object, scene, plausible(scene.scene_size), registry, || {
-        Path::root().key("objects").index(index)
-    })
+pub fn same_place(a: Vec3, b: Vec3) -> bool {
+    place(a).is_some_and(|a| Some(a) == place(b))
 }
 
-/// Everything that is wrong with the observer.
-#[must_use]
-pub fn observer(observer: &Observer, room: SceneSize) -> Vec<Problem> {
-    let mut problems = Problems(Vec::new());
-    let at = |key: &'static str| Path::root().key("observer").key(key);
-    problems.add(position(room, observer.position), || (at("position"), Written(observer.position)));
-    problems.add(direction(observer.direction), || (at("direction"), Written(observer.direction)));
-    problems.add(field_of_view(observer.field_of_view), || (at("field_of_view"), observer.field_of_view));
-    problems.0
+/// The first object in a place, for messages.
+fn object_there(scene: &Scene, p: Vec3) -> Option<String> {
+    scene.objects.iter().position(|o| same_place(o.position, p)).map(|i| format!("objects[{i}]"))
 }
 
-/// The problems found so far.
-struct Problems(Vec<Problem>);
+fn light_path(index: usize) -> Path {
+    Path::root().key("lights").index(index)
+}
 
-impl Problems {
+fn object_path(index: usize) -> Path {
+    Path::root().key("objects").index(index)
+}
+
+fn observer_path() -> Path {
+    Path::root().key("observer")
+}
+
+/// The problems found so far, and what the parts of a scene are judged by.
+struct Check<'a> {
+    scene: &'a Scene,
+    registry: &'a Registry,
+    room: SceneSize,
+    /// The first light in each place: with many objects, places are looked up and not compared pairwise.
+    lights: HashMap<[u32; 3], usize>,
+    problems: Vec<Problem>,
+}
+
+impl<'a> Check<'a> {
+    fn new(scene: &'a Scene, registry: &'a Registry) -> Self {
+        let mut lights = HashMap::new();
+        for (i, light) in scene.lights.iter().enumerate() {
+            if let Some(key) = light.position.and_then(place) {
+                lights.entry(key).or_insert(i);
+            }
+        }
+        Self { scene, registry, room: plausible(scene.scene_size), lights, problems: Vec::new() }
+    }
+
     /// Adds the broken rule; the path is made only then, since valid scenes are the rule and large.
-    fn add<T: fmt::Display>(&mut self, rule: Rule, at: impl FnOnce() -> (Path, T)) {
+    fn rule<T: fmt::Display>(&mut self, rule: Rule, at: impl FnOnce() -> (Path, T)) {
         if let Err(rule) = rule {
             let (path, found) = at();
-            self.0.push(Problem::value(path, found, rule));
+            self.problems.push(Problem::value(path, found, rule));
         }
     }
-}
 
-fn light_at(light: &Light, room: SceneSize, registry: &Registry, path: impl Fn() -> Path) -> Vec<Problem> {
-    let mut problems = Problems(Vec::new());
-    problems.add(light_type(registry, &light.kind), || (path().key("type"), quoted(&light.kind)));
-    let entry = registry.light(&light.kind);
-    if let Some(LightEntry { declaration, .. }) = entry {
-        let fields = [
-            ("position", light.position.is_some(), declaration.has_position),
-            ("direction", light.direction.is_some(), declaration.has_direction),
-        ];
-        for (key, is, should) in fields {
-            if is != should {
-                problems.0.push(Problem::about(path().key(key), presence(declaration.id, key, should)));
+    fn about(&mut self, path: Path, predicate: String) {
+        self.problems.push(Problem::about(path, predicate));
+    }
+
+    /// A position in the room.
+    fn within(&mut self, p: Vec3, path: impl Fn() -> Path) {
+        self.rule(position(self.room, p), || (path().key("position"), Written(p)));
+    }
+
+    /// A part in a place where another is that it excludes.
+    fn meets(&mut self, p: Vec3, there: Option<String>, one: &str, other: &str, path: impl Fn() -> Path) {
+        if let Some(there) = there {
+            let rule = format!("{there} is there; {one} must not be where {other} is");
+            self.problems.push(Problem::value(path().key("position"), Written(p), rule));
+        }
+    }
+
+    /// The first light in a place, for messages.
+    fn light_there(&self, p: Vec3) -> Option<String> {
+        self.lights.get(&place(p)?).map(|i| format!("lights[{i}]"))
+    }
+
+    /// The observer, if it is in a place, for messages.
+    fn observer_there(&self, p: Vec3) -> Option<String> {
+        same_place(p, self.scene.observer.position).then(|| "the observer".to_owned())
+    }
+
+    fn dimensions(&mut self) {
+        let SceneSize { height, width, depth } = self.scene.scene_size;
+        for (axis, metres) in [("height", height), ("width", width), ("depth", depth)] {
+            self.rule(dimension(axis, metres), || (Path::root().key("scene_size").key(axis), metres));
+        }
+    }
+
+    fn models(&mut self) {
+        let Scene { reflection_model: reflection, shading_model: shading, .. } = self.scene;
+        let at = |key: &'static str, id: &str| (Path::root().key(key), quoted(id));
+        self.rule(reflection_model(self.registry, reflection), || at("reflection_model", reflection));
+        self.rule(shading_model(self.registry, shading), || at("shading_model", shading));
+    }
+
+    fn light(&mut self, light: &Light, index: usize) {
+        let path = |key: &'static str| light_path(index).key(key);
+        self.rule(light_type(self.registry, &light.kind), || (path("type"), quoted(&light.kind)));
+        let entry = self.registry.light(&light.kind);
+        if let Some(LightEntry { declaration, .. }) = entry {
+            let fields = [
+                ("position", light.position.is_some(), declaration.has_position),
+                ("direction", light.direction.is_some(), declaration.has_direction),
+            ];
+            for (key, is, should) in fields {
+                if is != should {
+                    self.about(path(key), presence(declaration.id, key, should));
+                }
+            }
+        }
+        if let Some(p) = light.position {
+            self.within(p, || light_path(index));
+        }
+        if let Some(d) = light.direction {
+            self.rule(direction(d), || (path("direction"), Written(d)));
+        }
+        self.rule(intensity(light.intensity), || (path("intensity"), light.intensity));
+        if let Some(flux) = light.luminous_flux {
+            if entry.is_none_or(LightEntry::has_flux) {
+                self.rule(luminous_flux(flux), || (path("luminous_flux"), flux));
+            } else {
+                self.about(path("luminous_flux"), presence(&light.kind, "luminous_flux", false));
+            }
+        }
+        if let Some(kelvin) = light.colour_temperature {
+            self.rule(colour_temperature(kelvin), || (path("colour_temperature"), kelvin));
+        }
+        for (name, value) in &light.parameters.0 {
+            let path = || light_path(index).key(name.clone());
+            match entry.map(|e| e.declaration.parameters.iter().find(|p| p.name == name.as_ref())) {
+                Some(Some(declared)) => self.rule(parameter(declared, value), || (path(), written(value))),
+                Some(None) => self.about(path(), presence(&light.kind, name, false)),
+                // The type is unknown, and that is reported already.
+                None => {}
+            }
+        }
+        if let Some(p) = light.position {
+            self.meets(p, self.observer_there(p), "a light", "the observer", || light_path(index));
+        }
+    }
+
+    fn observer(&mut self) {
+        let Observer { position, direction: d, field_of_view: degrees } = self.scene.observer;
+        self.within(position, observer_path);
+        self.rule(direction(d), || (observer_path().key("direction"), Written(d)));
+        self.rule(field_of_view(degrees), || (observer_path().key("field_of_view"), degrees));
+    }
+
+    fn object(&mut self, object: &Object, index: usize) {
+        let path = |key: &'static str| object_path(index).key(key);
+        let registry = self.registry;
+        self.rule(object_type(registry, &object.kind), || (path("type"), quoted(&object.kind)));
+        self.within(object.position, || object_path(index));
+        self.rule(size(object.size), || (path("size"), object.size));
+        self.rule(rotation(object.rotation), || (path("rotation"), Written(object.rotation)));
+        if let (Some(shape), Some(count)) = (registry.shape(&object.kind), object.tessellation) {
+            self.rule(tessellation(shape, count), || (path("tessellation"), count));
+        }
+        if let Some(id) = &object.reflection_model {
+            self.rule(reflection_model(registry, id), || (path("reflection_model"), quoted(id)));
+        }
+        if let Some(id) = &object.shading_model {
+            self.rule(shading_model(registry, id), || (path("shading_model"), quoted(id)));
+        }
+        let model = self.scene.model_of(object);
+        for (name, value) in &object.material.0 {
+            self.rule(material_parameter(registry, model, name, value), || {
+                (path("material").key(name.clone()), written(value))
+            });
+        }
+        let p = object.position;
+        match self.light_there(p) {
+            Some(light) => self.meets(p, Some(light), "an object", "a light", || object_path(index)),
+            None => {
+                let observer = self.observer_there(p);
+                self.meets(p, observer, "an object", "the observer", || object_path(index));
             }
         }
     }
-    if let Some(p) = light.position {
-        problems.add(position(room, p), || (path().key("position"), Written(p)));
+
+    fn display(&mut self) {
+        let ev = self.scene.display.exposure;
+        self.rule(exposure(ev), || (Path::root().key("display").key("exposure"), ev));
     }
-    if let Some(d) = light.direction {
-        problems.add(direction(d), || (path().key("direction"), Written(d)));
-    }
-    problems.add(intensity(light.intensity), || (path().key("intensity"), light.intensity));
-    if let Some(flux) = light.luminous_flux {
-        if entry.is_none_or(LightEntry::has_flux) {
-            problems.add(luminous_flux(flux), || (path().key("luminous_flux"), flux));
-        } else {
-            let rule = presence(&light.kind, "luminous_flux", false);
-            problems.0.push(Problem::about(path().key("luminous_flux"), rule));
-        }
-    }
-    if let Some(kelvin) = light.colour_temperature {
-        problems.add(colour_temperature(kelvin), || (path().key("colour_temperature"), kelvin));
-    }
-    for (name, value) in &light.parameters.0 {
-        let key = || path().key(name.clone());
-        match entry.map(|e| e.declaration.parameters.iter().find(|p| p.name == name.as_ref())) {
-            Some(Some(declared)) => problems.add(parameter(declared, value), || (key(), written(value))),
-            Some(None) => problems.0.push(Problem::about(key(), presence(&light.kind, name, false))),
-            // The type is unknown, and that is reported already.
-            None => {}
-        }
-    }
-    problems.0
 }
 
 /// That a light of a type needs, or has not, a field.
@@ -434,36 +593,6 @@ fn presence(kind: &str, field: &str, needed: bool) -> String {
     }
 }
 
-fn object_at(
-    object: &Object,
-    scene: &Scene,
-    room: SceneSize,
-    registry: &Registry,
-    path: impl Fn() -> Path,
-) -> Vec<Problem> {
-    let mut problems = Problems(Vec::new());
-    problems.add(object_type(registry, &object.kind), || (path().key("type"), quoted(&object.kind)));
-    problems.add(position(room, object.position), || (path().key("position"), Written(object.position)));
-    problems.add(size(object.size), || (path().key("size"), object.size));
-    problems.add(rotation(object.rotation), || (path().key("rotation"), Written(object.rotation)));
-    if let (Some(shape), Some(count)) = (registry.shape(&object.kind), object.tessellation) {
-        problems.add(tessellation(shape, count), || (path().key("tessellation"), count));
-    }
-    if let Some(id) = &object.reflection_model {
-        problems.add(reflection_model(registry, id), || (path().key("reflection_model"), quoted(id)));
-    }
-    if let Some(id) = &object.shading_model {
-        problems.add(shading_model(registry, id), || (path().key("shading_model"), quoted(id)));
-    }
-    let model = scene.model_of(object);
-    for (name, value) in &object.material.0 {
-        problems.add(material_parameter(registry, model, name, value), || {
-            (path().key("material").key(name.clone()), written(value))
-        });
-    }
-    problems.0
-}
-
 /// A parameter as scene files write it.
 fn written(value: &Value) -> String {
     match value {
@@ -473,37 +602,6 @@ fn written(value: &Value) -> String {
         Value::Triple([r, g, b]) => format!("[{r}, {g}, {b}]"),
         Value::Choice(v) => quoted(v),
     }
-}
-
-/// Lights, objects and the observer keep apart (CA AR4, AR10, AR15). Linear in the number of things:
-/// positions are looked up, not compared pairwise. What is not finite coincides with nothing.
-fn coincidences(scene: &Scene) -> Vec<Problem> {
-    // Adding 0 makes −0 and 0 the same bits.
-    let bits = |p: Vec3| p.is_finite().then(|| (p + Vec3::ZERO).to_array().map(f32::to_bits));
-    let at = |list: &'static str, i: usize| Path::root().key(list).index(i).key("position");
-    let mut problems = Vec::new();
-    let mut lights = HashMap::new();
-    let observer = bits(scene.observer.position);
-    for (i, light) in scene.lights.iter().enumerate() {
-        let Some((p, key)) = light.position.and_then(|p| Some((p, bits(p)?))) else { continue };
-        lights.entry(key).or_insert(i);
-        if Some(key) == observer {
-            let rule = "the observer is there; a light must not be where the observer is";
-            problems.push(Problem::value(at("lights", i), Written(p), rule));
-        }
-    }
-    for (i, object) in scene.objects.iter().enumerate() {
-        let Some(key) = bits(object.position) else { continue };
-        let there: Cow<'_, str> = match lights.get(&key) {
-            Some(light) => format!("lights[{light}] is there; an object must not be where a light is").into(),
-            None if Some(key) == observer => {
-                "the observer is there; an object must not be where the observer is".into()
-            }
-            None => continue,
-        };
-        problems.push(Problem::value(at("objects", i), Written(object.position), there));
-    }
-    problems
 }
 
 impl Light {
@@ -610,6 +708,57 @@ mod tests {
             ..Scene::default()
         };
         assert_eq!(messages(&s), [""; 0]);
+    }
+
+    #[test]
+    fn one_part_is_checked_like_the_whole() {
+        let registry = Registry::builtin();
+        let mut s = Scene::default();
+        s.lights.push(Light { intensity: -1.0, position: Some(Vec3::splat(11.0)), ..Light::default() });
+        s.lights.push(Light { position: Some(s.observer.position), ..Light::default() });
+        s.objects.push(Object { size: 0.0, position: Vec3::new(7.5, 8.0, 9.0), ..Object::default() });
+        s.objects.push(Object { reflection_model: Some("lambret".into()), ..Object::default() });
+        s.observer.field_of_view = 0.0;
+        s.display.exposure = 99.0;
+        let whole = scene(&s, &registry);
+        let mut parts = [room(&s, &registry), models(&s, &registry)].concat();
+        parts.retain(|p| whole.contains(p) && p.path.segments().len() == 2);
+        parts.extend((0..s.lights.len()).flat_map(|i| light(&s, i, &registry)));
+        parts.extend(observer(&s, &registry));
+        parts.extend((0..s.objects.len()).flat_map(|i| object(&s, i, &registry)));
+        parts.extend(display(&s, &registry));
+        // Where two parts meet, each tells of it; the whole scene tells of it once.
+        let both: Vec<_> = parts.iter().filter(|p| !whole.contains(p)).map(ToString::to_string).collect();
+        assert_eq!(
+            both,
+            [
+                "lights[0].position is [7.5, 8, 9], but objects[1] is there; a light must not be where an object is",
+                "observer.position is [5, 5, 9.5], but lights[2] is there; the observer must not be where a light is",
+            ]
+        );
+        parts.retain(|p| whole.contains(p));
+        assert_eq!(parts, whole);
+        assert_eq!(light(&s, 9, &registry), []);
+        assert_eq!(object(&s, 9, &registry), []);
+    }
+
+    #[test]
+    fn a_room_is_too_small_for_what_stands_outside_it() {
+        let mut s = Scene::default();
+        s.scene_size.depth = 9.25;
+        let found: Vec<_> = room(&s, &Registry::builtin()).iter().map(|p| p.path.to_string()).collect();
+        assert_eq!(found, ["observer.position"]);
+        s.scene_size.depth = 101.0;
+        let found: Vec<_> = room(&s, &Registry::builtin()).iter().map(|p| p.path.to_string()).collect();
+        assert_eq!(found, ["scene_size.depth"]);
+    }
+
+    #[test]
+    fn the_same_place_is_the_same_three_numbers() {
+        let p = Vec3::new(1.0, 2.0, 3.0);
+        assert!(same_place(p, p) && same_place(Vec3::ZERO, -Vec3::ZERO));
+        assert!(!same_place(p, p.with_x(1.0f32.next_up())));
+        assert!(!same_place(Vec3::NAN, Vec3::NAN) && !same_place(Vec3::INFINITY, Vec3::INFINITY));
     }
 
     #[test]
