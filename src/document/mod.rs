@@ -5,7 +5,7 @@ use std::ops::Deref;
 
 use crate::{
     registry::Registry,
-    scene::{Light, Object, Scene, check},
+    scene::{Light, Object, Scene, check, error::Problem},
 };
 
 mod edit;
@@ -246,17 +246,28 @@ impl Document {
     /// # Errors
     /// Why it is refused; the scene stays as it is.
     pub fn submit(&mut self, scene: Scene, selection: Selection, registry: &Registry) -> Result<(), String> {
-        if let Some(problem) = check::scene(&scene, registry).first() {
-            return Err(format!(
-                "A change of a component was refused: {} {}.",
-                problem.path,
-                problem.message()
-            ));
+        if let Some(problem) = self.problem_in(&scene, registry) {
+            return Err(format!("A change of a component was refused: {problem}."));
         }
         let gesture = std::mem::replace(&mut self.gesture, SYSTEMS);
         self.replace("Change by a system", selection, scene);
         self.gesture = gesture;
         Ok(())
+    }
+
+    /// The first problem of the parts in which a scene differs from this one.
+    fn problem_in(&self, scene: &Scene, registry: &Registry) -> Option<Problem> {
+        if (scene.lights.len(), scene.objects.len()) != (self.lights.len(), self.objects.len()) {
+            return check::scene(scene, registry).into_iter().next();
+        }
+        let lights = (0..scene.lights.len()).filter(|i| scene.lights[*i] != self.lights[*i]);
+        let objects = (0..scene.objects.len()).filter(|i| scene.objects[*i] != self.objects[*i]);
+        let observer = (scene.observer != self.observer).then(|| check::observer(scene, registry));
+        lights
+            .flat_map(|i| check::light(scene, i, registry))
+            .chain(objects.flat_map(|i| check::object(scene, i, registry)))
+            .chain(observer.into_iter().flatten())
+            .next()
     }
 
     /// The ids of the parts of a new list that are parts of the old one.

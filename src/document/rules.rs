@@ -3,10 +3,11 @@
 use glam::Vec3;
 
 use super::{Document, Edit, LightField, ObjectField, Selection, limits, names::name_of};
-use crate::{parameter::Value, registry::Registry, scene::Scene};
-
-/// Two positions nearer than this are the same place, metres.
-const SAME_PLACE: f32 = 1e-6;
+use crate::{
+    parameter::Value,
+    registry::Registry,
+    scene::{Scene, check},
+};
 
 impl Document {
     /// The limits of one extent of the room.
@@ -36,9 +37,7 @@ impl Document {
                 let what = format!("{}: {letter}", name(part));
                 legal(what, p.to_array()[axis], limits::position(self.scene.scene_size, axis))?;
             }
-            match places(&self.scene)
-                .find(|(q, at)| may_not_meet(part, *q) && (*at - p).length() < SAME_PLACE)
-            {
+            match places(&self.scene).find(|(q, at)| may_not_meet(part, *q) && check::same_place(*at, p)) {
                 Some((other, _)) => {
                     Err(format!("{} cannot stand exactly where {} stands.", name(part), name(other)))
                 }
@@ -51,7 +50,7 @@ impl Document {
             None => Err(format!("No model has a parameter “{id}”.")),
         };
         let direction = |part: Selection, d: Vec3| {
-            if d.is_finite() && d.length() > SAME_PLACE {
+            if check::direction(d).is_ok() {
                 return Ok(());
             }
             Err(format!("{}: the direction (0, 0, 0) points nowhere.", name(part)))

@@ -17,6 +17,7 @@ mod files;
 mod focus;
 mod golden;
 mod gpu_parity;
+mod history;
 mod hostile;
 mod hot_swap;
 mod interpret;

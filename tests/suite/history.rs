@@ -1,0 +1,325 @@
+//! Every change of the document can be undone and redone.
+
+use std::path::PathBuf;
+
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, vec2};
+use glam::Vec3;
+use lights_camera_models::{
+    document::{Document, Edit, Extent, LightField, ObjectField, Selection},
+    panel::state::{Action, Lab},
+    parameter::Value,
+    registry::Registry,
+    scene::{Display, Object, Observer, Scene, SceneSize, check},
+};
+
+use crate::panels::Bench;
+
+/// Actions that change the scene, one of each kind at least.
+fn changes() -> Vec<Action> {
+    let light = |field| Action::Edit(Edit::Light(0, field));
+    let object = |field| Action::Edit(Edit::Object(0, field));
+    vec![
+        Action::Edit(Edit::SceneName("Room".to_owned())),
+        Action::Edit(Edit::SceneDescription("Nothing much".to_owned())),
+        Action::Edit(Edit::SceneSize(SceneSize { width: 12.0, height: 11.0, depth: 10.0 })),
+        Action::Edit(Edit::Display(Display { exposure: 1.5, ..Display::default() })),
+        Action::Edit(Edit::Model("phong".to_owned())),
+        Action::Edit(Edit::Mode("flat".to_owned())),
+        Action::Edit(Edit::Observer(Observer { position: Vec3::new(1.0, 2.0, 9.0), ..Observer::default() })),
+        light(LightField::Name("lamp".to_owned())),
+        light(LightField::Enabled(false)),
+        light(LightField::Kind("spot".to_owned())),
+        light(LightField::Position(Vec3::new(2.0, 3.0, 4.0))),
+        light(LightField::Direction(Vec3::new(0.0, -1.0, 0.5))),
+        light(LightField::Colour([200, 100, 50])),
+        light(LightField::ColourTemperature(3000.0)),
+        light(LightField::LuminousFlux(900.0)),
+        light(LightField::Intensity(70.0)),
+        light(LightField::Parameter("cone_angle", Value::Number(20.0))),
+        object(ObjectField::Name("ball".to_owned())),
+        object(ObjectField::Visible(false)),
+        object(ObjectField::Kind("torus".to_owned())),
+        object(ObjectField::Position(Vec3::new(4.0, 4.0, 4.0))),
+        object(ObjectField::Size(1.25)),
+        object(ObjectField::Rotation(Vec3::new(10.0, 20.0, 30.0))),
+        object(ObjectField::Tessellation(Some(48))),
+        object(ObjectField::Model(Some("ward".to_owned()))),
+        object(ObjectField::Mode(Some("gouraud".to_owned()))),
+        object(ObjectField::Material("alpha", Value::Integer(17))),
+        object(ObjectField::Preset(vec![("k_s", Value::Number(0.25)), ("k_d", Value::Number(0.125))])),
+        Action::AddLight("directional".to_owned()),
+        Action::AddObject("cube".to_owned()),
+        Action::Duplicate(Selection::Object(0)),
+        Action::Duplicate(Selection::Light(0)),
+        Action::Toggle(Selection::Object(1)),
+        Action::Remove(Selection::Object(0)),
+        Action::Remove(Selection::Light(0)),
+        Action::Expose(0.5),
+    ]
+}
+
+#[test]
+fn every_change_is_a_step_that_is_undone_and_redone_exactly() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::default();
+    let mut states = vec![(lab.document.scene().clone(), lab.selection)];
+    for action in changes() {
+        let before = lab.document.steps().len();
+        let known = |lab: &Lab, i: usize| lab.document.objects.get(i).is_some();
+        assert!(known(&lab, 0));
+        lab.apply(action.clone(), &registry);
+        lab.document.end_gesture();
+        assert!(*lab.document.scene() != states[states.len() - 1].0, "{action:?}: {:?}", lab.messages);
+        assert_eq!(lab.document.steps().len(), before + 1, "{action:?}");
+        assert!(check::scene(&lab.document, &registry).is_empty(), "{action:?}");
+        states.push((lab.document.scene().clone(), lab.selection));
+    }
+    let names: Vec<_> = lab.document.steps().map(str::to_owned).collect();
+    assert!(names.iter().all(|name| !name.is_empty()), "{names:?}");
+    assert!(names.contains(&"Intensity of lamp".to_owned()), "{names:?}");
+    assert!(names.contains(&"Add Cube 1".to_owned()), "{names:?}");
+    for (scene, _) in states.iter().rev().skip(1) {
+        lab.apply(Action::Undo, &registry);
+        assert!(*scene == *lab.document.scene(), "undoing {}", names[lab.document.done()]);
+        assert!(check::scene(&lab.document, &registry).is_empty());
+    }
+    assert!(!lab.is_dirty(), "as it was opened");
+    lab.apply(Action::Undo, &registry);
+    assert!(lab.messages.iter().any(|m| m.text == "There is nothing to undo."));
+    for (scene, selection) in &states[1..] {
+        lab.apply(Action::Redo, &registry);
+        assert!(*scene == *lab.document.scene(), "redoing {}", names[lab.document.done() - 1]);
+        assert_eq!(*selection, lab.selection);
+    }
+    lab.apply(Action::Redo, &registry);
+    assert!(lab.messages.iter().any(|m| m.text == "There is nothing to redo."));
+    // Anywhere in one jump.
+    for at in [0, 7, states.len() - 1, 20] {
+        lab.apply(Action::GoToStep(at), &registry);
+        assert!(states[at].0 == *lab.document.scene(), "{at}");
+    }
+    // Another change takes the place of what was undone.
+    lab.apply(Action::Expose(0.25), &registry);
+    assert_eq!((lab.document.done(), lab.document.steps().len()), (21, 21));
+}
+
+#[test]
+fn what_was_selected_comes_back() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::default();
+    lab.apply(Action::AddObject("cube".to_owned()), &registry);
+    lab.apply(Action::Select(Selection::Light(0)), &registry);
+    lab.apply(Action::Edit(Edit::Light(0, LightField::Intensity(5.0))), &registry);
+    lab.apply(Action::Select(Selection::Room), &registry);
+    lab.apply(Action::Undo, &registry);
+    assert_eq!(lab.selection, Selection::Light(0));
+    lab.apply(Action::Undo, &registry);
+    assert_eq!(lab.selection, Selection::Object(0));
+    lab.apply(Action::Redo, &registry);
+    assert_eq!(lab.selection, Selection::Object(1), "the cube");
+    lab.apply(Action::Remove(Selection::Object(1)), &registry);
+    lab.apply(Action::Undo, &registry);
+    assert_eq!(lab.selection, Selection::Object(1));
+}
+
+#[test]
+fn parts_keep_their_ids_when_others_come_and_go_and_when_they_come_back() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::new(Scene {
+        objects: (0..5).map(|i| Object { size: 0.5 + 0.1 * i as f32, ..Object::default() }).collect(),
+        ..Scene::default()
+    });
+    let ids =
+        |lab: &Lab| (0..lab.document.objects.len()).map(|i| lab.document.object_id(i)).collect::<Vec<_>>();
+    let first = ids(&lab);
+    lab.apply(Action::Remove(Selection::Object(1)), &registry);
+    assert_eq!(ids(&lab), [first[0], first[2], first[3], first[4]]);
+    lab.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    let copied = ids(&lab);
+    assert_eq!(copied.len(), 5);
+    assert!(!first.contains(&copied[1]), "a new part has a new id");
+    lab.apply(Action::GoToStep(0), &registry);
+    assert_eq!(ids(&lab), first);
+    lab.apply(Action::GoToStep(2), &registry);
+    assert_eq!(ids(&lab), copied);
+    // Another version of the file: the objects in another order, one gone, one changed, one new.
+    lab.apply(Action::GoToStep(0), &registry);
+    let mut scene = lab.document.scene().clone();
+    scene.objects.swap(0, 4);
+    scene.objects.remove(2);
+    scene.objects.push(Object { kind: "cube".to_owned(), ..Object::default() });
+    lab.document.replace("Reload from disk", Selection::Room, scene);
+    assert_eq!(ids(&lab)[..4], [first[4], first[1], first[3], first[0]]);
+    lab.apply(Action::Undo, &registry);
+    assert_eq!(ids(&lab), first);
+}
+
+#[test]
+fn a_gesture_is_one_step_and_one_that_leads_nowhere_is_none() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::default();
+    let size =
+        |lab: &mut Lab, v: f32| lab.apply(Action::Edit(Edit::Object(0, ObjectField::Size(v))), &registry);
+    for i in 1..10 {
+        size(&mut lab, 2.0 - 0.1 * i as f32);
+    }
+    assert_eq!(lab.document.steps().collect::<Vec<_>>(), ["Size of Sphere 1"]);
+    lab.apply(Action::Undo, &registry);
+    assert_eq!(lab.document.objects[0].size, 2.0);
+    lab.apply(Action::Redo, &registry);
+    assert!((lab.document.objects[0].size - 1.1).abs() < 1e-6);
+    // Another gesture, another step; there and back again, none.
+    size(&mut lab, 1.5);
+    lab.document.end_gesture();
+    assert_eq!(lab.document.steps().len(), 2);
+    size(&mut lab, 1.75);
+    size(&mut lab, 1.5);
+    assert_eq!(lab.document.steps().len(), 2);
+    // The same value again is no change.
+    lab.document.end_gesture();
+    size(&mut lab, 1.5);
+    assert_eq!(lab.document.steps().len(), 2);
+}
+
+#[test]
+fn history_outlives_saving_and_reading_the_file_again_but_not_another_document() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::default();
+    let path = PathBuf::from("room.json");
+    let _ = lab.opened(path.clone(), Scene::default());
+    lab.apply(Action::Expose(1.0), &registry);
+    lab.document.end_gesture();
+    let _ = lab.saved(path, &registry);
+    assert!(!lab.is_dirty());
+    lab.apply(Action::Undo, &registry);
+    assert!(lab.is_dirty() && lab.document.display.exposure == 0.0);
+    lab.apply(Action::Redo, &registry);
+    assert!(!lab.is_dirty(), "as it was saved");
+    let mut edited = lab.document.scene().clone();
+    edited.reflection_model = "phong".to_owned();
+    lab.document.set_saved(edited.clone());
+    lab.document.replace("Reload from disk", lab.selection, edited);
+    lab.apply(Action::Undo, &registry);
+    assert_eq!(lab.document.reflection_model, "lambert");
+    lab.apply(Action::Undo, &registry);
+    assert_eq!(lab.document.display.exposure, 0.0);
+    lab.apply(Action::New, &registry);
+    lab.apply(Action::Answer(lights_camera_models::panel::state::Answer::Discard), &registry);
+    assert_eq!(lab.document.steps().len(), 0);
+}
+
+#[test]
+fn history_is_bounded() {
+    let registry = Registry::builtin();
+    let mut document = Document::new(Scene::default());
+    for i in 0..2000 {
+        document.change(format!("Step {i}"), Extent::Rest, Selection::Room, |s| {
+            s.display.exposure = i as f32 * 1e-3
+        });
+    }
+    assert_eq!(document.steps().len(), 500);
+    assert_eq!(document.steps().last(), Some("Step 1999"));
+    // A step of a change of all of ten thousand objects keeps twenty thousand.
+    let mut document = Document::new(Scene { objects: vec![Object::default(); 10_000], ..Scene::default() });
+    for i in 0..40 {
+        let size = 0.5 + 0.01 * i as f32;
+        document.change(format!("Step {i}"), Extent::All, Selection::Room, |s| {
+            s.objects.iter_mut().for_each(|o| o.size = size);
+        });
+    }
+    assert_eq!(document.steps().len(), 10);
+    // The first objects all stand in one place, which objects may.
+    assert!(check::scene(&document, &registry).is_empty());
+}
+
+#[test]
+fn a_component_that_a_system_changes_is_checked_and_a_step() {
+    let registry = Registry::builtin();
+    let mut lab = Lab::default();
+    for i in 0..50 {
+        let mut scene = lab.document.scene().clone();
+        scene.lights[0].intensity = 10.0 + i as f32;
+        assert_eq!(lab.submit(scene, &registry), Ok(()));
+    }
+    assert_eq!(lab.document.steps().collect::<Vec<_>>(), ["Change by a system"], "an animation is one step");
+    let good = lab.document.scene().clone();
+    let mut scene = good.clone();
+    scene.objects[0].size = -1.0;
+    let why = lab.submit(scene, &registry).expect_err("a size is above 0");
+    assert!(why.contains("size"), "{why}");
+    assert!(*lab.document.scene() == good);
+    lab.apply(Action::Undo, &registry);
+    assert!(*lab.document.scene() == Scene::default());
+}
+
+#[test]
+fn keys_menu_and_list_take_steps_back_and_forth() {
+    let mut bench = Bench::new(Lab::default());
+    bench.frame(Vec::new());
+    bench.apply(Action::AddObject("cube".to_owned()));
+    bench.apply(Action::Expose(1.0));
+    let objects = |bench: &Bench| (bench.lab.document.objects.len(), bench.lab.document.display.exposure);
+    assert_eq!(objects(&bench), (2, 1.0));
+    bench.key(Key::Z, Modifiers::COMMAND);
+    assert_eq!(objects(&bench), (2, 0.0));
+    bench.key(Key::Z, Modifiers::COMMAND);
+    assert_eq!(objects(&bench), (1, 0.0));
+    bench.key(Key::Z, Modifiers::COMMAND | Modifiers::SHIFT);
+    assert_eq!(objects(&bench), (2, 0.0));
+    bench.key(Key::Y, Modifiers::COMMAND);
+    assert_eq!(objects(&bench), (2, 1.0));
+    bench.click("Edit");
+    bench.settle();
+    assert!(bench.find("Undo: Exposure Ctrl+Z").is_some());
+    bench.click("Undo: Exposure Ctrl+Z");
+    bench.settle();
+    assert_eq!(objects(&bench), (2, 0.0));
+    bench.click("Edit");
+    bench.settle();
+    assert!(
+        bench.find("Undo: Add Cube 1 Ctrl+Z").is_some()
+            && bench.find("Redo: Exposure Ctrl+Shift+Z").is_some()
+    );
+    bench.click("History… ");
+    bench.settle();
+    bench.click("Scene as it was opened");
+    bench.settle();
+    assert_eq!(objects(&bench), (1, 0.0));
+    bench.click("Exposure");
+    bench.settle();
+    assert_eq!(objects(&bench), (2, 1.0));
+}
+
+#[test]
+fn a_drag_of_a_knob_is_one_step() {
+    let mut bench = Bench::with_model("phong");
+    bench.frame(Vec::new());
+    let slider = bench
+        .tree
+        .iter()
+        .find(|s| s.role == bevy_egui::egui::accesskit::Role::Slider && s.label == "shininess");
+    let at = slider.expect("there is a slider").rect.left_center() + vec2(20.0, 0.0);
+    let exponent = |bench: &Bench| bench.lab.document.objects[0].material.0.get("alpha").cloned();
+    let before = exponent(&bench);
+    bench.hover(at);
+    bench.frame(vec![Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed: true,
+        modifiers: Modifiers::NONE,
+    }]);
+    for k in 1..12 {
+        bench.hover(at + vec2(2.0 * k as f32, 0.0));
+    }
+    bench.frame(vec![Event::PointerButton {
+        pos: at + vec2(24.0, 0.0),
+        button: PointerButton::Primary,
+        pressed: false,
+        modifiers: Modifiers::NONE,
+    }]);
+    bench.settle();
+    assert!(exponent(&bench) != before, "the drag changes it");
+    assert_eq!(bench.lab.document.steps().collect::<Vec<_>>(), ["Shininess of Sphere 1"]);
+    bench.key(Key::Z, Modifiers::COMMAND);
+    assert_eq!(exponent(&bench), before);
+}
