@@ -114,10 +114,6 @@ macro_rules! operations {
             JumpUnless,
             /// Goes on at the target if `a` and `d` are the same word.
             JumpIfEqual,
-            /// Goes on at the target unless `a < d`, numbers.
-            JumpUnlessLess,
-            /// Goes on at the target unless `a ≤ d`, numbers.
-            JumpUnlessLessEqual,
             /// Goes back to the target, and counts.
             Repeat,
             /// Goes back to the target unless `a` is true, and counts.
@@ -187,18 +183,6 @@ macro_rules! operations {
                     }
                     Operation::JumpIfEqual => {
                         if registers[a].to_bits() == registers[d].to_bits() {
-                            at = i.target();
-                        }
-                    }
-                    Operation::JumpUnlessLess => {
-                        let less = registers[a] < registers[d];
-                        if !less {
-                            at = i.target();
-                        }
-                    }
-                    Operation::JumpUnlessLessEqual => {
-                        let less = registers[a] <= registers[d];
-                        if !less {
                             at = i.target();
                         }
                     }
@@ -429,13 +413,8 @@ impl Instruction {
 
     /// Whether it has a target.
     pub(super) fn jumps(self) -> bool {
-        use Operation::{
-            Jump, JumpIfEqual, JumpUnless, JumpUnlessLess, JumpUnlessLessEqual, Repeat, RepeatUnless,
-        };
-        matches!(
-            self.operation,
-            Jump | JumpUnless | JumpIfEqual | JumpUnlessLess | JumpUnlessLessEqual | Repeat | RepeatUnless
-        )
+        use Operation::{Jump, JumpIfEqual, JumpUnless, Repeat, RepeatUnless};
+        matches!(self.operation, Jump | JumpUnless | JumpIfEqual | Repeat | RepeatUnless)
     }
 
     /// The registers that it reads, as far as their numbers are known.
@@ -444,7 +423,7 @@ impl Instruction {
         let (words, count, length) = match self.operation {
             O::Jump | O::Repeat => ([0; 3], 0, 1),
             O::JumpUnless | O::RepeatUnless | O::LoadAt => ([self.a, 0, 0], 1, 1),
-            O::JumpIfEqual | O::JumpUnlessLess | O::JumpUnlessLessEqual => ([self.a, self.d, 0], 2, 1),
+            O::JumpIfEqual => ([self.a, self.d, 0], 2, 1),
             O::StoreAt => ([self.a, self.b, 0], 2, 1),
             O::Dot => ([self.a, self.b, 0], 2, 3),
             single => ([self.a, self.b, self.c], single.arity(), 1),

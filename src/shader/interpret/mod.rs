@@ -19,7 +19,6 @@ use naga::{Module, TypeInner};
 mod builder;
 mod expression;
 mod instruction;
-mod loads;
 mod lower;
 mod maths;
 mod optimise;

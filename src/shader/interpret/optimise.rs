@@ -2,7 +2,7 @@
 //!
 //! Registers that are no variables are written by one instruction, which makes it easy to see what may be left
 //! out or joined: what nobody reads, copies of what was just calculated, a product that is only added to
-//! something, a comparison that only decides a jump, three instructions that do the same to three words.
+//! something, three instructions that do the same to three words.
 
 use super::{
     builder::Builder,
@@ -43,7 +43,6 @@ pub(super) fn shortened(builder: &mut Builder, results: &[u16]) -> Vec<Instructi
     optimiser.drop_unread();
     optimiser.join_products();
     optimiser.join_copies();
-    optimiser.join_comparisons();
     let code = optimiser.compact();
     let targets = targets_of(&code);
     triples(code, &targets)
@@ -155,29 +154,6 @@ impl Optimiser<'_> {
                 self.reads[usize::from(copy.a)] = 0;
                 self.code[at] = None;
             }
-        }
-    }
-
-    /// A comparison that only decides the jump after it becomes part of that.
-    fn join_comparisons(&mut self) {
-        for at in 1..self.code.len() {
-            let (Some(test), Some(jump)) = (self.code[at - 1], self.code[at]) else { continue };
-            let operation = match test.operation {
-                O::LessF => O::JumpUnlessLess,
-                O::LessEqualF => O::JumpUnlessLessEqual,
-                _ => continue,
-            };
-            if jump.operation != O::JumpUnless
-                || jump.a != test.d
-                || !self.passing(test.d)
-                || self.targets[at]
-            {
-                continue;
-            }
-            let mut joined = Instruction::new(operation, test.b, [test.a, 0, 0]);
-            joined.aim(jump.target());
-            self.code[at] = Some(joined);
-            self.code[at - 1] = None;
         }
     }
 
