@@ -15,11 +15,11 @@ pub struct Parameter {
     pub label: &'static str,
     /// The unit, empty for dimensionless numbers.
     pub unit: &'static str,
-    /// What it does, one sentence, for tooltips and manuals.
+    /// Its effect, one sentence, for tooltips and manuals.
     pub help: &'static str,
     /// Type, range and default.
     pub kind: ParameterKind,
-    /// When it is used; `None` for always. See [`Parameter::used_when`].
+    /// The condition for its use; `None` for always. See [`Parameter::used_when`].
     pub used_when: Option<UsedWhen>,
 }
 
@@ -53,7 +53,7 @@ pub enum ParameterKind {
         min: i64,
         /// Largest legal value, if there is one.
         max: Option<i64>,
-        /// Where a slider ends when there is no largest value.
+        /// The end of a slider when there is no largest value.
         slider_max: i64,
         /// Value when the scene does not give one.
         default: i64,
@@ -102,7 +102,7 @@ impl Parameter {
         }
     }
 
-    /// What is allowed, as the end of a sentence: "a number between 0.5 and 1".
+    /// The legal values, as the end of a sentence: "must be between 0.5 and 1".
     #[must_use]
     pub fn rule(&self) -> String {
         match &self.kind {
@@ -127,7 +127,7 @@ impl Parameter {
         }
     }
 
-    /// Whether a value has the right type and lies in the range.
+    /// True if a value has the right type and lies in the range.
     #[must_use]
     pub fn allows(&self, value: &Value) -> bool {
         match (&self.kind, value) {

@@ -2,7 +2,7 @@
 
 use super::declaration::{Parameter, ParameterKind};
 
-/// The colour of the body of the material: what a white light makes it look like.
+/// The colour of the body of the material, under white light.
 pub const BASE_COLOUR: Parameter = Parameter {
     name: "base_colour",
     symbol: "C_b",
@@ -101,7 +101,7 @@ pub const ROUGHNESS: Parameter = Parameter {
     used_when: None,
 };
 
-/// How much the material is a metal (Burley 2012).
+/// The share of metal in the material (Burley 2012).
 pub const METALLIC: Parameter = Parameter {
     name: "metallic",
     symbol: "m",
@@ -112,7 +112,7 @@ pub const METALLIC: Parameter = Parameter {
     used_when: None,
 };
 
-/// Reflectance of what is not metal on a scale that looks even (Lagarde and de Rousiers 2014, *Moving
+/// Reflectance of dielectrics on a scale that looks even (Lagarde and de Rousiers 2014, *Moving
 /// Frostbite to Physically Based Rendering*): `F_0 = 0.16 s²`.
 pub const REFLECTANCE: Parameter = Parameter {
     name: "reflectance",

@@ -2,7 +2,7 @@
 
 use crate::shader::Source;
 
-/// What a model is called, where it comes from and what it claims.
+/// The name, the source and the claims of a model.
 #[derive(Debug, PartialEq)]
 pub struct Declaration {
     /// The name in scene files: lower case, underscores.
@@ -15,22 +15,22 @@ pub struct Declaration {
     pub author: &'static str,
     /// Author, year, title, where published.
     pub source: &'static str,
-    /// When to use it and what it shows, one or two sentences.
+    /// Its purpose and its look, one or two sentences.
     pub summary: &'static str,
     /// The equation, one part per term so that the window can colour them.
     pub equation: &'static [EquationPart],
     /// The physical laws that the model keeps for all directions and legal parameters.
     pub laws: Laws,
-    /// How the model answers to uniform light from everywhere.
+    /// The response to uniform light.
     pub ambient: Ambient,
-    /// Whether the response depends on the tangent: turning the surface about its normal changes it.
+    /// True if the response depends on the tangent: turning the surface about its normal changes it.
     pub anisotropic: bool,
     /// The twin in WGSL: `fn response` over a struct `Parameters`, and `fn ambient_response` for models
     /// that declare [`Ambient::Formula`].
     pub wgsl: Source,
 }
 
-/// How a model answers to uniform light from everywhere.
+/// The response of a model to uniform light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Ambient {
     /// By a formula of its own: [`ReflectionModel::ambient_response`] and its twin in WGSL.
@@ -44,7 +44,7 @@ pub enum Ambient {
 /// subscript and `^x` a superscript; braces group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EquationPart {
-    /// Which term it belongs to: decides its colour.
+    /// The term that it belongs to: decides its colour.
     pub term: Term,
     /// The mathematics.
     pub text: &'static str,

@@ -22,7 +22,7 @@ use crate::{
     parameter::{Parameter, Value, Values, pack},
 };
 
-/// A registered model: what the rest of the program knows of it.
+/// A registered model, as the rest of the program knows it.
 #[derive(Clone)]
 pub struct ModelEntry {
     /// Name, source, laws, equation, shader.
@@ -38,9 +38,9 @@ pub struct ModelEntry {
     kept: Arc<Mutex<HashMap<Vec<u8>, Arc<dyn Surface>>>>,
 }
 
-/// How the CPU runs a model whose WGSL it interprets.
+/// The state of a model whose WGSL the CPU interprets.
 pub(crate) trait Interpreted: Send + Sync {
-    /// Why the CPU cannot run the model, or could not when it last tried.
+    /// The reason why the CPU cannot run the model, or could not when it last tried.
     fn trouble(&self) -> Option<String>;
     /// True if a function ran too long.
     fn runs_too_long(&self) -> bool;
@@ -49,18 +49,18 @@ pub(crate) trait Interpreted: Send + Sync {
 /// Makes a surface of parameters.
 pub(crate) type Instantiate = Arc<dyn Fn(&Values, Encoding) -> Arc<dyn Surface> + Send + Sync>;
 
-/// Whether the shader of a model reads the albedo of a specular lobe.
+/// The specular lobe whose albedo the shader of a model reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lobe {
-    /// It does not.
+    /// It reads none.
     None,
-    /// It reads that of the lobe of the model itself.
+    /// The lobe of the model itself.
     Own,
-    /// It reads that of the lobe of a built-in model, by id.
+    /// The lobe of a built-in model, by id.
     Of(&'static str),
 }
 
-/// How many surfaces with curves are kept.
+/// The number of surfaces with curves that are kept.
 const KEPT: usize = 1024;
 
 impl ModelEntry {
@@ -92,21 +92,20 @@ impl ModelEntry {
         Self { declaration, parameters, preset, lobe, instantiate, on_cpu, kept: Arc::default() }
     }
 
-    /// A number that another reading of the same file changes.
+    /// A number that changes when the file of the model is read again.
     #[must_use]
     pub(crate) fn version(&self) -> usize {
         Arc::as_ptr(&self.kept) as usize
     }
 
-    /// Why the CPU cannot run the model, if it cannot: it interprets the WGSL of models from files, and does not
-    /// know all of it. The graphics card runs them all the same. That a function does not come to an end shows
-    /// only when it is run.
+    /// The reason why the CPU cannot run the model, if it cannot: it interprets the WGSL of custom models, but not
+    /// every construct. The GPU runs them all the same. A function that does not end shows only when it is run.
     #[must_use]
     pub fn not_on_cpu(&self) -> Option<String> {
         self.on_cpu.as_ref().and_then(|on_cpu| on_cpu.trouble())
     }
 
-    /// True if the CPU interprets the model and found that a function does not come to an end. Elsewhere it would not
+    /// True if the CPU interprets the model and found a function that does not end. On the GPU it would not end
     /// either, and nothing could stop it there.
     #[must_use]
     pub fn runs_too_long(&self) -> bool {
@@ -119,7 +118,7 @@ impl ModelEntry {
         self.on_cpu.is_some()
     }
 
-    /// Whether the model has a lobe of its own whose albedo its shader reads.
+    /// True if the model has a lobe of its own whose albedo its shader reads.
     #[must_use]
     pub fn has_lobe(&self) -> bool {
         self.lobe == Lobe::Own
@@ -154,13 +153,13 @@ impl ModelEntry {
         kept.entry(key).or_insert(surface).clone()
     }
 
-    /// Whether the row of an object holds a curve beside the parameters.
+    /// True if the row of an object holds a curve beside the parameters.
     #[must_use]
     pub fn has_curve(&self) -> bool {
         self.lobe != Lobe::None || self.declaration.ambient == Ambient::Albedo
     }
 
-    /// How many harmonics of the azimuth a curve has.
+    /// The number of harmonics of the azimuth in a curve.
     #[must_use]
     pub fn harmonics(&self) -> usize {
         if self.declaration.anisotropic { 3 } else { 1 }
@@ -168,13 +167,13 @@ impl ModelEntry {
 
     /// The row of an object in the table that the shader reads, laid out as the WGSL struct `Row` (see
     /// [`row_struct`](crate::registry::compose::row_struct)): the parameters, and for models that have
-    /// one the curve. Its colours are zero unless `everywhere`, when light from everywhere shines.
+    /// one the curve. Its colours are zero unless `uniform_light`: the scene has uniform light.
     #[must_use]
-    pub fn row(&self, values: &Values, encoding: Encoding, everywhere: bool) -> Vec<u8> {
+    pub fn row(&self, values: &Values, encoding: Encoding, uniform_light: bool) -> Vec<u8> {
         let mut row = pack(self.parameters, values, encoding);
         if self.has_curve() {
             let surface = self.instantiate(values, encoding);
-            let curve = if everywhere { surface.curve() } else { None };
+            let curve = if uniform_light { surface.curve() } else { None };
             append_curve(&mut row, self.harmonics(), curve, surface.lobe());
         }
         row

@@ -14,7 +14,7 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// Name, source, laws, equation, shader.
     const DECLARATION: Declaration;
 
-    /// Whether [`lobe`](Self::lobe) may be asked for; then the WGSL of the model may call
+    /// True if the model has a [`lobe`](Self::lobe); then its WGSL may call
     /// `lobe_albedo(mu)` and `average_lobe_albedo()`.
     const LOBE: bool = false;
 
@@ -22,8 +22,7 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// of the CA, their formula as published. Finite for all unit vectors and legal parameters.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
 
-    /// The response to uniform light of 1 lx from everywhere, for models that declare
-    /// [`Ambient::Formula`]; of the others it is not asked.
+    /// The response to uniform light of 1 lx, for models that declare [`Ambient::Formula`]; not called for others.
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
         Vec3::ZERO
     }
@@ -35,7 +34,7 @@ pub trait ReflectionModel: ParameterSet + Copy {
         None
     }
 
-    /// What follows from the parameters and helps to read them: the reflectance at normal incidence, the
+    /// Values derived from the parameters that help to read them: the reflectance at normal incidence, the
     /// same roughness on another scale.
     fn readouts(&self) -> Vec<Readout> {
         Vec::new()

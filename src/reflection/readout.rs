@@ -1,19 +1,19 @@
-//! Values that follow from the parameters of a surface.
+//! Values derived from the parameters of a surface.
 
 use glam::Vec3;
 
 use crate::optics::equivalence;
 
-/// A number or colour that follows from the parameters of a surface.
+/// A number or colour derived from the parameters of a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readout {
     /// The symbol, e.g. `F_0`.
     pub symbol: &'static str,
-    /// What it is.
+    /// Its name.
     pub label: &'static str,
-    /// What it means, one sentence.
+    /// Its meaning, one sentence.
     pub help: &'static str,
-    /// How much it is.
+    /// The number or colour.
     pub value: ReadoutValue,
 }
 

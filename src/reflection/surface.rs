@@ -10,11 +10,11 @@ use crate::optics::{
     albedo::{self, AlbedoCurve, LobeAlbedo},
 };
 
-/// A model with its parameters set, ready to be asked: the object-safe half of [`ReflectionModel`].
+/// A model with its parameters set: the object-safe half of [`ReflectionModel`].
 pub trait Surface: Send + Sync {
     /// See [`ReflectionModel::response`].
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
-    /// The response to uniform light of 1 lx from everywhere, by formula or by albedo.
+    /// The response to uniform light of 1 lx, by formula or by albedo.
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
     /// The directional albedo over the view, of models that declare [`Ambient::Albedo`].
     fn curve(&self) -> Option<AlbedoCurve>;
@@ -24,7 +24,7 @@ pub trait Surface: Send + Sync {
     fn readouts(&self) -> Vec<Readout>;
 }
 
-/// A model alone: it calculates its albedo anew whenever it is asked, to [`albedo::ACCURACY`].
+/// A model alone: it calculates its albedo anew at every call, to [`albedo::ACCURACY`].
 impl<M: ReflectionModel> Surface for M {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         ReflectionModel::response(self, l, v, frame)
@@ -57,7 +57,7 @@ impl<M: ReflectionModel> Surface for M {
     }
 }
 
-/// A model that calculates its curve when it is first asked, and answers by it: what pictures need.
+/// A model that calculates its curve once, at the first call, and answers by it: for pictures.
 pub(super) struct Instance<M> {
     pub(super) model: M,
     pub(super) curve: OnceLock<Option<AlbedoCurve>>,

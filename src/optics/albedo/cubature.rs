@@ -9,11 +9,11 @@ use crate::optics::Terms;
 /// The largest absolute error of [`directional`].
 pub const ACCURACY: f64 = 1e-4;
 
-/// What rounding in a response makes of the value of a cell: a smaller part of it is no reason to halve
-/// the cell.
+/// The relative error that rounding in a response gives the value of a cell: a smaller one is no reason to
+/// halve the cell.
 const ROUNDING: f64 = 3e-5;
 
-/// How an integral is divided, and when it is good enough.
+/// The first cells of an integral, and its tolerance.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     /// Azimuths of the first cells in half vectors and in lights, from that of the view.
@@ -65,7 +65,7 @@ impl Plan {
     }
 }
 
-/// Which term a cell integrates, and in which coordinates.
+/// The term that a cell integrates, and its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     /// The diffuse term over (θ_l, φ_l).
@@ -214,7 +214,7 @@ impl Cell {
     }
 }
 
-/// A view with what every point needs.
+/// A view, with the sines and cosines that every point needs.
 struct View {
     v: Vec3,
     sin: f64,

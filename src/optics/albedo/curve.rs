@@ -22,7 +22,7 @@ fn node(i: usize, azimuth: f64) -> Vec3 {
     DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), mu).as_vec3()
 }
 
-/// The albedos at the nodes in one azimuth of the view, as fast as a picture bears.
+/// The albedos at the nodes in one azimuth of the view, accurate enough for pictures.
 fn nodes(response: impl Fn(Vec3, Vec3) -> Terms, azimuth: f64, plan: &Plan) -> [DVec3; NODES] {
     let views: [_; NODES] = std::array::from_fn(|i| (node(i, azimuth), plan.clone()));
     let Ok(albedos) = integrate(&views, |pairs, answers| {

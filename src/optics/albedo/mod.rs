@@ -1,4 +1,4 @@
-//! Directional albedo: how much of uniform light from everywhere a surface sends towards the viewer,
+//! Directional albedo: the fraction of uniform light that a surface sends towards the viewer,
 //! `E(v) = ∫ f_r(l, v) cos θ_l dω_l = (1/π) ∫ response dω_l`, over the hemisphere above the surface.
 //!
 //! [`directional`] integrates one model for one view to [`ACCURACY`]; [`AlbedoCurve`] is the same as a
@@ -18,7 +18,7 @@
 //! where the estimated error is largest, by the rule of degree 7 with an embedded one of degree 5 of
 //! A. C. Genz, A. A. Malik (1980), *Remarks on Algorithm 006: An Adaptive Algorithm for Numerical
 //! Integration over an N-dimensional Rectangular Region*. Responses are asked for in batches, so that
-//! a graphics card may answer; sums are in 64 bits.
+//! a GPU may answer; sums are in 64 bits.
 
 use std::convert::Infallible;
 
@@ -34,11 +34,11 @@ pub use cubature::ACCURACY;
 pub use curve::{AlbedoCurve, LobeAlbedo, NODES};
 
 /// The directional albedos for views in the local frame (normal +z, tangent +x), each to [`ACCURACY`],
-/// of whatever answers: it is asked for the responses to pairs of directions, to the light and to the
+/// of the model behind `ask`: that is asked for the responses to pairs of directions, to the light and to the
 /// viewer, in a few large batches. Zero for a viewer below the surface.
 ///
 /// # Errors
-/// What the asked one returns.
+/// Any error of `ask`.
 pub fn directional_in_batches<E>(
     views: &[Vec3],
     mut ask: impl FnMut(&[(Vec3, Vec3)]) -> Result<Vec<Terms>, E>,
@@ -51,8 +51,8 @@ pub fn directional_in_batches<E>(
     })
 }
 
-/// The directional albedo for one view, to [`ACCURACY`]: diffuse and specular response to light from
-/// everywhere. Zero for a viewer below the surface.
+/// The directional albedo for one view, to [`ACCURACY`]: diffuse and specular response to uniform
+/// light. Zero for a viewer below the surface.
 #[must_use]
 pub fn directional(response: impl Fn(Vec3) -> Terms, v: Vec3, frame: &Frame) -> DVec3 {
     let local = Vec3::new(v.dot(frame.t), v.dot(frame.b), v.dot(frame.n));

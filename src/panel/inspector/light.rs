@@ -86,7 +86,7 @@ pub(super) fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actio
     }
 }
 
-/// How bright a light is: its intensity, or, for types that have one, its luminous flux.
+/// The brightness of a light: its intensity, or, for types that have one, its luminous flux.
 fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightField> {
     let d = kind.declaration;
     let intensity = f64::from(light.intensity_as(kind));

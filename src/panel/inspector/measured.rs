@@ -64,7 +64,7 @@ pub(super) fn measured(
     chosen.map(|material| crate::registry::along(model, material, registry))
 }
 
-/// What was measured on a material, and by whom.
+/// The measured values of a material, and their source.
 fn measurement(ui: &mut Ui, material: &Measured) {
     let palette = Palette::here(ui);
     ui.label(theme::strong(ui, material.name));

@@ -1,4 +1,4 @@
-//! The inspector at the right: everything that can be set about what is selected.
+//! The properties of the selected part of the scene, at the right.
 
 use bevy_egui::egui::{ScrollArea, Ui};
 

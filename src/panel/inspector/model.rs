@@ -34,7 +34,7 @@ pub(super) fn model_header(ui: &mut Ui, model: &ModelEntry) {
     });
 }
 
-/// What stands in the place of a model that is not there: its file is gone, or never worked.
+/// The replacement for a model that is missing: its file is gone, or never worked.
 pub(super) fn missing_model(
     ui: &mut Ui,
     lab: &Lab,
@@ -64,7 +64,7 @@ pub(super) fn missing_model(
 
 pub(super) fn equation(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
-    // Own models need not say one.
+    // Custom models need not declare one.
     if d.equation.is_empty() {
         return;
     }

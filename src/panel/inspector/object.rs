@@ -146,7 +146,7 @@ pub(super) fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, acti
     });
 }
 
-/// What follows from the values of the knobs.
+/// The values derived from those of the knobs.
 fn readouts(ui: &mut Ui, lab: &Lab, model: &ModelEntry, object: &Object) {
     let readouts = model.instantiate(&object.material, lab.scene.display.encoding).readouts();
     if readouts.is_empty() {

@@ -1,4 +1,4 @@
-//! What all parts of the scene share: headings, groups, fields for text, knobs for places.
+//! Widgets that all parts of the scene share: headings, groups, text fields, knobs for positions and directions.
 
 use bevy_egui::egui::{self, Align, CollapsingHeader, Key, Layout, RichText, TextEdit, Ui, WidgetInfo};
 use glam::Vec3;
@@ -33,7 +33,7 @@ pub(super) fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mu
     });
 }
 
-/// The name of a part, its type below it, and what can be done with it as a whole.
+/// The name of a part, and buttons that focus, duplicate and delete it.
 pub(super) fn header(
     ui: &mut Ui,
     lab: &Lab,

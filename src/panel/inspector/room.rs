@@ -72,14 +72,14 @@ pub(super) fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Ve
         {
             actions.push(set(Display { exposure: v as f32, ..d }));
         }
-        let told: Vec<_> = ToneMapping::ALL.iter().map(|t| [t.name(), t.author(), t.summary()]).collect();
+        let options: Vec<_> = ToneMapping::ALL.iter().map(|t| [t.name(), t.author(), t.summary()]).collect();
         let chosen = ToneMapping::ALL.iter().position(|t| *t == d.tone_mapping).unwrap_or(0);
         let caption = Caption {
             label: "tone mapping",
             help: "How light brighter than the display can show is brought into its range. None: it is cut off, and values stay comparable.",
             ..Caption::default()
         };
-        if let Some(i) = knob::told_choice_knob(ui, "tone mapping", &caption, chosen, &told) {
+        if let Some(i) = knob::choice_with_help(ui, "tone mapping", &caption, chosen, &options) {
             actions.push(set(Display { tone_mapping: ToneMapping::ALL[i], ..d }));
         }
         let names: Vec<_> = Encoding::ALL

@@ -11,8 +11,8 @@ use crate::panel::{
     theme::{self, Palette},
 };
 
-/// One of many: word at the left; the button at the right opens what `list` shows, until that returns
-/// something. `list` gets an id of its own.
+/// One of many: word at the left; the button at the right opens `list`, until that returns something. `list`
+/// gets an id of its own.
 pub fn list_knob<R>(
     ui: &mut Ui,
     salt: &str,
@@ -41,7 +41,7 @@ pub fn list_knob<R>(
     out
 }
 
-/// What a button opens and closes: `list`, which gets an id of its own.
+/// The popup of a button: `list`, which gets an id of its own.
 pub(in crate::panel) fn drop_down<R>(
     button: &Response,
     id: Id,
@@ -73,11 +73,11 @@ pub fn choice_knob(
     options: &[&str],
 ) -> Option<usize> {
     let plain: Vec<_> = options.iter().map(|name| [*name, "", ""]).collect();
-    told_choice_knob(ui, salt, caption, chosen, &plain)
+    choice_with_help(ui, salt, caption, chosen, &plain)
 }
 
-/// The same where each option is a name, its author and what it does; the latter two may be empty.
-pub fn told_choice_knob(
+/// The same with tooltips: each option is a name, its author and a summary; the latter two may be empty.
+pub fn choice_with_help(
     ui: &mut Ui,
     salt: &str,
     caption: &Caption,
@@ -99,7 +99,7 @@ pub fn told_choice_knob(
             ui.add_space(22.0);
             let width = (ui.available_width() - 4.0).clamp(80.0, 190.0);
             let now = options.get(chosen).copied();
-            let [shown, _, told] = now.unwrap_or(["–", "", ""]);
+            let [shown, _, summary] = now.unwrap_or(["–", "", ""]);
             let combo = egui::ComboBox::from_id_salt(id)
                 .width(width)
                 .truncate()
@@ -120,7 +120,7 @@ pub fn told_choice_knob(
             });
             if caption.disabled.is_some() {
                 explain(combo.response, |ui| tooltip(ui, caption, "", ""));
-            } else if !told.is_empty() {
+            } else if !summary.is_empty() {
                 combo.response.on_hover_ui(|ui| now.into_iter().for_each(|now| tip(ui, now)));
             }
         });

@@ -106,7 +106,7 @@ fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u
     response.on_hover_text("Choose a colour. Double-click: default.")
 }
 
-/// A colour that follows from something else.
+/// A colour that cannot be edited here.
 pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0), Sense::hover());
@@ -120,16 +120,12 @@ pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
 #[must_use]
 pub fn parse_hex(text: &str) -> Option<[u8; 3]> {
     let digits = text.trim().trim_start_matches('#');
-    if !digits.is_ascii() {
+    // Four and eight digits would have an opacity.
+    if !digits.is_ascii() || ![3, 6].contains(&digits.len()) {
         return None;
     }
-    let digits = match digits.len() {
-        3 => digits.chars().flat_map(|c| [c, c]).collect(),
-        6 => digits.to_owned(),
-        _ => return None,
-    };
-    let at = |i: usize| u8::from_str_radix(&digits[i..i + 2], 16).ok();
-    Some([at(0)?, at(2)?, at(4)?])
+    let [r, g, b, _] = Color32::from_hex(&format!("#{digits}")).ok()?.to_array();
+    Some([r, g, b])
 }
 
 #[cfg(test)]

@@ -13,17 +13,17 @@ use crate::panel::{
     theme::Palette,
 };
 
-/// What is being typed into a field.
+/// Text that is being typed into a field.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Draft {
     text: String,
-    /// The value that the field had when typing began: what Escape goes back to.
+    /// The value when typing began; Escape goes back to it.
     before: f64,
     /// The value that the field last yielded, to notice a change from elsewhere.
     last: f64,
 }
 
-/// What a field says.
+/// The response of a field, and the value or the error in it.
 #[derive(Debug)]
 pub struct Field<T = f64> {
     /// The response of the text field.
@@ -41,7 +41,7 @@ pub fn parse(text: &str) -> Option<f64> {
     text.parse::<f64>().ok().filter(|v| v.is_finite())
 }
 
-/// A field for one number. `name` is what a screen reader says.
+/// A field for one number. `name` is for screen readers.
 pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width: f32) -> Field {
     let palette = Palette::here(ui);
     let draft_id = id.with("draft");
@@ -147,8 +147,8 @@ fn select_all(ui: &Ui, id: Id, text: &str) {
     }
 }
 
-/// The sentence under a field that holds something illegal. It lies over what is below, so that nothing
-/// moves while one types, and is gone when one goes elsewhere; the field stays red.
+/// The error below a field. It lies over the widgets there, so that nothing moves while one types, and goes when
+/// the focus and the pointer do; the field stays red.
 pub(super) fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
     if !(field.has_focus() || field.hovered()) || !ui.is_rect_visible(field.rect) {
         return;
@@ -181,8 +181,8 @@ fn field_frame(palette: &Palette, stroke: Stroke) -> egui::Frame {
         .inner_margin(egui::Margin::symmetric(4, 2))
 }
 
-/// A field for a value that is not one number: `read` takes what is typed or says what is wrong. What is
-/// not legal is gone when the field is left. `name` is what a screen reader says.
+/// A field for a value that is not one number: `read` parses the text or explains its error. Illegal text is
+/// dropped when the field loses the focus. `name` is for screen readers.
 pub(super) fn text_field<T>(
     ui: &mut Ui,
     id: Id,

@@ -8,7 +8,7 @@ use crate::panel::{
     theme::{self, Palette},
 };
 
-/// What a knob says about itself.
+/// The words and symbols of a knob.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Caption<'a> {
     /// The symbol in the equation; empty for none.
@@ -17,9 +17,9 @@ pub struct Caption<'a> {
     pub label: &'a str,
     /// The unit; empty for none.
     pub unit: &'a str,
-    /// What it does.
+    /// Its effect, for the tooltip.
     pub help: &'a str,
-    /// Why it can not be turned, if so.
+    /// The reason why it is disabled, if it is.
     pub disabled: Option<&'a str>,
 }
 
@@ -87,7 +87,7 @@ pub(super) const NUMBER: f32 = 96.0;
 /// The points that a choice takes at the right of a knob.
 pub(super) const CHOICE: f32 = 150.0;
 
-/// The tooltip of a knob: its name, what it does, what is legal, the default.
+/// The tooltip of a knob: its name, its effect, its range, the default.
 pub(super) fn tooltip(ui: &mut Ui, caption: &Caption, rule: &str, default: &str) {
     ui.set_max_width(300.0);
     ui.label(theme::strong(ui, capitalised(caption.label)));
@@ -105,7 +105,7 @@ pub(super) fn tooltip(ui: &mut Ui, caption: &Caption, rule: &str, default: &str)
     }
 }
 
-/// The range as the tooltip says it: the rule, and the ends of the slider if more can be typed.
+/// The range for the tooltip: the rule, and the ends of the slider if other values can be typed.
 pub(super) fn range(limits: &Limits) -> String {
     let rule = limits.rule();
     let (left, right) = (number(limits.slider_min), number(limits.slider_max));
@@ -117,7 +117,7 @@ pub(super) fn range(limits: &Limits) -> String {
     }
 }
 
-/// Shows this where the pointer rests on a widget, also on a disabled one, which has a reason to say.
+/// A tooltip for a widget that may be disabled.
 pub(super) fn explain(response: Response, tip: impl Fn(&mut Ui)) {
     response.on_hover_ui(&tip).on_disabled_hover_ui(&tip);
 }

@@ -1,7 +1,6 @@
-//! The knobs: how one value is shown, dragged, typed, and kept within its limits.
+//! Knobs: widgets that show one value, let it be dragged or typed, and keep it within its limits.
 //!
-//! A knob never yields an illegal value. What is typed and not legal stays in the field, in the error
-//! style and with the rule beside it, until it is corrected or given up with Escape.
+//! A knob never yields an illegal value.
 
 use bevy_egui::egui::Ui;
 
@@ -18,7 +17,7 @@ mod slider;
 mod vector;
 
 pub(super) use choice::drop_down;
-pub use choice::{choice_knob, list_knob, told_choice_knob};
+pub use choice::{choice_knob, choice_with_help, list_knob};
 pub use colour::{colour_knob, colour_sample, parse_hex};
 pub use field::{Field, field, parse};
 pub use line::Caption;

@@ -55,7 +55,7 @@ pub fn number_knob(
     number_knob_beside(ui, salt, caption, value, default, limits, |ui| unit(ui, caption.unit))
 }
 
-/// The same with something of its own where the unit stands.
+/// The same with other widgets in the place of the unit.
 pub fn number_knob_beside(
     ui: &mut Ui,
     salt: &str,

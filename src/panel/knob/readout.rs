@@ -1,4 +1,4 @@
-//! Values that follow from those of the knobs.
+//! Values derived from those of the knobs.
 
 use bevy_egui::egui::{self, Align, Sense, Stroke, Ui, WidgetInfo, WidgetType, vec2};
 
@@ -8,7 +8,7 @@ use crate::{
     reflection::{Readout, ReadoutValue},
 };
 
-/// What follows from the knobs: symbol, word, and the value with a sample of its colour.
+/// A derived value: symbol, word, and the value with a sample of its colour.
 pub fn readout(ui: &mut Ui, readout: &Readout) {
     let palette = Palette::here(ui);
     let caption = Caption { symbol: readout.symbol, label: readout.label, ..Caption::default() };

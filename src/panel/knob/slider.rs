@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, CursorIcon, Key, Rect, Response, Sense, Stroke, Ui, 
 
 use crate::panel::{limits::Limits, theme::Palette};
 
-/// What one press of an arrow key adds: about a hundredth of the range, a round number.
+/// The step of an arrow key: about a hundredth of the range, a round number.
 pub(super) fn nudge(limits: &Limits, value: f64) -> f64 {
     if limits.whole {
         return 1.0;
@@ -20,7 +20,7 @@ pub(super) fn round_to(value: f64, step: f64) -> f64 {
     (rounded * 1e9).round() / 1e9
 }
 
-/// Whether the slider spends more of its length on small values.
+/// True if the slider spends more of its length on small values.
 fn curved(limits: &Limits) -> bool {
     limits.slider_min >= 0.0 && limits.slider_max - limits.slider_min > 60.0 && limits.slider_max > 64.0
 }

@@ -53,8 +53,8 @@ pub(super) fn axis_letter(
         .on_hover_text("Drag sideways to change the value");
 }
 
-/// Three letters with a field each, from where the line is to the unit at its end. Returns the new
-/// value, and the first complaint with the field that it is about.
+/// Three letters with a field each, and the unit at the end of the line. Returns the new value, and the first
+/// error with the value that is kept and its field.
 fn three_fields(
     ui: &mut Ui,
     id: Id,

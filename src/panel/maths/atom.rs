@@ -113,7 +113,7 @@ pub fn parse(text: &str) -> Vec<Atom> {
     atoms
 }
 
-/// What is raised or lowered: a group in braces, a number, or one character.
+/// A superscript or subscript: a group in braces, a number, or one character.
 fn script(chars: &[char], start: usize) -> (String, usize) {
     match chars.get(start) {
         Some('{') => {
@@ -129,7 +129,7 @@ fn script(chars: &[char], start: usize) -> (String, usize) {
     }
 }
 
-/// The symbol of a parameter, which is all one symbol: what follows `_` is its index, however long.
+/// The symbol of a parameter, which is all one symbol: everything after `_` is its index.
 #[must_use]
 pub fn parse_symbol(symbol: &str) -> Atom {
     let (base, sub) = symbol.split_once('_').unwrap_or((symbol, ""));

@@ -3,7 +3,7 @@
 use super::atom::{Atom, parse, same_symbol};
 use crate::reflection::EquationPart;
 
-/// What the symbols mean that every equation uses.
+/// The meaning of a symbol that all equations share.
 #[must_use]
 pub fn meaning(symbol: &str) -> Option<&'static str> {
     const MEANINGS: &[(&str, &str)] = &[
@@ -76,8 +76,8 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
     MEANINGS.iter().find(|(s, _)| same_symbol(s, symbol)).map(|(_, m)| *m)
 }
 
-/// Where an equation says itself what a symbol is: the part that begins with it and an equals sign, or
-/// has it after a comma.
+/// The part of an equation that defines a symbol: it begins with the symbol and an equals sign, or has them
+/// after a comma.
 #[must_use]
 pub fn definition(parts: &[EquationPart], symbol: &str) -> Option<&'static str> {
     let defines = |part: &&EquationPart| {

@@ -107,7 +107,7 @@ pub fn symbol_width(ui: &Ui, symbol: &str, size: f32) -> f32 {
     lay_out(ui, &parse_symbol(symbol), size, Color32::WHITE).width
 }
 
-/// Says that the pointer is on something that has this symbol, until the next pass is over.
+/// Highlights a symbol wherever it stands, until the next pass is over.
 pub fn highlight(ctx: &egui::Context, symbol: &str) {
     let now = ctx.cumulative_pass_nr();
     ctx.data_mut(|d| d.insert_temp(Id::new("highlighted symbol"), (now, symbol.to_owned())));
@@ -121,8 +121,7 @@ pub fn highlighted(ctx: &egui::Context) -> Option<String> {
     stored.filter(|(pass, _)| now.saturating_sub(*pass) <= 1).map(|(_, symbol)| symbol)
 }
 
-/// An equation, a line for each part, coloured by term. `name` says what a symbol means; it is the
-/// tooltip. Hovering a symbol highlights it; so does [`highlight`].
+/// An equation, a line for each part, coloured by term. `name` gives the meaning of a symbol for its tooltip. Hovering a symbol highlights it; so does [`highlight`].
 pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
     let parts: Vec<_> = parts.iter().map(|p| (p.term, p.text)).collect();
     equation_of(ui, &parts, name)
@@ -190,7 +189,7 @@ pub(super) fn size_of(term: Term, text: &str) -> f32 {
 mod tests {
     use super::*;
 
-    /// What the equations of physically based models need, and more.
+    /// The notation of physically based models, and more.
     const HARD: &[&str] = &[
         "I_s = π D(H) G(L, V) F(V·H) / (4 (N·L)(N·V)) N·L",
         "D = α^2 / (π ((N·H)^2 (α^2 − 1) + 1)^2)",

@@ -18,18 +18,18 @@ use crate::{
     },
 };
 
-/// What people call a file of a composition, and what it is for.
+/// The name and the purpose of a file of a composition, for people.
 #[must_use]
 pub fn words(part: Part, path: &str) -> (String, &'static str) {
     let word = path.rsplit('/').next().and_then(|name| name.split('.').next()).unwrap_or(path);
     let (name, help) = match part {
         Part::Model => (
             "the model",
-            "How light leaves the surface: `response` answers to one light, `ambient_response` to light from everywhere. Begin here.",
+            "How light leaves the surface: `response` answers to one light, `ambient_response` to uniform light. Begin here.",
         ),
         Part::Import => ("imported", "A file of yours that another one of the list asks for with `#import`."),
         Part::Mode => (
-            "the shading mode",
+            "the shading model",
             "The stage that evaluates the model: per polygon, per vertex or per pixel, and what is interpolated between.",
         ),
         Part::Loop => (
@@ -46,17 +46,16 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
         ),
         Part::Stages => (
             "the stages",
-            "What goes into a shading mode and what comes out of it: the vertex, and what is interpolated for the pixel.",
+            "What goes into a shading model and what comes out of it: the vertex, and what is interpolated for the pixel.",
         ),
         Part::Vocabulary => {
             let help = "Functions that models are written in: terms and frames, Fresnel reflectance, distributions, masking. \
                         Their twins in Rust have the same names.";
             return (format!("vocabulary: {word}"), help);
         }
-        Part::Wrapper => (
-            "the wrapper",
-            "The entry points of the graphics card: bindings and entry points. The only file that knows the renderer.",
-        ),
+        Part::Wrapper => {
+            ("the wrapper", "Bindings and entry points for the GPU. The only file that knows the renderer.")
+        }
     };
     (name.to_owned(), help)
 }
@@ -83,7 +82,7 @@ pub(super) fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut V
     });
 }
 
-/// Which folder is watched, or how to get one.
+/// The folder that is watched, or a button that exports one.
 fn folder(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     let Some(folder) = &lab.shaders.shaders else {
         ui.label(theme::small(ui, "The shaders are built in."));
@@ -103,7 +102,7 @@ fn folder(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     let path = ui.label(RichText::new(shown).small().color(palette.text));
     let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
     if let Some(models) = &lab.shaders.models {
-        help += &format!("\nOwn models: {}", models.display());
+        help += &format!("\nCustom models: {}", models.display());
     }
     path.on_hover_text(help);
     if icon::button(ui, Icon::Copy, "Copy the path of the folder").clicked() {

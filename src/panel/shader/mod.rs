@@ -1,4 +1,4 @@
-//! The panel of the shaders: which files the picture is made of, and what is wrong with them.
+//! The panel of the shaders: the files that the picture is made of, and their errors.
 
 use bevy_egui::egui::{self, Align, Layout, ScrollArea, Sense, Ui, vec2};
 
@@ -14,7 +14,7 @@ mod files;
 mod trouble;
 
 pub use files::words;
-pub use trouble::{Excerpt, consequence, excerpt, listed, report};
+pub use trouble::{Excerpt, consequence, excerpt, report};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +71,7 @@ impl Panel for Shader {
     }
 }
 
-/// What is said of a model that a scene names and that is not there.
+/// The message about a model that a scene names and that is missing.
 #[must_use]
 pub fn missing_model(lab: &Lab, registry: &Registry, id: &str) -> String {
     let path = source_path(id);
@@ -88,7 +88,7 @@ pub fn missing_model(lab: &Lab, registry: &Registry, id: &str) -> String {
     }
 }
 
-/// Nothing is wrong: what was last taken over, and how to begin.
+/// The panel without errors: the file that was loaded last, and first steps.
 fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
     let heading = if laws::are_broken(lab) { "No errors, but broken laws" } else { "No errors" };
     let how = match &lab.shaders.shaders {

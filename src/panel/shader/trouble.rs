@@ -13,37 +13,28 @@ use crate::{
         theme::{self, Palette},
     },
     shader::report::annotated,
+    text::listed,
 };
 
-/// "A", "A and B", "A, B and C".
-#[must_use]
-pub fn listed(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
-}
-
-/// What a problem means for the picture.
+/// The consequence of a problem for the picture.
 #[must_use]
 pub fn consequence(trouble: &Trouble) -> String {
     let names: Vec<_> = trouble.stale.iter().map(String::as_str).collect();
     if names.is_empty() {
         return "Nothing on the picture depends on it.".to_owned();
     }
-    format!("The picture shows the last good version of {} until this is corrected.", listed(&names))
+    format!("The picture shows the last good version of {} until this is corrected.", listed(&names, "and"))
 }
 
-/// How wide a tab is shown, in characters.
+/// The width of a tab, in characters.
 const TAB: usize = 4;
 
-/// A line of source, short enough to be shown, and the character that is meant in it.
+/// A line of source, short enough to be shown, and the character that it is about.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Excerpt {
     /// Without tabs, cut to the room; `…` stands where something was cut off.
     pub text: String,
-    /// Which character is meant, from 0; may be one past the end.
+    /// The character that it is about, from 0; may be one past the end.
     pub caret: usize,
 }
 
@@ -87,7 +78,7 @@ pub fn excerpt(source: &str, column: usize, room: usize) -> Excerpt {
     Excerpt { text: chars.into_iter().collect(), caret }
 }
 
-/// A problem as text: message, place, the line with a caret, what it means.
+/// A problem as text: message, place, the line with a caret, the consequence.
 #[must_use]
 pub fn report(trouble: &Trouble) -> String {
     let path = trouble.path.as_ref().map(|path| path.display().to_string());
@@ -217,12 +208,5 @@ mod tests {
         }
         let (text, caret) = at(&format!("{}let x = ;", " ".repeat(60)), 69, 40);
         assert_eq!((text.as_str(), caret), ("let x = ;", 8), "indentation goes first");
-    }
-
-    #[test]
-    fn names_are_listed_as_people_do() {
-        assert_eq!(listed(&["A"]), "A");
-        assert_eq!(listed(&["A", "B"]), "A and B");
-        assert_eq!(listed(&["A", "B", "C"]), "A, B and C");
     }
 }

@@ -13,7 +13,7 @@ pub(super) use tile::{TILE, Tile};
 /// Steps per pixel of the grid that corners are snapped to.
 pub(super) const SUBPIXEL: i64 = 256;
 
-/// How far from the picture's middle corners may lie before the triangle is clipped, in pixels.
+/// The largest distance of a corner from the middle of the picture before the triangle is clipped, in pixels.
 /// Bounds the products of the edge functions well within 64 bits.
 const GUARD: f32 = 32_768.0;
 
@@ -51,14 +51,14 @@ impl Screen {
         self.tiles_across() * self.height.div_ceil(TILE)
     }
 
-    /// Where a point in front of the eye lies, in 1/256 pixel, y down.
+    /// The place of a point in front of the eye, in 1/256 pixel, y down.
     fn snap(&self, clip: Vec4) -> [i64; 2] {
         let x = (0.5 + 0.5 * clip.x / clip.w) * self.width as f32;
         let y = (0.5 - 0.5 * clip.y / clip.w) * self.height as f32;
         [x, y].map(|c| (c * SUBPIXEL as f32).round_ties_even() as i64)
     }
 
-    /// Whether any column and any row of sample positions lies within a box.
+    /// True if any column and any row of sample positions lies within a box.
     fn holds_samples(&self, low: [i64; 2], high: [i64; 2]) -> bool {
         let (step, first) = self.grid;
         (0..2).all(|axis| {
@@ -68,8 +68,8 @@ impl Screen {
     }
 }
 
-/// The five side planes of what the picture shows, in room coordinates, normalised: a point at a
-/// negative distance is not seen.
+/// The five side planes of the view frustum, in room coordinates, normalised: a point at a negative distance
+/// is not seen.
 pub(super) fn frustum(clip_from_room: &Mat4) -> [Vec4; 5] {
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_room.row(row));
     [w - z, w + x, w - x, w + y, w - y].map(|plane| plane / plane.truncate().length())
@@ -96,7 +96,7 @@ impl Placed {
         Self { clip, screen: (inside && clip.w > 0.0).then(|| screen.snap(clip)), beyond }
     }
 
-    /// Whether a triangle can cover any sample. Never wrong when it says no.
+    /// False if a triangle certainly covers no sample.
     pub(super) fn may_be_seen(corners: [&Self; 3], screen: &Screen) -> bool {
         let [a, b, c] = corners;
         if a.beyond & b.beyond & c.beyond != 0 {
@@ -127,12 +127,11 @@ pub(super) struct Triangle {
     inverse_w: [f32; 3],
     varyings: [Varying; 3],
     face_normal: Vec3,
-    /// Whether anything asks for tangents: they cost time.
+    /// True if the model needs tangents: they cost time.
     tangents: bool,
 }
 
-/// Calls `emit` for the visible triangles that a triangle becomes: itself, what clipping leaves of it,
-/// or nothing.
+/// Calls `emit` for the visible triangles that a triangle becomes: itself, its clipped parts, or nothing.
 pub(super) fn set_up(
     placed: [&Placed; 3],
     varyings: [Varying; 3],
@@ -217,8 +216,8 @@ impl Triangle {
         Some([left, right, top, bottom])
     }
 
-    /// What is interpolated, with perspective correction, at the point with the given weights of the
-    /// corners on the screen.
+    /// The values interpolated with perspective correction at the point with the given weights of the corners
+    /// on the screen.
     fn varying(&self, mut weights: [f32; 3]) -> Varying {
         let mut scaled: [f32; 3] = std::array::from_fn(|i| weights[i] * self.inverse_w[i]);
         let mut sum: f32 = scaled.iter().sum();

@@ -180,7 +180,7 @@ mod tests {
         ModeEntry::of::<crate::shading::Flat>()
     }
 
-    /// How often each sample of the first tiles is hit.
+    /// The number of hits of each sample of the first tiles.
     fn hits<const S: usize>(triangles: &[Triangle], screen: &Screen) -> Vec<u32> {
         let mut counts = vec![0; screen.tiles() * TILE * TILE * S];
         for triangle in triangles {

@@ -21,7 +21,7 @@ fn pairs<'a>(a: &'a [Operand], b: &'a [Operand]) -> impl Iterator<Item = (Operan
     (0..count).map(move |i| (at(a, i), at(b, i)))
 }
 
-/// What the numbers of a value are.
+/// The type of the numbers of a value.
 pub(super) fn kind_of(inner: &TypeInner) -> ScalarKind {
     match inner.scalar_kind() {
         Some(ScalarKind::AbstractInt) => ScalarKind::Sint,

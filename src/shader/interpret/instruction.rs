@@ -1,4 +1,4 @@
-//! The instructions of a program, and what each does to words of 32 bits.
+//! The instructions of a program, on words of 32 bits.
 
 use std::f32::consts::PI;
 
@@ -9,7 +9,7 @@ use super::{STEPS, StepLimit, builder::REGISTERS};
 /// words stand in them bit by bit.
 pub(super) type Registers = [f32; REGISTERS];
 
-/// What a word of 32 bits holds.
+/// A type of 32 bits.
 trait Bits: Copy {
     fn read(word: f32) -> Self;
     fn write(self) -> f32;
@@ -100,7 +100,7 @@ macro_rules! operations {
         // Of the following the second name does three times what the first does.
         { $($single:ident $triple:ident = $part:expr;)* }
     ) => {
-        /// What an instruction does. Pure operations put a function of registers `a`, `b`, `c` into `d`.
+        /// The operation of an instruction. Pure ones put a function of registers `a`, `b`, `c` into `d`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u8)]
         pub(super) enum Operation {
@@ -125,7 +125,7 @@ macro_rules! operations {
         }
 
         impl Operation {
-            /// How many of `a`, `b`, `c` a pure operation reads; of others 0.
+            /// The number of registers that a pure operation reads; of others 0.
             pub(super) fn arity(self) -> usize {
                 match self {
                     $(Self::$name => arity($function),)*
@@ -214,7 +214,7 @@ macro_rules! operations {
 operations! {
 {
     Copy = |a: u32| a;
-    // The offset of an element: indices beyond the end count as the last, as on the graphics card.
+    // The offset of an element: indices beyond the end count as the last, as on the GPU.
     Index = |i: u32, last: u32, stride: u32| i.min(last).wrapping_mul(stride);
     Select = |condition: bool, a: u32, b: u32| if condition { a } else { b };
 
@@ -399,19 +399,19 @@ impl Instruction {
         [self.a, self.b, self.c][n].wrapping_add(k * u16::from(self.strides >> n & 1))
     }
 
-    /// Where a jump goes.
+    /// The target of a jump.
     #[inline(always)]
     pub(super) fn target(self) -> usize {
         usize::from(self.b) << 16 | usize::from(self.c)
     }
 
-    /// Says where a jump goes.
+    /// Sets the target of a jump.
     pub(super) fn aim(&mut self, target: usize) {
         self.b = (target >> 16) as u16;
         self.c = target as u16;
     }
 
-    /// Whether it has a target.
+    /// True if it has a target.
     pub(super) fn jumps(self) -> bool {
         use Operation::{Jump, JumpIfEqual, JumpUnless, Repeat, RepeatUnless};
         matches!(self.operation, Jump | JumpUnless | JumpIfEqual | Repeat | RepeatUnless)
@@ -436,7 +436,7 @@ impl Instruction {
         (!self.jumps() && self.operation != Operation::StoreAt).then_some(self.d)
     }
 
-    /// Whether it reads or writes registers whose numbers are not known.
+    /// True if it reads or writes registers whose numbers are not known.
     pub(super) fn wanders(self) -> bool {
         matches!(self.operation, Operation::LoadAt | Operation::StoreAt)
     }

@@ -23,7 +23,7 @@ pub(super) fn unsupported<T>(what: impl Into<String>) -> Result<T> {
     Err(Unsupported { what: what.into() })
 }
 
-/// What an expression stands for.
+/// The value of an expression.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     /// The words of a value.
@@ -32,7 +32,7 @@ pub(super) enum Value {
     Place(Place),
 }
 
-/// Where a pointer leads.
+/// The target of a pointer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     /// The register, apart from what is known only when the program runs.
@@ -49,7 +49,7 @@ pub(super) struct Frame<'m> {
     pub(super) arguments: Vec<Value>,
     pub(super) values: Vec<Option<Value>>,
     pub(super) locals: Vec<u16>,
-    /// Where results go; `None` if the one `return` is the end, and its value needs no copy.
+    /// The registers of the results; `None` if the one `return` is the end, and its value needs no copy.
     pub(super) results: Option<u16>,
     /// The value of that one `return`.
     pub(super) returned: Rc<[Operand]>,
@@ -67,7 +67,7 @@ pub(super) struct Lowering<'m> {
     types: HashMap<Handle<Function>, Rc<Typifier>>,
     /// The registers of private variables that are reached.
     globals: HashMap<Handle<GlobalVariable>, u16>,
-    /// What private variables start with.
+    /// The first values of private variables.
     pub(super) initial: Vec<(u16, u32)>,
     /// The buffer that is an input, and its first register.
     pub(super) row: Option<(Handle<GlobalVariable>, u16)>,
@@ -280,7 +280,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// What an expression stands for: calculated before, or needing no calculation.
+    /// The value of an expression: calculated before, or needing no calculation.
     pub(super) fn value(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Value> {
         if let Some(value) = &frame.values[handle.index()] {
             return Ok(value.clone());
@@ -311,7 +311,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// Where a pointer leads.
+    /// The target of a pointer.
     pub(super) fn place(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Place> {
         match self.value(frame, handle)? {
             Value::Place(place) => Ok(place),

@@ -20,7 +20,7 @@ pub(in crate::study) struct Contestant {
     pub(in crate::study) name: &'static str,
     id: &'static str,
     pub(super) settings: Vec<Setting>,
-    /// Other settings that may be taken instead, if they fit better.
+    /// Other settings, if they fit better.
     pub(super) instead: Option<Vec<Setting>>,
     width: fn(f64) -> Vec<Setting>,
     /// Colour, line and mark in plots.
@@ -57,7 +57,7 @@ impl Contestant {
         }
     }
 
-    /// Those of the comparison.
+    /// The four of the comparison.
     pub(in crate::study) fn all() -> Vec<Self> {
         let simple =
             |name, id, settings, width, style| Self { name, id, settings, instead: None, width, style };

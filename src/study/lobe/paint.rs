@@ -22,8 +22,8 @@ pub(in crate::study) const PAINTS: [(&str, &str); 3] =
 /// Angles of the light in the plots of paints, degrees.
 const INCIDENCES: [f32; 2] = [40.0, 60.0];
 
-/// The samples of a paint that count: its brightest band, no grazing angles, and what `keep` keeps of the
-/// angle of the light.
+/// The samples of a paint that count: in its brightest band, at no grazing angle, and with the light at an angle
+/// that `keep` accepts.
 pub(in crate::study) fn paint_samples(
     id: &str,
     keep: impl Fn(f32) -> bool,
