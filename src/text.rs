@@ -69,3 +69,15 @@ pub fn number(v: f32) -> Json {
     }
     v.to_string().parse::<f64>().ok().and_then(serde_json::Number::from_f64).map_or(Json::Null, Json::Number)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_listed_as_people_do() {
+        assert_eq!(listed(&["A"], "and"), "A");
+        assert_eq!(listed(&["A", "B"], "and"), "A and B");
+        assert_eq!(listed(&["A", "B", "C"], "and"), "A, B and C");
+    }
+}

@@ -207,7 +207,7 @@ fn take_after(file: &File, old: &Metadata) -> bool {
     true
 }
 
-/// How many names a file has.
+/// The number of names of a file.
 #[cfg_attr(not(unix), allow(unused_variables))]
 fn links(metadata: &Metadata) -> u64 {
     #[cfg(unix)]

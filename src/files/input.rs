@@ -1,4 +1,4 @@
-//! What a command line names to be read: a file, or a stream.
+//! The inputs of commands: files and streams.
 
 use std::{
     fs,
@@ -10,9 +10,9 @@ use std::{
 
 use super::{FileError, Kind, options, read};
 
-/// How long a named pipe may have nobody who writes to it.
+/// The longest wait for somebody who writes to a named pipe.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// How often it is asked whether there is something new.
+/// The time between two attempts to read.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// True if a path leads to something that can be read only once, or without end: a pipe, a device.

@@ -1,4 +1,4 @@
-//! What killed processes leave, and what becomes of it.
+//! Cleaning up after killed processes.
 
 use std::{
     fs::{self, File, Metadata},
@@ -13,13 +13,13 @@ use super::{
     is_same, options, read, read_start,
 };
 
-/// How the names of all temporary files begin. Whoever watches a folder knows them by the dot for what they are.
+/// The beginning of the names of all temporary files. The dot hides them from whoever watches a folder.
 pub(super) const PREFIX: &str = ".lcm-";
-/// How the name of a draft ends.
+/// The end of the name of a draft.
 pub(super) const DRAFT: &str = ".tmp";
-/// How the name of a whole copy of a file ends that is being overwritten.
+/// The end of the name of a whole copy of a file that is being overwritten.
 const WHOLE: &str = ".whole";
-/// The length of what makes a name unique.
+/// The length of the random part of a name.
 const RANDOM: usize = 6;
 /// Files under the names of older versions have no lock; none takes as long to write.
 const OLD: Duration = Duration::from_secs(60);
@@ -29,7 +29,7 @@ const LARGEST: u64 = 64 << 20;
 /// A file that was being overwritten when its process ended, and is not what was to become of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unfinished {
-    /// What it was to become.
+    /// The copy with the whole content.
     pub copy: PathBuf,
     /// The file, if it is still there.
     pub file: Option<PathBuf>,

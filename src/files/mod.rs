@@ -52,7 +52,7 @@ pub use litter::{Unfinished, tidy};
 pub use output::{Output, PNG, Refused, Signature, may_overwrite};
 pub use shown::printable;
 
-/// What a path leads to.
+/// The kind of thing that a path leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// A regular file.
@@ -70,7 +70,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The kind of something that was looked at.
+    /// The kind of a file type.
     #[must_use]
     pub fn of(kind: FileType) -> Self {
         #[cfg(unix)]
@@ -109,7 +109,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// Why a file was not read or written. The text goes on from the name of the file: "c.json could not be read: …".
+/// A failure to read or write a file. Its text follows the name of the file: "c.json could not be read: …".
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The path leads to something that is no regular file.
@@ -123,7 +123,7 @@ pub enum FileError {
     Unfinished {
         /// The file that holds the whole content.
         copy: PathBuf,
-        /// What the system says.
+        /// The failure of the operating system.
         error: io::Error,
     },
     /// A failure of the operating system.
@@ -152,7 +152,7 @@ fn size(bytes: u64) -> String {
     if bytes >= 1 << 20 { format!("{} MiB", bytes >> 20) } else { format!("{} KiB", bytes >> 10) }
 }
 
-/// What a path leads to, links followed.
+/// The kind of thing that a path leads to, links followed.
 ///
 /// # Errors
 /// When there is nothing, or it cannot be looked at.
@@ -213,7 +213,7 @@ pub fn same(a: &Path, b: &Path) -> bool {
     matches!((file_id::get_file_id(a), file_id::get_file_id(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Where a path leads, through links; there need not be anything at the end.
+/// The end of a path, links followed; nothing need be there.
 ///
 /// # Errors
 /// When links lead in a circle.

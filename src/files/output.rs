@@ -10,12 +10,12 @@ use std::{
 
 use super::{Draft, FileError, Kind, input::descriptor, kind, options, read_start, same};
 
-/// How long a named pipe may have nobody who reads from it.
+/// The longest wait for somebody who reads from a named pipe.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// How often it is asked whether there is room.
+/// The time between two attempts to write.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// How files of a sort begin.
+/// The first bytes of the files of a format.
 #[derive(Clone, Copy, Debug)]
 pub struct Signature {
     /// The sort: "a PNG file".
@@ -27,7 +27,7 @@ pub struct Signature {
 /// Pictures.
 pub const PNG: Signature = Signature { what: "a PNG file", begins: b"\x89PNG\r\n\x1a\n" };
 
-/// Why an output must not be written.
+/// The reason why an output must not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum Refused {
     /// It is one of the inputs.
@@ -43,15 +43,15 @@ pub enum Refused {
     Foreign {
         /// The output.
         output: PathBuf,
-        /// What it would have to be.
+        /// The format that it would have to have.
         what: &'static str,
     },
-    /// What is there cannot be looked at.
+    /// The file there cannot be examined.
     #[error("{} is there and cannot be looked at ({error}); it was not overwritten", .output.display())]
     Unknown {
         /// The output.
         output: PathBuf,
-        /// Why.
+        /// The reason.
         error: FileError,
     },
 }
@@ -69,7 +69,7 @@ fn told(output: &Path, input: &Path) -> String {
 /// device.
 ///
 /// # Errors
-/// Why not.
+/// If it may not.
 pub fn may_overwrite<'a>(
     output: &Path,
     sort: Signature,
@@ -90,8 +90,8 @@ pub fn may_overwrite<'a>(
     }
 }
 
-/// Where a result goes: to a file, which appears complete or not at all, or straight to standard output, a device or
-/// a pipe.
+/// The destination of a result: a file, which appears complete or not at all, or standard output, a device or a
+/// pipe.
 #[derive(Debug)]
 pub enum Output {
     /// A file; [`finish`](Self::finish) puts it in its place.
@@ -123,7 +123,7 @@ impl Output {
     /// All is written.
     ///
     /// # Errors
-    /// What the system says.
+    /// Any failure of the system.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.flush()?;
         match self {

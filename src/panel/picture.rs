@@ -1,5 +1,6 @@
 //! What is painted over the picture: badges, caption, axes, hints.
 
+use crate::text::listed;
 use bevy_egui::egui::{
     self, Align2, Color32, FontFamily, FontId, Painter, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo,
     WidgetType, pos2, vec2,
@@ -9,7 +10,7 @@ use glam::Vec3;
 use super::{
     author::SHADER_TAB,
     caption::caption_text,
-    clipping, icon, marks, presentation, shader,
+    clipping, icon, marks, presentation,
     state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
@@ -59,7 +60,7 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
     let few = |all: Vec<&str>| {
         let more = format!("{} more", all.len().saturating_sub(MOST));
         let shown: Vec<_> = all.iter().take(MOST).copied().collect();
-        shader::listed(&if all.len() > MOST { [shown, vec![more.as_str()]].concat() } else { shown })
+        listed(&if all.len() > MOST { [shown, vec![more.as_str()]].concat() } else { shown }, "and")
     };
     let heading = format!("Showing the last good version of {}", few(names));
     let causes: Vec<_> = status.troubles.iter().filter(|t| !t.stale.is_empty()).collect();

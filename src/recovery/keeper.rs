@@ -31,9 +31,9 @@ struct Shared {
 
 #[derive(Default)]
 struct State {
-    /// What should be on disk; nothing without unsaved changes.
+    /// The document that should be on disk; none without unsaved changes.
     wanted: Option<Arc<Document>>,
-    /// A copy that another window left, to be gone on with.
+    /// A copy that another window left, to be continued.
     adopted: Option<Session>,
     /// Counts the changes of what is wanted, and up to which it is on disk.
     change: u64,
@@ -44,13 +44,13 @@ struct State {
     urgent: bool,
     /// The copy that is on disk.
     copy: Option<PathBuf>,
-    /// Why there is none.
+    /// The reason why there is none.
     problem: Option<String>,
     /// The window knows of the problem.
     told: bool,
 }
 
-/// What became of the unsaved changes.
+/// The fate of the unsaved changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Settled {
     /// There are none.
@@ -72,7 +72,7 @@ pub enum Settled {
 }
 
 impl Settled {
-    /// What the user should know, for standard error.
+    /// A message to the user, for standard error.
     #[must_use]
     pub fn sentence(&self) -> Option<String> {
         match self {
@@ -132,7 +132,7 @@ impl Keeper {
         self.0.lock().wanted.is_some()
     }
 
-    /// Why there is no copy, if one is needed and could not be written. Told once.
+    /// The reason why there is no copy, if one is needed and could not be written. Reported once.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         let mut state = self.0.lock();
@@ -193,7 +193,7 @@ impl Shared {
         self.work.notify_all();
     }
 
-    /// What the thread does, for as long as the process runs.
+    /// The loop of the thread, for as long as the process runs.
     fn run(&self, mut writer: Writer, trouble: &dyn Fn()) {
         loop {
             let (change, wanted, adopted) = self.next();
@@ -243,7 +243,7 @@ impl Shared {
     }
 }
 
-/// What the thread alone has to do with.
+/// The state that only the thread uses.
 struct Writer {
     store: Option<Store>,
     session: Option<Session>,
@@ -306,7 +306,7 @@ mod tests {
         (Store::new(folder.path().join("copies")), folder)
     }
 
-    /// Where the copy is that must have been kept.
+    /// The path of the copy that must have been kept.
     fn kept(keeper: &Keeper) -> PathBuf {
         match keeper.settle(LONG) {
             Settled::Kept { file, .. } => file,
@@ -323,7 +323,7 @@ mod tests {
         }
     }
 
-    /// How many copies there are on disk, of windows that run or not.
+    /// The number of copies on disk, of windows that run or not.
     fn copies(folder: &tempfile::TempDir) -> usize {
         let sessions = fs::read_dir(folder.path().join("copies")).into_iter().flatten().flatten();
         sessions.filter(|session| session.path().join("scene.json").exists()).count()

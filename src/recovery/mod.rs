@@ -40,11 +40,11 @@ pub struct About {
 /// A document with unsaved changes, as it is handed to the [`Keeper`].
 #[derive(Clone, Debug)]
 pub struct Document {
-    /// What it is and where it belongs.
+    /// Its title and its file.
     pub about: About,
     /// The scene. It may break rules: unfinished work is work.
     pub scene: Scene,
-    /// What is known at the time, for the order of parameters.
+    /// The registry at the time, for the order of parameters.
     pub registry: Arc<Registry>,
 }
 

@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// More copies that nobody wants are not kept: the oldest give way.
+/// The most copies that are kept; the oldest give way.
 pub const MAX_COPIES: usize = 20;
 /// The folder of the copies within the user's data.
 const FOLDER: &str = "recovery";
@@ -26,11 +26,14 @@ const FOLDER: &str = "recovery";
 const SCENE: &str = "scene.json";
 const ABOUT: &str = "about.json";
 const LOCK: &str = "lock";
-/// What is said of a document is never longer.
+/// The most bytes of the file about a document.
 const MAX_ABOUT_BYTES: u64 = 1 << 16;
-/// More entries of the folder are not looked at.
+/// The most entries of the folder that are looked at.
 const MAX_ENTRIES: usize = 1000;
-/// A folder without a lock is that of a window that starts; after this time it is none.
+/// The mode of folders that only this user can look into.
+#[cfg(unix)]
+const PRIVATE: u32 = 0o700;
+/// A folder without a lock belongs to a window that starts, unless it is older than this.
 const STARTING: Duration = Duration::from_secs(24 * 3600);
 
 /// The folder with the copies of all windows.
@@ -43,7 +46,7 @@ pub struct Store {
 #[derive(Debug)]
 pub struct Session {
     folder: PathBuf,
-    /// What is in the file beside the copy.
+    /// The content of the file beside the copy.
     about: Option<About>,
     /// Held, not used. Some file systems know no locks.
     _lock: Option<File>,
@@ -78,24 +81,17 @@ impl Store {
     /// # Errors
     /// When the folder cannot be made.
     pub fn begin(&self) -> io::Result<Session> {
-        make_folder(&self.folder, true)?;
+        make_folder(&self.folder)?;
         if fs::read_dir(&self.folder)?.take(MAX_COPIES).count() == MAX_COPIES {
             for left in self.left().into_iter().skip(MAX_COPIES - 1) {
                 left.session.remove();
             }
         }
-        let seconds = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
-        let name = format!("{seconds}-{}", std::process::id());
-        let mut attempt = 0;
-        let folder = loop {
-            let folder =
-                self.folder.join(if attempt == 0 { name.clone() } else { format!("{name}-{attempt}") });
-            match make_folder(&folder, false) {
-                Err(e) if e.kind() == io::ErrorKind::AlreadyExists && attempt < 100 => attempt += 1,
-                Err(e) => return Err(e),
-                Ok(()) => break folder,
-            }
-        };
+        let mut name = tempfile::Builder::new();
+        name.prefix("window-");
+        #[cfg(unix)]
+        name.permissions(std::os::unix::fs::PermissionsExt::from_mode(PRIVATE));
+        let folder = name.tempdir_in(&self.folder)?.keep();
         let lock = first_lock(&folder).ok();
         Ok(Session { folder, about: None, _lock: lock })
     }
@@ -132,7 +128,7 @@ fn look(folder: PathBuf) -> Option<Left> {
         return None;
     };
     let about = files::read(&folder.join(ABOUT), MAX_ABOUT_BYTES).ok();
-    // The copy counts, whatever became of what is said of it.
+    // The copy counts, even if the file about it is lost.
     let mut about = about.and_then(|bytes| serde_json::from_slice::<About>(&bytes).ok()).unwrap_or_default();
     if about.title.is_empty() {
         "Untitled scene".clone_into(&mut about.title);
@@ -211,15 +207,12 @@ impl Left {
     }
 }
 
-/// Makes a folder that is nobody else's business.
-fn make_folder(folder: &Path, with_parents: bool) -> io::Result<()> {
+/// Makes a folder that only this user can look into, with all folders around it.
+fn make_folder(folder: &Path) -> io::Result<()> {
     let mut builder = fs::DirBuilder::new();
-    builder.recursive(with_parents);
+    builder.recursive(true);
     #[cfg(unix)]
-    {
-        use std::os::unix::fs::DirBuilderExt as _;
-        builder.mode(0o700);
-    }
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, PRIVATE);
     builder.create(folder)
 }
 

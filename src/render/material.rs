@@ -43,7 +43,7 @@ pub const FACE_TANGENT: MeshVertexAttribute =
 pub const FACE_CENTRE: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceCentre", 0x4c43_4d02, VertexFormat::Float32x3);
 
-/// What is the same for all model types: everything a material holds.
+/// The content of a material, the same for all model types.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ingredients {
     /// The parameters of all objects under the model.
@@ -52,7 +52,7 @@ pub struct Ingredients {
     pub illumination: Handle<ShaderBuffer>,
     /// The composed shader of model and mode.
     pub shader: Handle<Shader>,
-    /// Whether the mesh carries [`FACE_NORMAL`], [`FACE_TANGENT`] and [`FACE_CENTRE`].
+    /// True if the mesh carries [`FACE_NORMAL`], [`FACE_TANGENT`] and [`FACE_CENTRE`].
     pub faces: bool,
 }
 
@@ -69,7 +69,7 @@ pub struct ModelMaterial<M: Clone + 'static> {
     model: PhantomData<fn() -> M>,
 }
 
-/// What tells pipelines of one model type apart.
+/// The key of the pipelines of one model type.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct PipelineKey {
     shader: Handle<Shader>,

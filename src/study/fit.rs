@@ -26,7 +26,7 @@ pub struct Sample {
     pub value: f64,
 }
 
-/// What a fit found.
+/// The result of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// Diffuse reflectance d.

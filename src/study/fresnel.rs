@@ -57,7 +57,7 @@ fn approximate(material: &Measured, degrees: f64) -> f64 {
     f64::from(schlick(Vec3::splat(normal_reflectance(n, k)), cosine(degrees)).x)
 }
 
-/// Where Schlick's approximation is furthest off, and by how much.
+/// The angle and the size of the largest error of Schlick's approximation.
 fn worst(material: &Measured) -> (f64, f64) {
     (0..=180)
         .map(|i| f64::from(i) * 0.5)
@@ -66,7 +66,7 @@ fn worst(material: &Measured) -> (f64, f64) {
         .unwrap_or_default()
 }
 
-/// Where the reflectance is least and how much it is there, if that is not at normal incidence.
+/// The angle and the value of the least reflectance, if that is not at normal incidence.
 fn dip(material: &Measured) -> Option<(f64, f64)> {
     (0..=90)
         .map(|a| (f64::from(a), exact(material, f64::from(a))))

@@ -29,7 +29,7 @@ struct White {
     name: &'static str,
     id: &'static str,
     settings: Vec<Setting>,
-    /// Whether all that is not absorbed should come back: there is nothing that may be lost.
+    /// True if all light should come back: nothing absorbs or transmits any.
     whole: bool,
 }
 
@@ -100,7 +100,7 @@ fn largest(lab: &Lab, id: &str, angles: &[f64]) -> Result<(f64, i64), StudyError
     Ok(best)
 }
 
-/// What a curve of albedos says.
+/// The verdict on a curve of albedos.
 fn verdict(least: f64, most: f64) -> &'static str {
     match (least < 1.0 - TOLERANCE, most > 1.0 + TOLERANCE) {
         (false, false) => "conserves",

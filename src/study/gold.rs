@@ -112,7 +112,7 @@ fn tune(lab: &Lab, scene: &Scene, wanted: &Picture, size: (u32, u32)) -> Blinn {
         .map_or(Blinn { diffuse: Vec3::ONE, specular: Vec3::ONE, exponent: 1 }, |best| best.0)
 }
 
-/// How far a picture is from the wanted one: root mean square of the difference over that of the wanted
+/// The distance of a picture from the wanted one: root mean square of the difference over that of the wanted
 /// one, mean of the channels; and the mean brightness relative to the wanted one.
 fn distance(picture: &Picture, wanted: &Picture) -> (f64, f64) {
     let mut rms = 0.0;

@@ -1,5 +1,5 @@
-//! The study: four phenomena that physically based models reproduce and Blinn–Phong does not, as numbers,
-//! plots and pictures, in a report.
+//! The study: a report, with numbers, plots and pictures, of four phenomena that physically based models
+//! reproduce and Blinn–Phong does not.
 //!
 //! It is the chapter of results that E. James (2022), *Physically Based Shading Models in Real-time
 //! Rendering*, asks for. Every sentence of a conclusion that depends on a number is chosen by that number.
@@ -32,7 +32,7 @@ mod lobe;
 pub mod plot;
 mod report;
 
-/// How many times [`run`] says what it does next.
+/// The number of steps that [`run`] reports.
 pub const STEPS: u64 = 5;
 
 /// The name of the report in its folder.
@@ -48,7 +48,7 @@ pub fn is_report(folder: &Path) -> bool {
     String::from_utf8_lossy(&start).contains(&mark)
 }
 
-/// What a study needs and cannot do without.
+/// A failure of a study: something that it needs is missing.
 #[derive(Debug, Error)]
 pub enum StudyError {
     /// A model that is not registered.
@@ -72,7 +72,7 @@ pub enum StudyError {
     Figure(String),
 }
 
-/// What to do.
+/// The extent of a study.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
     /// Small pictures and a tenth of the materials: to try that everything works.
@@ -96,20 +96,20 @@ impl Table {
     /// Adds a row of words and numbers.
     fn row(&mut self, words: &[&str], numbers: &[f64]) {
         let mut cells: Vec<String> = words.iter().map(|w| w.replace(',', ";")).collect();
-        // What is not a number stays empty.
+        // Cells without a finite number stay empty.
         cells.extend(numbers.iter().map(|n| if n.is_finite() { format!("{n:.6}") } else { String::new() }));
         // Writing to a string cannot fail.
         let _ = writeln!(self.csv, "{}", cells.join(","));
     }
 }
 
-/// A phenomenon: its section of the report, what was found, and the numbers.
+/// A phenomenon: its section of the report, the finding, and the numbers.
 struct Chapter {
     title: &'static str,
     body: Markup,
     /// One sentence for the summary.
     finding: String,
-    /// Whether the numbers show the phenomenon.
+    /// True if the numbers show the phenomenon.
     shown: bool,
     tables: Vec<Table>,
 }
@@ -139,7 +139,7 @@ impl Study {
     }
 }
 
-/// What the chapters work with.
+/// The registry, the settings and the counters that chapters share.
 struct Lab<'a> {
     registry: &'a Registry,
     settings: Settings,
@@ -311,7 +311,7 @@ fn albedo_at(surface: &dyn Surface, degrees: f64) -> (f64, f64) {
     (all.y, specular.y)
 }
 
-/// A number with so many digits behind the point, with a true minus sign.
+/// A number with that many decimals and a true minus sign.
 fn fixed(x: f64, digits: usize) -> String {
     format!("{x:.digits$}").replace('-', "−")
 }
@@ -322,7 +322,7 @@ fn percent(x: f64) -> String {
     if p.abs() < 0.05 { "±0.0\u{a0}%".to_owned() } else { format!("{p:+.1}\u{a0}%").replace('-', "−") }
 }
 
-/// Runs the study. `tell` is called [`STEPS`] times with what is done next.
+/// Runs the study. `tell` is called [`STEPS`] times with the name of the next step.
 ///
 /// # Errors
 /// If a model, a scene or data of the program is not what the study expects.

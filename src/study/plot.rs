@@ -27,19 +27,19 @@ const COLOURS: [RGBColor; 7] = [
 /// An axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it shows, with its unit.
+    /// Its quantity, with its unit.
     pub label: String,
     /// Smallest value.
     pub from: f64,
     /// Largest value.
     pub to: f64,
-    /// Whether equal steps are equal factors.
+    /// True if it is logarithmic.
     pub log: bool,
     /// About how many labels.
     pub ticks: usize,
 }
 
-/// How the points of a series are joined.
+/// The line between the points of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line {
     /// Without a gap.
@@ -52,7 +52,7 @@ pub enum Line {
     None,
 }
 
-/// What is drawn at each point of a series.
+/// The mark at each point of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     /// Nothing.
@@ -72,32 +72,32 @@ pub enum Mark {
 /// Points that belong together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// What it is called in the legend.
+    /// Its name in the legend.
     pub name: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
-    /// Which colour, counted from 0; 6 is that of the text.
+    /// Its colour, counted from 0; 6 is that of the text.
     pub colour: usize,
-    /// How they are joined.
+    /// The line between them.
     pub line: Line,
-    /// What is drawn at them.
+    /// The mark at each of them.
     pub mark: Mark,
 }
 
 /// A plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
-    /// What it shows, for those who cannot see it.
+    /// Its content, for those who cannot see it.
     pub title: String,
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// What is shown.
+    /// The curves.
     pub series: Vec<Series>,
     /// Width and height.
     pub size: (u32, u32),
-    /// Whether the legend stands at the right; below, what is drawn says it.
+    /// True if it has a legend, at the right.
     pub legend: bool,
 }
 
@@ -158,7 +158,7 @@ impl Plot {
     /// The plot as an `<svg>` element.
     ///
     /// # Errors
-    /// What the library says.
+    /// The message of the library.
     pub fn svg(&self) -> Result<String, String> {
         let mut text = String::new();
         self.draw(&mut text)?;
@@ -264,7 +264,7 @@ impl Plot {
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
-/// What a library says.
+/// The message of a library.
 fn said(error: impl std::fmt::Display) -> String {
     error.to_string()
 }

@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{Chapter, Settings};
 
-/// What the head of a report says of the program that wrote it; its version follows.
+/// The name of the program in the head of a report; its version follows.
 pub(super) const GENERATOR: &str = "Lights, Camera, Models! ";
 
 const STYLE: &str = include_str!("report.css");
@@ -94,7 +94,7 @@ const GLOSSARY: &[(&str, &str)] = &[
     ),
 ];
 
-/// What the report rests on.
+/// The sources of the report.
 const SOURCES: &[&str] = &[
     "M. Bagher, C. Soler, N. Holzschuch (2012). Accurate Fitting of Measured Reflectances Using a Shifted Gamma Micro-Facet Distribution. Computer Graphics Forum 31(4), 1509–1518. Parameters as in dj_brdf (J. Dupuy, public domain).",
     "J. F. Blinn (1977). Models of Light Reflection for Computer Synthesized Pictures. SIGGRAPH ’77, 192–198.",

@@ -14,12 +14,13 @@ use bevy::{
         App, AppExit, Last, Plugin, PluginGroup, Plugins, PostUpdate, PreUpdate, Startup,
         TerminalCtrlCHandlerPlugin,
     },
-    asset::AssetPlugin,
+    asset::{AssetEvent, AssetPlugin},
     camera::{
         Camera, Camera2d, CameraMainTextureUsages, ClearColorConfig, Hdr, RenderTarget,
         visibility::RenderLayers,
     },
     ecs::prelude::*,
+    image::Image,
     input::keyboard::{Key, KeyboardInput},
     light::cluster::GlobalClusterSettings,
     log::{Level, LogPlugin},
@@ -590,9 +591,14 @@ fn redraw(
     live: Res<LiveShaders>,
     bench: Res<Bench>,
     cameras: Query<&bevy::transform::components::Transform, With<PictureCamera>>,
+    mut textures: MessageReader<AssetEvent<Image>>,
     mut settling: ResMut<Settling>,
     mut requests: MessageWriter<RequestRedraw>,
 ) {
+    if textures.read().count() > 0 {
+        // New letters reach the GPU one frame after they are asked for.
+        settling.frames = settling.frames.max(SETTLING_FRAMES);
+    }
     let rect = lab.picture_rect;
     let now = Snapshot {
         scene: lab.document.scene().clone(),

@@ -284,7 +284,7 @@ fn every_file_of_the_picture_is_listed_and_can_be_opened() {
     bench.settle();
     for (name, path) in [
         ("the model", "reflection/lambert.wgsl"),
-        ("the shading mode", "shading/gouraud.wgsl"),
+        ("the shading model", "shading/gouraud.wgsl"),
         ("the light loop", "loop.wgsl"),
         ("the light type: spot", "light/spot.wgsl"),
         ("vocabulary: terms", "terms.wgsl"),

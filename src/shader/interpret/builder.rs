@@ -7,11 +7,11 @@ use super::{
     instruction::{Instruction, Operation},
 };
 
-/// How many registers there are, of variables, intermediate values and constants.
+/// The number of registers, of variables, intermediate values and constants.
 pub(super) const REGISTERS: usize = 1 << 16;
-/// How many instructions, calls and expressions a program may have when all calls are written out.
+/// The most instructions, calls and expressions of a program with all calls written out.
 const WORK: usize = 1 << 20;
-/// How deep blocks and calls may nest.
+/// The deepest nesting of blocks and calls.
 const DEPTH: usize = 200;
 
 /// One word that is known now, or when the program runs.
@@ -36,9 +36,9 @@ pub(super) struct Builder {
     blocks: HashMap<Vec<u32>, u16>,
     /// For each register below the constants whether it is written more than once.
     mutable: Vec<bool>,
-    /// Where the value of an operation on values that do not change stands.
+    /// The registers of values of operations on values that do not change.
     known: HashMap<(Operation, [Operand; 3]), u16>,
-    /// What was put into `known`, in this order.
+    /// The keys of `known`, in the order in which they were added.
     log: Vec<(Operation, [Operand; 3])>,
     /// Registers that are read by number.
     pub(super) wanted: Vec<u16>,
@@ -114,7 +114,7 @@ impl Builder {
         }
     }
 
-    /// Whether a register may be written again.
+    /// True if a register may be written again.
     pub(super) fn is_mutable(&self, register: u16) -> bool {
         self.mutable.get(usize::from(register)).copied().unwrap_or(false)
     }
@@ -249,7 +249,7 @@ impl Builder {
         Ok(base)
     }
 
-    /// Where the next instruction stands.
+    /// The place of the next instruction.
     pub(super) fn here(&self) -> usize {
         self.code.len()
     }

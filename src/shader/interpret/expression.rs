@@ -21,7 +21,7 @@ fn pairs<'a>(a: &'a [Operand], b: &'a [Operand]) -> impl Iterator<Item = (Operan
     (0..count).map(move |i| (at(a, i), at(b, i)))
 }
 
-/// What the numbers of a value are.
+/// The type of the numbers of a value.
 pub(super) fn kind_of(inner: &TypeInner) -> ScalarKind {
     match inner.scalar_kind() {
         Some(ScalarKind::AbstractInt) => ScalarKind::Sint,
@@ -72,7 +72,7 @@ impl<'m> Lowering<'m> {
                 let base = usize::from(frame.locals[variable.index()]);
                 return Ok(Value::Place(Place { base, offset: None, layout: Layout::Packed }));
             }
-            Expression::Load { pointer } => self.load(frame, handle, pointer)?,
+            Expression::Load { pointer } => self.load(frame, pointer)?,
             Expression::Unary { op, expr } => self.unary(frame, op, expr)?,
             Expression::Binary { op, left, right } => self.binary(frame, op, left, right)?,
             Expression::Select { condition, accept, reject } => {
@@ -185,21 +185,15 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    fn load(
-        &mut self,
-        frame: &mut Frame<'m>,
-        handle: Handle<Expression>,
-        pointer: Handle<Expression>,
-    ) -> Result<Words> {
+    fn load(&mut self, frame: &mut Frame<'m>, pointer: Handle<Expression>) -> Result<Words> {
         let place = self.place(frame, pointer)?;
         let offsets = shape::offsets(self.module, self.type_of(frame, pointer), place.layout)?;
-        let as_it_is = place.layout == Layout::Buffer || frame.facts.direct[handle.index()];
         let mut words = Vec::with_capacity(offsets.len());
         for offset in offsets {
             let at = place.base + offset;
             words.push(match place.offset {
                 Some(offset) => self.builder.load_at(at, offset)?,
-                None if as_it_is => Operand::Register(at as u16),
+                None if place.layout == Layout::Buffer => Operand::Register(at as u16),
                 None => self.builder.emit(O::Copy, &[Operand::Register(at as u16)])?,
             });
         }

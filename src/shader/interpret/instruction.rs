@@ -1,4 +1,4 @@
-//! The instructions of a program, and what each does to words of 32 bits.
+//! The instructions of a program, on words of 32 bits.
 
 use std::f32::consts::PI;
 
@@ -9,7 +9,7 @@ use super::{STEPS, StepLimit, builder::REGISTERS};
 /// words stand in them bit by bit.
 pub(super) type Registers = [f32; REGISTERS];
 
-/// What a word of 32 bits holds.
+/// A type of 32 bits.
 trait Bits: Copy {
     fn read(word: f32) -> Self;
     fn write(self) -> f32;
@@ -100,7 +100,7 @@ macro_rules! operations {
         // Of the following the second name does three times what the first does.
         { $($single:ident $triple:ident = $part:expr;)* }
     ) => {
-        /// What an instruction does. Pure operations put a function of registers `a`, `b`, `c` into `d`.
+        /// The operation of an instruction. Pure ones put a function of registers `a`, `b`, `c` into `d`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u8)]
         pub(super) enum Operation {
@@ -114,10 +114,6 @@ macro_rules! operations {
             JumpUnless,
             /// Goes on at the target if `a` and `d` are the same word.
             JumpIfEqual,
-            /// Goes on at the target unless `a < d`, numbers.
-            JumpUnlessLess,
-            /// Goes on at the target unless `a ≤ d`, numbers.
-            JumpUnlessLessEqual,
             /// Goes back to the target, and counts.
             Repeat,
             /// Goes back to the target unless `a` is true, and counts.
@@ -129,7 +125,7 @@ macro_rules! operations {
         }
 
         impl Operation {
-            /// How many of `a`, `b`, `c` a pure operation reads; of others 0.
+            /// The number of registers that a pure operation reads; of others 0.
             pub(super) fn arity(self) -> usize {
                 match self {
                     $(Self::$name => arity($function),)*
@@ -190,18 +186,6 @@ macro_rules! operations {
                             at = i.target();
                         }
                     }
-                    Operation::JumpUnlessLess => {
-                        let less = registers[a] < registers[d];
-                        if !less {
-                            at = i.target();
-                        }
-                    }
-                    Operation::JumpUnlessLessEqual => {
-                        let less = registers[a] <= registers[d];
-                        if !less {
-                            at = i.target();
-                        }
-                    }
                     Operation::Repeat | Operation::RepeatUnless => {
                         if i.operation == Operation::RepeatUnless && bool::read(registers[a]) {
                             continue;
@@ -230,7 +214,7 @@ macro_rules! operations {
 operations! {
 {
     Copy = |a: u32| a;
-    // The offset of an element: indices beyond the end count as the last, as on the graphics card.
+    // The offset of an element: indices beyond the end count as the last, as on the GPU.
     Index = |i: u32, last: u32, stride: u32| i.min(last).wrapping_mul(stride);
     Select = |condition: bool, a: u32, b: u32| if condition { a } else { b };
 
@@ -415,27 +399,22 @@ impl Instruction {
         [self.a, self.b, self.c][n].wrapping_add(k * u16::from(self.strides >> n & 1))
     }
 
-    /// Where a jump goes.
+    /// The target of a jump.
     #[inline(always)]
     pub(super) fn target(self) -> usize {
         usize::from(self.b) << 16 | usize::from(self.c)
     }
 
-    /// Says where a jump goes.
+    /// Sets the target of a jump.
     pub(super) fn aim(&mut self, target: usize) {
         self.b = (target >> 16) as u16;
         self.c = target as u16;
     }
 
-    /// Whether it has a target.
+    /// True if it has a target.
     pub(super) fn jumps(self) -> bool {
-        use Operation::{
-            Jump, JumpIfEqual, JumpUnless, JumpUnlessLess, JumpUnlessLessEqual, Repeat, RepeatUnless,
-        };
-        matches!(
-            self.operation,
-            Jump | JumpUnless | JumpIfEqual | JumpUnlessLess | JumpUnlessLessEqual | Repeat | RepeatUnless
-        )
+        use Operation::{Jump, JumpIfEqual, JumpUnless, Repeat, RepeatUnless};
+        matches!(self.operation, Jump | JumpUnless | JumpIfEqual | Repeat | RepeatUnless)
     }
 
     /// The registers that it reads, as far as their numbers are known.
@@ -444,7 +423,7 @@ impl Instruction {
         let (words, count, length) = match self.operation {
             O::Jump | O::Repeat => ([0; 3], 0, 1),
             O::JumpUnless | O::RepeatUnless | O::LoadAt => ([self.a, 0, 0], 1, 1),
-            O::JumpIfEqual | O::JumpUnlessLess | O::JumpUnlessLessEqual => ([self.a, self.d, 0], 2, 1),
+            O::JumpIfEqual => ([self.a, self.d, 0], 2, 1),
             O::StoreAt => ([self.a, self.b, 0], 2, 1),
             O::Dot => ([self.a, self.b, 0], 2, 3),
             single => ([self.a, self.b, self.c], single.arity(), 1),
@@ -457,7 +436,7 @@ impl Instruction {
         (!self.jumps() && self.operation != Operation::StoreAt).then_some(self.d)
     }
 
-    /// Whether it reads or writes registers whose numbers are not known.
+    /// True if it reads or writes registers whose numbers are not known.
     pub(super) fn wanders(self) -> bool {
         matches!(self.operation, Operation::LoadAt | Operation::StoreAt)
     }

@@ -6,14 +6,13 @@
 use std::{collections::HashMap, rc::Rc};
 
 use naga::{
-    AddressSpace, Expression, Function, GlobalVariable, Handle, Literal, Module, TypeInner, front::Typifier,
-    proc::ResolveContext,
+    AddressSpace, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Statement, TypeInner,
+    front::Typifier, proc::ResolveContext,
 };
 
 use super::{
     Unsupported,
     builder::{Builder, Operand},
-    loads::{Facts, facts},
     shape::{self, Layout},
     statement::Around,
 };
@@ -24,7 +23,7 @@ pub(super) fn unsupported<T>(what: impl Into<String>) -> Result<T> {
     Err(Unsupported { what: what.into() })
 }
 
-/// What an expression stands for.
+/// The value of an expression.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     /// The words of a value.
@@ -33,7 +32,7 @@ pub(super) enum Value {
     Place(Place),
 }
 
-/// Where a pointer leads.
+/// The target of a pointer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     /// The register, apart from what is known only when the program runs.
@@ -47,11 +46,10 @@ pub(super) struct Place {
 pub(super) struct Frame<'m> {
     pub(super) function: &'m Function,
     pub(super) types: Rc<Typifier>,
-    pub(super) facts: Rc<Facts>,
     pub(super) arguments: Vec<Value>,
     pub(super) values: Vec<Option<Value>>,
     pub(super) locals: Vec<u16>,
-    /// Where results go; `None` if the one `return` is the end, and its value needs no copy.
+    /// The registers of the results; `None` if the one `return` is the end, and its value needs no copy.
     pub(super) results: Option<u16>,
     /// The value of that one `return`.
     pub(super) returned: Rc<[Operand]>,
@@ -66,10 +64,10 @@ pub(super) struct Lowering<'m> {
     pub(super) builder: Builder,
     /// The values of the module's constant expressions; `None` where that is not supported.
     constants: Vec<Option<Rc<[Operand]>>>,
-    looked_at: HashMap<Handle<Function>, (Rc<Typifier>, Rc<Facts>)>,
+    types: HashMap<Handle<Function>, Rc<Typifier>>,
     /// The registers of private variables that are reached.
     globals: HashMap<Handle<GlobalVariable>, u16>,
-    /// What private variables start with.
+    /// The first values of private variables.
     pub(super) initial: Vec<(u16, u32)>,
     /// The buffer that is an input, and its first register.
     pub(super) row: Option<(Handle<GlobalVariable>, u16)>,
@@ -88,13 +86,33 @@ pub(super) fn literal(literal: Literal) -> Option<u32> {
     }
 }
 
+/// True if the only `return` of a function, if there is one, is its last statement.
+fn returns_last(function: &Function) -> bool {
+    fn returns(block: &Block) -> usize {
+        let of = |statement: &Statement| match statement {
+            Statement::Return { .. } => 1,
+            Statement::Block(block) => returns(block),
+            Statement::If { accept, reject, .. } => returns(accept) + returns(reject),
+            Statement::Switch { cases, .. } => cases.iter().map(|case| returns(&case.body)).sum(),
+            Statement::Loop { body, continuing, .. } => returns(body) + returns(continuing),
+            _ => 0,
+        };
+        block.iter().map(of).sum()
+    }
+    match returns(&function.body) {
+        0 => true,
+        1 => matches!(function.body.last(), Some(Statement::Return { .. })),
+        _ => false,
+    }
+}
+
 impl<'m> Lowering<'m> {
     pub(super) fn new(module: &'m Module) -> Self {
         let mut lowering = Self {
             module,
             builder: Builder::default(),
             constants: Vec::new(),
-            looked_at: HashMap::new(),
+            types: HashMap::new(),
             globals: HashMap::new(),
             initial: Vec::new(),
             row: None,
@@ -186,8 +204,9 @@ impl<'m> Lowering<'m> {
         Ok(place(base))
     }
 
-    fn look_at(&mut self, handle: Handle<Function>) -> Result<(Rc<Typifier>, Rc<Facts>)> {
-        if let Some(known) = self.looked_at.get(&handle) {
+    /// The types of the expressions of a function.
+    fn types(&mut self, handle: Handle<Function>) -> Result<Rc<Typifier>> {
+        if let Some(known) = self.types.get(&handle) {
             return Ok(known.clone());
         }
         let function = &self.module.functions[handle];
@@ -199,25 +218,24 @@ impl<'m> Lowering<'m> {
                 return unsupported("it has an expression without a type");
             }
         }
-        let known = (Rc::new(types), Rc::new(facts(function)));
-        self.looked_at.insert(handle, known.clone());
-        Ok(known)
+        let types = Rc::new(types);
+        self.types.insert(handle, types.clone());
+        Ok(types)
     }
 
     /// Writes out a call; gives the words of the result.
     pub(super) fn call(&mut self, handle: Handle<Function>, arguments: Vec<Value>) -> Result<Rc<[Operand]>> {
         let function = &self.module.functions[handle];
-        let (types, facts) = self.look_at(handle)?;
+        let types = self.types(handle)?;
         self.builder.enter()?;
         let count = match &function.result {
             Some(result) => shape::words(self.module, &self.module.types[result.ty].inner)?,
             None => 0,
         };
-        let results = if facts.returns_last { None } else { Some(self.builder.variable(count)?) };
+        let results = if returns_last(function) { None } else { Some(self.builder.variable(count)?) };
         let mut frame = Frame {
             function,
             types,
-            facts,
             arguments,
             values: vec![None; function.expressions.len()],
             locals: Vec::new(),
@@ -239,13 +257,10 @@ impl<'m> Lowering<'m> {
     /// Gives local variables their registers and first values.
     fn locals(&mut self, frame: &mut Frame<'m>) -> Result<()> {
         let function = frame.function;
-        for (handle, variable) in function.local_variables.iter() {
+        for (_, variable) in function.local_variables.iter() {
             let words = shape::words(self.module, &self.module.types[variable.ty].inner)?;
             let base = self.builder.variable(words)?;
             frame.locals.push(base);
-            if !frame.facts.starts[handle.index()] {
-                continue;
-            }
             let value = match variable.init {
                 Some(init) => self.words(frame, init)?,
                 None => vec![Operand::Constant(0); words].into(),
@@ -265,7 +280,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// What an expression stands for: calculated before, or needing no calculation.
+    /// The value of an expression: calculated before, or needing no calculation.
     pub(super) fn value(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Value> {
         if let Some(value) = &frame.values[handle.index()] {
             return Ok(value.clone());
@@ -296,7 +311,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// Where a pointer leads.
+    /// The target of a pointer.
     pub(super) fn place(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Place> {
         match self.value(frame, handle)? {
             Value::Place(place) => Ok(place),

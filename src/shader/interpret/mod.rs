@@ -7,7 +7,7 @@
 //! written out in place, which WGSL allows since its functions do not call themselves. Whole numbers follow the
 //! rules of WGSL (they wrap, division by zero gives the dividend, shifts go by the last five bits of the
 //! distance), floats are those of Rust. Indices beyond the end of an array mean its last element, as `wgpu` has
-//! it on the graphics card.
+//! it on the GPU.
 
 use std::{
     cell::RefCell,
@@ -19,7 +19,6 @@ use naga::{Module, TypeInner};
 mod builder;
 mod expression;
 mod instruction;
-mod loads;
 mod lower;
 mod maths;
 mod optimise;
@@ -34,10 +33,10 @@ use builder::{Operand, REGISTERS};
 use instruction::{Instruction, Registers, execute};
 use lower::{Lowering, Value, unsupported};
 
-/// How many instructions of loops a run may have, a few milliseconds.
+/// The most instructions in loops of a run, a few milliseconds.
 pub const STEPS: usize = 1 << 17;
 
-/// What a function uses that cannot be run on the CPU.
+/// A construct of a function that cannot be run on the CPU.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what}")]
 pub struct Unsupported {
@@ -59,7 +58,7 @@ pub struct Program {
     code: Box<[Instruction]>,
     /// The register 65 535 − i holds the constant i.
     constants: Box<[u32]>,
-    /// What private variables start with.
+    /// The first values of private variables.
     initial: Box<[(u16, u32)]>,
     argument_words: usize,
     row_words: usize,
@@ -92,7 +91,7 @@ impl Program {
     /// Makes a function of a validated module, with all that it calls, ready to be run.
     ///
     /// # Errors
-    /// When there is no such function, or when it reaches something that only a graphics card has.
+    /// If there is no such function, or it reaches something that only a GPU has.
     pub fn new(module: &Module, function: &str) -> Result<Self, Unsupported> {
         Self::build(module, function, None)
     }
@@ -145,19 +144,19 @@ impl Program {
         })
     }
 
-    /// How many words the arguments have.
+    /// The number of words of the arguments.
     #[must_use]
     pub fn argument_words(&self) -> usize {
         self.argument_words
     }
 
-    /// How many words the result has.
+    /// The number of words of the result.
     #[must_use]
     pub fn result_words(&self) -> usize {
         self.results.len()
     }
 
-    /// How many words a row of the table has that the program was made with, padding included; 0 without one.
+    /// The number of words in a row of the table, padding included; 0 without a table.
     #[must_use]
     pub fn row_words(&self) -> usize {
         self.row_words
@@ -166,7 +165,7 @@ impl Program {
     /// Runs the function. Arguments that are missing are zero; results are written as far as there is room.
     ///
     /// # Errors
-    /// When it does not end.
+    /// If it does not end.
     pub fn run(&self, arguments: &[u32], results: &mut [u32]) -> Result<(), StepLimit> {
         self.run_with(&[], arguments, results)
     }

@@ -1,4 +1,4 @@
-//! What values look like: how many words they have, and where these stand.
+//! The layout of values: the number of their words, and the place of each.
 
 use naga::{ArraySize, Handle, Module, Scalar, ScalarKind, Type, TypeInner};
 
@@ -6,7 +6,7 @@ use super::Unsupported;
 
 type Result<T> = std::result::Result<T, Unsupported>;
 
-/// Where the words of a composite value stand.
+/// The places of the words of a composite value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layout {
     /// One after the other.
@@ -32,7 +32,7 @@ fn check(scalar: Scalar) -> Result<()> {
     }
 }
 
-/// How many elements an array has; of arrays in buffers that have no length, 1.
+/// The number of elements of an array; of arrays in buffers that have no length, 1.
 fn length(size: ArraySize) -> Result<usize> {
     match size {
         ArraySize::Constant(n) => Ok(n.get() as usize),
@@ -75,7 +75,7 @@ pub(super) fn elements(module: &Module, inner: &TypeInner, layout: Layout) -> Re
     }
 }
 
-/// Where a member of a struct starts.
+/// The start of a member of a struct.
 pub(super) fn member(module: &Module, inner: &TypeInner, index: usize, layout: Layout) -> Result<usize> {
     let TypeInner::Struct { members, .. } = inner else {
         let elements = elements(module, inner, layout)?;
@@ -87,7 +87,7 @@ pub(super) fn member(module: &Module, inner: &TypeInner, index: usize, layout: L
     members.iter().take(index).map(|m| words(module, &module.types[m.ty].inner)).sum()
 }
 
-/// How many words a value has.
+/// The number of words of a value.
 pub(super) fn words(module: &Module, inner: &TypeInner) -> Result<usize> {
     // With padding a value takes at most a few times its words.
     if inner.size(module.to_ctx()) as usize > 16 * LARGEST {
@@ -130,7 +130,7 @@ pub(super) fn words(module: &Module, inner: &TypeInner) -> Result<usize> {
     if count > LARGEST { Err(too_large()) } else { Ok(count) }
 }
 
-/// Where each word of a value stands, counted from its first.
+/// The place of each word of a value, counted from its first.
 pub(super) fn offsets(module: &Module, inner: &TypeInner, layout: Layout) -> Result<Vec<usize>> {
     let count = words(module, inner)?;
     if layout == Layout::Packed {
@@ -166,7 +166,7 @@ fn place(module: &Module, inner: &TypeInner, base: usize, offsets: &mut Vec<usiz
     Ok(())
 }
 
-/// How many words a value takes in a buffer, padding included.
+/// The number of words of a value in a buffer, padding included.
 pub(super) fn span(module: &Module, inner: &TypeInner) -> usize {
     match inner {
         TypeInner::Array { stride, size, .. } => length(*size).map_or(0, |n| n * *stride as usize / 4),

@@ -17,7 +17,7 @@ pub(super) struct Around {
     continues: Option<Vec<usize>>,
 }
 
-/// Whether nothing after a statement is run.
+/// True if nothing after a statement is run.
 fn leaves(block: &Block) -> bool {
     match block.last() {
         Some(Statement::Return { .. } | Statement::Break | Statement::Continue) => true,

@@ -15,7 +15,7 @@ fn module(text: &str) -> Module {
     module
 }
 
-/// Whether a text is valid WGSL.
+/// True if a text is valid WGSL.
 pub(super) fn valid(text: &str) -> bool {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
     wgsl::parse_str(text).is_ok_and(|module| validator.validate(&module).is_ok())

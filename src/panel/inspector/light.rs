@@ -1,0 +1,206 @@
+//! The properties of a light.
+
+use bevy_egui::egui::{self, Align, Layout, Ui};
+
+use super::part::{direction_knob, header, position_limits, section};
+use crate::{
+    document::{Edit, LightField, Selection, limits},
+    light::LightEntry,
+    optics::temperature,
+    panel::{
+        knob::{self, Caption},
+        maths,
+        state::{Action, Lab},
+        theme,
+        top::segmented,
+    },
+    reflection::{EquationPart, Term, usage},
+    registry::Registry,
+    scene::Light,
+};
+
+pub(super) fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Vec<Action>) {
+    let Some(light) = lab.document.lights.get(i) else { return };
+    let set = |field: LightField| Action::Edit(Edit::Light(i, field));
+    header(ui, lab, registry, Selection::Light(i), light.name.as_deref(), actions);
+    let kinds: Vec<_> = registry.lights().iter().map(|l| l.declaration).collect();
+    let names: Vec<_> = kinds.iter().map(|d| d.name).collect();
+    let chosen = registry.light_index(&light.kind).map(|k| k as usize);
+    section(ui, "Light", true, |ui| {
+        let help = chosen.map_or("", |k| kinds[k].summary);
+        let caption = Caption { label: "type", help, ..Caption::default() };
+        if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
+            actions.push(set(LightField::Kind(kinds[k].id.to_owned())));
+        }
+        let Some(kind) = registry.light(&light.kind) else {
+            ui.label("This type of light is not known here; choose another one.");
+            return;
+        };
+        let d = kind.declaration;
+        if !d.summary.is_empty() {
+            ui.add(egui::Label::new(theme::small(ui, d.summary)).wrap());
+        }
+        let part = [EquationPart { term: Term::Total, text: d.equation }];
+        maths::equation(ui, &part, |symbol| match symbol {
+            "I" => Some("the intensity of the light".to_owned()),
+            other => maths::meaning(other).map(str::to_owned),
+        });
+        actions.extend(brightness(ui, light, kind).map(set));
+        actions.extend(light_colour(ui, light).map(set));
+        for p in d.parameters {
+            let unused = usage::unused(d.parameters, p, &light.parameters);
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), unused.as_deref())
+            {
+                actions.push(set(LightField::Parameter(p.name, v)));
+            }
+        }
+    });
+    if light.position.is_some() || light.direction.is_some() {
+        section(ui, "Position", true, |ui| {
+            if let Some(position) = light.position {
+                let caption = Caption {
+                    label: "position",
+                    unit: "m",
+                    help: "Position of the light; y is up, the origin is a corner of the room.",
+                    ..Caption::default()
+                };
+                if let Some(p) = knob::vector_knob(
+                    ui,
+                    "position",
+                    &caption,
+                    position,
+                    &position_limits(lab.document.scene_size),
+                ) {
+                    actions.push(set(LightField::Position(p)));
+                }
+            }
+            if let Some(direction) = light.direction
+                && let Some(d) = direction_knob(
+                    ui,
+                    direction,
+                    "Direction in which the light shines; its length does not matter.",
+                )
+            {
+                actions.push(set(LightField::Direction(d)));
+            }
+        });
+    }
+}
+
+/// The brightness of a light: its intensity, or, for types that have one, its luminous flux.
+fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightField> {
+    let d = kind.declaration;
+    let intensity = f64::from(light.intensity_as(kind));
+    let caption = Caption {
+        symbol: "I",
+        label: "intensity",
+        unit: d.unit,
+        help: unit_help(d.unit),
+        ..Caption::default()
+    };
+    let default = f64::from(d.default_intensity);
+    let limits = limits::intensity(d);
+    let Some(solid_angle) = kind.solid_angle(&light.parameters) else {
+        let new = knob::number_knob(ui, "intensity", &caption, intensity, Some(default), &limits);
+        return new.map(|v| LightField::Intensity(v as f32));
+    };
+    // Rounded where it is converted, to what can be told apart.
+    let flux = light.luminous_flux.map_or_else(|| limits::significant(intensity * solid_angle, 6), f64::from);
+    let as_flux = light.luminous_flux.is_some();
+    let rounded = |v: f64| limits::number(limits::significant(v, 4));
+    let conversion = if as_flux {
+        format!("I = Φ / ({} sr) = {} cd", rounded(solid_angle), rounded(intensity))
+    } else {
+        format!("Φ = I · {} sr = {} lm", rounded(solid_angle), rounded(flux))
+    };
+    maths::equation_of(ui, &[(Term::Total, &conversion)], |symbol| match symbol {
+        "I" => Some("the intensity of the light: what it sends into each direction".to_owned()),
+        "Φ" => Some("the luminous flux: what it sends out in all directions together".to_owned()),
+        _ => None,
+    });
+    let mut other_unit = None;
+    let units = [["cd", "candela"], ["lm", "lumen"]];
+    let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
+    let out = if as_flux {
+        let caption =
+            Caption { symbol: "Φ", label: "luminous flux", unit: "lm", help: unit_help("lm"), ..caption };
+        let default = limits::significant(default * solid_angle, 3);
+        let limits = limits::luminous_flux(d);
+        knob::number_knob_beside(ui, "flux", &caption, flux, Some(default), &limits, beside)
+            .map(|v| LightField::LuminousFlux(v as f32))
+    } else {
+        knob::number_knob_beside(ui, "intensity", &caption, intensity, Some(default), &limits, beside)
+            .map(|v| LightField::Intensity(v as f32))
+    };
+    match other_unit {
+        Some(0) => Some(LightField::Intensity(limits::significant(intensity, 6) as f32)),
+        Some(_) => Some(LightField::LuminousFlux(flux as f32)),
+        None => out,
+    }
+}
+
+/// The colour of a light: sRGB, or the temperature of a black body.
+fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
+    let mut out = None;
+    ui.horizontal(|ui| {
+        ui.set_min_height(30.0);
+        ui.label(theme::small(ui, "Colour from"));
+        let chosen = usize::from(light.colour_temperature.is_some());
+        let tip = |ui: &mut Ui, i: usize| {
+            ui.label(if i == 0 {
+                "Red, green and blue, as on a display."
+            } else {
+                "The temperature of a black body that glows in this colour."
+            });
+        };
+        match segmented(ui, "Colour by", &["RGB", "temperature"], Some(chosen), tip) {
+            Some(0) => out = Some(LightField::Colour(light.rgb8())),
+            Some(_) => {
+                out = Some(LightField::ColourTemperature(temperature::nearest_temperature(light.colour)))
+            }
+            None => {}
+        }
+        if light.colour_temperature.is_some() {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.add_space(22.0);
+                knob::colour_sample(ui, light.rgb8());
+            });
+        }
+    });
+    let field = match light.colour_temperature {
+        Some(kelvin) => {
+            let caption = Caption {
+                symbol: "T",
+                label: "colour temperature",
+                unit: "K",
+                help: "The colour of a black body of this temperature: a candle has 1900 K, a light bulb 2700 K, the \
+                       midday sun about 5500 K, a blue sky 10 000 K and more; 6500 K is white. How bright the \
+                       light is does not change.",
+                ..Caption::default()
+            };
+            let default = Some(f64::from(temperature::WHITE_TEMPERATURE));
+            let limits = limits::colour_temperature();
+            knob::number_knob(ui, "temperature", &caption, f64::from(kelvin), default, &limits)
+                .map(|v| LightField::ColourTemperature(v as f32))
+        }
+        None => {
+            let caption = Caption {
+                label: "colour",
+                unit: "sRGB",
+                help: "The colour of the light; white leaves the materials as they are.",
+                ..Caption::default()
+            };
+            knob::colour_knob(ui, "colour", &caption, light.colour, Some([255; 3])).map(LightField::Colour)
+        }
+    };
+    out.or(field)
+}
+
+fn unit_help(unit: &str) -> &'static str {
+    match unit {
+        "cd" => "In candela: the light sent into each direction. At 1 m, 1 cd gives an illuminance of 1 lx.",
+        "lm" => "In lumen: the light sent out in all directions together, as printed on light bulbs.",
+        "lx" => "In lux: the light that arrives on a surface that faces it.",
+        _ => "How strong the light is.",
+    }
+}

@@ -1,0 +1,56 @@
+//! The properties of the selected part of the scene, at the right.
+
+use bevy_egui::egui::{ScrollArea, Ui};
+
+use super::{
+    Panel, Place,
+    state::{Action, Lab},
+};
+use crate::document::Selection;
+use crate::registry::Registry;
+use {light::light, object::object, observer::observer, room::room};
+
+mod light;
+mod measured;
+mod model;
+mod object;
+mod observer;
+mod part;
+mod room;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Inspector;
+
+impl Panel for Inspector {
+    fn id(&self) -> &'static str {
+        "inspector"
+    }
+
+    fn title(&self) -> &'static str {
+        "Properties"
+    }
+
+    fn place(&self) -> Place {
+        Place::Right
+    }
+
+    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+        let mut actions = Vec::new();
+        // Each part has fields of its own: what is typed about one must not turn up in another.
+        ui.push_id(lab.selection, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                // The scroll bar floats over this margin.
+                ui.set_max_width(ui.available_width() - 8.0);
+                match lab.selection {
+                    Selection::Room => room(ui, lab, registry, &mut actions),
+                    Selection::Observer => observer(ui, lab, &mut actions),
+                    Selection::Light(i) => light(ui, lab, registry, i, &mut actions),
+                    Selection::Object(i) => object(ui, lab, registry, i, &mut actions),
+                }
+                ui.add_space(16.0);
+            });
+        });
+        actions
+    }
+}

@@ -1,0 +1,137 @@
+//! The reflection model of an object: its name, its equation, the stage that evaluates it.
+
+use bevy_egui::egui::{self, Sense, TextStyle, Ui, vec2};
+
+use crate::{
+    optics::TermSelection,
+    panel::{
+        author, chooser, icon, maths, shader,
+        state::{Action, Lab, Severity, ViewChange},
+        theme::{self, Palette},
+        top::segmented,
+    },
+    reflection::ModelEntry,
+    registry::Registry,
+    shading::ModeEntry,
+};
+
+/// Name, author and year of a model; the whole story is the tooltip.
+pub(super) fn model_header(ui: &mut Ui, model: &ModelEntry) {
+    let d = model.declaration;
+    let palette = Palette::here(ui);
+    let name = theme::elided(ui, d.name, TextStyle::Heading, palette.text, ui.available_width());
+    ui.horizontal(|ui| {
+        ui.label(name);
+        // What does not fit is in the tooltip.
+        if !d.author.is_empty() && ui.available_width() > 48.0 {
+            ui.add(egui::Label::new(theme::small(ui, d.author)).truncate());
+        }
+    })
+    .response
+    .on_hover_ui(|ui| {
+        ui.set_max_width(320.0);
+        chooser::about(ui, model);
+    });
+}
+
+/// The replacement for a model that is missing: its file is gone, or never worked.
+pub(super) fn missing_model(
+    ui: &mut Ui,
+    lab: &Lab,
+    registry: &Registry,
+    id: &str,
+    actions: &mut Vec<Action>,
+) {
+    let palette = Palette::here(ui);
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 20.0), Sense::hover());
+        icon::severity(ui.painter(), sign.center(), 6.0, Severity::Error, &palette);
+        ui.vertical(|ui| {
+            ui.add(egui::Label::new(shader::missing_model(lab, registry, id)).wrap().selectable(true));
+            ui.horizontal_wrapped(|ui| {
+                if ui.button("Choose another model").clicked() {
+                    actions.push(Action::View(ViewChange::Chooser(true)));
+                }
+                if !lab.shaders.troubles.is_empty() && ui.button("Show the error").clicked() {
+                    actions.push(Action::View(ViewChange::BottomTab(author::SHADER_TAB.to_owned())));
+                }
+            });
+        });
+    });
+    ui.add_space(6.0);
+}
+
+pub(super) fn equation(ui: &mut Ui, model: &ModelEntry) {
+    let d = model.declaration;
+    // Custom models need not declare one.
+    if d.equation.is_empty() {
+        return;
+    }
+    let name = |symbol: &str| -> Option<String> {
+        let parameter = model.parameters.iter().find(|p| maths::same_symbol(p.symbol, symbol));
+        match parameter {
+            Some(p) => Some(format!("{}: {}", p.label, p.help)),
+            None => {
+                let defined =
+                    maths::definition(d.equation, symbol).map(|text| format!("defined here: {text}"));
+                let general = maths::meaning(symbol).map(str::to_owned);
+                // A letter that the equation uses for something of its own does not mean what it usually does.
+                let terms = ["I", "I_a", "I_d", "I_s"];
+                if terms.contains(&symbol) { general.or(defined) } else { defined.or(general) }
+            }
+        }
+    };
+    maths::equation(ui, d.equation, name);
+    ui.add_space(4.0);
+}
+
+/// The choice of the term that the picture shows, where there is one.
+pub(super) fn terms(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+    let mut options = lab.offered_terms(registry);
+    if !options.contains(&lab.view.terms) {
+        options.push(lab.view.terms);
+    }
+    if options.len() == 1 {
+        return;
+    }
+    ui.horizontal(|ui| {
+        ui.set_min_height(30.0);
+        ui.label(theme::small(ui, "show"));
+        let chosen = options.iter().position(|t| *t == lab.view.terms);
+        let names: Vec<_> = options.iter().map(|t| t.id()).collect();
+        let tip = |ui: &mut Ui, i: usize| {
+            ui.label(match options[i] {
+                TermSelection::All => "The whole equation.".to_owned(),
+                other => format!("The {} term alone, the others as if they were 0.", other.id()),
+            });
+            ui.label(theme::small(ui, "key T goes through them"));
+        };
+        if let Some(i) = segmented(ui, "Terms", &names, chosen, tip) {
+            actions.push(Action::View(ViewChange::Terms(options[i])));
+        }
+    });
+    ui.add_space(4.0);
+}
+
+/// The stage that evaluates the model: a picture and the words.
+pub(super) fn stage(ui: &mut Ui, mode: &ModeEntry) {
+    let d = mode.declaration;
+    let palette = Palette::here(ui);
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(48.0, 42.0), Sense::hover());
+        icon::stage(ui.painter(), rect, d.stage, &palette);
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            ui.label(theme::strong(ui, format!("computed {}", d.stage.phrase())));
+            ui.label(theme::small(ui, format!("{} shading · {}", d.name, d.author)));
+        });
+    })
+    .response
+    .on_hover_ui(|ui| {
+        ui.set_max_width(320.0);
+        ui.label(d.summary);
+        ui.label(theme::small(ui, d.source));
+    });
+    ui.add_space(6.0);
+}

@@ -1,0 +1,162 @@
+//! The properties of an object.
+
+use bevy_egui::egui::{Align, Layout, Ui};
+
+use super::{
+    measured::measured,
+    model::{equation, missing_model, model_header, stage, terms},
+    part::{header, position_limits, section, thrice},
+};
+use crate::{
+    document::{Edit, ObjectField, Selection, limits},
+    panel::{
+        knob::{self, Caption},
+        model_override,
+        state::{Action, Lab},
+        theme,
+    },
+    reflection::{ModelEntry, usage},
+    registry::Registry,
+    scene::Object,
+};
+
+pub(super) fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Vec<Action>) {
+    let Some(object) = lab.document.objects.get(i) else { return };
+    let set = |field: ObjectField| Action::Edit(Edit::Object(i, field));
+    header(ui, lab, registry, Selection::Object(i), object.name.as_deref(), actions);
+
+    let model = registry.model(lab.document.model_of(object));
+    let mode = registry.mode(lab.document.mode_of(object));
+    section(ui, "Reflection", true, |ui| {
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                actions.extend(model_override::control(ui, lab, registry, object).map(set));
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    if let Some(model) = model {
+                        model_header(ui, model);
+                    }
+                });
+            });
+        });
+        match model {
+            Some(model) => {
+                equation(ui, model);
+                terms(ui, lab, registry, actions);
+            }
+            None => missing_model(ui, lab, registry, lab.document.model_of(object), actions),
+        }
+        if let Some(mode) = mode {
+            stage(ui, mode);
+        }
+    });
+
+    section(ui, "Material", true, |ui| {
+        let Some(model) = model else {
+            ui.label(theme::small(ui, "The knobs belong to the model; they are here again when it is."));
+            return;
+        };
+        if let Some(values) = measured(ui, registry, model, object) {
+            actions.push(set(ObjectField::Preset(values)));
+        }
+        for p in model.parameters {
+            let unused = usage::unused(model.parameters, p, &object.material);
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref()) {
+                actions.push(set(ObjectField::Material(p.name, v)));
+            }
+        }
+        if model.parameters.is_empty() {
+            ui.label(theme::small(ui, "This model has no knobs."));
+        }
+        readouts(ui, lab, model, object);
+        let unused: Vec<_> = registry
+            .material_parameters()
+            .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
+            .collect();
+        if !unused.is_empty() {
+            let reason = format!("Not used by {}", model.declaration.name);
+            ui.add_space(4.0);
+            ui.label(theme::small(ui, format!("{reason} (values kept)")));
+            ui.add_space(2.0);
+            for p in unused {
+                knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
+            }
+        }
+    });
+
+    section(ui, "Shape and position", true, |ui| {
+        let kinds: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
+        let names: Vec<_> = kinds.iter().map(|d| d.name).collect();
+        let chosen = kinds.iter().position(|d| d.id == object.kind);
+        let help = chosen.map_or("", |k| kinds[k].summary);
+        let caption = Caption { label: "type", help, ..Caption::default() };
+        if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
+            actions.push(set(ObjectField::Kind(kinds[k].id.to_owned())));
+        }
+        let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
+        let size_limits = limits::object_size(lab.document.scene_size);
+        let default = f64::from(crate::scene::DEFAULT_SIZE);
+        if let Some(v) =
+            knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
+        {
+            actions.push(set(ObjectField::Size(v as f32)));
+        }
+        let caption = Caption {
+            label: "position",
+            unit: "m",
+            help: "Position of the centre; y is up, the origin is a corner of the room.",
+            ..Caption::default()
+        };
+        if let Some(p) = knob::vector_knob(
+            ui,
+            "position",
+            &caption,
+            object.position,
+            &position_limits(lab.document.scene_size),
+        ) {
+            actions.push(set(ObjectField::Position(p)));
+        }
+        let caption = Caption {
+            label: "rotation",
+            unit: "°",
+            help: "Turned about x first, then y, then z of the room.",
+            ..Caption::default()
+        };
+        if let Some(r) =
+            knob::vector_knob(ui, "rotation", &caption, object.rotation, &thrice(limits::rotation()))
+        {
+            actions.push(set(ObjectField::Rotation(r)));
+        }
+        if let Some(shape) = registry.shape(&object.kind) {
+            let d = shape.declaration;
+            let caption = Caption { label: "tessellation", help: d.tessellation_help, ..Caption::default() };
+            let value = f64::from(shape.tessellation(object.tessellation));
+            let default = f64::from(d.default_tessellation);
+            if let Some(v) = knob::number_knob(
+                ui,
+                "tessellation",
+                &caption,
+                value,
+                Some(default),
+                &limits::tessellation(d),
+            ) {
+                actions.push(set(ObjectField::Tessellation(
+                    Some(v as u32).filter(|n| *n != d.default_tessellation),
+                )));
+            }
+        }
+    });
+}
+
+/// The values derived from those of the knobs.
+fn readouts(ui: &mut Ui, lab: &Lab, model: &ModelEntry, object: &Object) {
+    let readouts = model.instantiate(&object.material, lab.document.display.encoding).readouts();
+    if readouts.is_empty() {
+        return;
+    }
+    ui.add_space(2.0);
+    ui.label(theme::small(ui, "Derived values"));
+    for readout in &readouts {
+        knob::readout(ui, readout);
+    }
+    ui.add_space(4.0);
+}

@@ -1,0 +1,69 @@
+//! The properties of the observer.
+
+use bevy_egui::egui::{RichText, Ui};
+
+use super::part::{direction_knob, position_limits, section};
+use crate::{
+    document::{Edit, limits},
+    panel::{
+        knob::{self, Caption},
+        state::{Action, Lab},
+        theme,
+    },
+    scene::Observer,
+};
+
+pub(super) fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
+    let o = lab.document.observer;
+    let set = |o: Observer| Action::Edit(Edit::Observer(o));
+    ui.label(RichText::new("Observer").heading());
+    ui.label(theme::small(ui, "The camera of the scene"));
+    ui.add_space(6.0);
+    section(ui, "Position", true, |ui| {
+        let caption = Caption {
+            label: "position",
+            unit: "m",
+            help: "Position of the eye; y is up, the origin is a corner of the room.",
+            ..Caption::default()
+        };
+        if let Some(position) =
+            knob::vector_knob(ui, "position", &caption, o.position, &position_limits(lab.document.scene_size))
+        {
+            actions.push(set(Observer { position, ..o }));
+        }
+        if let Some(direction) =
+            direction_knob(ui, o.direction, "Viewing direction; its length does not matter.")
+        {
+            actions.push(set(Observer { direction, ..o }));
+        }
+        let caption = Caption {
+            label: "field of view",
+            unit: "°",
+            help: "The angle between the lower and the upper edge of the picture.",
+            ..Caption::default()
+        };
+        let default = Some(f64::from(crate::scene::DEFAULT_FIELD_OF_VIEW));
+        if let Some(v) = knob::number_knob(
+            ui,
+            "field of view",
+            &caption,
+            f64::from(o.field_of_view),
+            default,
+            &limits::field_of_view(),
+        ) {
+            actions.push(set(Observer { field_of_view: v as f32, ..o }));
+        }
+        ui.horizontal_wrapped(|ui| {
+            if ui.button("View as observer").on_hover_text("Move the camera to the observer (H)").clicked() {
+                actions.push(Action::HomeView);
+            }
+            if ui
+                .button("Set observer to this view")
+                .on_hover_text("Make the place of the camera that of the observer")
+                .clicked()
+            {
+                actions.push(Action::ObserverFromView);
+            }
+        });
+    });
+}

@@ -1,0 +1,135 @@
+//! Widgets that all parts of the scene share: headings, groups, text fields, knobs for positions and directions.
+
+use bevy_egui::egui::{self, Align, CollapsingHeader, Key, Layout, RichText, TextEdit, Ui, WidgetInfo};
+use glam::Vec3;
+
+use crate::{
+    document::{
+        Edit, LightField, ObjectField, Selection,
+        limits::{self, Limits},
+    },
+    panel::{
+        icon::{self, Icon},
+        knob::{self, Caption},
+        state::{Action, Lab},
+        theme::{self, Palette},
+    },
+    registry::Registry,
+    scene::SceneSize,
+};
+
+/// A group with a heading; folds.
+pub(super) fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
+    ui.add_space(4.0);
+    let line = ui.available_rect_before_wrap();
+    let palette = Palette::here(ui);
+    ui.painter().hline(line.x_range(), line.top(), egui::Stroke::new(1.0, palette.line));
+    ui.add_space(4.0);
+    let heading = theme::strong(ui, title);
+    ui.scope(|ui| {
+        ui.spacing_mut().indent = 16.0;
+        ui.visuals_mut().indent_has_left_vline = false;
+        CollapsingHeader::new(heading).id_salt(title).default_open(open).show_unindented(ui, |ui| {
+            ui.add_space(2.0);
+            add(ui);
+        });
+    });
+}
+
+/// The name of a part, and buttons that focus, duplicate and delete it.
+pub(super) fn header(
+    ui: &mut Ui,
+    lab: &Lab,
+    registry: &Registry,
+    part: Selection,
+    own: Option<&str>,
+    actions: &mut Vec<Action>,
+) {
+    let name = lab.name_of(part, registry);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let width = ui.available_width() - 76.0;
+        let rename = move |text: String| match part {
+            Selection::Light(i) => Action::Edit(Edit::Light(i, LightField::Name(text))),
+            Selection::Object(i) => Action::Edit(Edit::Object(i, ObjectField::Name(text))),
+            _ => Action::Edit(Edit::SceneName(text)),
+        };
+        text_field(ui, "name", "Name", own.unwrap_or_default(), &name, width, true, |text| {
+            actions.push(rename(text))
+        });
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if icon::button(ui, Icon::Bin, &format!("Delete {name}")).clicked() {
+                actions.push(Action::Remove(part));
+            }
+            if icon::button(ui, Icon::Duplicate, &format!("Duplicate {name}")).clicked() {
+                actions.push(Action::Duplicate(part));
+            }
+            if icon::button(ui, Icon::Target, &format!("Look at {name}  (C)")).clicked() {
+                actions.push(Action::FocusSelection);
+            }
+        });
+    });
+    ui.add_space(4.0);
+}
+
+/// A field for text; the change counts when the field is left.
+pub(super) fn text_field(
+    ui: &mut Ui,
+    salt: &str,
+    label: &str,
+    value: &str,
+    hint: &str,
+    width: f32,
+    heading: bool,
+    mut set: impl FnMut(String),
+) {
+    let palette = Palette::here(ui);
+    let id = ui.make_persistent_id(salt);
+    let draft_id = id.with("draft");
+    let mut text: String = ui.data(|d| d.get_temp(draft_id)).unwrap_or_else(|| value.to_owned());
+    let focused = ui.memory(|m| m.has_focus(id));
+    // A stroke of another width would move what stands below.
+    let stroke = egui::Stroke::new(1.0, if focused { palette.accent } else { palette.line });
+    let style = if heading { egui::TextStyle::Heading } else { egui::TextStyle::Body };
+    let edit = TextEdit::singleline(&mut text)
+        .id(id)
+        .font(style)
+        .hint_text(if heading { RichText::new(hint).heading() } else { RichText::new(hint) })
+        .desired_width(width - 14.0)
+        .frame(
+            egui::Frame::new()
+                .fill(palette.field)
+                .stroke(stroke)
+                .corner_radius(4.0)
+                .inner_margin(egui::Margin::symmetric(6, 3)),
+        );
+    let response = ui.add(edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(true, value, &text, hint);
+        info.label = Some(label.to_owned());
+        info
+    });
+    if response.changed() {
+        ui.data_mut(|d| d.insert_temp(draft_id, text.clone()));
+    }
+    if response.lost_focus() {
+        ui.data_mut(|d| d.remove::<String>(draft_id));
+        if !ui.input(|i| i.key_pressed(Key::Escape)) && text.trim() != value {
+            set(text);
+        }
+    }
+    response.on_hover_text(label);
+}
+
+pub(super) fn position_limits(size: SceneSize) -> [Limits; 3] {
+    [0, 1, 2].map(|axis| limits::position(size, axis))
+}
+
+pub(super) fn thrice(limits: Limits) -> [Limits; 3] {
+    [limits.clone(), limits.clone(), limits]
+}
+
+pub(super) fn direction_knob(ui: &mut Ui, value: Vec3, help: &str) -> Option<Vec3> {
+    let caption = Caption { label: "direction", help, ..Caption::default() };
+    knob::vector_knob(ui, "direction", &caption, value, &thrice(limits::direction()))
+}

@@ -1,0 +1,134 @@
+//! Knobs for one of several choices.
+
+use bevy_egui::egui::{
+    self, Button, Id, Popup, PopupCloseBehavior, RectAlign, Response, RichText, Ui, WidgetInfo, WidgetType,
+    vec2,
+};
+
+use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
+use crate::panel::{
+    chooser, maths,
+    theme::{self, Palette},
+};
+
+/// One of many: word at the left; the button at the right opens `list`, until that returns something. `list`
+/// gets an id of its own.
+pub fn list_knob<R>(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    shown: &str,
+    list: impl FnOnce(&mut Ui, Id) -> Option<R>,
+) -> Option<R> {
+    let palette = Palette::here(ui);
+    let id = ui.make_persistent_id(salt);
+    let (label, button) = head(ui, caption, Words::Leave(CHOICE), |ui| {
+        ui.add_space(22.0);
+        let width = (ui.available_width() - 4.0).clamp(80.0, 190.0);
+        let button = Button::new(shown).right_text(RichText::new("▾").color(palette.weak)).truncate();
+        let button = ui.add_sized(vec2(width, 24.0), button);
+        button.widget_info(|| {
+            WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
+        });
+        button
+    });
+    explain(label, |ui| tooltip(ui, caption, "", ""));
+    let out = drop_down(&button, id, list);
+    if out.is_some() {
+        Popup::close_id(ui.ctx(), id);
+    }
+    ui.add_space(4.0);
+    out
+}
+
+/// The popup of a button: `list`, which gets an id of its own.
+pub(in crate::panel) fn drop_down<R>(
+    button: &Response,
+    id: Id,
+    list: impl FnOnce(&mut Ui, Id) -> Option<R>,
+) -> Option<R> {
+    let width = 352.0;
+    let list_id = id.with("list");
+    let popup = Popup::from_toggle_button_response(button)
+        .id(id)
+        .align(RectAlign::BOTTOM_END)
+        .width(width)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.set_width(width);
+            list(ui, list_id)
+        });
+    if popup.is_none() {
+        chooser::forget(&button.ctx, list_id);
+    }
+    popup.and_then(|popup| popup.inner)
+}
+
+/// One of several: word at the left, list at the right. Returns the index of a new choice.
+pub fn choice_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    chosen: usize,
+    options: &[&str],
+) -> Option<usize> {
+    let plain: Vec<_> = options.iter().map(|name| [*name, "", ""]).collect();
+    choice_with_help(ui, salt, caption, chosen, &plain)
+}
+
+/// The same with tooltips: each option is a name, its author and a summary; the latter two may be empty.
+pub fn choice_with_help(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    chosen: usize,
+    options: &[[&str; 3]],
+) -> Option<usize> {
+    let tip = |ui: &mut Ui, [name, author, summary]: [&str; 3]| {
+        ui.set_max_width(300.0);
+        ui.label(theme::strong(ui, name));
+        ui.label(summary);
+        if !author.is_empty() {
+            ui.label(theme::small(ui, author));
+        }
+    };
+    let mut out = None;
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        let id = ui.make_persistent_id(salt);
+        let (label, ()) = head(ui, caption, Words::Leave(CHOICE), |ui| {
+            ui.add_space(22.0);
+            let width = (ui.available_width() - 4.0).clamp(80.0, 190.0);
+            let now = options.get(chosen).copied();
+            let [shown, _, summary] = now.unwrap_or(["–", "", ""]);
+            let combo = egui::ComboBox::from_id_salt(id)
+                .width(width)
+                .truncate()
+                .selected_text(shown)
+                .show_ui(ui, |ui| {
+                    for (i, option) in options.iter().enumerate() {
+                        let response = ui.selectable_label(i == chosen, option[0]);
+                        if response.clicked() && i != chosen {
+                            out = Some(i);
+                        }
+                        if !option[2].is_empty() {
+                            response.on_hover_ui(|ui| tip(ui, *option));
+                        }
+                    }
+                });
+            combo.response.widget_info(|| {
+                WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
+            });
+            if caption.disabled.is_some() {
+                explain(combo.response, |ui| tooltip(ui, caption, "", ""));
+            } else if !summary.is_empty() {
+                combo.response.on_hover_ui(|ui| now.into_iter().for_each(|now| tip(ui, now)));
+            }
+        });
+        if label.hovered() && !caption.symbol.is_empty() {
+            maths::highlight(ui.ctx(), caption.symbol);
+        }
+        explain(label, |ui| tooltip(ui, caption, "", ""));
+        ui.add_space(4.0);
+    });
+    out
+}

@@ -1,0 +1,146 @@
+//! Knobs for colours.
+
+use bevy_egui::egui::{self, Color32, Id, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, vec2};
+
+use super::{
+    field::{complaint, field, text_field},
+    line::{Caption, NUMBER, Words, capitalised, explain, head, tooltip, unit},
+    vector::axis_letter,
+};
+use crate::{
+    document::limits::Limits,
+    panel::{maths, theme::Palette},
+};
+
+/// A knob for a whole colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
+pub fn colour_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: [u8; 3],
+    default: Option<[u8; 3]>,
+) -> Option<[u8; 3]> {
+    let id = ui.make_persistent_id(salt);
+    let mut out = None;
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let rule = "three whole numbers from 0 to 255: red, green, blue";
+        let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
+        let [r, g, b] = value;
+        let (label, hex) = head(ui, caption, Words::Leave(NUMBER), |ui| {
+            unit(ui, "");
+            let name = format!("{} in hexadecimal", caption.label);
+            let shown = format!("#{r:02x}{g:02x}{b:02x}");
+            let read = |text: &str| {
+                parse_hex(text)
+                    .ok_or_else(|| "is not a colour; must be # and six hexadecimal digits".to_owned())
+            };
+            text_field(ui, id.with("hex"), &name, &shown, "", 72.0, read)
+        });
+        out = hex.value;
+        let mut hot = label.hovered();
+        let rule = format!("{rule}, encoded as sRGB. Default {default_text}");
+        explain(label, |ui| tooltip(ui, caption, &rule, ""));
+        let mut wrong = hex.error.map(|e| (e, hex.response));
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let mut rgb = value;
+            let swatch = swatch(ui, id.with("swatch"), caption.label, &mut rgb, default);
+            hot |= swatch.hovered();
+            if rgb != value {
+                out = Some(rgb);
+            }
+            let limits = Limits::between(0.0, 255.0).whole();
+            for (channel, letter) in ["R", "G", "B"].into_iter().enumerate() {
+                let name = format!("{}: {}", caption.label, ["red", "green", "blue"][channel]);
+                axis_letter(ui, letter, &name, &limits, f64::from(value[channel]), |v| {
+                    let mut rgb = value;
+                    rgb[channel] = v as u8;
+                    out = Some(rgb);
+                });
+                let f = field(ui, id.with(channel), &name, f64::from(value[channel]), &limits, 40.0);
+                if let Some(v) = f.value {
+                    let mut rgb = value;
+                    rgb[channel] = v as u8;
+                    out = Some(rgb);
+                }
+                wrong = wrong.take().or(f.error.map(|e| (e, f.response)));
+            }
+            unit(ui, caption.unit);
+        });
+        if hot && !caption.symbol.is_empty() {
+            maths::highlight(ui.ctx(), caption.symbol);
+        }
+        if let Some((error, field)) = wrong {
+            complaint(ui, &field, &capitalised(&error), &format!("{r}, {g}, {b}"));
+        }
+        ui.add_space(6.0);
+    });
+    out.filter(|c| *c != value)
+}
+
+/// The colour itself; a click opens the picker, a double-click sets the default.
+fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u8; 3]>) -> Response {
+    let palette = Palette::here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0), Sense::click());
+    let says = format!("{name}: choose a colour");
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::ColorButton, ui.is_enabled(), &says));
+    let [r, g, b] = *rgb;
+    let hot = response.hovered() || response.has_focus();
+    let stroke = Stroke::new(if hot { 1.5 } else { 1.0 }, if hot { palette.accent } else { palette.weak });
+    ui.painter().rect(rect, 4.0, Color32::from_rgb(r, g, b), stroke, egui::StrokeKind::Inside);
+    if response.double_clicked()
+        && let Some(default) = default
+    {
+        *rgb = default;
+        egui::Popup::close_id(ui.ctx(), id);
+        return response;
+    }
+    egui::Popup::from_toggle_button_response(&response)
+        .id(id)
+        .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.spacing_mut().slider_width = 220.0;
+            let mut colour = Color32::from_rgb(rgb[0], rgb[1], rgb[2]);
+            if egui::color_picker::color_picker_color32(ui, &mut colour, egui::color_picker::Alpha::Opaque) {
+                *rgb = [colour.r(), colour.g(), colour.b()];
+            }
+        });
+    response.on_hover_text("Choose a colour. Double-click: default.")
+}
+
+/// A colour that cannot be edited here.
+pub fn colour_sample(ui: &mut Ui, rgb: [u8; 3]) {
+    let palette = Palette::here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0), Sense::hover());
+    let [r, g, b] = rgb;
+    let stroke = Stroke::new(1.0, palette.line);
+    ui.painter().rect(rect, 4.0, Color32::from_rgb(r, g, b), stroke, egui::StrokeKind::Inside);
+    response.on_hover_text(format!("The colour in sRGB: {r}, {g}, {b}"));
+}
+
+/// Reads `#rrggbb`, `rrggbb` or `#rgb`.
+#[must_use]
+pub fn parse_hex(text: &str) -> Option<[u8; 3]> {
+    let digits = text.trim().trim_start_matches('#');
+    // Four and eight digits would have an opacity.
+    if !digits.is_ascii() || ![3, 6].contains(&digits.len()) {
+        return None;
+    }
+    let [r, g, b, _] = Color32::from_hex(&format!("#{digits}")).ok()?.to_array();
+    Some([r, g, b])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_read_in_hexadecimal() {
+        assert_eq!(parse_hex("#ff8000"), Some([255, 128, 0]));
+        assert_eq!(parse_hex("F80"), Some([255, 136, 0]));
+        for nonsense in ["", "#ff80", "#gg0000", "ü1234"] {
+            assert_eq!(parse_hex(nonsense), None, "{nonsense:?}");
+        }
+    }
+}

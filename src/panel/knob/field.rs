@@ -1,0 +1,251 @@
+//! Fields to type into.
+//!
+//! Text that is not legal stays in the field, in the error style and with the rule below it, until it is
+//! corrected or given up with Escape.
+
+use bevy_egui::egui::{
+    self, Align, Align2, Area, Id, Key, Order, Response, RichText, Stroke, TextEdit, Ui, WidgetInfo, vec2,
+};
+
+use super::slider::{nudge, round_to};
+use crate::{
+    document::limits::{Limits, number},
+    panel::theme::Palette,
+};
+
+/// Text that is being typed into a field.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Draft {
+    text: String,
+    /// The value when typing began; Escape goes back to it.
+    before: f64,
+    /// The value that the field last yielded, to notice a change from elsewhere.
+    last: f64,
+}
+
+/// The response of a field, and the value or the error in it.
+#[derive(Debug)]
+pub struct Field<T = f64> {
+    /// The response of the text field.
+    pub response: Response,
+    /// A new legal value.
+    pub value: Option<T>,
+    /// The rule that the text in the field breaks.
+    pub error: Option<String>,
+}
+
+/// Reads a number as people type it: with a point or a comma, with a real minus sign.
+#[must_use]
+pub fn parse(text: &str) -> Option<f64> {
+    let text = text.trim().replace('−', "-").replace(',', ".");
+    text.parse::<f64>().ok().filter(|v| v.is_finite())
+}
+
+/// A field for one number. `name` is for screen readers.
+pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width: f32) -> Field {
+    let palette = Palette::here(ui);
+    let draft_id = id.with("draft");
+    let mut draft: Option<Draft> = ui.data(|d| d.get_temp(draft_id));
+    // Somebody else changed the value: what was typed is about another one.
+    if draft.as_ref().is_some_and(|d| d.last != value) {
+        draft = None;
+    }
+    let mut text = draft.as_ref().map_or_else(|| number(value), |d| d.text.clone());
+    let problem = |text: &str| match parse(text) {
+        Some(v) if limits.allows(v) => None,
+        Some(_) => Some(format!("must be {}", limits.rule())),
+        None => Some(format!("is not a number; must be {}", limits.rule())),
+    };
+    let wrong = draft.as_ref().and_then(|d| problem(&d.text));
+
+    let focused = ui.memory(|m| m.has_focus(id));
+    // The arrow keys turn the value; taken before the text field sees them.
+    let mut step = 0.0;
+    if focused {
+        ui.input_mut(|i| {
+            for (key, sign) in [(Key::ArrowUp, 1.0), (Key::ArrowDown, -1.0)] {
+                for (modifiers, factor) in [(egui::Modifiers::SHIFT, 10.0), (egui::Modifiers::NONE, 1.0)] {
+                    if i.consume_key(modifiers, key) {
+                        step += sign * factor;
+                    }
+                }
+            }
+        });
+    }
+
+    let stroke = match (&wrong, focused) {
+        (Some(_), _) => Stroke::new(1.5, palette.error),
+        (None, true) => Stroke::new(1.5, palette.accent),
+        (None, false) => Stroke::new(1.0, palette.line),
+    };
+    let edit = TextEdit::singleline(&mut text)
+        .id(id)
+        .desired_width(width - 10.0)
+        .min_size(vec2(width, 22.0))
+        .vertical_align(Align::Center)
+        .horizontal_align(Align::Max)
+        .clip_text(true)
+        .text_color(if wrong.is_some() { palette.error } else { palette.text })
+        .frame(field_frame(&palette, stroke));
+    let response = ui.add_sized(vec2(width, 22.0), edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(ui.is_enabled(), number(value), &text, "");
+        info.label = Some(name.to_owned());
+        info
+    });
+
+    let mut out = None;
+    if response.gained_focus() {
+        draft = Some(Draft { text: text.clone(), before: value, last: value });
+        select_all(ui, id, &text);
+    }
+    if response.changed() {
+        let d = draft.get_or_insert_with(|| Draft { text: String::new(), before: value, last: value });
+        d.text.clone_from(&text);
+        // What was typed on the way to something illegal (3, 30, 300) was never meant: the value from
+        // before counts again.
+        let legal = parse(&text).filter(|v| limits.allows(*v));
+        out = legal.or_else(|| Some(d.before).filter(|v| *v != value && limits.allows(*v)));
+    }
+    if step != 0.0 {
+        let base = parse(&text).filter(|v| limits.allows(*v)).unwrap_or(value);
+        let v = round_to(base + step * nudge(limits, base), nudge(limits, base))
+            .clamp(limits.min.max(-1e12), limits.max);
+        let v = if limits.is_above_zero() && v <= limits.min { base } else { v };
+        if limits.allows(v) {
+            out = Some(v);
+            let d = draft.get_or_insert_with(|| Draft { before: value, last: value, text: String::new() });
+            d.text = number(v);
+        }
+    }
+    // egui itself takes the focus away at Escape.
+    let escape = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape));
+    if escape && let Some(d) = draft.take() {
+        out = Some(d.before).filter(|v| *v != value && limits.allows(*v));
+    } else if response.lost_focus() && draft.as_ref().is_some_and(|d| problem(&d.text).is_none()) {
+        draft = None;
+    }
+    if let (Some(v), Some(d)) = (out, draft.as_mut()) {
+        d.last = f64::from(v as f32);
+    }
+    let error = draft.as_ref().and_then(|d| problem(&d.text));
+    ui.data_mut(|d| match draft {
+        Some(draft) => {
+            d.insert_temp(draft_id, draft);
+        }
+        None => d.remove::<Draft>(draft_id),
+    });
+    Field { response, value: out.filter(|v| *v as f32 != value as f32 || limits.whole && *v != value), error }
+}
+
+fn select_all(ui: &Ui, id: Id, text: &str) {
+    use egui::text::{CCursor, CCursorRange};
+    if let Some(mut state) = egui::text_edit::TextEditState::load(ui.ctx(), id) {
+        let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
+        state.cursor.set_char_range(Some(all));
+        state.store(ui.ctx(), id);
+    }
+}
+
+/// The error below a field. It lies over the widgets there, so that nothing moves while one types, and goes when
+/// the focus and the pointer do; the field stays red.
+pub(super) fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
+    if !(field.has_focus() || field.hovered()) || !ui.is_rect_visible(field.rect) {
+        return;
+    }
+    let palette = Palette::here(ui);
+    let gap = vec2(0.0, 4.0);
+    let below = field.rect.bottom() + 56.0 < ui.ctx().content_rect().bottom();
+    let (pivot, at) = if below {
+        (Align2::RIGHT_TOP, field.rect.right_bottom() + gap)
+    } else {
+        (Align2::RIGHT_BOTTOM, field.rect.right_top() - gap)
+    };
+    let area = Area::new(field.id.with("complaint")).order(Order::Tooltip).interactable(false);
+    area.pivot(pivot).fixed_pos(at).constrain(true).show(ui.ctx(), |ui| {
+        egui::Frame::popup(ui.style()).stroke(Stroke::new(1.0, palette.error)).show(ui, |ui| {
+            ui.set_max_width(300.0);
+            let text = format!("{error}; the picture keeps {kept}");
+            ui.add(egui::Label::new(RichText::new(text).small().color(palette.error)).wrap());
+        });
+    });
+}
+
+/// The box around what is typed.
+fn field_frame(palette: &Palette, stroke: Stroke) -> egui::Frame {
+    egui::Frame::new()
+        .fill(palette.field)
+        // A stroke of another width would move what stands below.
+        .stroke(Stroke::new(1.0, stroke.color))
+        .corner_radius(4.0)
+        .inner_margin(egui::Margin::symmetric(4, 2))
+}
+
+/// A field for a value that is not one number: `read` parses the text or explains its error. Illegal text is
+/// dropped when the field loses the focus. `name` is for screen readers.
+pub(super) fn text_field<T>(
+    ui: &mut Ui,
+    id: Id,
+    name: &str,
+    shown: &str,
+    hint: &str,
+    width: f32,
+    read: impl Fn(&str) -> Result<T, String>,
+) -> Field<T> {
+    let palette = Palette::here(ui);
+    let draft_id = id.with("draft");
+    let draft: Option<String> = ui.data(|d| d.get_temp(draft_id));
+    let focused = ui.memory(|m| m.has_focus(id));
+    let mut text = draft.filter(|_| focused).unwrap_or_else(|| shown.to_owned());
+    let wrong = focused && text != shown && read(&text).is_err();
+    let stroke = if wrong {
+        Stroke::new(1.5, palette.error)
+    } else if focused {
+        Stroke::new(1.5, palette.accent)
+    } else {
+        Stroke::new(1.0, palette.line)
+    };
+    let edit = TextEdit::singleline(&mut text)
+        .id(id)
+        .hint_text(RichText::new(hint).color(palette.weak))
+        .desired_width(width - 10.0)
+        .min_size(vec2(width, 22.0))
+        .vertical_align(Align::Center)
+        .horizontal_align(Align::Max)
+        .text_color(if wrong { palette.error } else { palette.text })
+        .frame(field_frame(&palette, stroke));
+    let response = ui.add_sized(vec2(width, 22.0), edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(ui.is_enabled(), shown, &text, hint);
+        info.label = Some(name.to_owned());
+        info
+    });
+    if response.gained_focus() {
+        select_all(ui, id, &text);
+    }
+    let mut value = None;
+    if response.changed() {
+        value = read(&text).ok();
+        ui.data_mut(|d| d.insert_temp(draft_id, text.clone()));
+    }
+    if response.lost_focus() {
+        ui.data_mut(|d| d.remove::<String>(draft_id));
+    }
+    let error = if wrong { read(&text).err() } else { None };
+    Field { response, value, error }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_as_people_type_them() {
+        assert_eq!(parse(" 0,5 "), Some(0.5));
+        assert_eq!(parse("−3"), Some(-3.0));
+        assert_eq!(parse("1e-3"), Some(0.001));
+        for nonsense in ["", "-", "a", "1 2", "inf", "nan"] {
+            assert_eq!(parse(nonsense), None, "{nonsense:?}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The line of a knob: symbol and word at the left, the widgets at the right, and the tooltip.
+
+use bevy_egui::egui::{self, Align, Response, RichText, Sense, TextStyle, Ui, pos2, vec2};
+
+use crate::{
+    document::limits::{Limits, number},
+    panel::{
+        maths,
+        theme::{self, Palette},
+    },
+};
+
+/// The words and symbols of a knob.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Caption<'a> {
+    /// The symbol in the equation; empty for none.
+    pub symbol: &'a str,
+    /// The word.
+    pub label: &'a str,
+    /// The unit; empty for none.
+    pub unit: &'a str,
+    /// Its effect, for the tooltip.
+    pub help: &'a str,
+    /// The reason why it is disabled, if it is.
+    pub disabled: Option<&'a str>,
+}
+
+/// The room of symbol and word in the line of a knob.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Words {
+    /// As much as they need; these points are left for the rest.
+    Leave(f32),
+    /// A column as wide in every knob, so that sliders begin in line.
+    Column,
+}
+
+/// The line of a knob: symbol and word at the left, the widgets of `right` at the right.
+pub(super) fn head<R>(
+    ui: &mut Ui,
+    caption: &Caption,
+    words: Words,
+    right: impl FnOnce(&mut Ui) -> R,
+) -> (Response, R) {
+    let palette = Palette::here(ui);
+    let marked = !caption.symbol.is_empty()
+        && maths::highlighted(ui.ctx()).is_some_and(|m| maths::same_symbol(&m, caption.symbol));
+    let row = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let height = 22.0;
+        let symbol_size = 16.0;
+        let symbol_column = if caption.symbol.is_empty() {
+            0.0
+        } else {
+            (maths::symbol_width(ui, caption.symbol, symbol_size) + 6.0).max(28.0)
+        };
+        let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
+        let room = match words {
+            Words::Leave(points) => (ui.available_width() - points).max(symbol_column + 40.0),
+            Words::Column => (COLUMN * ui.available_width()).max(symbol_column + 40.0).floor(),
+        };
+        // A parameter without a symbol of its own has its name for one, and need not say it twice.
+        let word = if caption.symbol == caption.label { "" } else { caption.label };
+        let galley = theme::elided(ui, word, TextStyle::Body, colour, room - symbol_column);
+        let width = match words {
+            Words::Leave(_) => symbol_column + galley.size().x,
+            Words::Column => room,
+        };
+        let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
+        if marked {
+            ui.painter().rect_filled(rect.expand2(vec2(4.0, 0.0)), 3.0, palette.chosen);
+        }
+        if !caption.symbol.is_empty() {
+            let at = pos2(rect.left(), rect.center().y + 5.0);
+            maths::paint_symbol(ui, at, caption.symbol, symbol_size, colour);
+        }
+        let at = pos2(rect.left() + symbol_column, rect.center().y - galley.size().y / 2.0);
+        ui.painter().galley(at, galley, colour);
+        (response, ui.with_layout(egui::Layout::right_to_left(Align::Center), right).inner)
+    });
+    row.inner
+}
+
+/// The part of the line that symbol and word take in knobs with a slider.
+const COLUMN: f32 = 0.49;
+
+/// The points that a number and its unit take at the right of a knob.
+pub(super) const NUMBER: f32 = 96.0;
+
+/// The points that a choice takes at the right of a knob.
+pub(super) const CHOICE: f32 = 150.0;
+
+/// The tooltip of a knob: its name, its effect, its range, the default.
+pub(super) fn tooltip(ui: &mut Ui, caption: &Caption, rule: &str, default: &str) {
+    ui.set_max_width(300.0);
+    ui.label(theme::strong(ui, capitalised(caption.label)));
+    if let Some(reason) = caption.disabled {
+        ui.label(RichText::new(format!("{}.", capitalised(reason))).color(Palette::here(ui).warning));
+    }
+    if !caption.help.is_empty() {
+        ui.label(caption.help);
+    }
+    if !rule.is_empty() {
+        ui.label(theme::small(ui, format!("{}.", capitalised(rule))));
+    }
+    if !default.is_empty() {
+        ui.label(theme::small(ui, format!("Default {default}: double-click the slider.")));
+    }
+}
+
+/// The range for the tooltip: the rule, and the ends of the slider if other values can be typed.
+pub(super) fn range(limits: &Limits) -> String {
+    let rule = limits.rule();
+    let (left, right) = (number(limits.slider_min), number(limits.slider_max));
+    match (limits.min < limits.slider_min, limits.max > limits.slider_max) {
+        (false, false) => rule,
+        (false, true) => format!("{rule}. Slider: {left} to {right}. Larger values can be typed"),
+        (true, false) => format!("{rule}. Slider: {left} to {right}. Smaller values can be typed"),
+        (true, true) => format!("{rule}. Slider: {left} to {right}. Other values can be typed"),
+    }
+}
+
+/// A tooltip for a widget that may be disabled.
+pub(super) fn explain(response: Response, tip: impl Fn(&mut Ui)) {
+    response.on_hover_ui(&tip).on_disabled_hover_ui(&tip);
+}
+
+pub(super) fn capitalised(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
+}
+
+/// The unit, outside the field, in a column of its own.
+pub(super) fn unit(ui: &mut Ui, text: &str) {
+    let palette = Palette::here(ui);
+    let font = TextStyle::Small.resolve(ui.style());
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, palette.weak);
+    let width = 18.0_f32.max(galley.size().x);
+    let (rect, _) = ui.allocate_exact_size(vec2(width, 22.0), Sense::hover());
+    ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, palette.weak);
+}

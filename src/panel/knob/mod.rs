@@ -1,0 +1,97 @@
+//! Knobs: widgets that show one value, let it be dragged or typed, and keep it within its limits.
+//!
+//! A knob never yields an illegal value.
+
+use bevy_egui::egui::Ui;
+
+use crate::document::limits::Limits;
+use crate::parameter::{Parameter, ParameterKind, Value};
+
+mod choice;
+mod colour;
+mod field;
+mod line;
+mod number;
+mod readout;
+mod slider;
+mod vector;
+
+pub(super) use choice::drop_down;
+pub use choice::{choice_knob, choice_with_help, list_knob};
+pub use colour::{colour_knob, colour_sample, parse_hex};
+pub use field::{Field, field, parse};
+pub use line::Caption;
+pub use number::{number_knob, number_knob_beside, unit_choice};
+pub use readout::readout;
+pub use vector::{triple_knob, vector_knob};
+
+/// The limits that a declaration gives, for numbers.
+#[must_use]
+pub fn limits_of(parameter: &Parameter) -> Option<Limits> {
+    match parameter.kind {
+        ParameterKind::Number { min, max, .. } => Some(Limits {
+            min: f64::from(min),
+            max: f64::from(max),
+            slider_min: if f64::from(min) < 1e-30 { f64::from(min.min(0.0)) } else { f64::from(min) },
+            slider_max: f64::from(max),
+            whole: false,
+            because: None,
+        }),
+        ParameterKind::Integer { min, max, slider_max, .. } => Some(Limits {
+            min: min as f64,
+            max: max.map_or(f64::INFINITY, |m| m as f64),
+            slider_min: min as f64,
+            slider_max: max.unwrap_or(slider_max).min(slider_max.max(min + 1)) as f64,
+            whole: true,
+            because: None,
+        }),
+        ParameterKind::Colour { .. } | ParameterKind::Triple { .. } | ParameterKind::Choice { .. } => None,
+    }
+}
+
+/// The knob of a declared parameter. Returns a new legal value.
+pub fn parameter_knob(
+    ui: &mut Ui,
+    salt: &str,
+    parameter: &Parameter,
+    value: &Value,
+    disabled: Option<&str>,
+) -> Option<Value> {
+    let caption = Caption {
+        symbol: parameter.symbol,
+        label: parameter.label,
+        unit: parameter.unit,
+        help: parameter.help,
+        disabled,
+    };
+    match (&parameter.kind, value) {
+        (ParameterKind::Number { default, .. }, Value::Number(v)) => {
+            let limits = limits_of(parameter)?;
+            // The limits are f32: a value at an end must not fall outside for being an f64.
+            number_knob(ui, salt, &caption, f64::from(*v), Some(f64::from(*default)), &limits)
+                .map(|v| Value::Number(v as f32))
+                .filter(|v| parameter.allows(v))
+        }
+        (ParameterKind::Integer { default, .. }, Value::Integer(v)) => {
+            let limits = limits_of(parameter)?;
+            number_knob(ui, salt, &caption, *v as f64, Some(*default as f64), &limits)
+                .map(|v| Value::Integer(v as i64))
+                .filter(|v| parameter.allows(v))
+        }
+        (ParameterKind::Colour { default }, Value::Colour(rgb)) => {
+            colour_knob(ui, salt, &caption, *rgb, Some(*default)).map(Value::Colour)
+        }
+        (ParameterKind::Triple { min, max, default }, Value::Triple(v)) => {
+            let limits = Limits::between(f64::from(*min), f64::from(*max));
+            triple_knob(ui, salt, &caption, *v, *default, &limits)
+                .map(Value::Triple)
+                .filter(|v| parameter.allows(v))
+        }
+        (ParameterKind::Choice { options, .. }, Value::Choice(id)) => {
+            let chosen = options.iter().position(|(o, _)| *o == id.as_ref()).unwrap_or(0);
+            let names: Vec<_> = options.iter().map(|(_, name)| *name).collect();
+            choice_knob(ui, salt, &caption, chosen, &names).map(|i| Value::Choice(options[i].0.into()))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,101 @@
+//! Knobs for one number.
+
+use bevy_egui::egui::{self, CursorIcon, Sense, Stroke, TextStyle, Ui, WidgetInfo, WidgetType, vec2};
+
+use super::{
+    field::{complaint, field},
+    line::{Caption, NUMBER, Words, capitalised, explain, head, range, tooltip, unit},
+    slider::slider,
+};
+use crate::{
+    document::limits::{Limits, number},
+    panel::{maths, theme::Palette},
+};
+
+/// The unit as a choice: each option is a sign and a word. As wide as a plain unit, so that fields stay in
+/// line. Returns the index of a new choice.
+pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<usize> {
+    let palette = Palette::here(ui);
+    let [sign, word] = options.get(chosen).copied().unwrap_or(["–", "unknown"]);
+    let (rect, response) = ui.allocate_exact_size(vec2(18.0, 22.0), Sense::click());
+    response
+        .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, ui.is_enabled(), format!("unit: {word}")));
+    let hot = response.hovered() || response.has_focus();
+    let colour = if hot { palette.accent } else { palette.text };
+    let font = TextStyle::Small.resolve(ui.style());
+    let at = rect.center() - vec2(0.0, 3.0);
+    ui.painter().text(at, egui::Align2::CENTER_CENTER, sign, font, colour);
+    let tip = rect.center_bottom() - vec2(0.0, 2.0);
+    let corners = [tip, tip + vec2(-3.5, -4.0), tip + vec2(3.5, -4.0)];
+    ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), colour, Stroke::NONE));
+    let mut out = None;
+    egui::Popup::menu(&response).show(|ui| {
+        for (i, [sign, word]) in options.iter().enumerate() {
+            if ui.selectable_label(i == chosen, format!("{sign}  {word}")).clicked() && i != chosen {
+                out = Some(i);
+            }
+        }
+    });
+    response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text(format!("In {word}. Choose another unit: the light stays the same."));
+    out
+}
+
+/// A knob for a number: returns a new legal value.
+pub fn number_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: f64,
+    default: Option<f64>,
+    limits: &Limits,
+) -> Option<f64> {
+    number_knob_beside(ui, salt, caption, value, default, limits, |ui| unit(ui, caption.unit))
+}
+
+/// The same with other widgets in the place of the unit.
+pub fn number_knob_beside(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: f64,
+    default: Option<f64>,
+    limits: &Limits,
+    beside: impl FnOnce(&mut Ui),
+) -> Option<f64> {
+    let id = ui.make_persistent_id(salt);
+    let mut out = None;
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
+        let words = if finite { Words::Column } else { Words::Leave(NUMBER) };
+        let (label, (field, slider)) = head(ui, caption, words, |ui| {
+            beside(ui);
+            let field = field(ui, id, caption.label, value, limits, 56.0);
+            let width = (ui.available_width() - 2.0).max(24.0);
+            (field, finite.then(|| slider(ui, caption.label, value, default, limits, width)))
+        });
+        out = field.value;
+        let mut hot = label.hovered() || field.response.hovered();
+        let (rule, default_text) = (range(limits), default.map(number).unwrap_or_default());
+        let tip = |ui: &mut Ui| tooltip(ui, caption, &rule, &default_text);
+        explain(label, tip);
+        if let Some((slider, new)) = slider {
+            out = new.or(out);
+            hot |= slider.hovered() || slider.dragged() || slider.has_focus();
+            explain(slider, tip);
+        }
+        if hot && !caption.symbol.is_empty() {
+            maths::highlight(ui.ctx(), caption.symbol);
+        }
+        match &field.error {
+            Some(error) => complaint(ui, &field.response, &capitalised(error), &number(value)),
+            // While one types it would hide what is below.
+            None if field.response.has_focus() => {}
+            None => explain(field.response, tip),
+        }
+        ui.add_space(3.0);
+    });
+    out
+}

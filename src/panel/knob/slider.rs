@@ -1,0 +1,156 @@
+//! The slider of a number.
+
+use bevy_egui::egui::{self, CursorIcon, Key, Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+use crate::{document::limits::Limits, panel::theme::Palette};
+
+/// The step of an arrow key: about a hundredth of the range, a round number.
+pub(super) fn nudge(limits: &Limits, value: f64) -> f64 {
+    if limits.whole {
+        return 1.0;
+    }
+    let range =
+        if curved(limits) { value.abs().max(1.0) * 10.0 } else { limits.slider_max - limits.slider_min };
+    if range.is_finite() && range > 0.0 { 10f64.powf((range / 100.0).log10().round()) } else { 0.1 }
+}
+
+pub(super) fn round_to(value: f64, step: f64) -> f64 {
+    let rounded = (value / step).round() * step;
+    // Powers of ten below one are not exact in binary: cut what the multiplication added.
+    (rounded * 1e9).round() / 1e9
+}
+
+/// True if the slider spends more of its length on small values.
+fn curved(limits: &Limits) -> bool {
+    limits.slider_min >= 0.0 && limits.slider_max - limits.slider_min > 60.0 && limits.slider_max > 64.0
+}
+
+const CURVE: f64 = 2.5;
+
+fn to_slider(limits: &Limits, value: f64) -> f64 {
+    let t = ((value - limits.slider_min) / (limits.slider_max - limits.slider_min)).clamp(0.0, 1.0);
+    if curved(limits) { t.powf(1.0 / CURVE) } else { t }
+}
+
+fn from_slider(limits: &Limits, t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    let shaped = if curved(limits) { t.powf(CURVE) } else { t };
+    let value = limits.slider_min + shaped * (limits.slider_max - limits.slider_min);
+    let range = limits.slider_max - limits.slider_min;
+    let fine = if curved(limits) { value.abs().max(range / 1000.0) } else { range };
+    let step = if limits.whole { 1.0 } else { 10f64.powf((fine / 100.0).log10().floor()) };
+    let value = round_to(value, step).clamp(limits.min, limits.max);
+    if limits.is_above_zero() && value < step { step.min(limits.max) } else { value }
+}
+
+/// A slider. Double-click sets the default; the arrow keys step; Home and End go to the ends.
+pub(super) fn slider(
+    ui: &mut Ui,
+    name: &str,
+    value: f64,
+    default: Option<f64>,
+    limits: &Limits,
+    width: f32,
+) -> (Response, Option<f64>) {
+    let palette = Palette::here(ui);
+    let height = 16.0;
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), value, name));
+    let radius = 6.0;
+    let rail = Rect::from_min_max(
+        pos2(rect.left() + radius, rect.center().y - 1.5),
+        pos2(rect.right() - radius, rect.center().y + 1.5),
+    );
+    let mut out = None;
+    if let Some(pointer) = response.interact_pointer_pos()
+        && (response.dragged() || response.clicked())
+    {
+        let t = f64::from((pointer.x - rail.left()) / rail.width());
+        out = Some(from_slider(limits, t));
+    }
+    if response.clicked() || response.drag_started() {
+        response.request_focus();
+    }
+    if response.double_clicked()
+        && let Some(default) = default
+    {
+        out = Some(default);
+    }
+    if response.has_focus() {
+        let filter = egui::EventFilter { horizontal_arrows: true, ..Default::default() };
+        ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+        ui.input(|i| {
+            let factor = if i.modifiers.shift { 10.0 } else { 1.0 };
+            let presses = i.num_presses(Key::ArrowRight) as f64 - i.num_presses(Key::ArrowLeft) as f64;
+            if presses != 0.0 {
+                let step = nudge(limits, value);
+                let v = round_to(value + presses * factor * step, step)
+                    .clamp(limits.min.max(limits.slider_min), limits.max);
+                out = Some(if limits.allows(v) { v } else { value });
+            }
+            if i.key_pressed(Key::Home) {
+                out = Some(from_slider(limits, 0.0));
+            }
+            if i.key_pressed(Key::End) {
+                out = Some(from_slider(limits, 1.0));
+            }
+            if i.key_pressed(Key::Backspace) {
+                out = default.or(out);
+            }
+        });
+    }
+    if ui.is_rect_visible(rect) {
+        let painter = ui.painter();
+        let x = |v: f64| rail.left() + to_slider(limits, v) as f32 * rail.width();
+        painter.rect_filled(rail, 1.5, palette.line);
+        let handle = pos2(x(out.unwrap_or(value)), rail.center().y);
+        painter.rect_filled(Rect::from_min_max(rail.min, pos2(handle.x, rail.bottom())), 1.5, palette.accent);
+        if let Some(default) = default {
+            let tick = x(default);
+            painter.vline(
+                tick,
+                rail.center().y + 3.5..=rail.center().y + 7.0,
+                Stroke::new(1.0, palette.weak),
+            );
+        }
+        let hot = response.hovered() || response.dragged() || response.has_focus();
+        let r = if hot { radius } else { radius - 1.0 };
+        let outside = value < limits.slider_min || value > limits.slider_max;
+        let fill = if outside {
+            palette.panel
+        } else if ui.is_enabled() {
+            palette.text
+        } else {
+            palette.weak
+        };
+        painter.circle(handle, r, fill, Stroke::new(2.0, if hot { palette.accent } else { palette.panel }));
+        if outside {
+            painter.circle_stroke(handle, r, Stroke::new(1.5, palette.text));
+        }
+    }
+    let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
+    (response, out.filter(|v| limits.allows(*v) && *v as f32 != value as f32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sliders_stay_legal_and_find_their_way_back() {
+        let all = [
+            Limits::between(0.5, 1.0),
+            Limits::above_zero(90.0),
+            Limits::between(0.0, f64::INFINITY).slider(0.0, 512.0).whole(),
+            Limits::between(1.0, 170.0),
+        ];
+        for limits in all {
+            for i in 0..=100 {
+                let t = f64::from(i) / 100.0;
+                let value = from_slider(&limits, t);
+                assert!(limits.allows(value), "{value} at {t} in {limits:?}");
+                assert!((to_slider(&limits, value) - t).abs() < 0.16, "{value} at {t} in {limits:?}");
+            }
+        }
+    }
+}

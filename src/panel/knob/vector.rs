@@ -1,0 +1,178 @@
+//! Knobs for three numbers.
+
+use bevy_egui::egui::{
+    Align2, CursorIcon, Id, Response, Sense, TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
+};
+use glam::Vec3;
+
+use super::{
+    field::{complaint, field, parse, text_field},
+    line::{Caption, NUMBER, Words, capitalised, explain, head, tooltip, unit},
+    slider::round_to,
+};
+use crate::{
+    document::limits::{Limits, number},
+    panel::{
+        maths,
+        theme::{self, Palette},
+    },
+};
+
+/// The letter before a field; dragging it sideways turns the value.
+pub(super) fn axis_letter(
+    ui: &mut Ui,
+    letter: &str,
+    name: &str,
+    limits: &Limits,
+    value: f64,
+    set: impl FnOnce(f64),
+) {
+    let palette = Palette::here(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(14.0, 22.0), Sense::DRAG);
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, ui.is_enabled(), name));
+    let colour = if response.hovered() || response.dragged() { palette.accent } else { palette.weak };
+    let font = TextStyle::Small.resolve(ui.style());
+    ui.painter().text(rect.right_center() - vec2(2.0, 0.0), Align2::RIGHT_CENTER, letter, font, colour);
+    if response.dragged() {
+        let id = response.id.with("drag");
+        let start: f64 =
+            if response.drag_started() { value } else { ui.data(|d| d.get_temp(id)).unwrap_or(value) };
+        ui.data_mut(|d| d.insert_temp(id, start));
+        if let Some(moved) = response.total_drag_delta() {
+            let range = limits.slider_max - limits.slider_min;
+            let range = if range.is_finite() { range } else { 10.0 };
+            let step = if limits.whole { 1.0 } else { 10f64.powf((range / 100.0).log10().round()) };
+            let wanted = round_to(start + f64::from(moved.x) * range / 400.0, step);
+            let low = if limits.is_above_zero() { step } else { limits.min };
+            let wanted = wanted.clamp(low.min(limits.max), limits.max);
+            if limits.allows(wanted) && wanted as f32 != value as f32 {
+                set(wanted);
+            }
+        }
+    }
+    response
+        .on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal)
+        .on_hover_text("Drag sideways to change the value");
+}
+
+/// Three letters with a field each, and the unit at the end of the line. Returns the new value, and the first
+/// error with the value that is kept and its field.
+fn three_fields(
+    ui: &mut Ui,
+    id: Id,
+    caption: &Caption,
+    letters: [&str; 3],
+    value: Vec3,
+    limits: &[Limits; 3],
+) -> (Option<Vec3>, Option<(String, f64, Response)>) {
+    let mut out = None;
+    let mut wrong = None;
+    // Three letters, three fields, the unit, and the gaps between the seven.
+    let room = ui.available_width() - (3.0 * 14.0 + 18.0 + 6.0 * 4.0);
+    let width = (room / 3.0).clamp(36.0, 96.0).floor();
+    for axis in 0..3 {
+        let component = f64::from(value.to_array()[axis]);
+        let name = format!("{} {}", caption.label, letters[axis]);
+        let mut set = |v: f64| {
+            let mut new = value.to_array();
+            new[axis] = v as f32;
+            out = Some(Vec3::from_array(new));
+        };
+        axis_letter(ui, letters[axis], &name, &limits[axis], component, &mut set);
+        let f = field(ui, id.with(axis), &name, component, &limits[axis], width);
+        if let Some(v) = f.value {
+            set(v);
+        }
+        wrong = wrong.or(f.error.map(|e| (format!("{} {e}", letters[axis]), component, f.response)));
+    }
+    unit(ui, caption.unit);
+    (out.filter(|v| *v != value), wrong)
+}
+
+/// A field for three numbers, each with its own limits.
+pub fn vector_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: Vec3,
+    limits: &[Limits; 3],
+) -> Option<Vec3> {
+    const LETTERS: [&str; 3] = ["x", "y", "z"];
+    let id = ui.make_persistent_id(salt);
+    let mut out = None;
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let font = TextStyle::Body.resolve(ui.style());
+            let colour = Palette::here(ui).text;
+            let galley = ui.painter().layout_no_wrap(caption.label.to_owned(), font, colour);
+            let column = galley.size().x.max(54.0);
+            let (rect, label) = ui.allocate_exact_size(vec2(column, 22.0), Sense::hover());
+            ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, colour);
+            label.on_hover_ui(|ui| {
+                ui.set_max_width(300.0);
+                ui.label(caption.help);
+                for (letter, limits) in LETTERS.iter().zip(limits) {
+                    ui.label(theme::small(ui, format!("{letter}: {}", limits.rule())));
+                }
+            });
+            let (new, wrong) = three_fields(ui, id, caption, LETTERS, value, limits);
+            out = new;
+            if let Some((error, kept, field)) = wrong {
+                complaint(ui, &field, &error, &number(kept));
+            }
+        });
+        ui.add_space(6.0);
+    });
+    out
+}
+
+/// A knob for a number in red, green and blue: a field for all three at once, and one for each.
+pub fn triple_knob(
+    ui: &mut Ui,
+    salt: &str,
+    caption: &Caption,
+    value: [f32; 3],
+    default: [f32; 3],
+    limits: &Limits,
+) -> Option<[f32; 3]> {
+    let id = ui.make_persistent_id(salt);
+    let mut out = None;
+    ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let plain = |v: f32| number(f64::from(v));
+        let list = |v: [f32; 3]| v.map(plain).join(", ");
+        let same = value[0] == value[1] && value[1] == value[2];
+        let (label, all) = head(ui, caption, Words::Leave(NUMBER), |ui| {
+            unit(ui, "");
+            let shown = if same { plain(value[0]) } else { String::new() };
+            let read = |text: &str| match parse(text) {
+                Some(v) if limits.allows(v) => Ok([v as f32; 3]),
+                Some(_) => Err(format!("must be {}", limits.rule())),
+                None => Err(format!("is not a number; must be {}", limits.rule())),
+            };
+            let name = format!("{}: all three", caption.label);
+            text_field(ui, id.with("all"), &name, &shown, "all", 64.0, read)
+        });
+        out = all.value;
+        if (label.hovered() || all.response.hovered()) && !caption.symbol.is_empty() {
+            maths::highlight(ui.ctx(), caption.symbol);
+        }
+        let rule = format!("each {}. Default {}", limits.rule(), list(default));
+        explain(label, |ui| tooltip(ui, caption, &rule, ""));
+        let mut wrong = all.error.map(|e| (capitalised(&e), list(value), all.response));
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let bounds = [limits.clone(), limits.clone(), limits.clone()];
+            let (new, bad) = three_fields(ui, id, caption, ["R", "G", "B"], value.into(), &bounds);
+            out = new.map(Into::into).or(out);
+            wrong = wrong.take().or(bad.map(|(e, kept, field)| (e, number(kept), field)));
+        });
+        if let Some((error, kept, field)) = wrong {
+            complaint(ui, &field, &error, &kept);
+        }
+        ui.add_space(6.0);
+    });
+    out.filter(|v| *v != value)
+}

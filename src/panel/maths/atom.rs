@@ -1,0 +1,185 @@
+//! The pieces of an equation.
+
+/// A piece of an equation that is not broken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Atom {
+    /// A variable, perhaps with an index and a power: `k_d`, `d^2`.
+    Symbol {
+        /// The letter.
+        base: String,
+        /// Below the line.
+        sub: String,
+        /// Above the line.
+        sup: String,
+    },
+    /// A function's name, a number, an operator or a bracket, perhaps with an index and a power.
+    Upright {
+        /// The characters.
+        base: String,
+        /// Below the line.
+        sub: String,
+        /// Above the line.
+        sup: String,
+    },
+    /// A space: where a line may be broken.
+    Space,
+}
+
+impl Atom {
+    /// The symbol as declarations write it (`k_d`), if the atom is one.
+    #[must_use]
+    pub fn symbol(&self) -> Option<String> {
+        match self {
+            Self::Symbol { base, sub, .. } if sub.is_empty() => Some(base.clone()),
+            Self::Symbol { base, sub, .. } => Some(format!("{base}_{sub}")),
+            _ => None,
+        }
+    }
+
+    /// The letter, the word or the sign; empty for a space.
+    #[must_use]
+    pub fn base(&self) -> &str {
+        match self {
+            Self::Symbol { base, .. } | Self::Upright { base, .. } => base,
+            Self::Space => "",
+        }
+    }
+
+    /// The index; often empty.
+    #[must_use]
+    pub fn sub(&self) -> &str {
+        match self {
+            Self::Symbol { sub, .. } | Self::Upright { sub, .. } => sub,
+            Self::Space => "",
+        }
+    }
+
+    /// The power; often empty.
+    #[must_use]
+    pub fn sup(&self) -> &str {
+        match self {
+            Self::Symbol { sup, .. } | Self::Upright { sup, .. } => sup,
+            Self::Space => "",
+        }
+    }
+
+    /// The symbol that is the power of the atom, if the power is one: the `α` of `(N·H)^α`.
+    #[must_use]
+    pub fn power(&self) -> Option<String> {
+        match self {
+            Self::Symbol { sup, .. } | Self::Upright { sup, .. } if sup.chars().all(char::is_alphabetic) => {
+                Some(sup.clone()).filter(|s| s.chars().count() == 1)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Splits an equation into atoms.
+#[must_use]
+pub fn parse(text: &str) -> Vec<Atom> {
+    let chars: Vec<char> = text.chars().collect();
+    let mut atoms = Vec::new();
+    let mut i = 0;
+    while i < chars.len() {
+        let c = chars[i];
+        if c.is_whitespace() {
+            if atoms.last() != Some(&Atom::Space) {
+                atoms.push(Atom::Space);
+            }
+            i += 1;
+            continue;
+        }
+        let start = i;
+        let ascii_word = |c: &char| c.is_ascii_alphabetic();
+        if c.is_ascii_alphabetic() {
+            i += chars[i..].iter().take_while(|c| ascii_word(c)).count();
+        } else if c.is_ascii_digit() {
+            i += chars[i..].iter().take_while(|c| c.is_ascii_digit() || **c == '.').count();
+        } else {
+            i += 1;
+        }
+        let base: String = chars[start..i].iter().collect();
+        let (mut sub, mut sup) = (String::new(), String::new());
+        while let Some(mark @ ('_' | '^')) = chars.get(i).copied() {
+            let (script, next) = script(&chars, i + 1);
+            i = next;
+            if mark == '_' { sub = script } else { sup = script }
+        }
+        // One letter is a variable; several are a word, such as `max`.
+        let variable = c.is_alphabetic() && base.chars().count() == 1;
+        atoms.push(if variable { Atom::Symbol { base, sub, sup } } else { Atom::Upright { base, sub, sup } });
+    }
+    atoms
+}
+
+/// A superscript or subscript: a group in braces, a number, or one character.
+fn script(chars: &[char], start: usize) -> (String, usize) {
+    match chars.get(start) {
+        Some('{') => {
+            let end = chars[start..].iter().position(|c| *c == '}').map_or(chars.len(), |n| start + n);
+            (chars[start + 1..end].iter().collect(), (end + 1).min(chars.len()))
+        }
+        Some(c) if c.is_ascii_digit() => {
+            let n = chars[start..].iter().take_while(|c| c.is_ascii_digit()).count();
+            (chars[start..start + n].iter().collect(), start + n)
+        }
+        Some(c) => (c.to_string(), start + 1),
+        None => (String::new(), start),
+    }
+}
+
+/// The symbol of a parameter, which is all one symbol: everything after `_` is its index.
+#[must_use]
+pub fn parse_symbol(symbol: &str) -> Atom {
+    let (base, sub) = symbol.split_once('_').unwrap_or((symbol, ""));
+    let sub = sub.trim_matches(['{', '}']).to_owned();
+    Atom::Symbol { base: base.to_owned(), sub, sup: String::new() }
+}
+
+/// The same symbol, however it is written.
+#[must_use]
+pub fn same_symbol(a: &str, b: &str) -> bool {
+    let plain = |s: &str| s.replace(['{', '}'], "");
+    plain(a) == plain(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn symbol(base: &str, sub: &str, sup: &str) -> Atom {
+        Atom::Symbol { base: base.to_owned(), sub: sub.to_owned(), sup: sup.to_owned() }
+    }
+
+    #[test]
+    fn subscripts_superscripts_and_words_are_told_apart() {
+        let atoms = parse("I_d = max(0, N·L)^{p+1} d^2");
+        assert_eq!(atoms[0], symbol("I", "d", ""));
+        assert_eq!(atoms[0].symbol().as_deref(), Some("I_d"));
+        assert!(atoms.contains(&Atom::Upright {
+            base: "max".to_owned(),
+            sub: String::new(),
+            sup: String::new()
+        }));
+        assert!(atoms.contains(&Atom::Upright {
+            base: ")".to_owned(),
+            sub: String::new(),
+            sup: "p+1".to_owned()
+        }));
+        assert_eq!(atoms.last(), Some(&symbol("d", "", "2")));
+    }
+
+    #[test]
+    fn the_index_of_a_symbol_alone_may_be_long() {
+        assert_eq!(parse_symbol("α_GGX"), symbol("α", "GGX", ""));
+        assert!(same_symbol("F_{90}", "F_90"));
+    }
+
+    #[test]
+    fn unfinished_mathematics_is_no_reason_to_stop() {
+        for text in ["", "_", "a_", "a^{", "{}", "x__y", "∑_{i=1}^n"] {
+            let _ = parse(text);
+        }
+    }
+}

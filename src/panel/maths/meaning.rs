@@ -1,0 +1,119 @@
+//! The meanings of symbols, for tooltips.
+
+use super::atom::{Atom, parse, same_symbol};
+use crate::reflection::EquationPart;
+
+/// The meaning of a symbol that all equations share.
+#[must_use]
+pub fn meaning(symbol: &str) -> Option<&'static str> {
+    const MEANINGS: &[(&str, &str)] = &[
+        ("I", "the light that leaves the surface towards the observer, per unit of light intensity"),
+        ("I_a", "the ambient term: light without direction"),
+        ("I_d", "the diffuse term: light scattered in all directions"),
+        ("I_s", "the specular term: light gathered into a highlight"),
+        ("N", "the unit normal: the direction in which the surface faces"),
+        ("L", "the unit vector from the surface to the light"),
+        ("V", "the unit vector from the surface to the observer"),
+        ("H", "the half vector: the unit vector halfway between L and V"),
+        ("R", "the mirror direction of L: 2(N·L)N − L"),
+        ("T", "the unit tangent: the direction along which the surface is brushed"),
+        ("B", "the unit bitangent: across the surface at right angles to the tangent"),
+        ("D", "the distribution of the normals of the microfacets: how many face along H"),
+        ("G", "masking and shadowing: the fraction of the microfacets that both light and observer see"),
+        ("G_1", "masking: the fraction of the microfacets that is seen from one direction"),
+        ("G_2", "masking and shadowing: the fraction of the microfacets that both light and observer see"),
+        ("Λ", "Smith's function: hidden area of microfacets per visible area"),
+        ("F", "the Fresnel reflectance: how much a smooth surface mirrors at this angle"),
+        ("F_0", "the Fresnel reflectance when looking straight at the surface"),
+        ("F_90", "the Fresnel reflectance at grazing incidence"),
+        ("F_L", "Schlick's weight for the light: (1 − N·L)⁵, 0 straight on and 1 at grazing incidence"),
+        ("F_V", "Schlick's weight for the observer: (1 − N·V)⁵"),
+        ("F_H", "Schlick's weight at the half vector: (1 − L·H)⁵"),
+        ("C_0", "the colour of the reflection when looking straight at the surface"),
+        ("C_h", "the colour of the sheen: white, or the hue of the base colour"),
+        ("D_r", "the distribution of the clear coat"),
+        ("F_r", "the Fresnel reflectance of the clear coat"),
+        ("G_r", "masking of the clear coat"),
+        ("G_s", "masking of the base"),
+        ("S", "shadowing of steep slopes by others"),
+        ("f_s", "a flat diffuse term that stands for light that travels below the surface"),
+        ("f_r", "the BRDF: reflected light per incoming light, in 1/sr"),
+        ("E", "the directional albedo: how much of the light from one direction is reflected in all"),
+        ("E_L", "the directional albedo for the direction of the light"),
+        ("E_V", "the directional albedo for the direction of the observer"),
+        ("E_m", "the mean directional albedo over all directions"),
+        ("ρ", "the albedo: how much of the light is reflected, by colour"),
+        ("α", "the width of the distribution of the microfacets: small for a mirror, 1 for a matt surface"),
+        ("σ", "the spread of the slopes of the facets"),
+        ("γ", "the exponent of the tail of the distribution"),
+        ("μ", "the cosine of the angle between the normal and the direction"),
+        ("μ_l", "the cosine of the angle between the normal and the light, N·L"),
+        ("μ_v", "the cosine of the angle between the normal and the observer, N·V"),
+        ("μ_i", "the cosine of the angle between the normal and the light, N·L"),
+        ("μ_0", "the cosine of the angle between the normal and the light, N·L"),
+        ("μ_o", "the cosine of the angle between the normal and the observer, N·V"),
+        ("n", "the refractive index"),
+        ("k", "the extinction coefficient: how fast light dies away inside"),
+        ("g", "the phase angle between light and observer"),
+        ("ω", "a direction"),
+        ("d", "the distance from the light to the point"),
+        ("p", "the point that is lit"),
+        ("e", "2.71828…, the base of natural logarithms"),
+        ("π", "3.14159…"),
+        ("θ", "the angle between the axis and the ray"),
+        ("θ_i", "the angle between the normal and the light"),
+        ("θ_r", "the angle between the normal and the observer"),
+        ("θ_o", "the angle between the normal and the observer"),
+        ("θ_h", "the angle between the normal and the half vector"),
+        ("θ_d", "the angle between the half vector and the light"),
+        ("α_x", "the width of the distribution along the tangent"),
+        ("α_y", "the width of the distribution across the tangent"),
+        ("θ_X", "the angle to the normal of L or V, or between L and H"),
+        ("β", "the smaller of the angles of light and observer to the normal"),
+        ("φ", "the angle about the normal, between light and observer"),
+        ("φ_h", "the angle of the half vector about the normal, from the tangent"),
+    ];
+    MEANINGS.iter().find(|(s, _)| same_symbol(s, symbol)).map(|(_, m)| *m)
+}
+
+/// The part of an equation that defines a symbol: it begins with the symbol and an equals sign, or has them
+/// after a comma.
+#[must_use]
+pub fn definition(parts: &[EquationPart], symbol: &str) -> Option<&'static str> {
+    let defines = |part: &&EquationPart| {
+        let atoms: Vec<_> = parse(part.text).into_iter().filter(|a| *a != Atom::Space).collect();
+        let here = |i: usize| atoms[i].symbol().is_some_and(|s| same_symbol(&s, symbol));
+        let sign = |a: &Atom, text: &str| matches!(a, Atom::Upright { base, .. } if base == text);
+        (0..atoms.len()).any(|i| {
+            here(i) && atoms.get(i + 1).is_some_and(|a| sign(a, "=")) && (i == 0 || sign(&atoms[i - 1], ","))
+        })
+    };
+    parts.iter().find(defines).map(|p| p.text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reflection::Term;
+
+    #[test]
+    fn every_symbol_of_every_equation_is_explained() {
+        let registry = crate::registry::Registry::builtin();
+        let mut unexplained = Vec::new();
+        for model in registry.models() {
+            let d = model.declaration;
+            for symbol in d.equation.iter().flat_map(|p| parse(p.text)).filter_map(|a| a.symbol()) {
+                let known = model.parameters.iter().any(|p| same_symbol(p.symbol, &symbol))
+                    || meaning(&symbol).is_some()
+                    || definition(d.equation, &symbol).is_some();
+                if !known {
+                    unexplained.push(format!("{}: {symbol}", d.id));
+                }
+            }
+        }
+        assert_eq!(unexplained, [""; 0], "neither a parameter nor explained in `meaning`");
+        let parts = [EquationPart { term: Term::Diffuse, text: "x = H·T / H·N , y_{ab} = x + z" }];
+        assert!(definition(&parts, "x").is_some() && definition(&parts, "y_ab").is_some());
+        assert!(definition(&parts, "z").is_none() && definition(&parts, "H").is_none());
+    }
+}

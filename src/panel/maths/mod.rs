@@ -1,0 +1,263 @@
+//! Equations in readable mathematics: variables slanted, words upright, subscripts and superscripts
+//! in their places. [`typeset`](super::typeset) sets fractions and breaks lines.
+//!
+//! The source is that of [`EquationPart`]: `_x` is a subscript, `^x` a superscript, braces group.
+
+use bevy_egui::egui::{
+    self, Color32, FontId, Id, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType, pos2,
+    vec2,
+};
+
+use super::{
+    formula,
+    theme::{self, Palette},
+    typeset::{Set, Setter},
+};
+use crate::reflection::{EquationPart, Term};
+
+mod atom;
+mod meaning;
+
+pub use atom::{Atom, parse, parse_symbol, same_symbol};
+pub use meaning::{definition, meaning};
+
+/// A run of characters, and where it stands.
+#[derive(Clone)]
+pub(super) struct Piece {
+    pub(super) galley: std::sync::Arc<egui::Galley>,
+    pub(super) offset: Vec2,
+}
+
+/// An atom as it is set.
+#[derive(Clone)]
+pub(super) struct Laid {
+    pub(super) pieces: Vec<Piece>,
+    pub(super) width: f32,
+}
+
+/// Lays an atom out with its baseline at y = 0.
+pub(super) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
+    let (base, sub, sup, family) = match atom {
+        // Capital Greek letters are upright by custom; N·L and the like are slanted.
+        Atom::Symbol { base, sub, sup } if base.starts_with(|c| ('Α'..='Ω').contains(&c)) => {
+            (base, sub, sup, theme::maths())
+        }
+        Atom::Symbol { base, sub, sup } => (base, sub, sup, theme::maths_italic()),
+        Atom::Upright { base, sub, sup } => (base, sub, sup, theme::maths()),
+        Atom::Space => return Laid { pieces: Vec::new(), width: 0.28 * size },
+    };
+    let baseline = |galley: &egui::Galley| {
+        galley.rows.first().map_or(0.0, |row| row.row.glyphs.first().map_or(0.0, |g| g.pos.y))
+    };
+    let text = |text: &str, family: egui::FontFamily, size: f32| {
+        ui.painter().layout_no_wrap(text.to_owned(), FontId::new(size, family), colour)
+    };
+    let padding = match base.as_str() {
+        "·" | "/" => 0.08 * size,
+        _ => 0.0,
+    };
+    let galley = text(base, family, size);
+    let mut pieces = Vec::new();
+    let mut x = padding;
+    let y = -baseline(&galley);
+    let advance = galley.size().x;
+    pieces.push(Piece { galley, offset: vec2(x, y) });
+    x += advance;
+    let script_size = (0.7 * size).max(9.0);
+    let script_family = |s: &str| {
+        if s.chars().count() == 1 && s.chars().all(char::is_alphabetic) {
+            theme::maths_italic()
+        } else {
+            theme::maths()
+        }
+    };
+    let mut width = x;
+    for (script, shift) in [(sub, 0.22 * size), (sup, -0.38 * size)] {
+        if !script.is_empty() {
+            let galley = text(script, script_family(script), script_size);
+            let y = shift - baseline(&galley);
+            width = width.max(x + 0.04 * size + galley.size().x);
+            pieces.push(Piece { galley, offset: vec2(x + 0.04 * size, y) });
+        }
+    }
+    Laid { pieces, width: width + padding }
+}
+
+/// One symbol in the colour of text, at a place; returns its width. `baseline` is where it stands.
+pub fn paint_symbol(ui: &Ui, left_baseline: Pos2, symbol: &str, size: f32, colour: Color32) -> f32 {
+    let laid = lay_out(ui, &parse_symbol(symbol), size, colour);
+    for piece in laid.pieces {
+        ui.painter().galley(left_baseline + piece.offset, piece.galley, colour);
+    }
+    laid.width
+}
+
+/// One symbol among other widgets.
+pub fn symbol(ui: &mut Ui, symbol: &str, size: f32) -> Response {
+    let width = symbol_width(ui, symbol, size);
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 1.3 * size), Sense::hover());
+    let at = pos2(rect.left(), rect.top() + 0.95 * size);
+    paint_symbol(ui, at, symbol, size, Palette::here(ui).text);
+    response
+}
+
+/// The width of a symbol.
+#[must_use]
+pub fn symbol_width(ui: &Ui, symbol: &str, size: f32) -> f32 {
+    lay_out(ui, &parse_symbol(symbol), size, Color32::WHITE).width
+}
+
+/// Highlights a symbol wherever it stands, until the next pass is over.
+pub fn highlight(ctx: &egui::Context, symbol: &str) {
+    let now = ctx.cumulative_pass_nr();
+    ctx.data_mut(|d| d.insert_temp(Id::new("highlighted symbol"), (now, symbol.to_owned())));
+}
+
+/// The symbol that [`highlight`] named last, if that is not long ago.
+#[must_use]
+pub fn highlighted(ctx: &egui::Context) -> Option<String> {
+    let now = ctx.cumulative_pass_nr();
+    let stored: Option<(u64, String)> = ctx.data(|d| d.get_temp(Id::new("highlighted symbol")));
+    stored.filter(|(pass, _)| now.saturating_sub(*pass) <= 1).map(|(_, symbol)| symbol)
+}
+
+/// An equation, a line for each part, coloured by term. `name` gives the meaning of a symbol for its tooltip. Hovering a symbol highlights it; so does [`highlight`].
+pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
+    let parts: Vec<_> = parts.iter().map(|p| (p.term, p.text)).collect();
+    equation_of(ui, &parts, name)
+}
+
+/// The same for text that is made while the program runs.
+pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> Option<String>) -> Response {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let width = ui.available_width();
+    let marked = highlighted(ui.ctx());
+    let mut lines: Vec<(Set, f32, Color32)> = Vec::new();
+    let mut height = 0.0;
+    for (term, text) in parts {
+        let size = if parts.len() > 1 { size_of(*term, text) } else { SIZE };
+        let helper = size < SIZE;
+        let leading = if helper { 6.0 } else { 8.0 };
+        let colour = if helper { palette.text } else { palette.term_text(*term) };
+        // A presentation must be read from the last row.
+        let setter = Setter { ui, size: size * scale, colour, stacked: true, shrinks: scale <= 1.0 };
+        for line in setter.lines(&formula::tree(text), width) {
+            let baseline = height + line.ascent + 0.5 * leading * scale;
+            height = baseline + line.descent + 0.5 * leading * scale;
+            lines.push((line, baseline, colour));
+        }
+    }
+
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
+    let spoken: Vec<_> = parts.iter().map(|(_, text)| *text).collect();
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, spoken.join("; ")));
+    if !ui.is_rect_visible(rect) {
+        return response;
+    }
+    for (i, (line, baseline, colour)) in lines.iter().enumerate() {
+        let at = pos2(rect.left(), rect.top() + baseline);
+        for (k, (symbol, corner, size)) in line.symbols().enumerate() {
+            let Some(meaning) = name(symbol) else { continue };
+            let cell = Rect::from_min_size(at + corner, size);
+            let here = ui.interact(cell, response.id.with((i, k)), Sense::hover());
+            if here.hovered() {
+                highlight(ui.ctx(), symbol);
+            }
+            here.on_hover_text(meaning);
+            if marked.as_ref().is_some_and(|m| same_symbol(m, symbol)) {
+                ui.painter().rect_filled(cell, 3.0, palette.chosen);
+                ui.painter().hline(cell.x_range(), cell.bottom() - 1.0, Stroke::new(1.5, palette.accent));
+            }
+        }
+        line.paint(ui, at, *colour);
+    }
+    response
+}
+
+/// The size of letters in the terms of an equation.
+pub(super) const SIZE: f32 = 17.0;
+
+/// The size of letters in a part of an equation: smaller where it defines what another part uses.
+pub(super) fn size_of(term: Term, text: &str) -> f32 {
+    let first = parse(text).first().and_then(Atom::symbol);
+    let helper = term != Term::Total && first.is_none_or(|s| s != "I" && !s.starts_with("I_"));
+    if helper { 14.5 } else { SIZE }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The notation of physically based models, and more.
+    const HARD: &[&str] = &[
+        "I_s = π D(H) G(L, V) F(V·H) / (4 (N·L)(N·V)) N·L",
+        "D = α^2 / (π ((N·H)^2 (α^2 − 1) + 1)^2)",
+        "f_r = ρ/π, E(μ_i) = ∫ f_r cos θ dω ≤ 1",
+        "Λ = (√(1 + α² tan² θ) − 1)/2, F_{90} = 1/2 + 2 r (H·L)^2",
+        "⟨N·H⟩ = max(0, N·H), α_{GGX} = √(2/(n + 2)), e^{−tan²θ/α²}, k_{spec}, φ_h ∈ [0, 2π), γ, Δ, ∞, ≈, ×, σ, μ, ω",
+    ];
+
+    #[test]
+    fn every_sign_of_every_equation_is_in_the_fonts() {
+        let ctx = egui::Context::default();
+        theme::install_fonts(&ctx);
+        let _ = ctx.run_ui(egui::RawInput::default(), |_| ());
+        let registry = crate::registry::Registry::builtin();
+        let mut texts: Vec<&str> = HARD.to_vec();
+        for model in registry.models() {
+            texts.extend(model.declaration.equation.iter().map(|p| p.text));
+            texts.extend(model.parameters.iter().flat_map(|p| [p.symbol, p.label, p.unit, p.help]));
+            texts.extend([model.declaration.name, model.declaration.author, model.declaration.source]);
+        }
+        for m in crate::reflection::preset::all() {
+            texts.extend([m.name, m.source]);
+        }
+        ctx.fonts_mut(|fonts| {
+            for family in [theme::maths(), theme::maths_italic(), egui::FontFamily::Proportional] {
+                let font = FontId::new(17.0, family);
+                // Where a character is drawn on the texture: the same place for all that are missing.
+                let mut place = |c: char| {
+                    let galley = fonts.layout_no_wrap(c.to_string(), font.clone(), Color32::WHITE);
+                    galley.rows[0].row.glyphs[0].uv_rect
+                };
+                let missing = place('\u{fffe}');
+                assert!(place('\u{e123}') == missing && missing.size[0] > 0.0);
+                for text in &texts {
+                    for c in text.chars().filter(|c| !c.is_whitespace()) {
+                        assert!(place(c) != missing, "{c} of “{text}” is missing in {font:?}");
+                    }
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn equations_stay_inside_the_panel() {
+        let ctx = egui::Context::default();
+        theme::install_fonts(&ctx);
+        for width in [120.0, 270.0] {
+            for text in HARD {
+                let parts = [EquationPart { term: Term::Total, text }];
+                let mut lines = 0.0;
+                let mut shapes = Vec::new();
+                for _ in 0..2 {
+                    let output = ctx.run_ui(egui::RawInput::default(), |ui| {
+                        ui.set_max_width(width);
+                        let rect = equation(ui, &parts, |_| None).rect;
+                        lines = rect.height();
+                        assert!(rect.width() <= width);
+                    });
+                    shapes = output.shapes;
+                }
+                for clipped in &shapes {
+                    if let egui::Shape::Text(text) = &clipped.shape {
+                        let right = text.pos.x + text.galley.size().x;
+                        assert!(right < clipped.clip_rect.right() + 1.0, "{width}: {:?}", text.galley.text());
+                    }
+                }
+                assert!(lines >= 26.0 && shapes.len() > 5);
+            }
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! The list of the shader files that the picture is made of.
+
+use bevy_egui::egui::{
+    self, Align, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
+};
+
+use super::missing_model;
+use crate::{
+    panel::{
+        author::{self, Ask},
+        icon::{self, Icon},
+        state::{Action, Lab, Severity},
+        theme::{self, Palette},
+    },
+    registry::{
+        Registry,
+        compose::{File, Part},
+    },
+};
+
+/// The name and the purpose of a file of a composition, for people.
+#[must_use]
+pub fn words(part: Part, path: &str) -> (String, &'static str) {
+    let word = path.rsplit('/').next().and_then(|name| name.split('.').next()).unwrap_or(path);
+    let (name, help) = match part {
+        Part::Model => (
+            "the model",
+            "How light leaves the surface: `response` answers to one light, `ambient_response` to uniform light. Begin here.",
+        ),
+        Part::Import => ("imported", "A file of yours that another one of the list asks for with `#import`."),
+        Part::Mode => (
+            "the shading model",
+            "The stage that evaluates the model: per polygon, per vertex or per pixel, and what is interpolated between.",
+        ),
+        Part::Loop => (
+            "the light loop",
+            "Asks every light what arrives at the point, hands that to the model, and adds up the answers.",
+        ),
+        Part::LightType => {
+            let help = "From where, and how strongly, the light of this type arrives at a point.";
+            return (format!("the light type: {word}"), help);
+        }
+        Part::LightRecord => (
+            "the light record",
+            "The record of each light in the shader: place, direction, colour, strength, parameters.",
+        ),
+        Part::Stages => (
+            "the stages",
+            "What goes into a shading model and what comes out of it: the vertex, and what is interpolated for the pixel.",
+        ),
+        Part::Vocabulary => {
+            let help = "Functions that models are written in: terms and frames, Fresnel reflectance, distributions, masking. \
+                        Their twins in Rust have the same names.";
+            return (format!("vocabulary: {word}"), help);
+        }
+        Part::Wrapper => {
+            ("the wrapper", "Bindings and entry points for the GPU. The only file that knows the renderer.")
+        }
+    };
+    (name.to_owned(), help)
+}
+
+pub(super) fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+    let (Some(model), Some(mode)) = (registry.model(lab.model_shown()), registry.mode(lab.mode_shown()))
+    else {
+        ui.add(egui::Label::new(missing_model(lab, registry, lab.model_shown())).wrap());
+        return;
+    };
+    ui.horizontal(|ui| {
+        let title = format!("{} · {}", model.declaration.name, mode.declaration.name);
+        ui.label(theme::strong(ui, title)).on_hover_text("What is shown is made of these files.");
+        folder(ui, lab, actions);
+    });
+    ScrollArea::vertical().id_salt("files").auto_shrink(false).show(ui, |ui| {
+        // The scroll bar floats over this margin.
+        ui.set_width(ui.available_width() - 8.0);
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.spacing_mut().interact_size.y = ROW;
+        for file in crate::registry::compose::files(registry.sources(), model, mode, registry.lights()) {
+            self::file(ui, lab, &file, actions);
+        }
+    });
+}
+
+/// The folder that is watched, or a button that exports one.
+fn folder(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
+    let Some(folder) = &lab.shaders.shaders else {
+        ui.label(theme::small(ui, "The shaders are built in."));
+        let button = ui.button("Write them out for editing…").on_hover_text(
+            "Copies every shader file into a folder that you choose. From there they are read again whenever you save one.",
+        );
+        if button.clicked() {
+            actions.push(Action::Author(Ask::ExportDialog));
+        }
+        return;
+    };
+    let palette = Palette::here(ui);
+    let text = folder.display().to_string();
+    ui.label(theme::small(ui, "watched:"));
+    let room = ui.available_width() - 36.0;
+    let shown = tail(ui, &text, TextStyle::Small, room);
+    let path = ui.label(RichText::new(shown).small().color(palette.text));
+    let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
+    if let Some(models) = &lab.shaders.models {
+        help += &format!("\nCustom models: {}", models.display());
+    }
+    path.on_hover_text(help);
+    if icon::button(ui, Icon::Copy, "Copy the path of the folder").clicked() {
+        actions.push(Action::Copy(text.clone()));
+    }
+}
+
+/// A path that is cut off at its beginning where it is too long: its end says more.
+fn tail(ui: &Ui, text: &str, style: TextStyle, room: f32) -> String {
+    let font = style.resolve(ui.style());
+    let width =
+        |s: &str| ui.painter().layout_no_wrap(s.to_owned(), font.clone(), egui::Color32::WHITE).size().x;
+    if width(text) <= room {
+        return text.to_owned();
+    }
+    let starts: Vec<usize> = text.char_indices().map(|(i, _)| i).skip(1).collect();
+    let cut = |i: usize| format!("…{}", &text[starts[i]..]);
+    let first = (0..starts.len()).collect::<Vec<_>>().partition_point(|&i| width(&cut(i)) > room);
+    if first < starts.len() { cut(first) } else { "…".to_owned() }
+}
+
+/// The height of a row of the list, points.
+const ROW: f32 = 22.0;
+
+pub(super) fn file(ui: &mut Ui, lab: &Lab, file: &File, actions: &mut Vec<Action>) {
+    let File { part, ref path, edited } = *file;
+    let palette = Palette::here(ui);
+    let (name, help) = words(part, path);
+    let trouble = lab.shaders.troubles.iter().find(|t| t.problem.file == *path);
+    let on_disk = author::on_disk(&lab.shaders, path);
+    let row = ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (sign, _) = ui.allocate_exact_size(vec2(14.0, ROW), Sense::hover());
+        if trouble.is_some() {
+            icon::severity(ui.painter(), sign.center(), 5.5, Severity::Error, &palette);
+        }
+        let (place, label) = ui.allocate_exact_size(vec2(140.0, ROW), Sense::hover());
+        let galley = theme::elided(ui, &name, TextStyle::Body, palette.text, place.width());
+        let at = egui::pos2(place.left(), place.center().y - galley.size().y / 2.0);
+        ui.painter().galley(at, galley, palette.text);
+        let says = match (trouble, edited) {
+            (Some(t), _) => format!("{name}: {path}: error in line {}", t.problem.line),
+            (None, true) => format!("{name}: {path}: edited"),
+            (None, false) => format!("{name}: {path}"),
+        };
+        label.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &says));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if let Some(file) = &on_disk {
+                let open = icon::button(ui, Icon::Pencil, &format!("Open {path} in an editor"));
+                if open.clicked() {
+                    let line = lab.line_of_trouble(path);
+                    actions.push(Action::Author(Ask::Edit { path: file.clone(), line }));
+                }
+            }
+            if let Some(t) = trouble {
+                ui.label(RichText::new(format!("line {}", t.problem.line)).small().color(palette.error));
+            } else if edited {
+                let mark = ui.label(RichText::new("● edited").small().color(palette.accent));
+                mark.on_hover_text("This file differs from the copy that is built in.");
+            }
+            let room = ui.available_width();
+            let shown = tail(ui, path, TextStyle::Monospace, room);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.label(RichText::new(shown).monospace().color(palette.weak));
+            });
+        });
+    });
+    row.response.on_hover_ui(|ui| {
+        ui.set_max_width(340.0);
+        ui.label(theme::strong(ui, &name));
+        ui.label(help);
+        let place = on_disk.map_or_else(|| format!("{path}, built in"), |f| f.display().to_string());
+        ui.label(theme::small(ui, place));
+    });
+}

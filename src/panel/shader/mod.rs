@@ -1,0 +1,122 @@
+//! The panel of the shaders: the files that the picture is made of, and their errors.
+
+use bevy_egui::egui::{self, Align, Layout, ScrollArea, Sense, Ui, vec2};
+
+use super::{
+    Panel, Place, author, laws,
+    state::{Action, Lab, Severity},
+    theme::{self, Palette},
+};
+use crate::{custom::source_path, registry::Registry, text::plural};
+use {files::files, trouble::troubles};
+
+mod files;
+mod trouble;
+
+pub use files::words;
+pub use trouble::{Excerpt, consequence, excerpt, report};
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Shader;
+
+impl Panel for Shader {
+    fn id(&self) -> &'static str {
+        author::SHADER_TAB
+    }
+
+    fn title(&self) -> &'static str {
+        "Shader"
+    }
+
+    fn place(&self) -> Place {
+        Place::Bottom
+    }
+
+    fn note(&self, lab: &Lab) -> Option<(Severity, String)> {
+        let count = lab.shaders.troubles.len();
+        (count > 0).then(|| (Severity::Error, plural(count, "error")))
+    }
+
+    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let palette = Palette::here(ui);
+        let whole = ui.available_rect_before_wrap();
+        let gap = 12.0;
+        // What is wrong comes first where there is little room.
+        let share = if lab.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
+        let left = (share * whole.width()).clamp(240.0, 620.0);
+        ui.horizontal_top(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            let column = |ui: &mut Ui, width: f32, add: &mut dyn FnMut(&mut Ui)| {
+                ui.allocate_ui_with_layout(vec2(width, whole.height()), Layout::top_down(Align::Min), |ui| {
+                    ui.spacing_mut().item_spacing.x = theme::UNIT;
+                    ui.set_width(width);
+                    add(ui);
+                });
+            };
+            column(ui, left, &mut |ui| files(ui, lab, registry, &mut actions));
+            let (line, _) = ui.allocate_exact_size(vec2(2.0 * gap, whole.height()), Sense::hover());
+            ui.painter().vline(line.center().x, whole.y_range(), egui::Stroke::new(1.0, palette.line));
+            let right = (whole.width() - left - 2.0 * gap).max(64.0);
+            column(ui, right, &mut |ui| {
+                if lab.shaders.troubles.is_empty() {
+                    well(ui, lab, registry, &mut actions);
+                } else {
+                    troubles(ui, lab, &mut actions);
+                }
+            });
+        });
+        actions
+    }
+}
+
+/// The message about a model that a scene names and that is missing.
+#[must_use]
+pub fn missing_model(lab: &Lab, registry: &Registry, id: &str) -> String {
+    let path = source_path(id);
+    let trouble = lab.shaders.troubles.iter().find(|t| t.problem.file == path).map(|t| t.problem.to_string());
+    match trouble.or_else(|| registry.broken_model(id).map(str::to_owned)) {
+        Some(why) => format!(
+            "There is no version of the file {path} yet that works: {why}. Correct it, and the model is there; or \
+             choose another one."
+        ),
+        None => format!(
+            "There is no reflection model “{id}”: the file {path} is gone. Put it back, and its knobs are here again; \
+             or choose another model."
+        ),
+    }
+}
+
+/// The panel without errors: the file that was loaded last, and first steps.
+fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+    let heading = if laws::are_broken(lab) { "No errors, but broken laws" } else { "No errors" };
+    let how = match &lab.shaders.shaders {
+        Some(_) => {
+            "Open a file at the left, change it and save it: the picture follows. Errors appear here, and the picture keeps the last version that worked."
+        }
+        None => {
+            "To change how the picture is computed: export the shaders, open one in an editor, save it. The picture follows. Or write a custom model:"
+        }
+    };
+    ui.horizontal(|ui| {
+        ui.label(theme::strong(ui, heading));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            laws::button(ui, lab, registry, actions);
+            let last = lab.shaders.last.as_ref();
+            let text =
+                last.map(|last| format!("{} loaded in {:.0} ms", last.file, last.milliseconds.max(0.0)));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                text.map(|text| ui.add(egui::Label::new(theme::small(ui, text)).truncate()));
+            });
+        });
+    });
+    ScrollArea::vertical().id_salt("well").auto_shrink(false).show(ui, |ui| {
+        // The scroll bar floats over this margin.
+        ui.set_width(ui.available_width() - 8.0);
+        laws::findings(ui, lab);
+        ui.add(egui::Label::new(how).wrap());
+        ui.add_space(4.0);
+        actions.extend(author::buttons(ui, lab, registry));
+    });
+}

@@ -1,0 +1,212 @@
+//! Errors in shader files, each with its line of source.
+
+use bevy_egui::egui::{
+    self, Align, FontId, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
+};
+
+use crate::{
+    library::status::Trouble,
+    panel::{
+        author::Ask,
+        icon,
+        state::{Action, Lab, Severity},
+        theme::{self, Palette},
+    },
+    shader::report::annotated,
+    text::listed,
+};
+
+/// The consequence of a problem for the picture.
+#[must_use]
+pub fn consequence(trouble: &Trouble) -> String {
+    let names: Vec<_> = trouble.stale.iter().map(String::as_str).collect();
+    if names.is_empty() {
+        return "Nothing on the picture depends on it.".to_owned();
+    }
+    format!("The picture shows the last good version of {} until this is corrected.", listed(&names, "and"))
+}
+
+/// The width of a tab, in characters.
+const TAB: usize = 4;
+
+/// A line of source, short enough to be shown, and the character that it is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Excerpt {
+    /// Without tabs, cut to the room; `…` stands where something was cut off.
+    pub text: String,
+    /// The character that it is about, from 0; may be one past the end.
+    pub caret: usize,
+}
+
+/// The part of a line of source around a column (in characters, from 1; it may be past the end) that fits into so
+/// many characters. Tabs become spaces up to the next multiple of four.
+#[must_use]
+pub fn excerpt(source: &str, column: usize, room: usize) -> Excerpt {
+    let mut chars: Vec<char> = Vec::new();
+    let mut caret = None;
+    for (i, c) in source.trim_end().chars().enumerate() {
+        if i + 1 == column.max(1) {
+            caret = Some(chars.len());
+        }
+        match c {
+            '\t' => chars.extend(std::iter::repeat_n(' ', TAB - chars.len() % TAB)),
+            c => chars.push(c),
+        }
+    }
+    let mut caret = caret.unwrap_or(chars.len());
+    // The indentation says nothing.
+    let indent = chars.iter().take(caret).take_while(|c| **c == ' ').count();
+    let room = room.max(8);
+    if chars.len() > room && indent > 0 {
+        chars.drain(..indent);
+        caret -= indent;
+    }
+    if chars.len() > room {
+        // What stands before the place explains more than what stands after it.
+        let start = (caret + room / 3 + 1).saturating_sub(room).min(chars.len() - room);
+        let end = (start + room).min(chars.len());
+        let (cut_start, cut_end) = (start > 0, end < chars.len());
+        chars = chars[start..end].to_vec();
+        caret -= start;
+        if cut_start {
+            chars[0] = '…';
+        }
+        if cut_end && let Some(last) = chars.last_mut() {
+            *last = '…';
+        }
+    }
+    Excerpt { text: chars.into_iter().collect(), caret }
+}
+
+/// A problem as text: message, place, the line with a caret, the consequence.
+#[must_use]
+pub fn report(trouble: &Trouble) -> String {
+    let path = trouble.path.as_ref().map(|path| path.display().to_string());
+    let text = annotated(&trouble.problem, path.as_deref().unwrap_or(&trouble.problem.file));
+    format!("{text}\n{}\n", consequence(trouble))
+}
+
+pub(super) fn troubles(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
+    let mut all: Vec<_> = lab.shaders.troubles.iter().collect();
+    // What the picture suffers from comes first.
+    all.sort_by_key(|t| t.stale.is_empty());
+    ScrollArea::vertical().id_salt("troubles").auto_shrink(false).show(ui, |ui| {
+        ui.set_width(ui.available_width() - 8.0);
+        for (i, trouble) in all.into_iter().enumerate() {
+            if i > 0 {
+                ui.separator();
+            }
+            ui.push_id(i, |ui| self::trouble(ui, trouble, actions));
+        }
+    });
+}
+
+pub(super) fn trouble(ui: &mut Ui, trouble: &Trouble, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    let p = &trouble.problem;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (sign, response) = ui.allocate_exact_size(vec2(16.0, 24.0), Sense::hover());
+        icon::severity(ui.painter(), sign.center(), 6.0, Severity::Error, &palette);
+        response.on_hover_text(Severity::Error.name());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if let Some(path) = &trouble.path {
+                let open = ui.button("Open in editor").on_hover_text(path.display().to_string());
+                if open.clicked() {
+                    actions.push(Action::Author(Ask::Edit { path: path.clone(), line: p.line }));
+                }
+            }
+            if ui.button("Copy").on_hover_text("Copy place, message and line").clicked() {
+                actions.push(Action::Copy(report(trouble)));
+            }
+            let place = format!("{}:{}:{}", p.file, p.line, p.column);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(egui::Label::new(theme::strong(ui, place)).truncate());
+            });
+        });
+    });
+    ui.add(egui::Label::new(RichText::new(&p.message).color(palette.error)).wrap().selectable(true));
+    source_line(ui, trouble);
+    ui.add(egui::Label::new(consequence(trouble)).wrap());
+}
+
+/// The line as it stands in the file, with its number, and a caret below the place that is meant.
+fn source_line(ui: &mut Ui, trouble: &Trouble) {
+    let p = &trouble.problem;
+    if p.source.trim().is_empty() {
+        return;
+    }
+    let palette = Palette::here(ui);
+    let font = FontId::monospace(TextStyle::Body.resolve(ui.style()).size);
+    let plain = |text: String, colour| ui.painter().layout_no_wrap(text, font.clone(), colour);
+    let number = plain(p.line.to_string(), palette.weak);
+    let advance = plain("0".repeat(10), palette.text).size().x / 10.0;
+    let padding = vec2(8.0, 4.0);
+    let gutter = number.size().x + 2.0 * padding.x;
+    let width = ui.available_width();
+    let room = ((width - gutter - 2.0 * padding.x) / advance).floor().max(0.0) as usize;
+    let shown = excerpt(&p.source, p.column, room);
+    let source = plain(shown.text.clone(), palette.text);
+    // Larger than the text: it is looked for.
+    let large = FontId::monospace(1.5 * font.size);
+    let caret = ui.painter().layout_no_wrap("^".to_owned(), large, palette.error);
+    let height = source.size().y + 0.55 * caret.size().y + 2.0 * padding.y;
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
+    response.widget_info(|| {
+        WidgetInfo::labeled(WidgetType::Label, true, format!("line {}: {}", p.line, p.source.trim()))
+    });
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 4.0, palette.field);
+    let top = rect.min + padding;
+    painter.galley(top, number, palette.weak);
+    let left = rect.left() + gutter;
+    painter.vline(left - 0.5 * padding.x, rect.y_range().shrink(2.0), egui::Stroke::new(1.0, palette.line));
+    let at = egui::pos2(left + padding.x, top.y);
+    // Asked of the text itself, since not every sign is as wide as the others.
+    let here = source.pos_from_cursor(egui::text::CCursor::new(shown.caret));
+    let middle = here.min.x + 0.5 * advance;
+    let under = at + vec2(middle - 0.5 * caret.size().x, source.size().y - 0.1 * caret.size().y);
+    painter.galley(at, source, palette.text);
+    painter.galley(under, caret, palette.error);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(source: &str, column: usize, room: usize) -> (String, usize) {
+        let e = excerpt(source, column, room);
+        (e.text, e.caret)
+    }
+
+    #[test]
+    fn the_caret_stands_under_the_column_whatever_comes_before() {
+        assert_eq!(at("let x = ;", 9, 80), ("let x = ;".to_owned(), 8));
+        assert_eq!(at("\tlet x = ;", 10, 80), ("    let x = ;".to_owned(), 12), "a tab is four wide");
+        assert_eq!(at("ab\tx", 4, 80), ("ab  x".to_owned(), 4), "a tab ends at the next stop");
+        assert_eq!(at("/* 漢 */ x", 9, 80).1, 8, "characters, not bytes");
+        assert_eq!(at("abc", 99, 80), ("abc".to_owned(), 3), "past the end");
+        assert_eq!(at("abc", 0, 80).1, 0);
+        assert_eq!(at("", 1, 80), (String::new(), 0));
+    }
+
+    #[test]
+    fn long_lines_are_cut_around_the_place() {
+        let line: String = ('a'..='z').cycle().take(200).collect();
+        for column in [1, 5, 30, 100, 170, 200, 201] {
+            let (text, caret) = at(&line, column, 40);
+            assert_eq!(text.chars().count(), 40, "{column}");
+            assert!(caret <= 40);
+            if column <= 200 {
+                let meant = line.chars().nth(column - 1);
+                let shown = text.chars().nth(caret);
+                assert!(
+                    shown == meant || shown == Some('…') && (column == 1 || column == 200),
+                    "{column}: {text}"
+                );
+            }
+        }
+        let (text, caret) = at(&format!("{}let x = ;", " ".repeat(60)), 69, 40);
+        assert_eq!((text.as_str(), caret), ("let x = ;", 8), "indentation goes first");
+    }
+}

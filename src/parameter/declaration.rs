@@ -1,0 +1,160 @@
+//! The declaration of one parameter.
+
+use std::borrow::Cow;
+
+use super::value::Value;
+
+/// The declaration of one parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// The name in scene files and on the command line.
+    pub name: &'static str,
+    /// The symbol in the equation, e.g. `k_d` or `α`.
+    pub symbol: &'static str,
+    /// The word beside the symbol, e.g. "diffuse coefficient".
+    pub label: &'static str,
+    /// The unit, empty for dimensionless numbers.
+    pub unit: &'static str,
+    /// Its effect, one sentence, for tooltips and manuals.
+    pub help: &'static str,
+    /// Type, range and default.
+    pub kind: ParameterKind,
+    /// The condition for its use; `None` for always. See [`Parameter::used_when`].
+    pub used_when: Option<UsedWhen>,
+}
+
+/// A condition under which a parameter is used: another one of the model has one of these choices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UsedWhen {
+    /// The name of the other parameter.
+    pub parameter: &'static str,
+    /// The names of its choices.
+    pub choices: &'static [&'static str],
+}
+
+/// The smallest legal value of a number that must be greater than zero.
+pub const ABOVE_ZERO: f32 = f32::MIN_POSITIVE;
+
+/// Type, range and default of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParameterKind {
+    /// A real number in a closed range.
+    Number {
+        /// Smallest legal value.
+        min: f32,
+        /// Largest legal value.
+        max: f32,
+        /// Value when the scene does not give one.
+        default: f32,
+    },
+    /// A whole number with a lower bound and perhaps an upper one.
+    Integer {
+        /// Smallest legal value.
+        min: i64,
+        /// Largest legal value, if there is one.
+        max: Option<i64>,
+        /// The end of a slider when there is no largest value.
+        slider_max: i64,
+        /// Value when the scene does not give one.
+        default: i64,
+    },
+    /// Three sRGB-encoded integers, 0–255.
+    Colour {
+        /// Value when the scene does not give one.
+        default: [u8; 3],
+    },
+    /// Three real numbers, one for each of red, green and blue, in a closed range. Files may give one
+    /// number for all three.
+    Triple {
+        /// Smallest legal value.
+        min: f32,
+        /// Largest legal value.
+        max: f32,
+        /// Value when the scene does not give one.
+        default: [f32; 3],
+    },
+    /// One of several named choices.
+    Choice {
+        /// The choices: name in files, name for people.
+        options: &'static [(&'static str, &'static str)],
+        /// Index of the default.
+        default: usize,
+    },
+}
+
+impl Parameter {
+    /// The same parameter, used only while another of the model has one of these choices, and that one is
+    /// used itself. Otherwise its knob is disabled and says why.
+    #[must_use]
+    pub const fn used_when(self, parameter: &'static str, choices: &'static [&'static str]) -> Self {
+        Self { used_when: Some(UsedWhen { parameter, choices }), ..self }
+    }
+
+    /// The value when the scene does not give one.
+    #[must_use]
+    pub fn default_value(&self) -> Value {
+        match self.kind {
+            ParameterKind::Number { default, .. } => Value::Number(default),
+            ParameterKind::Integer { default, .. } => Value::Integer(default),
+            ParameterKind::Colour { default } => Value::Colour(default),
+            ParameterKind::Triple { default, .. } => Value::Triple(default),
+            ParameterKind::Choice { options, default } => Value::Choice(Cow::Borrowed(options[default].0)),
+        }
+    }
+
+    /// The legal values, as the end of a sentence: "must be between 0.5 and 1".
+    #[must_use]
+    pub fn rule(&self) -> String {
+        match &self.kind {
+            ParameterKind::Number { min, max, .. } if *min == ABOVE_ZERO => {
+                format!("greater than 0 and at most {max}")
+            }
+            ParameterKind::Number { min, max, .. } => format!("between {min} and {max}"),
+            ParameterKind::Integer { min, max: Some(max), .. } => {
+                format!("a whole number between {min} and {max}")
+            }
+            ParameterKind::Integer { min, max: None, .. } => format!("a whole number, {min} or more"),
+            ParameterKind::Colour { .. } => {
+                "three whole numbers from 0 to 255: [red, green, blue]".to_owned()
+            }
+            ParameterKind::Triple { min, max, .. } => {
+                format!("three numbers between {min} and {max}, [red, green, blue], or one for all")
+            }
+            ParameterKind::Choice { options, .. } => {
+                let names: Vec<_> = options.iter().map(|(id, _)| format!("\"{id}\"")).collect();
+                format!("one of {}", names.join(", "))
+            }
+        }
+    }
+
+    /// True if a value has the right type and lies in the range.
+    #[must_use]
+    pub fn allows(&self, value: &Value) -> bool {
+        match (&self.kind, value) {
+            (ParameterKind::Number { min, max, .. }, Value::Number(v)) => {
+                v.is_finite() && (min..=max).contains(&v)
+            }
+            (ParameterKind::Integer { min, max, .. }, Value::Integer(v)) => {
+                v >= min && max.is_none_or(|m| *v <= m)
+            }
+            (ParameterKind::Colour { .. }, Value::Colour(_)) => true,
+            (ParameterKind::Triple { min, max, .. }, Value::Triple(v)) => {
+                v.iter().all(|c| c.is_finite() && (min..=max).contains(&c))
+            }
+            (ParameterKind::Choice { options, .. }, Value::Choice(v)) => {
+                options.iter().any(|(id, _)| *id == v.as_ref())
+            }
+            _ => false,
+        }
+    }
+
+    /// The WGSL type of the field that carries it.
+    #[must_use]
+    pub fn wgsl_type(&self) -> &'static str {
+        match self.kind {
+            ParameterKind::Number { .. } | ParameterKind::Integer { .. } => "f32",
+            ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => "vec3<f32>",
+            ParameterKind::Choice { .. } => "u32",
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Parameters of models and lights: one declaration drives JSON, checks, panel knobs, the uniform
+//! layout and `lcm models`.
+//!
+//! Parameters are shared **by name** across models, so that swapping the model keeps what the user
+//! set. Those that several models use are declared here once.
+
+mod declaration;
+mod layout;
+mod set;
+mod shared;
+mod value;
+
+pub use declaration::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen};
+pub use layout::{BLOCK_BYTES, layout, pack, stride, words};
+pub use set::ParameterSet;
+pub use shared::{
+    ALPHA, ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, K_A, K_D, K_S, METALLIC, REFLECTANCE, ROUGHNESS,
+    SIGMA, SPECULAR_COLOUR,
+};
+pub use value::{Value, Values, json};

@@ -1,0 +1,123 @@
+//! Values of parameters, by name.
+
+use std::{borrow::Cow, collections::BTreeMap, fmt};
+
+use glam::Vec3;
+use serde::Serialize;
+
+use super::declaration::{Parameter, ParameterKind};
+use crate::optics::colour::Encoding;
+
+/// The value of a parameter, as a scene file holds it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// A real number.
+    Number(f32),
+    /// A whole number.
+    Integer(i64),
+    /// An sRGB-encoded colour.
+    Colour([u8; 3]),
+    /// A number for each of red, green and blue.
+    Triple([f32; 3]),
+    /// The name of a choice.
+    Choice(Cow<'static, str>),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(v) => write!(f, "{v}"),
+            Self::Integer(v) => write!(f, "{v}"),
+            Self::Colour([r, g, b]) => write!(f, "{r},{g},{b}"),
+            Self::Triple([r, g, b]) => write!(f, "{r},{g},{b}"),
+            Self::Choice(v) => f.write_str(v),
+        }
+    }
+}
+
+/// The parameters that a scene gives for one object, by name. What is absent has its default; what
+/// the current model does not use is kept.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Values(pub BTreeMap<Cow<'static, str>, Value>);
+
+impl Values {
+    /// The value of a parameter: the scene's, or the declared default when the scene has none of a
+    /// legal type and range.
+    #[must_use]
+    pub fn get(&self, parameter: &Parameter) -> Value {
+        match self.0.get(parameter.name) {
+            Some(value) if parameter.allows(value) => value.clone(),
+            _ => parameter.default_value(),
+        }
+    }
+
+    /// Sets a parameter.
+    pub fn set(&mut self, name: impl Into<Cow<'static, str>>, value: Value) {
+        self.0.insert(name.into(), value);
+    }
+
+    /// The parameter as a number for calculation; of three the first.
+    #[must_use]
+    pub fn number(&self, parameter: &Parameter) -> f32 {
+        match self.get(parameter) {
+            Value::Number(v) => v,
+            Value::Integer(v) => v as f32,
+            Value::Colour([r, ..]) => f32::from(r),
+            Value::Triple([r, ..]) => r,
+            Value::Choice(_) => self.choice(parameter) as f32,
+        }
+    }
+
+    /// The parameter as a linear colour, or as its three numbers, for calculation; zero when it is
+    /// neither.
+    #[must_use]
+    pub fn colour(&self, parameter: &Parameter, encoding: Encoding) -> Vec3 {
+        match self.get(parameter) {
+            Value::Colour(rgb) => encoding.decode(rgb),
+            Value::Triple(v) => v.into(),
+            _ => Vec3::ZERO,
+        }
+    }
+
+    /// The index of the chosen option; 0 when it is not a choice.
+    #[must_use]
+    pub fn choice(&self, parameter: &Parameter) -> u32 {
+        match (&parameter.kind, self.get(parameter)) {
+            (ParameterKind::Choice { options, .. }, Value::Choice(v)) => {
+                options.iter().position(|(id, _)| *id == v.as_ref()).unwrap_or(0) as u32
+            }
+            _ => 0,
+        }
+    }
+}
+
+/// A value as scene files write it.
+#[must_use]
+pub fn json(value: &Value) -> serde_json::Value {
+    match value {
+        Value::Number(v) => crate::text::number(*v),
+        Value::Integer(v) => (*v).into(),
+        Value::Colour(rgb) => serde_json::json!(rgb),
+        Value::Triple(v) => v.iter().map(|c| crate::text::number(*c)).collect(),
+        Value::Choice(v) => v.as_ref().into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::shared::K_D;
+
+    #[test]
+    fn values_outside_the_range_fall_back_to_the_default() {
+        let mut values = Values::default();
+        values.set("k_d", Value::Number(0.2));
+        assert_eq!(values.get(&K_D), Value::Number(0.8));
+        values.set("k_d", Value::Number(0.6));
+        assert_eq!(values.get(&K_D), Value::Number(0.6));
+        values.set("k_d", Value::Number(f32::NAN));
+        assert_eq!(values.get(&K_D), Value::Number(0.8));
+    }
+}

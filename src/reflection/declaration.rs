@@ -1,0 +1,120 @@
+//! The declaration of a reflection model: name, source, equation, laws.
+
+use crate::shader::Source;
+
+/// The name, the source and the claims of a model.
+#[derive(Debug, PartialEq)]
+pub struct Declaration {
+    /// The name in scene files: lower case, underscores.
+    pub id: &'static str,
+    /// The name that people read.
+    pub name: &'static str,
+    /// The family under which choosers list it.
+    pub family: Family,
+    /// Author and year, short: "B. T. Phong 1975".
+    pub author: &'static str,
+    /// Author, year, title, where published.
+    pub source: &'static str,
+    /// Its purpose and its look, one or two sentences.
+    pub summary: &'static str,
+    /// The equation, one part per term so that the window can colour them.
+    pub equation: &'static [EquationPart],
+    /// The physical laws that the model keeps for all directions and legal parameters.
+    pub laws: Laws,
+    /// The response to uniform light.
+    pub ambient: Ambient,
+    /// True if the response depends on the tangent: turning the surface about its normal changes it.
+    pub anisotropic: bool,
+    /// The twin in WGSL: `fn response` over a struct `Parameters`, and `fn ambient_response` for models
+    /// that declare [`Ambient::Formula`].
+    pub wgsl: Source,
+}
+
+/// The response of a model to uniform light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Ambient {
+    /// By a formula of its own: [`ReflectionModel::ambient_response`] and its twin in WGSL.
+    Formula,
+    /// By its directional albedo `E(v) = ∫ f_r cos θ dω`, which is calculated from the response. The
+    /// model writes no ambient function, neither in Rust nor in WGSL.
+    Albedo,
+}
+
+/// One part of an equation in readable mathematics: `I_d = k_d max(0, N·L) C_b`. `_x` is a
+/// subscript and `^x` a superscript; braces group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EquationPart {
+    /// The term that it belongs to: decides its colour.
+    pub term: Term,
+    /// The mathematics.
+    pub text: &'static str,
+}
+
+/// A term of the equation of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Term {
+    /// The sum of the others.
+    Total,
+    /// `I_a`.
+    Ambient,
+    /// `I_d`.
+    Diffuse,
+    /// `I_s`.
+    Specular,
+}
+
+/// A family of models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Family {
+    /// The four models of the *Commonality Analysis*.
+    Basic,
+    /// Other classical models.
+    Classical,
+    /// Diffuse reflection of rough surfaces.
+    Diffuse,
+    /// Microfacet theory.
+    Microfacet,
+    /// The practical standard.
+    Standard,
+    /// Models that a user wrote.
+    Custom,
+}
+
+impl Family {
+    /// The heading in choosers.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Basic => "Basic",
+            Self::Classical => "Classical",
+            Self::Diffuse => "Rough diffuse",
+            Self::Microfacet => "Microfacet",
+            Self::Standard => "Standard",
+            Self::Custom => "Custom models",
+        }
+    }
+}
+
+/// The physical laws that a model claims. Tests assert each where it is claimed and its violation
+/// where it is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Laws {
+    /// `f_r(l, v) = f_r(v, l)` (Helmholtz).
+    pub reciprocal: bool,
+    /// `E(μ) ≤ 1`: never more light out than in.
+    pub energy_conserving: bool,
+    /// `f_r ≥ 0`.
+    pub non_negative: bool,
+}
+
+impl Laws {
+    /// The laws with their names, kept or not.
+    #[must_use]
+    pub fn list(self) -> [(&'static str, bool); 3] {
+        [
+            ("reciprocal", self.reciprocal),
+            ("energy conserving", self.energy_conserving),
+            ("non-negative", self.non_negative),
+        ]
+    }
+}

@@ -1,0 +1,212 @@
+//! A registered model.
+
+use std::{
+    collections::HashMap,
+    fmt,
+    sync::{Arc, Mutex, OnceLock, PoisonError},
+};
+
+use glam::Vec3;
+
+use super::{
+    declaration::{Ambient, Declaration},
+    model::ReflectionModel,
+    preset::{self, Measured},
+    surface::{Instance, Surface},
+};
+use crate::{
+    optics::{
+        albedo::{AlbedoCurve, LobeAlbedo, NODES},
+        colour::Encoding,
+    },
+    parameter::{Parameter, Value, Values, pack},
+};
+
+/// A registered model, as the rest of the program knows it.
+#[derive(Clone)]
+pub struct ModelEntry {
+    /// Name, source, laws, equation, shader.
+    pub declaration: &'static Declaration,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+    /// See [`ReflectionModel::preset`].
+    pub preset: fn(&Measured) -> Vec<(&'static str, Value)>,
+    lobe: Lobe,
+    pub(super) instantiate: Instantiate,
+    on_cpu: Option<Arc<dyn Interpreted>>,
+    /// Surfaces with curves, by their packed parameters: objects of one material share one.
+    kept: Arc<Mutex<HashMap<Vec<u8>, Arc<dyn Surface>>>>,
+}
+
+/// The state of a model whose WGSL the CPU interprets.
+pub(crate) trait Interpreted: Send + Sync {
+    /// The reason why the CPU cannot run the model, or could not when it last tried.
+    fn trouble(&self) -> Option<String>;
+    /// True if a function ran too long.
+    fn runs_too_long(&self) -> bool;
+}
+
+/// Makes a surface of parameters.
+pub(crate) type Instantiate = Arc<dyn Fn(&Values, Encoding) -> Arc<dyn Surface> + Send + Sync>;
+
+/// The specular lobe whose albedo the shader of a model reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lobe {
+    /// It reads none.
+    None,
+    /// The lobe of the model itself.
+    Own,
+    /// The lobe of a built-in model, by id.
+    Of(&'static str),
+}
+
+/// The number of surfaces with curves that are kept.
+const KEPT: usize = 1024;
+
+impl ModelEntry {
+    /// The entry of a model type.
+    #[must_use]
+    pub fn of<M: ReflectionModel>() -> Self {
+        Self {
+            declaration: const { &M::DECLARATION },
+            parameters: M::PARAMETERS,
+            preset: M::preset,
+            lobe: if M::LOBE { Lobe::Own } else { Lobe::None },
+            instantiate: Arc::new(|values, encoding| {
+                Arc::new(Instance { model: M::from_values(values, encoding), curve: OnceLock::new() })
+            }),
+            on_cpu: None,
+            kept: Arc::default(),
+        }
+    }
+
+    /// The entry of a model from a file.
+    pub(crate) fn custom(
+        declaration: &'static Declaration,
+        parameters: &'static [Parameter],
+        lobe: Lobe,
+        instantiate: Instantiate,
+        on_cpu: Option<Arc<dyn Interpreted>>,
+    ) -> Self {
+        let preset = preset::by_names(parameters);
+        Self { declaration, parameters, preset, lobe, instantiate, on_cpu, kept: Arc::default() }
+    }
+
+    /// A number that changes when the file of the model is read again.
+    #[must_use]
+    pub(crate) fn version(&self) -> usize {
+        Arc::as_ptr(&self.kept) as usize
+    }
+
+    /// The reason why the CPU cannot run the model, if it cannot: it interprets the WGSL of custom models, but not
+    /// every construct. The GPU runs them all the same. A function that does not end shows only when it is run.
+    #[must_use]
+    pub fn not_on_cpu(&self) -> Option<String> {
+        self.on_cpu.as_ref().and_then(|on_cpu| on_cpu.trouble())
+    }
+
+    /// True if the CPU interprets the model and found a function that does not end. On the GPU it would not end
+    /// either, and nothing could stop it there.
+    #[must_use]
+    pub fn runs_too_long(&self) -> bool {
+        self.on_cpu.as_ref().is_some_and(|on_cpu| on_cpu.runs_too_long())
+    }
+
+    /// True if the CPU interprets the WGSL of the model.
+    #[must_use]
+    pub fn is_interpreted(&self) -> bool {
+        self.on_cpu.is_some()
+    }
+
+    /// True if the model has a lobe of its own whose albedo its shader reads.
+    #[must_use]
+    pub fn has_lobe(&self) -> bool {
+        self.lobe == Lobe::Own
+    }
+
+    /// The id of the model whose lobe the shader reads the albedo of.
+    #[must_use]
+    pub fn lobe_of(&self) -> Option<&'static str> {
+        match self.lobe {
+            Lobe::None => None,
+            Lobe::Own => Some(self.declaration.id),
+            Lobe::Of(id) => Some(id),
+        }
+    }
+
+    /// The model with the parameters of one object.
+    #[must_use]
+    pub fn instantiate(&self, values: &Values, encoding: Encoding) -> Arc<dyn Surface> {
+        if !self.has_curve() {
+            return (self.instantiate)(values, encoding);
+        }
+        let key = pack(self.parameters, values, encoding);
+        let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(surface) = kept().get(&key) {
+            return surface.clone();
+        }
+        let surface = (self.instantiate)(values, encoding);
+        let mut kept = kept();
+        if kept.len() >= KEPT {
+            kept.clear();
+        }
+        kept.entry(key).or_insert(surface).clone()
+    }
+
+    /// True if the row of an object holds a curve beside the parameters.
+    #[must_use]
+    pub fn has_curve(&self) -> bool {
+        self.lobe != Lobe::None || self.declaration.ambient == Ambient::Albedo
+    }
+
+    /// The number of harmonics of the azimuth in a curve.
+    #[must_use]
+    pub fn harmonics(&self) -> usize {
+        if self.declaration.anisotropic { 3 } else { 1 }
+    }
+
+    /// The row of an object in the table that the shader reads, laid out as the WGSL struct `Row` (see
+    /// [`row_struct`](crate::registry::compose::row_struct)): the parameters, and for models that have
+    /// one the curve. Its colours are zero unless `uniform_light`: the scene has uniform light.
+    #[must_use]
+    pub fn row(&self, values: &Values, encoding: Encoding, uniform_light: bool) -> Vec<u8> {
+        let mut row = pack(self.parameters, values, encoding);
+        if self.has_curve() {
+            let surface = self.instantiate(values, encoding);
+            let curve = if uniform_light { surface.curve() } else { None };
+            append_curve(&mut row, self.harmonics(), curve, surface.lobe());
+        }
+        row
+    }
+
+    /// The parameter of that name, if the model uses it.
+    #[must_use]
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+}
+
+/// Puts a curve behind the parameters of a row.
+pub(crate) fn append_curve(
+    row: &mut Vec<u8>,
+    harmonics: usize,
+    curve: Option<AlbedoCurve>,
+    lobe: Option<LobeAlbedo>,
+) {
+    let lobe = lobe.unwrap_or_default();
+    row.resize(row.len().next_multiple_of(16), 0);
+    for harmonic in 0..harmonics {
+        for node in 0..NODES {
+            let rgb = curve.map_or(Vec3::ZERO, |c| c.harmonics[harmonic][node]);
+            let w = if harmonic == 0 { lobe.nodes[node] } else { 0.0 };
+            row.extend(rgb.extend(w).to_array().into_iter().flat_map(f32::to_le_bytes));
+        }
+    }
+    row.extend([lobe.average(), 0.0, 0.0, 0.0].into_iter().flat_map(f32::to_le_bytes));
+}
+
+impl fmt::Debug for ModelEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("ModelEntry").field(&self.declaration.id).finish()
+    }
+}

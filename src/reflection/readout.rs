@@ -1,0 +1,72 @@
+//! Values derived from the parameters of a surface.
+
+use glam::Vec3;
+
+use crate::optics::equivalence;
+
+/// A number or colour derived from the parameters of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Readout {
+    /// The symbol, e.g. `F_0`.
+    pub symbol: &'static str,
+    /// Its name.
+    pub label: &'static str,
+    /// Its meaning, one sentence.
+    pub help: &'static str,
+    /// The number or colour.
+    pub value: ReadoutValue,
+}
+
+impl Readout {
+    /// The reflectance at normal incidence.
+    #[must_use]
+    pub fn of_f0(f0: Vec3) -> Self {
+        Self {
+            symbol: "F_0",
+            label: "reflectance at normal incidence",
+            help: "How much of the light the surface mirrors when seen straight on, in red, green and blue.",
+            value: ReadoutValue::Reflectance(f0),
+        }
+    }
+
+    /// The width of the distribution of microfacets.
+    #[must_use]
+    pub fn of_alpha(alpha: f32) -> Self {
+        Self {
+            symbol: "α",
+            label: "width of the highlight",
+            help: "The width of the slopes of the microfacets, on the scale of GGX and Beckmann; the square of the perceptual roughness.",
+            value: ReadoutValue::Number(alpha),
+        }
+    }
+
+    /// The width of the highlight on the scales of the microfacet models, from the exponent of the
+    /// Blinn–Phong lobe that is as sharp; see [`equivalence`].
+    #[must_use]
+    pub fn of_exponent(exponent: f32) -> Vec<Self> {
+        let alpha = equivalence::alpha_of_exponent(exponent);
+        vec![
+            Self {
+                symbol: "α_GGX",
+                label: "equivalent GGX α",
+                help: "The width of the GGX or Beckmann distribution that is as sharp as this highlight: √(2/(n + 2)) for Blinn–Phong's exponent n, and Phong's n counts as 4n, since H turns half as far as R.",
+                value: ReadoutValue::Number(alpha),
+            },
+            Self {
+                symbol: "r",
+                label: "equivalent roughness",
+                help: "The roughness of metallic-roughness models that is as sharp as this highlight: the root of the width, r² = α.",
+                value: ReadoutValue::Number(equivalence::roughness_of_alpha(alpha)),
+            },
+        ]
+    }
+}
+
+/// The value of a [`Readout`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ReadoutValue {
+    /// A number.
+    Number(f32),
+    /// A linear reflectance in red, green and blue.
+    Reflectance(Vec3),
+}

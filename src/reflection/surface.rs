@@ -1,0 +1,106 @@
+//! A model with its parameters set.
+
+use std::sync::OnceLock;
+
+use glam::Vec3;
+
+use super::{declaration::Ambient, model::ReflectionModel, readout::Readout};
+use crate::optics::{
+    Frame, Terms,
+    albedo::{self, AlbedoCurve, LobeAlbedo},
+};
+
+/// A model with its parameters set: the object-safe half of [`ReflectionModel`].
+pub trait Surface: Send + Sync {
+    /// See [`ReflectionModel::response`].
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
+    /// The response to uniform light of 1 lx, by formula or by albedo.
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
+    /// The directional albedo over the view, of models that declare [`Ambient::Albedo`].
+    fn curve(&self) -> Option<AlbedoCurve>;
+    /// See [`ReflectionModel::lobe`].
+    fn lobe(&self) -> Option<LobeAlbedo>;
+    /// See [`ReflectionModel::readouts`].
+    fn readouts(&self) -> Vec<Readout>;
+}
+
+/// A model alone: it calculates its albedo anew at every call, to [`albedo::ACCURACY`].
+impl<M: ReflectionModel> Surface for M {
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        ReflectionModel::response(self, l, v, frame)
+    }
+
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        match M::DECLARATION.ambient {
+            Ambient::Formula => ReflectionModel::ambient_response(self, v, frame),
+            Ambient::Albedo => {
+                albedo::directional(|l| ReflectionModel::response(self, l, v, frame), v, frame).as_vec3()
+            }
+        }
+    }
+
+    fn curve(&self) -> Option<AlbedoCurve> {
+        (M::DECLARATION.ambient == Ambient::Albedo).then(|| {
+            AlbedoCurve::new(
+                |l, v| ReflectionModel::response(self, l, v, &Frame::LOCAL),
+                M::DECLARATION.anisotropic,
+            )
+        })
+    }
+
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        ReflectionModel::lobe(self)
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        ReflectionModel::readouts(self)
+    }
+}
+
+/// A model that calculates its curve once, at the first call, and answers by it: for pictures.
+pub(super) struct Instance<M> {
+    pub(super) model: M,
+    pub(super) curve: OnceLock<Option<AlbedoCurve>>,
+}
+
+impl<M: ReflectionModel> Surface for Instance<M> {
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        ReflectionModel::response(&self.model, l, v, frame)
+    }
+
+    fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        match self.curve.get_or_init(|| self.model.curve()) {
+            Some(curve) => curve.at(v, frame),
+            None => ReflectionModel::ambient_response(&self.model, v, frame),
+        }
+    }
+
+    fn curve(&self) -> Option<AlbedoCurve> {
+        *self.curve.get_or_init(|| self.model.curve())
+    }
+
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        ReflectionModel::lobe(&self.model)
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        ReflectionModel::readouts(&self.model)
+    }
+}
+
+/// The BRDF `f_r` in sr⁻¹ of a surface: diffuse plus specular response over `π cos θ_i`; the ambient
+/// term is left out. Zero where the light or the viewer is below the surface.
+#[must_use]
+pub fn brdf(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
+    brdf_of(surface.response(l, v, frame), l, v, frame)
+}
+
+/// The BRDF `f_r` in sr⁻¹ that belongs to a response; see [`brdf`].
+#[must_use]
+pub fn brdf_of(response: Terms, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
+    let cos_i = frame.n.dot(l);
+    if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
+        return Vec3::ZERO;
+    }
+    (response.diffuse + response.specular) / (std::f32::consts::PI * cos_i)
+}

@@ -1,0 +1,154 @@
+//! The models that take part in the comparison of lobes, and their fits.
+
+use crate::{
+    optics::{Frame, colour::Encoding, equivalence},
+    parameter::{Value, Values},
+    registry::Registry,
+    study::{
+        Lab, Setting, StudyError, alpha, choice,
+        fit::{self, Fit, Sample},
+        number,
+        plot::{Line, Mark},
+    },
+};
+
+/// Widths that are tried.
+const WIDTHS: (f64, f64) = (0.002, 1.0);
+
+/// A model that takes part: its specular lobe with a free width.
+pub(in crate::study) struct Contestant {
+    pub(in crate::study) name: &'static str,
+    id: &'static str,
+    pub(super) settings: Vec<Setting>,
+    /// Other settings, if they fit better.
+    pub(super) instead: Option<Vec<Setting>>,
+    width: fn(f64) -> Vec<Setting>,
+    /// Colour, line and mark in plots.
+    pub(super) style: (usize, Line, Mark),
+}
+
+fn exponent(width: f64) -> Vec<Setting> {
+    let n = equivalence::exponent_of_alpha(width as f32).round();
+    vec![("alpha", Value::Integer(n as i64))]
+}
+
+fn both(width: f64) -> Vec<Setting> {
+    alpha(width).to_vec()
+}
+
+impl Contestant {
+    fn microfacet(name: &'static str, d: &'static str, g: &'static str, style: (usize, Line, Mark)) -> Self {
+        let settings = |f| {
+            vec![
+                choice("distribution", d),
+                choice("masking", g),
+                choice("fresnel", f),
+                choice("diffuse", "none"),
+                ("ior", Value::Triple([1.5; 3])),
+            ]
+        };
+        Self {
+            name,
+            id: "microfacet",
+            settings: settings("dielectric"),
+            instead: Some(settings("none")),
+            width: both,
+            style,
+        }
+    }
+
+    /// The four of the comparison.
+    pub(in crate::study) fn all() -> Vec<Self> {
+        let simple =
+            |name, id, settings, width, style| Self { name, id, settings, instead: None, width, style };
+        vec![
+            simple(
+                "Blinn–Phong",
+                "blinn_phong",
+                vec![number("k_s", 1.0)],
+                exponent,
+                (1, Line::Dashed, Mark::Triangle),
+            ),
+            simple("Ward", "ward", vec![number("k_s", 1.0)], both, (4, Line::Dotted, Mark::Square)),
+            Self::microfacet("Cook–Torrance", "beckmann", "v_cavity", (2, Line::Dashed, Mark::Cross)),
+            Self::microfacet("GGX", "ggx", "smith_height_correlated", (0, Line::Solid, Mark::Disc)),
+        ]
+    }
+
+    /// Microfacet models that differ in nothing but the distribution.
+    pub(super) fn distributions() -> Vec<Self> {
+        let smith = "smith_height_correlated";
+        vec![
+            Self::microfacet("Blinn’s distribution", "blinn_phong", smith, (1, Line::Solid, Mark::None)),
+            Self::microfacet("Beckmann’s distribution", "beckmann", smith, (2, Line::Solid, Mark::None)),
+            Self::microfacet("GGX distribution", "ggx", smith, (0, Line::Solid, Mark::None)),
+        ]
+    }
+
+    /// Refuses settings that the model does not have.
+    pub(super) fn check(&self, lab: &Lab) -> Result<(), StudyError> {
+        for settings in [Some(&self.settings), self.instead.as_ref()].into_iter().flatten() {
+            let mut settings = settings.clone();
+            settings.extend((self.width)(0.1));
+            lab.surface(self.id, &settings)?;
+        }
+        Ok(())
+    }
+
+    /// The specular lobe as a BRDF at every sample.
+    fn lobe(&self, registry: &Registry, settings: &[Setting], width: f64, samples: &[Sample]) -> Vec<f64> {
+        let mut values = Values::default();
+        for (name, value) in settings.iter().cloned().chain((self.width)(width)) {
+            values.set(name, value);
+        }
+        let Some(model) = registry.model(self.id) else { return vec![0.0; samples.len()] };
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        let f = |s: &Sample| {
+            let specular = surface.response(s.l, s.v, &Frame::LOCAL).specular.y;
+            f64::from(specular) / (std::f64::consts::PI * f64::from(s.l.z))
+        };
+        samples.iter().map(f).collect()
+    }
+
+    /// The best fit, with the Fresnel term of a dielectric.
+    pub(in crate::study) fn fit(&self, registry: &Registry, samples: &[Sample]) -> Fit {
+        fit::fit(samples, WIDTHS, |width, samples| self.lobe(registry, &self.settings, width, samples))
+    }
+
+    /// The best fit and its settings; for models that have one, with the Fresnel term that fits better.
+    pub(super) fn fit_freely(&self, registry: &Registry, samples: &[Sample]) -> Found {
+        let first = self.fit(registry, samples);
+        let bound = first.error;
+        let found = |fit, settings: &[Setting]| Found { fit, settings: settings.to_vec(), bound };
+        let Some(instead) = &self.instead else { return found(first, &self.settings) };
+        let second = fit::fit(samples, WIDTHS, |width, samples| self.lobe(registry, instead, width, samples));
+        if second.error < bound { found(second, instead) } else { found(first, &self.settings) }
+    }
+
+    /// The values of a fit at other samples.
+    pub(super) fn predict(
+        &self,
+        registry: &Registry,
+        settings: &[Setting],
+        fit: &Fit,
+        samples: &[Sample],
+    ) -> Vec<f64> {
+        let lobe = self.lobe(registry, settings, fit.width, samples);
+        lobe.iter().map(|q| fit.diffuse / std::f64::consts::PI + fit.specular * q).collect()
+    }
+
+    /// The error of a fit at other samples.
+    pub(in crate::study) fn error(&self, registry: &Registry, fit: &Fit, samples: &[Sample]) -> f64 {
+        let values: Vec<f64> = samples.iter().map(|s| s.value).collect();
+        fit::error(fit, &values, &self.lobe(registry, &self.settings, fit.width, samples))
+    }
+}
+
+/// The fit of a contestant to a material.
+pub(super) struct Found {
+    pub(super) fit: Fit,
+    /// The settings that it took.
+    pub(super) settings: Vec<Setting>,
+    /// The error without a choice of the Fresnel term.
+    pub(super) bound: f64,
+}

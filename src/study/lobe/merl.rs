@@ -1,0 +1,361 @@
+//! Materials of the MERL database: the fits to them, a table, a chart by material, and lobes of four of them.
+
+use maud::{Markup, html};
+use rayon::prelude::*;
+
+use super::{
+    contestant::{Contestant, Found},
+    paint::LARGEST_ANGLE,
+};
+use crate::{
+    optics::geometry::direction,
+    registry::Registry,
+    study::{
+        Lab, StudyError, Table,
+        data::Sgd,
+        fit::{self, Sample},
+        fixed, grid,
+        plot::{Axis, Line, Mark, Plot, Series},
+        svg, words,
+    },
+};
+
+/// A material of which a constant is nearer than this has no lobe.
+const MATTE: f64 = 0.01;
+/// The materials of which lobes are shown.
+const SHOWN: [&str; 4] = ["gold-metallic-paint", "alum-bronze", "red-plastic", "blue-acrylic"];
+
+/// Directions for the fits of MERL materials, dense about the mirror direction as the database is: by the
+/// half vector and the difference of light and half vector (S. Rusinkiewicz 1998).
+fn merl_directions() -> Vec<Sample> {
+    let mut samples = Vec::new();
+    for i in 0..26u8 {
+        let theta_h = 80.0 * (f32::from(i) / 25.0).powi(2);
+        for j in 0..8u8 {
+            for k in 0..7u8 {
+                let (theta_d, phi_d) = (f32::from(j) * 10.0, f32::from(k) * 30.0);
+                let h = direction(theta_h.into(), 0.0);
+                let d = direction(theta_d.into(), phi_d.into());
+                // Turned from the normal to the half vector, about y.
+                let (s, c) = theta_h.to_radians().sin_cos();
+                let turn =
+                    |d: glam::Vec3| glam::Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x).normalize();
+                let l = turn(d);
+                let v = (2.0 * l.dot(h) * h - l).normalize();
+                let least = LARGEST_ANGLE.to_radians().cos();
+                if l.z >= least && v.z >= least {
+                    samples.push(Sample { l, v, value: 1.0 });
+                }
+            }
+        }
+    }
+    samples
+}
+
+/// The fits of all contestants to a material.
+pub(super) struct MerlFit {
+    pub(super) name: &'static str,
+    /// Of each contestant.
+    pub(super) fits: Vec<Found>,
+    /// The error of a matte surface.
+    matte: f64,
+}
+
+impl MerlFit {
+    /// The log error of a contestant.
+    pub(super) fn error(&self, i: usize) -> f64 {
+        self.fits[i].fit.error
+    }
+}
+
+fn merl_fit(
+    material: &Sgd,
+    directions: &[Sample],
+    contestants: &[Contestant],
+    registry: &Registry,
+) -> MerlFit {
+    let samples: Vec<Sample> = directions
+        .iter()
+        .map(|s| Sample { value: material.luminance(s.l, s.v), ..*s })
+        .filter(|s| s.value > 0.0 && s.value.is_finite())
+        .collect();
+    let values: Vec<f64> = samples.iter().map(|s| s.value).collect();
+    let fits = contestants.iter().map(|c| c.fit_freely(registry, &samples)).collect();
+    MerlFit { name: material.name, fits, matte: fit::diffuse_only(&values).error }
+}
+
+fn median(mut all: Vec<f64>) -> f64 {
+    all.sort_by(f64::total_cmp);
+    match all.len() {
+        0 => f64::NAN,
+        n if n % 2 == 1 => all[n / 2],
+        n => 0.5 * (all[n / 2 - 1] + all[n / 2]),
+    }
+}
+
+/// The fits to the materials, sorted by the error of the last contestant, GGX.
+pub(super) struct Merl {
+    pub(super) contestants: Vec<Contestant>,
+    pub(super) fits: Vec<MerlFit>,
+    /// The number of materials without a specular part: they have no lobe to compare, and no fit here.
+    pub(super) flat: usize,
+    /// The number of pairs of directions of a fit.
+    pub(super) directions: usize,
+    materials: Vec<Sgd>,
+}
+
+impl Merl {
+    /// Fits all models to all materials; in a quick study to a tenth of them.
+    pub(super) fn fit(lab: &Lab) -> Self {
+        let materials = Sgd::all();
+        let chosen: Vec<&Sgd> = materials.iter().step_by(if lab.settings.quick { 10 } else { 1 }).collect();
+        let contestants = Contestant::all();
+        let directions = merl_directions();
+        let mut fits: Vec<MerlFit> =
+            chosen.par_iter().map(|m| merl_fit(m, &directions, &contestants, lab.registry)).collect();
+        let flat = fits.iter().filter(|f| f.matte < MATTE).count();
+        fits.retain(|f| f.matte >= MATTE);
+        let last = contestants.len() - 1;
+        fits.sort_by(|a, b| a.error(last).total_cmp(&b.error(last)));
+        Self { contestants, fits, flat, directions: directions.len(), materials }
+    }
+
+    /// The index of GGX.
+    pub(super) fn last(&self) -> usize {
+        self.contestants.len() - 1
+    }
+
+    /// The number of materials for which a contestant is the best. A tie is no win.
+    pub(super) fn best(&self, i: usize) -> usize {
+        let wins = |f: &&MerlFit| (0..self.contestants.len()).all(|j| j == i || f.error(i) < f.error(j));
+        self.fits.iter().filter(wins).count()
+    }
+
+    /// The median error of a contestant.
+    pub(super) fn median(&self, i: usize) -> f64 {
+        median(self.fits.iter().map(|f| f.error(i)).collect())
+    }
+
+    /// The median error of GGX without a choice of the Fresnel term, and the number of materials for which it is
+    /// better than Blinn–Phong even so.
+    pub(super) fn bound(&self) -> (f64, usize) {
+        let bound = |f: &MerlFit| f.fits[self.last()].bound;
+        let better = self.fits.iter().filter(|f| bound(f) < f.error(0)).count();
+        (median(self.fits.iter().map(bound).collect()), better)
+    }
+
+    /// The numbers of the fits.
+    pub(super) fn raw(&self) -> Table {
+        let mut header = "material,lambert".to_owned();
+        for c in &self.contestants {
+            let n = c.name.to_lowercase().replace('–', "_");
+            header.push_str(&format!(",{n},{n}_diffuse,{n}_specular,{n}_width"));
+        }
+        let mut raw = Table::new("lobe_merl", &header);
+        for f in &self.fits {
+            let mut numbers = vec![f.matte];
+            numbers.extend(
+                f.fits.iter().flat_map(|Found { fit: f, .. }| [f.error, f.diffuse, f.specular, f.width]),
+            );
+            raw.row(&[f.name], &numbers);
+        }
+        raw
+    }
+
+    /// The table, the chart, the lobes, and the errors for each material.
+    pub(super) fn results(&self, lab: &mut Lab) -> Result<Markup, StudyError> {
+        let table = self.table(lab);
+        let chart = self.chart(lab)?;
+        let panels = self.panels(lab)?;
+        let details: Vec<Vec<String>> = self
+            .fits
+            .iter()
+            .map(|f| {
+                let mut row = vec![f.name.to_owned()];
+                row.extend(f.fits.iter().map(|f| fixed(f.fit.error, 3)));
+                row
+            })
+            .collect();
+        let mut head = vec!["Material"];
+        head.extend(self.contestants.iter().map(|c| c.name));
+        Ok(html! {
+            (table)
+            (chart)
+            @if let Some(panels) = panels { (panels) }
+            details {
+                summary { "Log error for each of the " (self.fits.len()) " materials" }
+                (grid(&head, &details))
+            }
+        })
+    }
+
+    fn table(&self, lab: &mut Lab) -> Markup {
+        let fits = &self.fits;
+        let matte = median(fits.iter().map(|f| f.matte).collect());
+        let mut rows =
+            vec![vec!["Lambert".to_owned(), "1".to_owned(), fixed(matte, 3), "–".to_owned(), "–".to_owned()]];
+        for (i, c) in self.contestants.iter().enumerate() {
+            let better = fits.iter().filter(|f| f.error(i) < f.error(0)).count();
+            rows.push(vec![
+                c.name.to_owned(),
+                if c.instead.is_some() { "3 and choice of F" } else { "3" }.to_owned(),
+                fixed(self.median(i), 3),
+                format!("{}", self.best(i)),
+                if i == 0 { "–".to_owned() } else { format!("{better}") },
+            ]);
+        }
+        lab.table(
+            &html! {
+                "Fits to " (fits.len()) " materials of the MERL database, as represented by the SGD fits of Bagher et al. (2012): median of the log error, the number of materials for which the model is the best of the four, "
+                "and for which it is better than Blinn–Phong; a tie is no win. "
+                @if self.flat > 0 { (self.flat) " more materials without a specular part, which every model fits exactly, are not counted." }
+            },
+            &["Model", "free numbers", "median error", "best for", "better than Blinn–Phong"],
+            &rows,
+        )
+    }
+
+    fn chart(&self, lab: &mut Lab) -> Result<Markup, StudyError> {
+        let fits = &self.fits;
+        let errors = fits.iter().flat_map(|f| (0..self.contestants.len()).map(|i| f.error(i)));
+        let (lowest, highest) =
+            errors.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), e| (l.min(e), h.max(e)));
+        let chart = Plot {
+            title: "Log error by material, sorted by the error of GGX".to_owned(),
+            x: Axis::new("materials, sorted by the error of GGX", 0.0, fits.len() as f64 + 1.0, 6),
+            y: Axis::log("log error", lowest.min(0.006) / 1.2, 1.2 * highest.max(1.6)),
+            series: self
+                .contestants
+                .iter()
+                .enumerate()
+                .map(|(i, c)| Series {
+                    name: c.name.to_owned(),
+                    points: fits.iter().enumerate().map(|(x, f)| (x as f64 + 1.0, f.error(i))).collect(),
+                    colour: c.style.0,
+                    line: Line::None,
+                    mark: c.style.2,
+                })
+                .collect(),
+            size: (720, 400),
+            legend: true,
+        };
+        let caption = html! { "Error of the four models for each material, sorted. Logarithmic axis; it holds every point." @if self.flat > 0 { " The " (self.flat) " materials without a specular part have error 0 and no place on it." } };
+        Ok(lab.figure(&svg(&chart)?, &caption))
+    }
+
+    /// The lobes of some materials; none if the study has left all of them out.
+    fn panels(&self, lab: &mut Lab) -> Result<Option<Markup>, StudyError> {
+        let mut panels = Vec::new();
+        for name in SHOWN {
+            let material = self.materials.iter().find(|m| m.name == name);
+            let found = self.fits.iter().find(|f| f.name == name);
+            if let Some((material, found)) = material.zip(found) {
+                panels.push((name.replace('-', " "), merl_plot(lab, material, found, &self.contestants)?));
+            }
+        }
+        Ok((!panels.is_empty()).then(|| {
+            lab.figure(
+                &html! {
+                    div .panels { @for (name, plot) in &panels { div { p { (name) } (plot) } } }
+                    (key(&self.contestants))
+                },
+                &html! { "Lobes of four materials: BRDF by the angle " (words("θ_h")) " between normal and half vector, with 60° between light and viewer. Rings: the SGD fit that stands for the material." },
+            )
+        }))
+    }
+}
+
+/// The lobes of a MERL fit by the angle of the half vector.
+fn merl_plot(
+    lab: &Lab,
+    material: &Sgd,
+    found: &MerlFit,
+    contestants: &[Contestant],
+) -> Result<Markup, StudyError> {
+    // The difference angle is 30°, across, so that both directions stay above the surface.
+    let angles: Vec<f32> = (0..=80u8).map(|i| 50.0 * (f32::from(i) / 80.0).powi(2)).collect();
+    let samples: Vec<Sample> = angles
+        .iter()
+        .map(|theta| {
+            let h = direction((*theta).into(), 0.0);
+            let across = glam::Vec3::Y;
+            let (s, c) = 30f32.to_radians().sin_cos();
+            Sample { l: h * c + across * s, v: h * c - across * s, value: 1.0 }
+        })
+        .collect();
+    let data: Vec<f64> = samples.iter().map(|s| material.luminance(s.l, s.v)).collect();
+    let points = |values: Vec<f64>| angles.iter().map(|a| f64::from(*a)).zip(values).collect::<Vec<_>>();
+    let (low, high) = data.iter().fold((f64::INFINITY, 0.0), |(l, h), v| (f64::min(l, *v), f64::max(h, *v)));
+    let mut series = vec![Series {
+        name: "SGD fit".to_owned(),
+        points: points(data).into_iter().step_by(5).collect(),
+        colour: 6,
+        line: Line::None,
+        mark: Mark::Ring,
+    }];
+    for (c, Found { fit, settings, .. }) in contestants.iter().zip(&found.fits) {
+        let values = c.predict(lab.registry, settings, fit, &samples);
+        series.push(Series {
+            name: c.name.to_owned(),
+            points: points(values),
+            colour: c.style.0,
+            line: c.style.1,
+            mark: Mark::None,
+        });
+    }
+    let plot = Plot {
+        title: format!("Lobe of {}", material.name),
+        x: Axis::new("θₕ (°)", 0.0, 50.0, 6),
+        y: Axis::log(
+            "f (sr⁻¹)",
+            10f64.powf((0.5 * low).log10().floor()),
+            10f64.powf((1.2 * high).log10().ceil()),
+        ),
+        series,
+        size: (430, 350),
+        legend: false,
+    };
+    svg(&plot)
+}
+
+/// The legend of the panels.
+fn key(contestants: &[Contestant]) -> Markup {
+    const COLOURS: [&str; 5] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00"];
+    html! {
+        p .key {
+            @for c in contestants {
+                span {
+                    svg viewBox="0 0 32 10" width="32" height="10" aria-hidden="true" {
+                        line x1="0" y1="5" x2="32" y2="5" stroke-width="2.5" stroke=(COLOURS[c.style.0 % COLOURS.len()])
+                            stroke-dasharray=(match c.style.1 { Line::Dashed => "8 5", Line::Dotted => "2 4", _ => "none" });
+                    }
+                    (c.name)
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_lie_above_the_surface_and_crowd_about_the_mirror() {
+        let all = merl_directions();
+        assert!(all.len() > 500, "{}", all.len());
+        let half = |s: &Sample| (s.l + s.v).normalize().z.min(1.0).acos().to_degrees();
+        for s in &all {
+            assert!(s.l.is_normalized() && s.v.is_normalized() && s.l.z > 0.3 && s.v.z > 0.3);
+        }
+        let near = all.iter().filter(|s| half(s) < 10.0).count();
+        assert!(near * 4 > all.len(), "{near} of {}", all.len());
+    }
+
+    #[test]
+    fn the_median_is_in_the_middle() {
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), 2.5);
+        assert!(median(vec![]).is_nan());
+    }
+}
