@@ -225,9 +225,15 @@ impl Document {
                 rest(self, name, &mut |s| s.display = display);
             }
             Edit::Model(id) => {
-                rest(self, "Reflection model", &mut |s| s.reflection_model.clone_from(&id));
+                let name = registry.model(&id).map_or(&*id, |m| m.declaration.name);
+                let step = format!("Reflection model: {name}");
+                rest(self, &step, &mut |s| s.reflection_model.clone_from(&id));
             }
-            Edit::Mode(id) => rest(self, "Shading model", &mut |s| s.shading_model.clone_from(&id)),
+            Edit::Mode(id) => {
+                let name = registry.mode(&id).map_or(&*id, |m| m.declaration.name);
+                let step = format!("Shading model: {name}");
+                rest(self, &step, &mut |s| s.shading_model.clone_from(&id));
+            }
             Edit::Observer(observer) => rest(self, "Observer", &mut |s| s.observer = observer),
             Edit::Light(i, field) => {
                 let label = field.label(&self.scene.lights[i], registry);

@@ -59,7 +59,7 @@ use crate::{
     render::{
         camera::{PictureCamera, picture_camera},
         capture::gpu::{find_adapter, wgpu_settings},
-        entities::CurrentScene,
+        entities::{CurrentScene, absorb},
         live::LiveShaders,
         plugin::{LabFrame, LabSystems, ScenePlugin, ShownTerms},
         show::{ShowPlugin, Shows},
@@ -299,8 +299,8 @@ impl Plugin for WindowSystemsPlugin {
                 )
                     .chain()
                     .in_set(LabSystems::Load),
-                scene_to_lab.in_set(LabSystems::Upload),
-                shaders::tell.in_set(LabSystems::Upload).after(scene_to_lab),
+                scene_to_lab.in_set(LabSystems::Edit).after(absorb),
+                shaders::tell.in_set(LabSystems::Upload),
             ),
         )
         .configure_sets(PostUpdate, ViewSystems.after(PanOrbitCameraSystemSet))

@@ -46,7 +46,7 @@ fn changes() -> Vec<Action> {
         object(ObjectField::Model(Some("ward".to_owned()))),
         object(ObjectField::Mode(Some("gouraud".to_owned()))),
         object(ObjectField::Material("alpha", Value::Integer(17))),
-        object(ObjectField::Preset(vec![("k_s", Value::Number(0.25)), ("k_d", Value::Number(0.125))])),
+        object(ObjectField::Preset(vec![("k_s", Value::Number(0.25)), ("k_d", Value::Number(0.625))])),
         Action::AddLight("directional".to_owned()),
         Action::AddObject("cube".to_owned()),
         Action::Duplicate(Selection::Object(0)),
