@@ -45,7 +45,7 @@ pub const FACE_CENTRE: MeshVertexAttribute =
 
 /// The content of a material, the same for all model types.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ingredients {
+pub struct MaterialInputs {
     /// The parameters of all objects under the model.
     pub parameters: Handle<ShaderBuffer>,
     /// The lights of the scene, shared by all materials.
@@ -82,13 +82,13 @@ impl<M: Clone + 'static> From<&ModelMaterial<M>> for PipelineKey {
     }
 }
 
-impl<M: Clone + 'static> From<Ingredients> for ModelMaterial<M> {
-    fn from(i: Ingredients) -> Self {
+impl<M: Clone + 'static> From<MaterialInputs> for ModelMaterial<M> {
+    fn from(inputs: MaterialInputs) -> Self {
         Self {
-            parameters: i.parameters,
-            illumination: i.illumination,
-            shader: i.shader,
-            faces: i.faces,
+            parameters: inputs.parameters,
+            illumination: inputs.illumination,
+            shader: inputs.shader,
+            faces: inputs.faces,
             model: PhantomData,
         }
     }
@@ -154,7 +154,7 @@ impl<M: Clone + 'static> Material for ModelMaterial<M> {
 #[derive(Clone, Copy)]
 pub struct Attachment {
     /// Puts the material on.
-    pub attach: fn(&mut EntityWorldMut, Ingredients),
+    pub attach: fn(&mut EntityWorldMut, MaterialInputs),
     /// Takes the material off.
     pub detach: fn(&mut EntityWorldMut),
 }
@@ -210,22 +210,22 @@ fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
 #[derive(Resource)]
 struct SharedMaterials<M: Clone + 'static>(HashMap<AssetId<Shader>, Handle<ModelMaterial<M>>>);
 
-fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, ingredients: Ingredients) {
+fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInputs) {
     let handle = entity.world_scope(|world: &mut World| {
-        let key = ingredients.shader.id();
+        let key = inputs.shader.id();
         world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
         world.resource_scope(|world, mut shared: Mut<SharedMaterials<M>>| {
             let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
             let Some(handle) = shared.0.get(&key) else {
-                let handle = materials.add(ModelMaterial::<M>::from(ingredients));
+                let handle = materials.add(ModelMaterial::<M>::from(inputs));
                 shared.0.insert(key, handle.clone());
                 return handle;
             };
             // A table that was made anew, for more objects.
             if let Some(material) = materials.get(handle)
-                && material.parameters != ingredients.parameters
+                && material.parameters != inputs.parameters
             {
-                let _ = materials.insert(handle.id(), ModelMaterial::<M>::from(ingredients));
+                let _ = materials.insert(handle.id(), ModelMaterial::<M>::from(inputs));
             }
             handle.clone()
         })

@@ -5,7 +5,7 @@ use super::{
     entities::{CurrentScene, LitObject, SceneEntities},
     illumination::IlluminationBuffer,
     live::LiveShaders,
-    material::{Attachments, FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, Ingredients, TANGENT},
+    material::{Attachments, FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, MaterialInputs, TANGENT},
 };
 use crate::{
     optics::colour::Encoding,
@@ -270,7 +270,7 @@ pub fn swap(world: &mut World) {
             tables.set(model, row, &bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
         });
         let ingredients =
-            Ingredients { parameters: table, illumination: illumination.clone(), shader, faces };
+            MaterialInputs { parameters: table, illumination: illumination.clone(), shader, faces };
         let attachments = world.resource::<Attachments>();
         let old = world
             .get::<Drawn>(entity)

@@ -32,7 +32,7 @@ use crate::{
     registry::Registry,
     render::{
         illumination::IlluminationBuffer,
-        material::{Attachments, Ingredients},
+        material::{Attachments, MaterialInputs},
         swap::{face_mesh, shared_mesh},
         trial::{
             Bench, COMPOSED, Tools, Verdict,
@@ -297,12 +297,12 @@ impl Actor {
         let empty = ShaderBuffer::new(&[0; ROW], RenderAssetUsages::default());
         let parameters = world.resource_mut::<Assets<ShaderBuffer>>().add(empty);
         let illumination = world.resource::<IlluminationBuffer>().0.clone();
-        let ingredients =
-            Ingredients { parameters: parameters.clone(), illumination, shader: shader.clone(), faces };
+        let inputs =
+            MaterialInputs { parameters: parameters.clone(), illumination, shader: shader.clone(), faces };
         // That of models from files.
         let attachment = world.resource::<Attachments>().get("");
         if let Some(attachment) = attachment {
-            (attachment.attach)(&mut world.entity_mut(entity), ingredients);
+            (attachment.attach)(&mut world.entity_mut(entity), inputs);
         }
         Self { entity, shader, parameters }
     }
