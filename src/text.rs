@@ -46,7 +46,7 @@ pub fn quoted(text: &str) -> String {
 /// The beginning of a text that is too long for a message, on one line.
 #[must_use]
 pub fn shortened(text: &str) -> String {
-    /// What still reads well within a sentence.
+    /// The most characters that still read well within a sentence.
     const LONGEST: usize = 60;
     let flat = |c: char| if c.is_control() { ' ' } else { c };
     match text.char_indices().nth(LONGEST) {

@@ -1,6 +1,5 @@
 //! What is painted over the picture: badges, caption, axes, hints.
 
-use crate::text::listed;
 use bevy_egui::egui::{
     self, Align2, Color32, FontFamily, FontId, Painter, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo,
     WidgetType, pos2, vec2,
@@ -15,7 +14,11 @@ use super::{
     theme::{self, Palette},
 };
 use crate::{
-    library::status::ShaderStatus, optics::TermSelection, reflection::Term, registry::Registry, text::plural,
+    library::status::ShaderStatus,
+    optics::TermSelection,
+    reflection::Term,
+    registry::Registry,
+    text::{listed, plural},
 };
 
 /// Paints the overlays into the rectangle of the picture. Returns what was asked for there, and the places that

@@ -33,7 +33,7 @@ pub struct Declaration {
 /// The response of a model to uniform light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Ambient {
-    /// By a formula of its own: [`ReflectionModel::ambient_response`] and its twin in WGSL.
+    /// By a formula of its own: [`ambient_response`](super::ReflectionModel::ambient_response) and its twin in WGSL.
     Formula,
     /// By its directional albedo `E(v) = ∫ f_r cos θ dω`, which is calculated from the response. The
     /// model writes no ambient function, neither in Rust nor in WGSL.

@@ -22,7 +22,7 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// of the CA, their formula as published. Finite for all unit vectors and legal parameters.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
 
-    /// The response to uniform light of 1 lx, for models that declare [`Ambient::Formula`]; not called for others.
+    /// The response to uniform light of 1 lx, for models that declare [`Ambient::Formula`](super::Ambient::Formula); not called for others.
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
         Vec3::ZERO
     }

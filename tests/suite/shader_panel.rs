@@ -1,4 +1,4 @@
-//! What the window shows of shaders and of models of one's own, without a window.
+//! Shaders and custom models in the panels, without a window.
 //!
 //! `LCM_PANEL_PICTURES=folder` also writes pictures, to be looked at.
 

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use crate::optics::Terms;
 
-/// The largest absolute error of [`directional`].
+/// The largest absolute error of [`directional`](super::directional).
 pub const ACCURACY: f64 = 1e-4;
 
 /// The relative error that rounding in a response gives the value of a cell: a smaller one is no reason to

@@ -34,7 +34,7 @@ pub(super) fn measured(
     let present = offered.iter().find(|m| is(m)).copied();
     let caption = Caption {
         label: "measured material",
-        help: "Sets the knobs below to what was measured on a real material, and those of the other physically based models too. It shows “none” as soon as one of them is turned away.",
+        help: "Sets the parameters below to those measured on a real material, and those of the other physically based models too. Shows “none” once one of them differs.",
         ..Caption::default()
     };
     let words = chooser::Words {

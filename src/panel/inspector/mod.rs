@@ -6,8 +6,7 @@ use super::{
     Panel, Place,
     state::{Action, Lab},
 };
-use crate::document::Selection;
-use crate::registry::Registry;
+use crate::{document::Selection, registry::Registry};
 use {light::light, object::object, observer::observer, room::room};
 
 mod light;

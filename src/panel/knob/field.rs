@@ -41,9 +41,17 @@ pub fn parse(text: &str) -> Option<f64> {
     text.parse::<f64>().ok().filter(|v| v.is_finite())
 }
 
+/// The legal number in a text, or its error.
+pub(super) fn read(text: &str, limits: &Limits) -> Result<f64, String> {
+    match parse(text) {
+        Some(v) if limits.allows(v) => Ok(v),
+        Some(_) => Err(format!("must be {}", limits.rule())),
+        None => Err(format!("is not a number; must be {}", limits.rule())),
+    }
+}
+
 /// A field for one number. `name` is for screen readers.
 pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width: f32) -> Field {
-    let palette = Palette::here(ui);
     let draft_id = id.with("draft");
     let mut draft: Option<Draft> = ui.data(|d| d.get_temp(draft_id));
     // Somebody else changed the value: what was typed is about another one.
@@ -51,11 +59,7 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
         draft = None;
     }
     let mut text = draft.as_ref().map_or_else(|| number(value), |d| d.text.clone());
-    let problem = |text: &str| match parse(text) {
-        Some(v) if limits.allows(v) => None,
-        Some(_) => Some(format!("must be {}", limits.rule())),
-        None => Some(format!("is not a number; must be {}", limits.rule())),
-    };
+    let problem = |text: &str| read(text, limits).err();
     let wrong = draft.as_ref().and_then(|d| problem(&d.text));
 
     let focused = ui.memory(|m| m.has_focus(id));
@@ -73,42 +77,22 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
         });
     }
 
-    let stroke = match (&wrong, focused) {
-        (Some(_), _) => Stroke::new(1.5, palette.error),
-        (None, true) => Stroke::new(1.5, palette.accent),
-        (None, false) => Stroke::new(1.0, palette.line),
-    };
-    let edit = TextEdit::singleline(&mut text)
-        .id(id)
-        .desired_width(width - 10.0)
-        .min_size(vec2(width, 22.0))
-        .vertical_align(Align::Center)
-        .horizontal_align(Align::Max)
-        .clip_text(true)
-        .text_color(if wrong.is_some() { palette.error } else { palette.text })
-        .frame(field_frame(&palette, stroke));
-    let response = ui.add_sized(vec2(width, 22.0), edit);
-    response.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(ui.is_enabled(), number(value), &text, "");
-        info.label = Some(name.to_owned());
-        info
-    });
+    let response = text_edit(ui, id, name, &number(value), "", &mut text, width, wrong.is_some());
 
     let mut out = None;
     if response.gained_focus() {
         draft = Some(Draft { text: text.clone(), before: value, last: value });
-        select_all(ui, id, &text);
     }
     if response.changed() {
         let d = draft.get_or_insert_with(|| Draft { text: String::new(), before: value, last: value });
         d.text.clone_from(&text);
         // What was typed on the way to something illegal (3, 30, 300) was never meant: the value from
         // before counts again.
-        let legal = parse(&text).filter(|v| limits.allows(*v));
-        out = legal.or_else(|| Some(d.before).filter(|v| *v != value && limits.allows(*v)));
+        out =
+            read(&text, limits).ok().or_else(|| Some(d.before).filter(|v| *v != value && limits.allows(*v)));
     }
     if step != 0.0 {
-        let base = parse(&text).filter(|v| limits.allows(*v)).unwrap_or(value);
+        let base = read(&text, limits).unwrap_or(value);
         let v = round_to(base + step * nudge(limits, base), nudge(limits, base))
             .clamp(limits.min.max(-1e12), limits.max);
         let v = if limits.is_above_zero() && v <= limits.min { base } else { v };
@@ -171,14 +155,52 @@ pub(super) fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
     });
 }
 
-/// The box around what is typed.
-fn field_frame(palette: &Palette, stroke: Stroke) -> egui::Frame {
-    egui::Frame::new()
+/// The text itself, in a frame; all of it is selected when the focus comes. `name` and `shown` are for screen
+/// readers.
+#[allow(clippy::too_many_arguments)]
+fn text_edit(
+    ui: &mut Ui,
+    id: Id,
+    name: &str,
+    shown: &str,
+    hint: &str,
+    text: &mut String,
+    width: f32,
+    wrong: bool,
+) -> Response {
+    let palette = Palette::here(ui);
+    let line = if wrong {
+        palette.error
+    } else if ui.memory(|m| m.has_focus(id)) {
+        palette.accent
+    } else {
+        palette.line
+    };
+    let frame = egui::Frame::new()
         .fill(palette.field)
         // A stroke of another width would move what stands below.
-        .stroke(Stroke::new(1.0, stroke.color))
+        .stroke(Stroke::new(1.0, line))
         .corner_radius(4.0)
-        .inner_margin(egui::Margin::symmetric(4, 2))
+        .inner_margin(egui::Margin::symmetric(4, 2));
+    let edit = TextEdit::singleline(text)
+        .id(id)
+        .hint_text(RichText::new(hint).color(palette.weak))
+        .desired_width(width - 10.0)
+        .min_size(vec2(width, 22.0))
+        .vertical_align(Align::Center)
+        .horizontal_align(Align::Max)
+        .text_color(if wrong { palette.error } else { palette.text })
+        .frame(frame);
+    let response = ui.add_sized(vec2(width, 22.0), edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(ui.is_enabled(), shown, &*text, hint);
+        info.label = Some(name.to_owned());
+        info
+    });
+    if response.gained_focus() {
+        select_all(ui, id, text);
+    }
+    response
 }
 
 /// A field for a value that is not one number: `read` parses the text or explains its error. Illegal text is
@@ -192,37 +214,12 @@ pub(super) fn text_field<T>(
     width: f32,
     read: impl Fn(&str) -> Result<T, String>,
 ) -> Field<T> {
-    let palette = Palette::here(ui);
     let draft_id = id.with("draft");
     let draft: Option<String> = ui.data(|d| d.get_temp(draft_id));
     let focused = ui.memory(|m| m.has_focus(id));
     let mut text = draft.filter(|_| focused).unwrap_or_else(|| shown.to_owned());
     let wrong = focused && text != shown && read(&text).is_err();
-    let stroke = if wrong {
-        Stroke::new(1.5, palette.error)
-    } else if focused {
-        Stroke::new(1.5, palette.accent)
-    } else {
-        Stroke::new(1.0, palette.line)
-    };
-    let edit = TextEdit::singleline(&mut text)
-        .id(id)
-        .hint_text(RichText::new(hint).color(palette.weak))
-        .desired_width(width - 10.0)
-        .min_size(vec2(width, 22.0))
-        .vertical_align(Align::Center)
-        .horizontal_align(Align::Max)
-        .text_color(if wrong { palette.error } else { palette.text })
-        .frame(field_frame(&palette, stroke));
-    let response = ui.add_sized(vec2(width, 22.0), edit);
-    response.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(ui.is_enabled(), shown, &text, hint);
-        info.label = Some(name.to_owned());
-        info
-    });
-    if response.gained_focus() {
-        select_all(ui, id, &text);
-    }
+    let response = text_edit(ui, id, name, shown, hint, &mut text, width, wrong);
     let mut value = None;
     if response.changed() {
         value = read(&text).ok();

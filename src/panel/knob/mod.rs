@@ -4,8 +4,10 @@
 
 use bevy_egui::egui::Ui;
 
-use crate::document::limits::Limits;
-use crate::parameter::{Parameter, ParameterKind, Value};
+use crate::{
+    document::limits::Limits,
+    parameter::{Parameter, ParameterKind, Value},
+};
 
 mod choice;
 mod colour;

@@ -6,7 +6,7 @@ use bevy_egui::egui::{
 use glam::Vec3;
 
 use super::{
-    field::{complaint, field, parse, text_field},
+    field::{complaint, field, read, text_field},
     line::{Caption, NUMBER, Words, capitalised, explain, head, tooltip, unit},
     slider::round_to,
 };
@@ -147,11 +147,7 @@ pub fn triple_knob(
         let (label, all) = head(ui, caption, Words::Leave(NUMBER), |ui| {
             unit(ui, "");
             let shown = if same { plain(value[0]) } else { String::new() };
-            let read = |text: &str| match parse(text) {
-                Some(v) if limits.allows(v) => Ok([v as f32; 3]),
-                Some(_) => Err(format!("must be {}", limits.rule())),
-                None => Err(format!("is not a number; must be {}", limits.rule())),
-            };
+            let read = |text: &str| read(text, limits).map(|v| [v as f32; 3]);
             let name = format!("{}: all three", caption.label);
             text_field(ui, id.with("all"), &name, &shown, "all", 64.0, read)
         });

@@ -68,7 +68,7 @@ pub(super) fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut V
     };
     ui.horizontal(|ui| {
         let title = format!("{} · {}", model.declaration.name, mode.declaration.name);
-        ui.label(theme::strong(ui, title)).on_hover_text("What is shown is made of these files.");
+        ui.label(theme::strong(ui, title)).on_hover_text("The picture is made of these files.");
         folder(ui, lab, actions);
     });
     ScrollArea::vertical().id_salt("files").auto_shrink(false).show(ui, |ui| {
@@ -87,7 +87,7 @@ fn folder(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     let Some(folder) = &lab.shaders.shaders else {
         ui.label(theme::small(ui, "The shaders are built in."));
         let button = ui.button("Write them out for editing…").on_hover_text(
-            "Copies every shader file into a folder that you choose. From there they are read again whenever you save one.",
+            "Copies every shader file into a folder that you choose. A file saved there is reloaded at once.",
         );
         if button.clicked() {
             actions.push(Action::Author(Ask::ExportDialog));

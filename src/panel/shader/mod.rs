@@ -78,12 +78,12 @@ pub fn missing_model(lab: &Lab, registry: &Registry, id: &str) -> String {
     let trouble = lab.shaders.troubles.iter().find(|t| t.problem.file == path).map(|t| t.problem.to_string());
     match trouble.or_else(|| registry.broken_model(id).map(str::to_owned)) {
         Some(why) => format!(
-            "There is no version of the file {path} yet that works: {why}. Correct it, and the model is there; or \
-             choose another one."
+            "There is no version of the file {path} yet that works: {why}. Correct the file, or choose another \
+             model."
         ),
         None => format!(
-            "There is no reflection model “{id}”: the file {path} is gone. Put it back, and its knobs are here again; \
-             or choose another model."
+            "There is no reflection model “{id}”: the file {path} is gone. Restore it to get the model back, or choose \
+             another model."
         ),
     }
 }

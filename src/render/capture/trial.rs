@@ -119,7 +119,7 @@ struct Stage {
     actors: [Actor; 2],
     /// The one that is shown.
     shown: usize,
-    /// What the renderer had against the last picture.
+    /// The complaint of the renderer about the last picture.
     failure: Failure,
 }
 
@@ -129,7 +129,7 @@ struct Actor {
     parameters: Handle<ShaderBuffer>,
 }
 
-/// What the renderer complained of, if it did.
+/// The complaint of the renderer, if there is one.
 #[derive(Clone, Default, Resource)]
 struct Failure(Arc<Mutex<Option<String>>>);
 
@@ -191,7 +191,7 @@ impl Stage {
         }
     }
 
-    /// What is wrong with a shader, found by making a pipeline with nothing drawn.
+    /// The error of a shader, found by making a pipeline with nothing drawn.
     fn explained(&mut self, composed: &Composed, faces: bool) -> Option<Box<ShaderProblem>> {
         let world = self.renderer.app().world_mut();
         let device = world.get_resource::<RenderDevice>()?.clone();
