@@ -30,9 +30,6 @@ const LOCK: &str = "lock";
 const MAX_ABOUT_BYTES: u64 = 1 << 16;
 /// The most entries of the folder that are looked at.
 const MAX_ENTRIES: usize = 1000;
-/// The mode of folders that only this user can look into.
-#[cfg(unix)]
-const PRIVATE: u32 = 0o700;
 /// A folder without a lock belongs to a window that starts, unless it is older than this.
 const STARTING: Duration = Duration::from_secs(24 * 3600);
 
@@ -81,17 +78,24 @@ impl Store {
     /// # Errors
     /// When the folder cannot be made.
     pub fn begin(&self) -> io::Result<Session> {
-        make_folder(&self.folder)?;
+        make_folder(&self.folder, true)?;
         if fs::read_dir(&self.folder)?.take(MAX_COPIES).count() == MAX_COPIES {
             for left in self.left().into_iter().skip(MAX_COPIES - 1) {
                 left.session.remove();
             }
         }
-        let mut name = tempfile::Builder::new();
-        name.prefix("window-");
-        #[cfg(unix)]
-        name.permissions(std::os::unix::fs::PermissionsExt::from_mode(PRIVATE));
-        let folder = name.tempdir_in(&self.folder)?.keep();
+        let seconds = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
+        let name = format!("{seconds}-{}", std::process::id());
+        let mut attempt = 0;
+        let folder = loop {
+            let folder =
+                self.folder.join(if attempt == 0 { name.clone() } else { format!("{name}-{attempt}") });
+            match make_folder(&folder, false) {
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists && attempt < 100 => attempt += 1,
+                Err(e) => return Err(e),
+                Ok(()) => break folder,
+            }
+        };
         let lock = first_lock(&folder).ok();
         Ok(Session { folder, about: None, _lock: lock })
     }
@@ -207,12 +211,15 @@ impl Left {
     }
 }
 
-/// Makes a folder that only this user can look into, with all folders around it.
-fn make_folder(folder: &Path) -> io::Result<()> {
+/// Makes a folder that only this user can look into.
+fn make_folder(folder: &Path, with_parents: bool) -> io::Result<()> {
     let mut builder = fs::DirBuilder::new();
-    builder.recursive(true);
+    builder.recursive(with_parents);
     #[cfg(unix)]
-    std::os::unix::fs::DirBuilderExt::mode(&mut builder, PRIVATE);
+    {
+        use std::os::unix::fs::DirBuilderExt as _;
+        builder.mode(0o700);
+    }
     builder.create(folder)
 }
 
