@@ -19,7 +19,7 @@ use crate::{
     parameter::{Parameter, ParameterKind, Value, Values},
     registry::Registry,
     shape::ShapeEntry,
-    text::{listed, nearest, quoted},
+    text::{self, did_you_mean, quoted},
 };
 use std::{collections::HashMap, fmt};
 
@@ -257,25 +257,12 @@ pub fn object_count(count: usize) -> Rule {
 }
 
 /// One of several ids: the rule lists them and names the nearest.
-pub(super) fn one_of<'a>(
-    what: &str,
-    id: &str,
-    known: impl Iterator<Item = (&'a str, &'a str)> + Clone,
-) -> Rule {
+fn one_of<'a>(what: &str, id: &str, known: impl Iterator<Item = (&'a str, &'a str)> + Clone) -> Rule {
     must(known.clone().any(|(k, _)| k == id), || {
-        let ids: Vec<_> = known.clone().map(|(k, _)| quoted(k)).collect();
         let names = known.clone().map(|(k, name)| (name, k));
-        let suggestion = did_you_mean(id, known.clone().map(|(k, _)| (k, k)).chain(names));
-        format!("{what} must be {}{suggestion}", listed(&ids, "or"))
+        let candidates = known.clone().map(|(k, _)| (k, k)).chain(names);
+        text::one_of(what, known.clone().map(|(k, _)| k)) + &did_you_mean(id, candidates)
     })
-}
-
-/// "; did you mean "lambert"?", or nothing.
-pub(super) fn did_you_mean<'a>(
-    written: &str,
-    candidates: impl Iterator<Item = (&'a str, &'a str)>,
-) -> String {
-    nearest(written, candidates).map_or_else(String::new, |n| format!("; did you mean {}?", quoted(n)))
 }
 
 /// A vector as scene files write it.
@@ -806,15 +793,5 @@ mod tests {
         for d in [Vec3::splat(1e-30), Vec3::splat(1e30), Vec3::splat(f32::INFINITY), Vec3::NAN] {
             assert!(direction(d).is_err_and(|rule| rule.contains("too long or too short")), "{d}");
         }
-    }
-
-    #[test]
-    fn suggestions_forgive_case_separators_and_slips() {
-        let known = || ["scene_size", "lights", "objects"].map(|k| (k, k)).into_iter();
-        assert_eq!(nearest("sceneSize", known()), Some("scene_size"));
-        assert_eq!(nearest("lihgts", known()), Some("lights"));
-        assert_eq!(nearest("object", known()), Some("objects"));
-        assert_eq!(nearest("banana", known()), None);
-        assert_eq!(nearest(&"l".repeat(1 << 20), known()), None);
     }
 }

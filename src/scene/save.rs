@@ -6,11 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use jsonc_parser::{
-    ast::Value as Ast,
-    common::Ranged,
-    {CollectOptions, ParseOptions, parse_to_ast},
-};
+use jsonc_parser::common::Ranged;
 use serde::Serialize;
 use serde_json::ser::Formatter;
 
@@ -24,6 +20,7 @@ use super::{
 use crate::{
     files::{self, Draft, FileError, Kind},
     registry::Registry,
+    text::json::{self, Ast, STRICT},
 };
 
 /// What the writer expects to find where it writes.
@@ -250,8 +247,7 @@ const LINE_WIDTH: usize = 110;
 
 /// Lays JSON out: what fits on a line stands on one, lists of objects have a line per entry at least.
 fn pretty(compact: &str) -> Option<String> {
-    let strict = ParseOptions { allow_comments: false, ..ParseOptions::default() };
-    let value = parse_to_ast(compact, &CollectOptions::default(), &strict).ok()?.value?;
+    let value = json::parse(compact, &STRICT).ok()??;
     let mut out = String::with_capacity(2 * compact.len());
     lay_out(&value, compact, 0, 0, &mut out);
     out.push('\n');
