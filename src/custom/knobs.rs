@@ -184,6 +184,34 @@ impl Reader<'_> {
         number
     }
 
+    /// Three numbers, or one for all three.
+    fn triple(&mut self, value: Cursor) -> Option<[f32; 3]> {
+        match value.list() {
+            None if value.number().is_some() => Some([self.number(value)?; 3]),
+            Some(list) if list.len() == 3 => {
+                let mut triple = [0.0; 3];
+                for (to, element) in triple.iter_mut().zip(list) {
+                    *to = self.number(value.holding(element.value))?;
+                }
+                Some(triple)
+            }
+            _ => {
+                self.wrong(value, "it must be three numbers, [red, green, blue], or one for all");
+                None
+            }
+        }
+    }
+
+    /// A field that need not be there; `None` only if it is wrong.
+    fn given<T>(
+        &mut self,
+        fields: &Fields,
+        key: &str,
+        read: fn(&mut Self, Cursor) -> Option<T>,
+    ) -> Option<Option<T>> {
+        fields.get(key).map_or(Some(None), |value| read(self, value).map(Some))
+    }
+
     /// Smallest and largest value, from `range`, or from `min` or `above`, and `max`.
     fn limits<T: Copy + PartialOrd>(
         &mut self,
@@ -192,7 +220,7 @@ impl Reader<'_> {
         read: fn(&mut Self, Cursor) -> Option<T>,
         above_zero: Option<T>,
     ) -> Option<(T, Option<T>)> {
-        let (mut low, mut high, mut good) = (min, max, true);
+        let (mut low, mut high) = (min, max);
         if let Some(value) = fields.get("range") {
             if let Some(other) = ["min", "max", "above"].into_iter().find(|key| fields.get(key).is_some()) {
                 self.misplaced(value, &format!("is given, but so is {other}; a range is [min, max]"));
@@ -205,31 +233,16 @@ impl Reader<'_> {
             let ends: Vec<_> = list.map(|end| read(self, end)).collect();
             (low, high) = (ends[0]?, Some(ends[1]?));
         }
-        if let Some(value) = fields.get("min") {
-            match read(self, value) {
-                Some(v) => low = v,
-                None => good = false,
-            }
-        }
+        let (least, most) = (self.given(fields, "min", read), self.given(fields, "max", read));
         if let Some(value) = fields.get("above") {
             let zero = value.integer() == Some(0);
-            match above_zero.filter(|_| zero && fields.get("min").is_none()) {
-                Some(v) => low = v,
-                None => {
-                    self.wrong(value, "it must be 0, and stands in place of min: greater than 0");
-                    good = false;
-                }
-            }
+            let Some(above) = above_zero.filter(|_| zero && fields.get("min").is_none()) else {
+                self.wrong(value, "it must be 0, and stands in place of min: greater than 0");
+                return None;
+            };
+            low = above;
         }
-        if let Some(value) = fields.get("max") {
-            match read(self, value) {
-                Some(v) => high = Some(v),
-                None => good = false,
-            }
-        }
-        if !good {
-            return None;
-        }
+        (low, high) = (least?.unwrap_or(low), most?.or(high));
         if high.is_some_and(|h| h <= low) {
             let value = ["max", "range", "min", "above"].into_iter().find_map(|key| fields.get(key))?;
             self.wrong(value, "the largest value must be greater than the smallest");
@@ -265,10 +278,7 @@ impl Reader<'_> {
             _ => (0.0, 1.0, None),
         };
         let limits = self.limits(fields, (min, Some(max)), Self::number, Some(ABOVE_ZERO));
-        let given = match fields.get("default") {
-            Some(value) => Some(self.number(value)?),
-            None => None,
-        };
+        let given = self.given(fields, "default", Self::number)?;
         let (min, max) = limits?;
         let max = max.unwrap_or(1.0);
         let middle = || usual.filter(|u| (min..=max).contains(u)).unwrap_or(0.5 * min + 0.5 * max);
@@ -284,11 +294,8 @@ impl Reader<'_> {
             _ => (0, None, None, None),
         };
         let limits = self.limits(fields, (min, max), Self::whole, None);
-        let mut read = |key: &str| match fields.get(key) {
-            Some(value) => self.whole(value).map(Some),
-            None => Some(None),
-        };
-        let (given, slider_given) = (read("default")?, read("slider_max")?);
+        let given = self.given(fields, "default", Self::whole)?;
+        let slider_given = self.given(fields, "slider_max", Self::whole)?;
         let (min, max) = limits?;
         let inside = |v: i64| v >= min && max.is_none_or(|m| v <= m);
         let default = given.or(usual.filter(|u| inside(*u))).unwrap_or(min);
@@ -327,23 +334,7 @@ impl Reader<'_> {
             _ => (0.0, 1.0, None),
         };
         let limits = self.limits(fields, (min, Some(max)), Self::number, Some(ABOVE_ZERO));
-        let given = match fields.get("default") {
-            None => None,
-            Some(value) => match value.list() {
-                None if value.number().is_some() => Some([self.number(value)?; 3]),
-                Some(list) if list.len() == 3 => {
-                    let mut triple = [0.0; 3];
-                    for (to, element) in triple.iter_mut().zip(list) {
-                        *to = self.number(value.holding(element.value))?;
-                    }
-                    Some(triple)
-                }
-                _ => {
-                    self.wrong(value, "it must be three numbers, [red, green, blue], or one for all");
-                    return None;
-                }
-            },
-        };
+        let given = self.given(fields, "default", Self::triple)?;
         let (min, max) = limits?;
         let max = max.unwrap_or(1.0);
         let fits = |t: &[f32; 3]| t.iter().all(|c| (min..=max).contains(c));

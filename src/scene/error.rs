@@ -78,16 +78,9 @@ impl Serialize for Problem {
             column: self.place.map(|p| p.column),
             path: Some(&self.path),
             value: self.found.as_deref(),
-            message: self.to_string_without_place(),
+            message: Self { place: None, ..self.clone() }.to_string(),
         }
         .serialize(serializer)
-    }
-}
-
-impl Problem {
-    /// Path and message, without the place.
-    fn to_string_without_place(&self) -> String {
-        Self { place: None, ..self.clone() }.to_string()
     }
 }
 
@@ -211,35 +204,20 @@ impl LoadError {
     /// The problems as data: those of an invalid scene, or the error itself as the only one.
     #[must_use]
     pub fn problems(&self) -> Vec<Problem> {
-        match self {
-            Self::Invalid { problems, .. } => problems.clone(),
-            Self::NotUtf8 { place, what, .. } => vec![Problem {
-                place: Some(*place),
-                ..Problem::about(Path::root(), format!("is not UTF-8 text: {what}"))
-            }],
-            Self::Syntax { place, what, .. } => vec![Problem {
-                place: Some(*place),
-                ..Problem::about(Path::root(), format!("is not JSON: {what}"))
-            }],
-            Self::Missing { missing, .. } => missing.iter().map(Missing::problem).collect(),
-            Self::NotFound { .. } => {
-                vec![Problem::about(Path::root(), "could not be read: there is no such file")]
-            }
-            Self::Folder { .. } => vec![Problem::about(Path::root(), "could not be read: it is a folder")],
-            Self::NoFile { kind, .. } => {
-                vec![Problem::about(Path::root(), format!("could not be read: it is {kind}"))]
-            }
-            Self::PermissionDenied { .. } => {
-                vec![Problem::about(Path::root(), "could not be read: no permission")]
-            }
-            Self::TooLarge { .. } => {
-                vec![Problem::about(Path::root(), format!("is larger than {} MiB", MAX_FILE_BYTES >> 20))]
-            }
-            Self::Io { source, .. } => {
-                vec![Problem::about(Path::root(), format!("could not be read: {source}"))]
-            }
-            Self::Empty { .. } => vec![Problem::about(Path::root(), "is empty")],
-        }
+        let (place, what) = match self {
+            Self::Invalid { problems, .. } => return problems.clone(),
+            Self::Missing { missing, .. } => return missing.iter().map(Missing::problem).collect(),
+            Self::NotUtf8 { place, what, .. } => (Some(*place), format!("is not UTF-8 text: {what}")),
+            Self::Syntax { place, what, .. } => (Some(*place), format!("is not JSON: {what}")),
+            Self::NotFound { .. } => (None, "could not be read: there is no such file".to_owned()),
+            Self::Folder { .. } => (None, "could not be read: it is a folder".to_owned()),
+            Self::NoFile { kind, .. } => (None, format!("could not be read: it is {kind}")),
+            Self::PermissionDenied { .. } => (None, "could not be read: no permission".to_owned()),
+            Self::TooLarge { .. } => (None, format!("is larger than {} MiB", MAX_FILE_BYTES >> 20)),
+            Self::Io { source, .. } => (None, format!("could not be read: {source}")),
+            Self::Empty { .. } => (None, "is empty".to_owned()),
+        };
+        vec![Problem { place, ..Problem::about(Path::root(), what) }]
     }
 }
 

@@ -168,7 +168,7 @@ pub trait Reader {
     /// The text that is read.
     fn text(&self) -> &str;
 
-    /// Takes down what is wrong at a byte: a value as it is written and its rule, or a whole predicate.
+    /// Records a problem at a byte: a value as it is written and the rule that it breaks, or a whole predicate.
     fn report(&mut self, at: usize, path: Path, found: Option<String>, rule: &str);
 
     /// True if so much is wrong that unknown keys need not be listed any more.
