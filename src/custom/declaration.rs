@@ -1,7 +1,7 @@
 //! The declaration at the top of an own model: a comment `/* lcm { … } */` whose inside is JSON with
 //! comments and trailing commas. Every mistake is told with its place, the value and the rule.
 
-use jsonc_parser::ParseOptions;
+use jsonc_parser::{ParseOptions, common::Ranged as _};
 
 use super::{
     intern,
@@ -13,10 +13,10 @@ use crate::{
     registry::Registry,
     text::{
         did_you_mean,
-        json::{self, Cursor, Fields, Reader as _, STRICT},
+        json::{self, Ast, Cursor, Fields, Reader as _, STRICT},
         listed, one_of,
         path::Path,
-        quoted,
+        quoted, shortened,
     },
 };
 
@@ -115,6 +115,14 @@ impl json::Reader for Reader<'_> {
         let place = if path == Path::root() { "the declaration".to_owned() } else { path.to_string() };
         let found = found.map_or_else(String::new, |found| format!("is {found}, but "));
         self.mistake(at, format!("{place} {found}{rule}"));
+    }
+
+    /// Short lists as they are written.
+    fn shown(&self, value: &Ast) -> String {
+        match value {
+            Ast::Array(list) if list.elements.len() <= 4 => shortened(value.text(self.json)),
+            _ => json::describe(value, self.json),
+        }
     }
 
     fn has_enough(&self) -> bool {

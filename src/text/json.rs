@@ -65,8 +65,8 @@ impl<'p, 'a> Cursor<'p, 'a> {
     pub fn path(&self) -> Path {
         match self.way {
             Way::Root => Path::root(),
-            Way::Key(from, key) => from.path().key(key),
-            Way::Index(from, i) => from.path().index(i),
+            Way::Key(from, key) => from.path().then(Segment::Key(key.into())),
+            Way::Index(from, i) => from.path().then(Segment::Index(i)),
         }
     }
 
@@ -184,9 +184,14 @@ pub trait Reader {
     /// The end of the message that a key is not known: the nearest known key, for example.
     fn hint(&mut self, written: &str, known: &[&'static str], what: &str) -> String;
 
+    /// A value as messages show it.
+    fn shown(&self, value: &Ast) -> String {
+        describe(value, self.text())
+    }
+
     /// Reports a value that breaks a rule.
     fn wrong(&mut self, value: Cursor, rule: &str) {
-        let found = describe(value.value, self.text());
+        let found = self.shown(value.value);
         self.report(value.start(), value.path(), Some(found), rule);
     }
 

@@ -26,20 +26,23 @@ impl Path {
         Self::default()
     }
 
+    /// One step further.
+    #[must_use]
+    pub fn then(mut self, step: Segment) -> Self {
+        self.0.push(step);
+        self
+    }
+
     /// The value under a key.
     #[must_use]
     pub fn key(&self, key: impl Into<Cow<'static, str>>) -> Self {
-        let mut path = self.clone();
-        path.0.push(Segment::Key(key.into()));
-        path
+        self.clone().then(Segment::Key(key.into()))
     }
 
     /// The entry of a list.
     #[must_use]
     pub fn index(&self, index: usize) -> Self {
-        let mut path = self.clone();
-        path.0.push(Segment::Index(index));
-        path
+        self.clone().then(Segment::Index(index))
     }
 
     /// The steps from the outermost value.
