@@ -11,7 +11,7 @@
 //!
 //! From the outside of the program:
 //!
-//! - [`text`]: words for people.
+//! - [`text`]: words for people, and JSON whose values know where they stand.
 //! - [`files`]: the one guard between the program and files.
 //! - [`failure`]: why a command did not do what it was asked.
 //! - [`signals`]: requests from outside to end the program.

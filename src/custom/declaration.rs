@@ -1,12 +1,7 @@
 //! The declaration at the top of an own model: a comment `/* lcm { … } */` whose inside is JSON with
 //! comments and trailing commas. Every mistake is told with its place, the value and the rule.
 
-use jsonc_parser::{
-    CollectOptions, ParseOptions,
-    ast::{Object as AstObject, ObjectProp, Value as Ast},
-    common::Ranged,
-    parse_to_ast,
-};
+use jsonc_parser::{ParseOptions, common::Ranged as _};
 
 use super::{
     intern,
@@ -14,9 +9,15 @@ use super::{
 };
 use crate::{
     parameter::{BLOCK_BYTES, Parameter, layout},
-    reflection::{EquationPart, Laws, Term},
+    reflection::{EquationPart, Laws, ModelEntry, Term},
     registry::Registry,
-    text::{listed, nearest, quoted, shortened},
+    text::{
+        did_you_mean,
+        json::{self, Ast, Cursor, Fields, Reader as _, STRICT},
+        listed, one_of,
+        path::Path,
+        quoted, shortened,
+    },
 };
 
 /// What a declaration may say.
@@ -24,6 +25,9 @@ const MODEL_KEYS: &[&str] =
     &["name", "author", "source", "summary", "equation", "laws", "anisotropic", "lobe", "parameters"];
 /// What a part of the equation says.
 const PART_KEYS: &[&str] = &["term", "text"];
+/// Other words for keys, for suggestions.
+const OTHER_WORDS: &[(&str, &str)] =
+    &[("title", "name"), ("description", "summary"), ("options", "choices"), ("params", "parameters")];
 /// The longest name of a model, symbol or label, characters.
 pub(super) const LONGEST_NAME: usize = 60;
 /// The most brackets of a declaration.
@@ -66,28 +70,16 @@ pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Ve
         let what = format!("the declaration is longer than {} KiB, which none needs to be", MOST_BYTES >> 10);
         return Err(vec![(comment.start, what)]);
     }
-    let options = ParseOptions {
-        allow_comments: true,
-        allow_trailing_commas: true,
-        allow_loose_object_property_names: false,
-        allow_missing_commas: false,
-        allow_single_quoted_strings: false,
-        allow_hexadecimal_numbers: false,
-        allow_unary_plus_numbers: false,
-        allow_bare_decimal_point_numbers: false,
-        allow_non_finite_numbers: false,
-        allow_extended_string_escapes: false,
-    };
-    let parsed = parse_to_ast(comment.json, &CollectOptions::default(), &options).map_err(|e| {
-        let what = e.kind().to_string();
-        vec![(comment.start + e.range().start, format!("the declaration is not JSON: {}", lower(&what)))]
+    let options = ParseOptions { allow_comments: true, allow_trailing_commas: true, ..STRICT };
+    let parsed = json::parse(comment.json, &options).map_err(|(at, what)| {
+        vec![(comment.start + at, format!("the declaration is not JSON: {}", lower(&what)))]
     })?;
-    let Some(root) = parsed.value else {
+    let Some(root) = parsed else {
         let what = "the declaration is empty; it must be an object: { \"name\": …, \"parameters\": […] }";
         return Err(vec![(comment.start, what.to_owned())]);
     };
     let mut reader = Reader { json: comment.json, start: comment.start, id, registry, mistakes: Vec::new() };
-    let said = reader.model(&root, comment.end);
+    let said = reader.model(Cursor::root(&root), comment.end);
     let mut mistakes = reader.mistakes;
     match said {
         Some(said) if mistakes.is_empty() => Ok(said),
@@ -114,20 +106,32 @@ pub(super) struct Reader<'a> {
     pub(super) mistakes: Vec<Mistake>,
 }
 
-/// The known fields of an object.
-pub(super) struct Fields<'b, 'a> {
-    path: String,
-    start: usize,
-    fields: Vec<(&'static str, &'b ObjectProp<'a>)>,
-}
-
-impl<'b, 'a> Fields<'b, 'a> {
-    pub(super) fn get(&self, key: &str) -> Option<&'b Ast<'a>> {
-        self.fields.iter().find(|(k, _)| *k == key).map(|(_, p)| &p.value)
+impl json::Reader for Reader<'_> {
+    fn text(&self) -> &str {
+        self.json
     }
 
-    pub(super) fn path(&self, key: &str) -> String {
-        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    fn report(&mut self, at: usize, path: Path, found: Option<String>, rule: &str) {
+        let place = if path == Path::root() { "the declaration".to_owned() } else { path.to_string() };
+        let found = found.map_or_else(String::new, |found| format!("is {found}, but "));
+        self.mistake(at, format!("{place} {found}{rule}"));
+    }
+
+    /// Short lists as they are written.
+    fn shown(&self, value: &Ast) -> String {
+        match value {
+            Ast::Array(list) if list.elements.len() <= 4 => shortened(value.text(self.json)),
+            _ => json::describe(value, self.json),
+        }
+    }
+
+    fn has_enough(&self) -> bool {
+        self.mistakes.len() >= MOST_MISTAKES
+    }
+
+    fn hint(&mut self, written: &str, known: &[&'static str], what: &str) -> String {
+        let words = OTHER_WORDS.iter().copied().filter(|(_, key)| known.contains(key));
+        json::nearest_key(written, known, words, what)
     }
 }
 
@@ -136,21 +140,20 @@ impl Reader<'_> {
         self.mistakes.push((self.start + at, what.into()));
     }
 
-    /// A value that breaks a rule.
-    pub(super) fn wrong(&mut self, value: &Ast, path: &str, rule: &str) {
-        let found = describe(value, self.json);
-        self.mistake(value.start(), format!("{path} is {found}, but {rule}"));
+    /// A key that is given, and should not be, or not so.
+    pub(super) fn misplaced(&mut self, value: Cursor, predicate: &str) {
+        self.report(value.start(), value.path(), None, predicate);
     }
 
-    fn model(&mut self, root: &Ast, end: usize) -> Option<Said> {
-        let fields = self.fields(root, String::new(), MODEL_KEYS, "a model")?;
+    fn model(&mut self, root: Cursor, end: usize) -> Option<Said> {
+        let fields = self.fields(root, MODEL_KEYS, "a model")?;
         let id = self.id;
         let file = super::source_path(id);
-        let name = self.text(&fields, "name", LONGEST_NAME).unwrap_or_else(|| intern::text(&humanised(id)));
-        let author = self.text(&fields, "author", LONGEST_TEXT).unwrap_or("unknown author");
-        let source = self.text(&fields, "source", LONGEST_TEXT).unwrap_or_else(|| intern::text(&file));
+        let name = self.words(&fields, "name", LONGEST_NAME).unwrap_or_else(|| intern::text(&humanised(id)));
+        let author = self.words(&fields, "author", LONGEST_TEXT).unwrap_or("unknown author");
+        let source = self.words(&fields, "source", LONGEST_TEXT).unwrap_or_else(|| intern::text(&file));
         let summary = self
-            .text(&fields, "summary", LONGEST_TEXT)
+            .words(&fields, "summary", LONGEST_TEXT)
             .unwrap_or_else(|| intern::text(&format!("A custom model, in {file}.")));
         Some(Said {
             name,
@@ -159,91 +162,27 @@ impl Reader<'_> {
             summary,
             equation: self.equation(&fields),
             laws: self.laws(&fields),
-            anisotropic: self.truth(&fields, "anisotropic"),
+            anisotropic: self.flag(&fields, "anisotropic", false, "it must be true or false"),
             parameters: self.parameters(&fields),
             lobe: self.lobe(&fields),
             end,
         })
     }
 
-    /// The fields of an object by key.
-    pub(super) fn fields<'b, 'a>(
-        &mut self,
-        value: &'b Ast<'a>,
-        path: String,
-        known: &[&'static str],
-        what: &str,
-    ) -> Option<Fields<'b, 'a>> {
-        let Ast::Object(object) = value else {
-            let rule = format!("{what} must be an object, with the keys {}", listed(known, "and"));
-            let place = if path.is_empty() { "the declaration" } else { &path };
-            self.wrong(value, place, &rule);
-            return None;
-        };
-        let mut fields: Vec<(&'static str, &'b ObjectProp<'a>)> = Vec::new();
-        for property in &object.properties {
-            if self.mistakes.len() >= MOST_MISTAKES {
-                break;
-            }
-            let written = property.name.as_str();
-            let at = if path.is_empty() { String::new() } else { format!("{path}.") };
-            match known.iter().find(|k| **k == written) {
-                Some(key) if fields.iter().any(|(k, _)| k == key) => {
-                    self.mistake(property.start(), format!("{at}{written} is given twice"));
-                }
-                Some(key) => fields.push((key, property)),
-                None => {
-                    let spelling = written.replace("color", "colour");
-                    let words = [
-                        ("title", "name"),
-                        ("description", "summary"),
-                        ("options", "choices"),
-                        ("params", "parameters"),
-                    ];
-                    let candidates =
-                        known.iter().map(|k| (*k, *k)).chain(words).filter(|(_, k)| known.contains(k));
-                    let hint = nearest(&spelling, candidates).map_or_else(
-                        || format!("; {what} has the keys {}", listed(known, "and")),
-                        |n| format!("; did you mean {}?", quoted(n)),
-                    );
-                    self.mistake(
-                        property.start(),
-                        format!("{at}{} is not a key of {what}{hint}", shortened(written)),
-                    );
-                }
-            }
-        }
-        Some(Fields { path, start: object.start(), fields })
-    }
-
     /// A text of limited length, if it is given.
-    pub(super) fn text(&mut self, fields: &Fields, key: &str, longest: usize) -> Option<&'static str> {
+    pub(super) fn words(&mut self, fields: &Fields, key: &str, longest: usize) -> Option<&'static str> {
         let value = fields.get(key)?;
-        match value {
-            Ast::StringLit(text)
-                if text.value.chars().count() <= longest && !text.value.contains(char::is_control) =>
-            {
-                if key == "name" && text.value.trim().is_empty() {
-                    self.wrong(value, &fields.path(key), "a name must have letters");
-                    return None;
-                }
-                Some(intern::text(&text.value))
-            }
-            _ => {
-                let rule = format!("it must be text on one line, of at most {longest} characters");
-                self.wrong(value, &fields.path(key), &rule);
+        let fits = |text: &&str| text.chars().count() <= longest && !text.contains(char::is_control);
+        match value.text().filter(fits) {
+            Some(text) if key == "name" && text.trim().is_empty() => {
+                self.wrong(value, "a name must have letters");
                 None
             }
-        }
-    }
-
-    fn truth(&mut self, fields: &Fields, key: &str) -> bool {
-        match fields.get(key) {
-            None => false,
-            Some(Ast::BooleanLit(truth)) => truth.value,
-            Some(value) => {
-                self.wrong(value, &fields.path(key), "it must be true or false");
-                false
+            Some(text) => Some(intern::text(text)),
+            None => {
+                let rule = format!("it must be text on one line, of at most {longest} characters");
+                self.wrong(value, &rule);
+                None
             }
         }
     }
@@ -251,25 +190,19 @@ impl Reader<'_> {
     /// One of some words, each of which stands for something.
     pub(super) fn word<T: Copy>(
         &mut self,
-        value: &Ast,
-        path: &str,
+        value: Cursor,
         what: &str,
         known: &[(&'static str, T)],
     ) -> Option<T> {
-        let words: Vec<_> = known.iter().map(|(word, _)| quoted(word)).collect();
-        let rule = format!("{what} must be {}", listed(&words, "or"));
-        let Ast::StringLit(text) = value else {
-            self.wrong(value, path, &rule);
-            return None;
-        };
-        if let Some((_, meaning)) = known.iter().find(|(word, _)| *word == text.value) {
-            return Some(*meaning);
+        let words = known.iter().map(|(word, _)| *word);
+        let rule = one_of(what, words.clone());
+        let text = self.string(value, &rule)?;
+        let found = known.iter().find(|(word, _)| *word == text).map(|(_, meaning)| *meaning);
+        if found.is_none() {
+            let hint = did_you_mean(&text.replace("color", "colour"), words.map(|word| (word, word)));
+            self.wrong(value, &format!("{rule}{hint}"));
         }
-        let spelling = text.value.replace("color", "colour");
-        let hint = nearest(&spelling, known.iter().map(|(word, _)| (*word, *word)))
-            .map_or_else(String::new, |n| format!("; did you mean {}?", quoted(n)));
-        self.wrong(value, path, &format!("{rule}{hint}"));
-        None
+        found
     }
 
     fn equation(&mut self, fields: &Fields) -> &'static [EquationPart] {
@@ -279,59 +212,45 @@ impl Reader<'_> {
             ("diffuse", Term::Diffuse),
             ("specular", Term::Specular),
         ];
+        let Some(value) = fields.get("equation") else { return intern::equation(Vec::new()) };
         let mut parts = Vec::new();
-        match fields.get("equation") {
-            None => {}
-            Some(Ast::StringLit(_)) => {
-                if let Some(text) = self.text(fields, "equation", LONGEST_TEXT) {
-                    parts.push(EquationPart { term: Term::Total, text });
+        if value.text().is_some() {
+            let text = self.words(fields, "equation", LONGEST_TEXT);
+            parts.extend(text.map(|text| EquationPart { term: Term::Total, text }));
+        } else if let Some(list) = value.list() {
+            for element in list {
+                let Some(part) = self.fields(element, PART_KEYS, "a part of an equation") else { continue };
+                let term = match part.get("term") {
+                    None => Some(Term::Total),
+                    Some(term) => self.word(term, "a term", TERMS),
+                };
+                let text = self.words(&part, "text", LONGEST_TEXT);
+                if part.get("text").is_none() {
+                    self.lacking(&part, "text", "a part of an equation has one");
                 }
+                parts.extend(term.zip(text).map(|(term, text)| EquationPart { term, text }));
             }
-            Some(Ast::Array(list)) => {
-                for (i, element) in list.elements.iter().enumerate() {
-                    let path = format!("equation[{i}]");
-                    let Some(part) = self.fields(element, path, PART_KEYS, "a part of an equation") else {
-                        continue;
-                    };
-                    let term = match part.get("term") {
-                        None => Some(Term::Total),
-                        Some(term) => self.word(term, &part.path("term"), "a term", TERMS),
-                    };
-                    let text = self.text(&part, "text", LONGEST_TEXT);
-                    if part.get("text").is_none() {
-                        self.lacking(&part, "text", "a part of an equation has one");
-                    }
-                    if let (Some(term), Some(text)) = (term, text) {
-                        parts.push(EquationPart { term, text });
-                    }
-                }
-            }
-            Some(value) => {
-                let rule =
-                    "it must be text, or a list of parts: [{ \"term\": \"diffuse\", \"text\": \"I_d = …\" }]";
-                self.wrong(value, "equation", rule);
-            }
+        } else {
+            let rule =
+                "it must be text, or a list of parts: [{ \"term\": \"diffuse\", \"text\": \"I_d = …\" }]";
+            self.wrong(value, rule);
         }
         intern::equation(parts)
-    }
-
-    pub(super) fn lacking(&mut self, fields: &Fields, key: &str, why: &str) {
-        self.mistake(fields.start, format!("{} is missing; {why}", fields.path(key)));
     }
 
     fn laws(&mut self, fields: &Fields) -> Laws {
         let mut laws = Laws { reciprocal: false, energy_conserving: false, non_negative: false };
         let Some(value) = fields.get("laws") else { return laws };
-        let Ast::Array(list) = value else {
+        let Some(list) = value.list() else {
             let names = laws.list().map(|(name, _)| quoted(name));
             let rule =
                 format!("it must be a list of the laws that the model keeps, of {}", listed(&names, "and"));
-            self.wrong(value, "laws", &rule);
+            self.wrong(value, &rule);
             return laws;
         };
         let names = laws.list().map(|(name, _)| (name, name));
-        for (i, element) in list.elements.iter().take(MOST_MISTAKES).enumerate() {
-            match self.word(element, &format!("laws[{i}]"), "a law", &names) {
+        for element in list.take(MOST_MISTAKES) {
+            match self.word(element, "a law", &names) {
                 Some("reciprocal") => laws.reciprocal = true,
                 Some("energy conserving") => laws.energy_conserving = true,
                 Some("non-negative") => laws.non_negative = true,
@@ -343,95 +262,72 @@ impl Reader<'_> {
 
     fn lobe(&mut self, fields: &Fields) -> Option<&'static str> {
         let value = fields.get("lobe")?;
-        let known: Vec<_> = self
-            .registry
-            .models()
-            .iter()
-            .filter(|m| m.has_lobe() && self.registry.custom_file(m.declaration.id).is_none())
-            .map(|m| (m.declaration.id, m.declaration.id))
-            .collect();
-        self.word(value, "lobe", "the model whose lobe is compensated", &known)
+        let known = self.built_in_models().filter(|m| m.has_lobe()).map(|m| m.declaration.id);
+        let known: Vec<_> = known.map(|id| (id, id)).collect();
+        self.word(value, "the model whose lobe is compensated", &known)
     }
 
     fn parameters(&mut self, fields: &Fields) -> &'static [Parameter] {
         let mut parameters: Vec<Parameter> = Vec::new();
-        let list = match fields.get("parameters") {
-            None => return intern::parameters(parameters),
-            Some(Ast::Array(list)) => list,
-            Some(value) => {
-                let rule = "it must be a list: names of shared parameters, such as \"base_colour\", and objects that declare new ones";
-                self.wrong(value, "parameters", rule);
-                return intern::parameters(parameters);
-            }
+        let Some(value) = fields.get("parameters") else { return intern::parameters(parameters) };
+        let Some(list) = value.list() else {
+            let rule = "it must be a list: names of shared parameters, such as \"base_colour\", and objects that declare new ones";
+            self.wrong(value, rule);
+            return intern::parameters(parameters);
         };
-        for (i, element) in list.elements.iter().enumerate() {
-            if self.mistakes.len() >= MOST_MISTAKES {
+        for element in list {
+            if self.has_enough() {
                 break;
             }
-            let path = format!("parameters[{i}]");
-            let parameter = match element {
-                Ast::StringLit(name) => self.shared(element, &path, &name.value),
-                _ => self.parameter(element, path.clone()),
+            let parameter = match element.text() {
+                Some(name) => self.shared(element, name),
+                None => self.parameter(element),
             };
             let Some(parameter) = parameter else { continue };
+            let what = |what: String| format!("{}: {what}", element.path());
             if parameters.iter().any(|p| p.name == parameter.name) {
-                self.mistake(element.start(), format!("{path}: there are two parameters {}", parameter.name));
+                let twice = format!("there are two parameters {}", parameter.name);
+                self.mistake(element.start(), what(twice));
                 continue;
             }
             parameters.push(parameter);
             let bytes = layout(&parameters).last().map_or(0, |f| f.2 + 12);
             if bytes > BLOCK_BYTES {
-                let what = format!(
-                    "{path}: the parameters up to here take {bytes} bytes, but at most {BLOCK_BYTES} fit; a number takes 4, a colour or triple 16"
+                let full = format!(
+                    "the parameters up to here take {bytes} bytes, but at most {BLOCK_BYTES} fit; a number takes 4, a colour or triple 16"
                 );
-                self.mistake(element.start(), what);
+                self.mistake(element.start(), what(full));
                 break;
             }
         }
         if self.mistakes.is_empty() {
-            self.check_conditions(&list.elements, &parameters);
+            self.check_conditions(value, &parameters);
         }
         intern::parameters(parameters)
     }
 
-    /// The parameter of that name of some built-in model.
-    pub(super) fn built_in(&self, name: &str) -> Option<&'static Parameter> {
-        let built_in =
-            |m: &&crate::reflection::ModelEntry| self.registry.custom_file(m.declaration.id).is_none();
-        self.registry.models().iter().filter(built_in).find_map(|m| m.parameter(name))
+    fn built_in_models(&self) -> impl Iterator<Item = &ModelEntry> {
+        self.registry.models().iter().filter(|m| self.registry.custom_file(m.declaration.id).is_none())
     }
 
-    fn shared(&mut self, value: &Ast, path: &str, name: &str) -> Option<Parameter> {
+    /// The parameter of that name of some built-in model.
+    pub(super) fn built_in(&self, name: &str) -> Option<&'static Parameter> {
+        self.built_in_models().find_map(|m| m.parameter(name))
+    }
+
+    fn shared(&mut self, value: Cursor, name: &str) -> Option<Parameter> {
         if let Some(parameter) = self.built_in(name) {
             // Its condition is about the parameters of that model.
             return Some(Parameter { used_when: None, ..parameter.clone() });
         }
-        let known: Vec<_> = self
-            .registry
-            .models()
-            .iter()
-            .filter(|m| self.registry.custom_file(m.declaration.id).is_none())
-            .flat_map(|m| m.parameters)
-            .map(|p| (p.name, p.name))
-            .collect();
-        let hint = nearest(&name.replace("color", "colour"), known.into_iter()).map_or_else(
-            || {
+        let known = self.built_in_models().flat_map(|m| m.parameters).map(|p| (p.name, p.name));
+        let hint = match did_you_mean(&name.replace("color", "colour"), known) {
+            none if none.is_empty() => {
                 "; to declare a new one write { \"name\": …, \"min\": …, \"max\": …, \"default\": … }"
-                    .to_owned()
-            },
-            |n| format!("; did you mean {}?", quoted(n)),
-        );
-        self.wrong(value, path, &format!("no built-in model has a parameter of that name{hint}"));
+            }
+            hint => &hint.clone(),
+        };
+        self.wrong(value, &format!("no built-in model has a parameter of that name{hint}"));
         None
-    }
-}
-
-/// A value as it is written, if it is short, and what it is otherwise.
-fn describe(value: &Ast, json: &str) -> String {
-    match value {
-        Ast::Object(AstObject { properties, .. }) if properties.is_empty() => "{}".to_owned(),
-        Ast::Object(_) => "an object".to_owned(),
-        Ast::Array(list) if list.elements.len() > 4 => format!("a list of {}", list.elements.len()),
-        _ => shortened(value.text(json)),
     }
 }

@@ -1,15 +1,18 @@
 //! The parameters that a model's file declares.
 
-use jsonc_parser::{ast::Value as Ast, common::Ranged};
+use jsonc_parser::common::Ranged as _;
 
 use super::{
-    declaration::{Fields, LONGEST_NAME, LONGEST_TEXT, Reader},
+    declaration::{LONGEST_NAME, LONGEST_TEXT, Reader},
     intern,
     text::{allowed_in_wgsl, humanised, identifier},
 };
 use crate::{
     parameter::{ABOVE_ZERO, Parameter, ParameterKind},
-    text::quoted,
+    text::{
+        json::{Cursor, Fields, Reader as _},
+        quoted,
+    },
 };
 
 /// What an entry of `parameters` may say.
@@ -60,8 +63,8 @@ fn symbol_of(name: &str) -> String {
 }
 
 impl Reader<'_> {
-    pub(super) fn parameter(&mut self, value: &Ast, path: String) -> Option<Parameter> {
-        let fields = self.fields(value, path, PARAMETER_KEYS, "a parameter")?;
+    pub(super) fn parameter(&mut self, value: Cursor) -> Option<Parameter> {
+        let fields = self.fields(value, PARAMETER_KEYS, "a parameter")?;
         let Some(named) = fields.get("name") else {
             self.lacking(
                 &fields,
@@ -70,11 +73,7 @@ impl Reader<'_> {
             );
             return None;
         };
-        let Ast::StringLit(name) = named else {
-            self.wrong(named, &fields.path("name"), "it must be text");
-            return None;
-        };
-        let name = intern::text(&name.value);
+        let name = intern::text(self.string(named, "it must be text")?);
         let rule = match identifier(name) {
             Err(rule) => Some(format!("it {rule}")),
             Ok(()) if name.contains("color") => {
@@ -86,14 +85,14 @@ impl Reader<'_> {
             Ok(()) => None,
         };
         if let Some(rule) = rule {
-            self.wrong(named, &fields.path("name"), &rule);
+            self.wrong(named, &rule);
             return None;
         }
         let before = self.mistakes.len();
         let shared = self.built_in(name);
         let kind = self.kind(&fields, shared.map(|s| &s.kind));
-        self.same_type_elsewhere(named, &fields, kind.as_ref());
-        let given = |reader: &mut Self, key, longest| reader.text(&fields, key, longest);
+        self.same_type_elsewhere(named, name, kind.as_ref());
+        let given = |reader: &mut Self, key, longest| reader.words(&fields, key, longest);
         let label = given(self, "label", LONGEST_NAME)
             .or(shared.map(|s| s.label))
             .unwrap_or_else(|| intern::text(&name.replace('_', " ")));
@@ -115,11 +114,10 @@ impl Reader<'_> {
     }
 
     /// Parameters are shared by name, so the same name is the same type everywhere.
-    fn same_type_elsewhere(&mut self, named: &Ast, fields: &Fields, kind: Option<&ParameterKind>) {
+    fn same_type_elsewhere(&mut self, named: Cursor, name: &str, kind: Option<&ParameterKind>) {
         let Some(kind) = kind else { return };
-        let Ast::StringLit(name) = named else { return };
         let other = self.registry.models().iter().filter(|m| m.declaration.id != self.id).find_map(|m| {
-            let p = m.parameter(&name.value)?;
+            let p = m.parameter(name)?;
             (std::mem::discriminant(&p.kind) != std::mem::discriminant(kind)).then_some((m, p))
         });
         if let Some((model, parameter)) = other {
@@ -128,18 +126,18 @@ impl Reader<'_> {
                 model.declaration.id,
                 type_name(&parameter.kind),
             );
-            self.wrong(named, &fields.path("name"), &rule);
+            self.wrong(named, &rule);
         }
     }
 
     fn kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
         let types: Vec<_> = TYPES.iter().map(|t| (*t, *t)).collect();
         let kind = match fields.get("type") {
-            Some(value) => self.word(value, &fields.path("type"), "a type", &types)?,
+            Some(value) => self.word(value, "a type", &types)?,
             None => match (shared, fields.get("choices"), fields.get("default")) {
                 (Some(shared), ..) => type_name(shared),
                 (None, Some(_), _) => "choice",
-                (None, None, Some(Ast::Array(_))) => {
+                (None, None, Some(default)) if default.list().is_some() => {
                     self.lacking(fields, "type", "a list may be a \"colour\" or a \"triple\"");
                     return None;
                 }
@@ -154,7 +152,7 @@ impl Reader<'_> {
         };
         for key in ["range", "min", "max", "above", "slider_max", "choices"] {
             if let Some(value) = fields.get(key).filter(|_| !usable.contains(&key)) {
-                self.mistake(value.start(), format!("{} is given, but a {kind} has none", fields.path(key)));
+                self.misplaced(value, &format!("is given, but a {kind} has none"));
                 return None;
             }
         }
@@ -168,30 +166,50 @@ impl Reader<'_> {
     }
 
     /// A finite number in 32 bits.
-    fn number(&mut self, value: &Ast, path: &str) -> Option<f32> {
-        let number = match value {
-            Ast::NumberLit(number) => number.value.parse::<f32>().ok().filter(|n| n.is_finite()),
-            _ => None,
-        };
+    fn number(&mut self, value: Cursor) -> Option<f32> {
+        let number = value.number().filter(|n| n.is_finite());
         if number.is_none() {
-            self.wrong(value, path, "it must be a number");
+            self.wrong(value, "it must be a number");
         }
         number
     }
 
     /// A whole number that 32-bit floats hold exactly, as the shader gets it.
-    fn whole(&mut self, value: &Ast, path: &str) -> Option<i64> {
-        const EXACT: f64 = 16_777_216.0;
-        let number = match value {
-            Ast::NumberLit(number) => {
-                number.value.parse::<f64>().ok().filter(|n| n.fract() == 0.0 && n.abs() <= EXACT)
-            }
-            _ => None,
-        };
+    fn whole(&mut self, value: Cursor) -> Option<i64> {
+        const EXACT: i64 = 1 << 24;
+        let number = value.integer().filter(|n| (-EXACT..=EXACT).contains(n));
         if number.is_none() {
-            self.wrong(value, path, &format!("it must be a whole number between -{EXACT} and {EXACT}"));
+            self.wrong(value, &format!("it must be a whole number between -{EXACT} and {EXACT}"));
         }
-        number.map(|n| n as i64)
+        number
+    }
+
+    /// Three numbers, or one for all three.
+    fn triple(&mut self, value: Cursor) -> Option<[f32; 3]> {
+        match value.list() {
+            None if value.number().is_some() => Some([self.number(value)?; 3]),
+            Some(list) if list.len() == 3 => {
+                let mut triple = [0.0; 3];
+                for (to, element) in triple.iter_mut().zip(list) {
+                    *to = self.number(value.holding(element.value))?;
+                }
+                Some(triple)
+            }
+            _ => {
+                self.wrong(value, "it must be three numbers, [red, green, blue], or one for all");
+                None
+            }
+        }
+    }
+
+    /// A field that need not be there; `None` only if it is wrong.
+    fn given<T>(
+        &mut self,
+        fields: &Fields,
+        key: &str,
+        read: fn(&mut Self, Cursor) -> Option<T>,
+    ) -> Option<Option<T>> {
+        fields.get(key).map_or(Some(None), |value| read(self, value).map(Some))
     }
 
     /// Smallest and largest value, from `range`, or from `min` or `above`, and `max`.
@@ -199,58 +217,35 @@ impl Reader<'_> {
         &mut self,
         fields: &Fields,
         (min, max): (T, Option<T>),
-        read: fn(&mut Self, &Ast, &str) -> Option<T>,
+        read: fn(&mut Self, Cursor) -> Option<T>,
         above_zero: Option<T>,
     ) -> Option<(T, Option<T>)> {
-        let given = |key| fields.get(key).map(|value| (value, fields.path(key)));
-        let (mut low, mut high, mut good) = (min, max, true);
-        if let Some((value, path)) = given("range") {
+        let (mut low, mut high) = (min, max);
+        if let Some(value) = fields.get("range") {
             if let Some(other) = ["min", "max", "above"].into_iter().find(|key| fields.get(key).is_some()) {
-                self.mistake(
-                    value.start(),
-                    format!("{path} is given, but so is {other}; a range is [min, max]"),
-                );
+                self.misplaced(value, &format!("is given, but so is {other}; a range is [min, max]"));
                 return None;
             }
-            let Ast::Array(list) = value else {
-                self.wrong(value, &path, "a range must be two numbers: [min, max]");
+            let Some(list) = value.list().filter(|list| list.len() == 2) else {
+                self.wrong(value, "a range must be two numbers: [min, max]");
                 return None;
             };
-            let [a, b] = list.elements.as_slice() else {
-                self.wrong(value, &path, "a range must be two numbers: [min, max]");
+            let ends: Vec<_> = list.map(|end| read(self, end)).collect();
+            (low, high) = (ends[0]?, Some(ends[1]?));
+        }
+        let (least, most) = (self.given(fields, "min", read), self.given(fields, "max", read));
+        if let Some(value) = fields.get("above") {
+            let zero = value.integer() == Some(0);
+            let Some(above) = above_zero.filter(|_| zero && fields.get("min").is_none()) else {
+                self.wrong(value, "it must be 0, and stands in place of min: greater than 0");
                 return None;
             };
-            let (a, b) = (read(self, a, &format!("{path}[0]")), read(self, b, &format!("{path}[1]")));
-            (low, high) = (a?, Some(b?));
+            low = above;
         }
-        if let Some((value, path)) = given("min") {
-            match read(self, value, &path) {
-                Some(v) => low = v,
-                None => good = false,
-            }
-        }
-        if let Some((value, path)) = given("above") {
-            let zero = matches!(value, Ast::NumberLit(n) if n.value.parse::<f64>() == Ok(0.0));
-            match above_zero.filter(|_| zero && fields.get("min").is_none()) {
-                Some(v) => low = v,
-                None => {
-                    self.wrong(value, &path, "it must be 0, and stands in place of min: greater than 0");
-                    good = false;
-                }
-            }
-        }
-        if let Some((value, path)) = given("max") {
-            match read(self, value, &path) {
-                Some(v) => high = Some(v),
-                None => good = false,
-            }
-        }
-        if !good {
-            return None;
-        }
+        (low, high) = (least?.unwrap_or(low), most?.or(high));
         if high.is_some_and(|h| h <= low) {
-            let (value, path) = given("max").or(given("range")).or(given("min")).or(given("above"))?;
-            self.wrong(value, &path, "the largest value must be greater than the smallest");
+            let value = ["max", "range", "min", "above"].into_iter().find_map(|key| fields.get(key))?;
+            self.wrong(value, "the largest value must be greater than the smallest");
             return None;
         }
         Some((low, high))
@@ -269,9 +264,7 @@ impl Reader<'_> {
         };
         if !probe.allows(&probe.default_value()) {
             match fields.get("default") {
-                Some(value) => {
-                    self.wrong(value, &fields.path("default"), &format!("it must be {}", probe.rule()))
-                }
+                Some(value) => self.wrong(value, &format!("it must be {}", probe.rule())),
                 None => self.lacking(fields, "default", &format!("it must be {}", probe.rule())),
             }
             return None;
@@ -285,10 +278,7 @@ impl Reader<'_> {
             _ => (0.0, 1.0, None),
         };
         let limits = self.limits(fields, (min, Some(max)), Self::number, Some(ABOVE_ZERO));
-        let given = match fields.get("default") {
-            Some(value) => Some(self.number(value, &fields.path("default"))?),
-            None => None,
-        };
+        let given = self.given(fields, "default", Self::number)?;
         let (min, max) = limits?;
         let max = max.unwrap_or(1.0);
         let middle = || usual.filter(|u| (min..=max).contains(u)).unwrap_or(0.5 * min + 0.5 * max);
@@ -304,11 +294,8 @@ impl Reader<'_> {
             _ => (0, None, None, None),
         };
         let limits = self.limits(fields, (min, max), Self::whole, None);
-        let mut read = |key: &str| match fields.get(key) {
-            Some(value) => self.whole(value, &fields.path(key)).map(Some),
-            None => Some(None),
-        };
-        let (given, slider_given) = (read("default")?, read("slider_max")?);
+        let given = self.given(fields, "default", Self::whole)?;
+        let slider_given = self.given(fields, "slider_max", Self::whole)?;
         let (min, max) = limits?;
         let inside = |v: i64| v >= min && max.is_none_or(|m| v <= m);
         let default = given.or(usual.filter(|u| inside(*u))).unwrap_or(min);
@@ -317,11 +304,7 @@ impl Reader<'_> {
             max.map_or_else(|| slider.unwrap_or(default.max(min) + 16), |m| slider.unwrap_or(m).min(m));
         if slider_max <= min {
             if let Some(value) = fields.get("slider_max") {
-                self.wrong(
-                    value,
-                    &fields.path("slider_max"),
-                    &format!("it must be greater than {min}, where the slider begins"),
-                );
+                self.wrong(value, &format!("it must be greater than {min}, where the slider begins"));
             }
             return None;
         }
@@ -336,22 +319,13 @@ impl Reader<'_> {
         let Some(value) = fields.get("default") else {
             return Some(ParameterKind::Colour { default: usual });
         };
-        let channel = |e: &Ast| match e {
-            Ast::NumberLit(n) => n.value.parse::<u8>().ok(),
-            _ => None,
+        let channel = |e: Cursor| e.integer().and_then(|v| u8::try_from(v).ok());
+        let channels = value.list().and_then(|list| list.map(channel).collect::<Option<Vec<_>>>());
+        let Some(default) = channels.and_then(|c| c.try_into().ok()) else {
+            self.wrong(value, "a colour must be three whole numbers from 0 to 255: [red, green, blue]");
+            return None;
         };
-        let channels: Option<Vec<u8>> = match value {
-            Ast::Array(list) => list.elements.iter().map(channel).collect(),
-            _ => None,
-        };
-        match channels.and_then(|c| c.try_into().ok()) {
-            Some(default) => Some(ParameterKind::Colour { default }),
-            None => {
-                let rule = "a colour must be three whole numbers from 0 to 255: [red, green, blue]";
-                self.wrong(value, &fields.path("default"), rule);
-                None
-            }
-        }
+        Some(ParameterKind::Colour { default })
     }
 
     fn triple_kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
@@ -360,22 +334,7 @@ impl Reader<'_> {
             _ => (0.0, 1.0, None),
         };
         let limits = self.limits(fields, (min, Some(max)), Self::number, Some(ABOVE_ZERO));
-        let path = fields.path("default");
-        let given = match fields.get("default") {
-            None => None,
-            Some(value @ Ast::NumberLit(_)) => Some([self.number(value, &path)?; 3]),
-            Some(Ast::Array(list)) if list.elements.len() == 3 => {
-                let mut triple = [0.0; 3];
-                for (to, element) in triple.iter_mut().zip(&list.elements) {
-                    *to = self.number(element, &path)?;
-                }
-                Some(triple)
-            }
-            Some(value) => {
-                self.wrong(value, &path, "it must be three numbers, [red, green, blue], or one for all");
-                return None;
-            }
-        };
+        let given = self.given(fields, "default", Self::triple)?;
         let (min, max) = limits?;
         let max = max.unwrap_or(1.0);
         let fits = |t: &[f32; 3]| t.iter().all(|c| (min..=max).contains(c));
@@ -389,7 +348,7 @@ impl Reader<'_> {
             _ => (Vec::new(), ""),
         };
         if let Some(value) = fields.get("choices") {
-            options = self.choices(value, &fields.path("choices"))?;
+            options = self.choices(value)?;
         }
         if options.is_empty() {
             self.lacking(
@@ -401,52 +360,47 @@ impl Reader<'_> {
         }
         let known: Vec<_> = options.iter().enumerate().map(|(i, (id, _))| (*id, i)).collect();
         let default = match fields.get("default") {
-            Some(value) => self.word(value, &fields.path("default"), "the default", &known)?,
+            Some(value) => self.word(value, "the default", &known)?,
             None => options.iter().position(|(id, _)| *id == usual).unwrap_or(0),
         };
         Some(ParameterKind::Choice { options: intern::options(options), default })
     }
 
     /// Choices as a list of ids, or as an object from id to name.
-    fn choices(&mut self, value: &Ast, path: &str) -> Option<Vec<(&'static str, &'static str)>> {
+    fn choices(&mut self, value: Cursor) -> Option<Vec<(&'static str, &'static str)>> {
         let mut options: Vec<(&'static str, &'static str)> = Vec::new();
         let before = self.mistakes.len();
         let mut add = |reader: &mut Self, at: usize, id: &str, name: &str| {
-            if let Err(rule) = identifier(id) {
-                reader.mistake(at, format!("{path} has {}, but a choice {rule}", quoted(id)));
+            let predicate = if let Err(rule) = identifier(id) {
+                format!("has {}, but a choice {rule}", quoted(id))
             } else if options.iter().any(|(known, _)| *known == id) {
-                reader.mistake(at, format!("{path} has {} twice", quoted(id)));
+                format!("has {} twice", quoted(id))
             } else {
                 options.push((intern::text(id), intern::text(name)));
-            }
+                return;
+            };
+            reader.report(at, value.path(), None, &predicate);
         };
-        match value {
-            Ast::Array(list) => {
-                for element in &list.elements {
-                    match element {
-                        Ast::StringLit(id) => add(self, element.start(), &id.value, &humanised(&id.value)),
-                        _ => self.wrong(element, path, "a choice must be text"),
-                    }
+        if let Some(list) = value.list() {
+            for element in list.map(|element| value.holding(element.value)) {
+                if let Some(id) = self.string(element, "a choice must be text") {
+                    add(self, element.start(), id, &humanised(id));
                 }
             }
-            Ast::Object(object) => {
-                for property in &object.properties {
-                    match &property.value {
-                        Ast::StringLit(name)
-                            if !name.value.trim().is_empty()
-                                && name.value.chars().count() <= LONGEST_NAME =>
-                        {
-                            add(self, property.start(), property.name.as_str(), &name.value);
-                        }
-                        other => self.wrong(other, path, "the name of a choice must be a short text"),
-                    }
+        } else if let Some(properties) = value.properties() {
+            for property in properties {
+                let named = value.holding(&property.value);
+                let fits = |name: &&str| !name.trim().is_empty() && name.chars().count() <= LONGEST_NAME;
+                match named.text().filter(fits) {
+                    Some(name) => add(self, property.start(), property.name.as_str(), name),
+                    None => self.wrong(named, "the name of a choice must be a short text"),
                 }
             }
-            _ => self.wrong(
+        } else {
+            self.wrong(
                 value,
-                path,
                 "it must be a list: [\"one\", \"other\"], or an object: { \"one\": \"its name\" }",
-            ),
+            );
         }
         (self.mistakes.len() == before).then_some(options)
     }

@@ -1,105 +1,15 @@
 //! What can be wrong with a scene, and how it is said: file, line, column, path, value, rule.
 
-use super::load::{MAX_FILE_BYTES, Missing};
-use crate::{
-    files::{FileError, Kind},
-    text::quoted,
-};
-use std::{borrow::Cow, fmt, io, path::Path as FilePath};
+use std::{fmt, io, path::Path as FilePath};
 
 use serde::{Serialize, Serializer};
 
-/// A place in a text. Both count from 1; columns count characters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-pub struct Place {
-    /// The line.
-    pub line: usize,
-    /// The character in the line.
-    pub column: usize,
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.line, self.column)
-    }
-}
-
-/// One step on the way to a value in a scene.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum Segment {
-    /// Into an object, by key.
-    Key(Cow<'static, str>),
-    /// Into a list, counted from 0.
-    Index(usize),
-}
-
-/// Where in a scene a value is: `objects[0].material.k_d`. Empty for the scene itself.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Path(Vec<Segment>);
-
-impl Path {
-    /// The scene itself.
-    #[must_use]
-    pub fn root() -> Self {
-        Self::default()
-    }
-
-    /// The value under a key.
-    #[must_use]
-    pub fn key(&self, key: impl Into<Cow<'static, str>>) -> Self {
-        let mut path = self.clone();
-        path.0.push(Segment::Key(key.into()));
-        path
-    }
-
-    /// The entry of a list.
-    #[must_use]
-    pub fn index(&self, index: usize) -> Self {
-        let mut path = self.clone();
-        path.0.push(Segment::Index(index));
-        path
-    }
-
-    /// The steps from the scene to the value.
-    #[must_use]
-    pub fn segments(&self) -> &[Segment] {
-        &self.0
-    }
-
-    /// Every path on the way to this one, from the scene itself to this one.
-    pub fn ancestors(&self) -> impl Iterator<Item = Self> + '_ {
-        (0..=self.0.len()).map(|n| Self(self.0[..n].to_vec()))
-    }
-}
-
-impl fmt::Display for Path {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, segment) in self.0.iter().enumerate() {
-            match segment {
-                Segment::Index(index) => write!(f, "[{index}]")?,
-                Segment::Key(key) if is_plain(key) => {
-                    if i > 0 {
-                        f.write_str(".")?;
-                    }
-                    f.write_str(key)?;
-                }
-                Segment::Key(key) => write!(f, "[{}]", quoted(key))?,
-            }
-        }
-        Ok(())
-    }
-}
-
-impl Serialize for Path {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-/// Whether a key can stand in a path without quotes.
-fn is_plain(key: &str) -> bool {
-    !key.is_empty() && key.len() <= 60 && key.chars().all(|c| c.is_alphanumeric() || "_-$".contains(c))
-}
+use super::load::{MAX_FILE_BYTES, Missing};
+use crate::files::{FileError, Kind};
+pub use crate::text::{
+    path::{Path, Segment},
+    place::Place,
+};
 
 /// One thing that is wrong with a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -168,16 +78,9 @@ impl Serialize for Problem {
             column: self.place.map(|p| p.column),
             path: Some(&self.path),
             value: self.found.as_deref(),
-            message: self.to_string_without_place(),
+            message: Self { place: None, ..self.clone() }.to_string(),
         }
         .serialize(serializer)
-    }
-}
-
-impl Problem {
-    /// Path and message, without the place.
-    fn to_string_without_place(&self) -> String {
-        Self { place: None, ..self.clone() }.to_string()
     }
 }
 
@@ -301,35 +204,20 @@ impl LoadError {
     /// The problems as data: those of an invalid scene, or the error itself as the only one.
     #[must_use]
     pub fn problems(&self) -> Vec<Problem> {
-        match self {
-            Self::Invalid { problems, .. } => problems.clone(),
-            Self::NotUtf8 { place, what, .. } => vec![Problem {
-                place: Some(*place),
-                ..Problem::about(Path::root(), format!("is not UTF-8 text: {what}"))
-            }],
-            Self::Syntax { place, what, .. } => vec![Problem {
-                place: Some(*place),
-                ..Problem::about(Path::root(), format!("is not JSON: {what}"))
-            }],
-            Self::Missing { missing, .. } => missing.iter().map(Missing::problem).collect(),
-            Self::NotFound { .. } => {
-                vec![Problem::about(Path::root(), "could not be read: there is no such file")]
-            }
-            Self::Folder { .. } => vec![Problem::about(Path::root(), "could not be read: it is a folder")],
-            Self::NoFile { kind, .. } => {
-                vec![Problem::about(Path::root(), format!("could not be read: it is {kind}"))]
-            }
-            Self::PermissionDenied { .. } => {
-                vec![Problem::about(Path::root(), "could not be read: no permission")]
-            }
-            Self::TooLarge { .. } => {
-                vec![Problem::about(Path::root(), format!("is larger than {} MiB", MAX_FILE_BYTES >> 20))]
-            }
-            Self::Io { source, .. } => {
-                vec![Problem::about(Path::root(), format!("could not be read: {source}"))]
-            }
-            Self::Empty { .. } => vec![Problem::about(Path::root(), "is empty")],
-        }
+        let (place, what) = match self {
+            Self::Invalid { problems, .. } => return problems.clone(),
+            Self::Missing { missing, .. } => return missing.iter().map(Missing::problem).collect(),
+            Self::NotUtf8 { place, what, .. } => (Some(*place), format!("is not UTF-8 text: {what}")),
+            Self::Syntax { place, what, .. } => (Some(*place), format!("is not JSON: {what}")),
+            Self::NotFound { .. } => (None, "could not be read: there is no such file".to_owned()),
+            Self::Folder { .. } => (None, "could not be read: it is a folder".to_owned()),
+            Self::NoFile { kind, .. } => (None, format!("could not be read: it is {kind}")),
+            Self::PermissionDenied { .. } => (None, "could not be read: no permission".to_owned()),
+            Self::TooLarge { .. } => (None, format!("is larger than {} MiB", MAX_FILE_BYTES >> 20)),
+            Self::Io { source, .. } => (None, format!("could not be read: {source}")),
+            Self::Empty { .. } => (None, "is empty".to_owned()),
+        };
+        vec![Problem { place, ..Problem::about(Path::root(), what) }]
     }
 }
 

@@ -19,16 +19,19 @@ use std::collections::BTreeSet;
 use glam::Vec3;
 
 pub mod check;
+mod encoding;
 pub mod error;
 pub mod examples;
 mod format;
 mod lacking_size;
+mod layout;
 pub mod load;
 pub mod observer;
 mod read;
 pub mod rotation;
 pub mod save;
 pub mod schema;
+mod syntax;
 
 /// Largest legal extent of a scene in any direction, metres (CA `MAX_HEIGHT`, `MAX_WIDTH`, `MAX_DEPTH`).
 pub const MAX_DIMENSION: f32 = 100.0;
@@ -217,6 +220,30 @@ impl Light {
     pub fn rgb8(&self) -> [u8; 3] {
         self.colour_temperature.map_or(self.colour, temperature::black_body_rgb8)
     }
+
+    /// Makes it a light of another type: gains and loses position, direction and parameters as that
+    /// type has them. Intensity or luminous flux is kept, unless the new type measures in another unit.
+    pub fn set_type(&mut self, to: &LightEntry, registry: &Registry, room: SceneSize) {
+        let new = to.declaration;
+        let flux = self.luminous_flux.filter(|_| to.has_flux());
+        self.intensity = match registry.light(&self.kind) {
+            Some(old) if flux.is_none() && old.declaration.unit == new.unit => self.intensity_as(old),
+            // 20 cd and 20 lx are worlds apart: another unit starts from its own default.
+            _ => new.default_intensity,
+        };
+        self.luminous_flux = flux;
+        let centre = Vec3::new(room.width / 2.0, room.height * 0.8, room.depth / 2.0);
+        self.position = new.has_position.then(|| self.position.unwrap_or(centre));
+        self.direction = new.has_direction.then(|| self.direction.unwrap_or(Vec3::NEG_Y));
+        let mut parameters = Values::default();
+        for p in new.parameters {
+            if let Some(value) = self.parameters.0.get(p.name).filter(|v| p.allows(v)) {
+                parameters.set(p.name, value.clone());
+            }
+        }
+        self.parameters = parameters;
+        new.id.clone_into(&mut self.kind);
+    }
 }
 
 impl Default for Observer {
@@ -332,5 +359,21 @@ mod tests {
     fn unknown_light_types_give_no_light_and_no_panic() {
         let light = Light { kind: "laser".to_owned(), ..Light::default() };
         assert_eq!(record(&light, &Registry::builtin(), Encoding::Srgb).kind, u32::MAX);
+    }
+
+    #[test]
+    fn changing_the_type_of_a_light_keeps_the_scene_valid() {
+        let registry = Registry::builtin();
+        let mut s = Scene::default();
+        for from in registry.lights() {
+            for to in registry.lights() {
+                s.lights[0].set_type(from, &registry, s.scene_size);
+                for p in from.declaration.parameters {
+                    s.lights[0].parameters.set(p.name, p.default_value());
+                }
+                s.lights[0].set_type(to, &registry, s.scene_size);
+                assert_eq!(check::scene(&s, &registry), []);
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The JSON Schema of scene files, for editors: the types of `format` plus what the
 //! registry knows.
 
-use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile, read};
+use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile, read::keys};
 use crate::{
     light::MAX_LIGHTS,
     optics::{colour::Encoding, tone::ToneMapping},
@@ -150,7 +150,7 @@ fn lights(list: &mut Json, registry: &Registry) {
             "then": { "required": required, "properties": properties },
         })
     });
-    let alternatives = read::LIGHT_ALTERNATIVES.map(|both| json!({ "not": { "required": both } }));
+    let alternatives = keys::LIGHT_ALTERNATIVES.map(|both| json!({ "not": { "required": both } }));
     light["allOf"] = kinds.chain(alternatives).collect::<Vec<_>>().into();
     list["items"]["defaultSnippets"] = json!([{
         "label": "point light",

@@ -37,6 +37,18 @@ pub fn nearest<'a>(written: &str, candidates: impl Iterator<Item = (&'a str, &'a
     near.filter_map(|(spelling, target)| Some((distance(spelling)?, target))).min_by_key(|n| n.0).map(|n| n.1)
 }
 
+/// "; did you mean "lambert"?", or nothing.
+#[must_use]
+pub fn did_you_mean<'a>(written: &str, candidates: impl Iterator<Item = (&'a str, &'a str)>) -> String {
+    nearest(written, candidates).map_or_else(String::new, |n| format!("; did you mean {}?", quoted(n)))
+}
+
+/// The rule that a value must be one of several words.
+#[must_use]
+pub fn one_of<'a>(what: &str, words: impl Iterator<Item = &'a str>) -> String {
+    format!("{what} must be {}", listed(&words.map(quoted).collect::<Vec<_>>(), "or"))
+}
+
 /// A text in double quotes, with control characters escaped, and shortened: for messages.
 #[must_use]
 pub fn quoted(text: &str) -> String {
@@ -79,5 +91,15 @@ mod tests {
         assert_eq!(listed(&["A"], "and"), "A");
         assert_eq!(listed(&["A", "B"], "and"), "A and B");
         assert_eq!(listed(&["A", "B", "C"], "and"), "A, B and C");
+    }
+
+    #[test]
+    fn suggestions_forgive_case_separators_and_slips() {
+        let known = || ["scene_size", "lights", "objects"].map(|k| (k, k)).into_iter();
+        assert_eq!(nearest("sceneSize", known()), Some("scene_size"));
+        assert_eq!(nearest("lihgts", known()), Some("lights"));
+        assert_eq!(nearest("object", known()), Some("objects"));
+        assert_eq!(nearest("banana", known()), None);
+        assert_eq!(nearest(&"l".repeat(1 << 20), known()), None);
     }
 }

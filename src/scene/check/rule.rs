@@ -1,0 +1,286 @@
+//! The rules for single fields. Each is a clause: "the diffuse coefficient must be between 0.5 and 1".
+
+use glam::Vec3;
+
+use crate::{
+    custom,
+    light::MAX_LIGHTS,
+    optics::{
+        colour::Encoding,
+        temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
+        tone::ToneMapping,
+    },
+    parameter::{Parameter, ParameterKind, Value},
+    registry::Registry,
+    scene::{MAX_DIMENSION, MAX_OBJECTS, SceneSize},
+    shape::ShapeEntry,
+    text::{self, did_you_mean},
+};
+
+/// The narrowest legal field of view, degrees.
+pub const MIN_FIELD_OF_VIEW: f32 = 1.0;
+/// The widest legal field of view, degrees.
+pub const MAX_FIELD_OF_VIEW: f32 = 170.0;
+/// The legal exposures reach from minus this to plus this, EV.
+pub const MAX_EXPOSURE: f32 = 16.0;
+
+/// The largest legal size of an object, metres: a million kilometres. Far beyond, the squares of distances and of their
+/// derivatives are no numbers any more on graphics cards, and there is no picture that both renderers could agree on.
+pub const MAX_SIZE: f32 = 1e9;
+
+/// `Ok`, or the rule that is broken.
+pub type Rule = Result<(), String>;
+
+/// `Ok` where a rule is kept.
+fn must(kept: bool, rule: impl FnOnce() -> String) -> Rule {
+    if kept { Ok(()) } else { Err(rule()) }
+}
+
+/// One extent of the room, in metres; `axis` is `height`, `width` or `depth`.
+pub fn dimension(axis: &str, metres: f32) -> Rule {
+    must(metres > 0.0 && metres <= MAX_DIMENSION, || {
+        format!("the {axis} of the room must be greater than 0 and at most {MAX_DIMENSION} m")
+    })
+}
+
+/// A position of a light, an object or the observer.
+pub fn position(room: SceneSize, position: Vec3) -> Rule {
+    must(room.contains(position), || {
+        let SceneSize { width, height, depth } = room;
+        format!(
+            "a position must be inside the room: 0 < x ≤ {width} (width), 0 < y ≤ {height} (height), \
+             0 < z ≤ {depth} (depth)"
+        )
+    })
+}
+
+/// A direction of a light or the observer. It need not have length 1.
+pub fn direction(direction: Vec3) -> Rule {
+    must(direction != Vec3::ZERO, || "a direction must not be zero".to_owned())?;
+    must(direction.is_finite() && direction.try_normalize().is_some(), || {
+        "this is too long or too short to be a direction; write it with a length near 1".to_owned()
+    })
+}
+
+/// The intensity of a light.
+pub fn intensity(value: f32) -> Rule {
+    brightness("an intensity", value)
+}
+
+/// The luminous flux of a light, in lumen.
+pub fn luminous_flux(value: f32) -> Rule {
+    brightness("a luminous flux", value)
+}
+
+fn brightness(what: &str, value: f32) -> Rule {
+    must(value >= 0.0 && value.is_finite(), || {
+        if value == f32::INFINITY {
+            format!("{what} must be at most 3.4e38")
+        } else {
+            format!("{what} must be at least 0")
+        }
+    })
+}
+
+/// The colour temperature of a light, in kelvin.
+pub fn colour_temperature(kelvin: f32) -> Rule {
+    must((MIN_TEMPERATURE..=MAX_TEMPERATURE).contains(&kelvin), || {
+        format!("a colour temperature must be between {MIN_TEMPERATURE} and {MAX_TEMPERATURE} K")
+    })
+}
+
+/// The vertical field of view of the observer, in degrees.
+pub fn field_of_view(degrees: f32) -> Rule {
+    must((MIN_FIELD_OF_VIEW..=MAX_FIELD_OF_VIEW).contains(&degrees), || {
+        format!("the field of view must be between {MIN_FIELD_OF_VIEW} and {MAX_FIELD_OF_VIEW} degrees")
+    })
+}
+
+/// The largest extent of an object, in metres.
+pub fn size(metres: f32) -> Rule {
+    must(metres > 0.0 && metres <= MAX_SIZE, || {
+        if metres > MAX_SIZE {
+            format!("a size must be at most {MAX_SIZE:e} m")
+        } else {
+            "a size must be greater than 0".to_owned()
+        }
+    })
+}
+
+/// Euler angles in degrees.
+pub fn rotation(degrees: Vec3) -> Rule {
+    must(degrees.is_finite(), || "a rotation must be three finite numbers of degrees".to_owned())
+}
+
+/// How finely an object of a type is cut.
+pub fn tessellation(shape: &ShapeEntry, count: u32) -> Rule {
+    let range = &shape.declaration.tessellation;
+    must(range.contains(&count), || tessellation_rule(shape))
+}
+
+/// The rule of [`tessellation`].
+pub(crate) fn tessellation_rule(shape: &ShapeEntry) -> String {
+    let range = &shape.declaration.tessellation;
+    format!(
+        "the tessellation of a {} must be a whole number between {} and {}",
+        shape.declaration.id,
+        range.start(),
+        range.end()
+    )
+}
+
+/// The exposure of the display, in EV.
+pub fn exposure(ev: f32) -> Rule {
+    must((-MAX_EXPOSURE..=MAX_EXPOSURE).contains(&ev), || {
+        format!("the exposure must be between -{MAX_EXPOSURE} and {MAX_EXPOSURE} EV")
+    })
+}
+
+/// The value of a declared parameter of a model or a light.
+pub fn parameter(parameter: &Parameter, value: &Value) -> Rule {
+    must(parameter.allows(value), || {
+        let hint = match (&parameter.kind, value) {
+            (ParameterKind::Choice { options, .. }, Value::Choice(id)) => did_you_mean(
+                id,
+                options.iter().map(|(id, name)| (*name, *id)).chain(options.iter().map(|(id, _)| (*id, *id))),
+            ),
+            _ => String::new(),
+        };
+        parameter_rule(parameter) + &hint
+    })
+}
+
+/// The rule of [`parameter`].
+pub(crate) fn parameter_rule(parameter: &Parameter) -> String {
+    format!("the {} must be {}{}", parameter.label, parameter.rule(), unit(parameter))
+}
+
+/// The unit of a parameter after its range.
+fn unit(parameter: &Parameter) -> String {
+    match (parameter.unit, &parameter.kind) {
+        ("", _) | (_, ParameterKind::Colour { .. } | ParameterKind::Choice { .. }) => String::new(),
+        ("°", _) => " degrees".to_owned(),
+        (unit, _) => format!(" {unit}"),
+    }
+}
+
+/// A parameter in the material of an object: if the object's own model declares it, in its range there,
+/// and otherwise in the range of some model that does.
+pub fn material_parameter(registry: &Registry, model: &str, name: &str, value: &Value) -> Rule {
+    if let Some(own) = registry.model(model).and_then(|m| m.parameter(name)) {
+        return parameter(own, value);
+    }
+    let mut rule = None;
+    for declared in registry.models().iter().filter_map(|m| m.parameter(name)) {
+        match parameter(declared, value) {
+            Ok(()) => return Ok(()),
+            Err(broken) => rule = rule.or(Some(broken)),
+        }
+    }
+    Err(rule.unwrap_or_else(|| unknown_material_parameter(registry, name)))
+}
+
+/// That no model declares a material parameter, and which one it might be.
+fn unknown_material_parameter(registry: &Registry, name: &str) -> String {
+    let declared: Vec<_> = registry.material_parameters().collect();
+    let also = declared.iter().flat_map(|p| [(p.label, p.name), (p.symbol, p.name)]);
+    let known = declared.iter().map(|p| (p.name, p.name)).chain(also);
+    format!("no reflection model has a parameter of that name{}", did_you_mean(name, known))
+}
+
+/// The id of a reflection model.
+pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
+    let known = registry.models().iter().map(|m| (m.declaration.id, m.declaration.name));
+    one_of("the reflection model", id, known).map_err(|rule| match registry.broken_model(id) {
+        Some(why) => format!("the file of that custom model has a mistake: {why}"),
+        None => rule + &own_model_missing(registry, id),
+    })
+}
+
+/// That there is no file for an id, where own models are kept: it may have been left behind.
+fn own_model_missing(registry: &Registry, id: &str) -> String {
+    match registry.custom_folder() {
+        Some(folder) if folder.is_dir() && custom::is_id(id) => {
+            format!(
+                "; among the custom models there is no {}",
+                folder.join(id).with_extension(custom::EXTENSION).display()
+            )
+        }
+        _ => String::new(),
+    }
+}
+
+/// The id of a shading mode.
+pub fn shading_model(registry: &Registry, id: &str) -> Rule {
+    let known = registry.modes().iter().map(|m| (m.declaration.id, m.declaration.name));
+    one_of("the shading model", id, known)
+}
+
+/// The id of a light type.
+pub fn light_type(registry: &Registry, id: &str) -> Rule {
+    one_of("the light type", id, registry.lights().iter().map(|l| (l.declaration.id, l.declaration.name)))
+}
+
+/// The id of an object type.
+pub fn object_type(registry: &Registry, id: &str) -> Rule {
+    one_of("the object type", id, registry.shapes().iter().map(|s| (s.declaration.id, s.declaration.name)))
+}
+
+/// The id of a tone mapping.
+pub fn tone_mapping(id: &str) -> Rule {
+    one_of("the tone mapping", id, ToneMapping::ALL.into_iter().map(|t| (t.id(), t.name())))
+}
+
+/// The id of an encoding.
+pub fn encoding(id: &str) -> Rule {
+    one_of("the encoding", id, Encoding::ALL.into_iter().map(|e| (e.id(), e.id())))
+}
+
+/// How many lights a scene has.
+pub fn light_count(count: usize) -> Rule {
+    must((1..=MAX_LIGHTS).contains(&count), || format!("a scene must have between 1 and {MAX_LIGHTS} lights"))
+}
+
+/// How many objects a scene has.
+pub fn object_count(count: usize) -> Rule {
+    must((1..=MAX_OBJECTS).contains(&count), || {
+        format!("a scene must have between 1 and {MAX_OBJECTS} objects")
+    })
+}
+
+/// One of several ids: the rule lists them and names the nearest.
+fn one_of<'a>(what: &str, id: &str, known: impl Iterator<Item = (&'a str, &'a str)> + Clone) -> Rule {
+    must(known.clone().any(|(k, _)| k == id), || {
+        let names = known.clone().map(|(k, name)| (name, k));
+        let candidates = known.clone().map(|(k, _)| (k, k)).chain(names);
+        text::one_of(what, known.clone().map(|(k, _)| k)) + &did_you_mean(id, candidates)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_are_in_the_room_with_its_far_faces_but_not_its_near_ones() {
+        let room = SceneSize { height: 1.0, width: 2.0, depth: 3.0 };
+        assert_eq!(position(room, Vec3::new(2.0, 1.0, 3.0)), Ok(()));
+        for outside in [
+            Vec3::new(0.0, 0.5, 1.0),
+            Vec3::new(2.1, 0.5, 1.0),
+            Vec3::new(1.0, 1.5, 1.0),
+            Vec3::new(1.0, 0.5, f32::INFINITY),
+            Vec3::NAN,
+        ] {
+            assert!(position(room, outside).is_err(), "{outside}");
+        }
+    }
+
+    #[test]
+    fn extreme_directions_are_refused_because_they_cannot_be_normalised() {
+        assert_eq!(direction(Vec3::new(0.0, -3.0, 0.0)), Ok(()));
+        for d in [Vec3::splat(1e-30), Vec3::splat(1e30), Vec3::splat(f32::INFINITY), Vec3::NAN] {
+            assert!(direction(d).is_err_and(|rule| rule.contains("too long or too short")), "{d}");
+        }
+    }
+}

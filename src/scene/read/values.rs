@@ -1,0 +1,210 @@
+//! The values of a scene, by their types.
+
+use std::borrow::Cow;
+
+use glam::Vec3;
+
+use super::Reader;
+use crate::{
+    parameter::{Parameter, ParameterKind, Value},
+    scene::check,
+    text::json::{Ast, Cursor, Fields, Reader as _},
+};
+
+/// What every colour must be.
+pub(super) const COLOUR_RULE: &str = "a colour must be three whole numbers from 0 to 255: [red, green, blue]";
+
+impl Reader<'_> {
+    /// A parameter as it is declared, if the value has its type. Its range is checked later.
+    pub(super) fn parameter(&mut self, value: Cursor, parameter: &'static Parameter) -> Option<Value> {
+        let rule = check::parameter_rule(parameter);
+        match parameter.kind {
+            ParameterKind::Number { .. } => self.number(value, &rule).map(Value::Number),
+            ParameterKind::Integer { .. } => self.integer(value, &rule).map(Value::Integer),
+            ParameterKind::Colour { .. } => self.colour(value, &rule).map(Value::Colour),
+            ParameterKind::Triple { .. } => self.triple(value, &rule).map(Value::Triple),
+            ParameterKind::Choice { options, .. } => {
+                let id = self.string(value, &rule)?;
+                let known = options.iter().map(|(id, _)| *id).find(|known| *known == id);
+                Some(Value::Choice(known.map_or_else(|| Cow::Owned(id.to_owned()), Cow::Borrowed)))
+            }
+        }
+    }
+
+    /// The entries of a list of lights or objects. Of a list that is too long, only the length is
+    /// reported: it may be very long.
+    pub(super) fn list<T>(
+        &mut self,
+        scene: &Fields,
+        key: &'static str,
+        count: fn(usize) -> check::Rule,
+        mut read: impl FnMut(&mut Self, Cursor) -> T,
+    ) -> Vec<T> {
+        let why = format!("a scene must have a list of {key}");
+        let Some(value) = scene.get(key) else {
+            self.lacking(scene, key, &why);
+            return Vec::new();
+        };
+        let rule = match value.list() {
+            Some(list) => match count(list.len()) {
+                Ok(()) => return list.map(|entry| read(self, entry)).collect(),
+                Err(rule) => rule,
+            },
+            None => why,
+        };
+        self.wrong(value, &rule);
+        Vec::new()
+    }
+
+    pub(super) fn text_field(&mut self, fields: &Fields, key: &str, rule: &str) -> Option<String> {
+        self.string(fields.get(key)?, rule).map(str::to_owned)
+    }
+
+    pub(super) fn choice(
+        &mut self,
+        fields: &Fields,
+        key: &str,
+        check: fn(&str) -> check::Rule,
+    ) -> Option<String> {
+        let value = fields.get(key)?;
+        let id = self.string(value, &rule_of(check("")))?;
+        check(id).map_err(|rule| self.wrong(value, &rule)).ok()?;
+        Some(id.to_owned())
+    }
+
+    /// The id of a model or a type, known or not.
+    pub(super) fn id(&mut self, value: Cursor, what: &str) -> Option<String> {
+        if value.text().is_none() {
+            self.wrong(value, &self.id_rule(what));
+        }
+        value.text().map(str::to_owned)
+    }
+
+    /// The rule for an id, for values that are no text.
+    pub(super) fn id_rule(&self, what: &str) -> String {
+        rule_of(match what {
+            "reflection_model" => check::reflection_model(self.registry, ""),
+            "shading_model" => check::shading_model(self.registry, ""),
+            "light type" => check::light_type(self.registry, ""),
+            _ => check::object_type(self.registry, ""),
+        })
+    }
+
+    /// A number, if it is given; its rule is checked later.
+    pub(super) fn number_field(
+        &mut self,
+        fields: &Fields,
+        key: &str,
+        check: fn(f32) -> check::Rule,
+    ) -> Option<f32> {
+        let value = fields.get(key)?;
+        value.number().or_else(|| self.number(value, &rule_of(check(f32::NAN))))
+    }
+
+    /// A number in 32 bits; too large a one is infinite, so that its rule refuses it.
+    pub(super) fn number(&mut self, value: Cursor, rule: &str) -> Option<f32> {
+        let number = value.number();
+        if number.is_none() {
+            self.wrong(value, &needs("a number", value, rule));
+        }
+        number
+    }
+
+    /// A whole number.
+    pub(super) fn integer(&mut self, value: Cursor, rule: &str) -> Option<i64> {
+        let integer = value.integer();
+        if integer.is_none() {
+            let rule = match value.value {
+                Ast::NumberLit(_) => rule.to_owned(),
+                _ => needs("a whole number", value, rule),
+            };
+            self.wrong(value, &rule);
+        }
+        integer
+    }
+
+    /// Three numbers; not-a-number where they could not be read.
+    pub(super) fn vector(&mut self, value: Cursor, what: &str) -> Vec3 {
+        let rule = || format!("{what} must be three numbers: [x, y, z]");
+        let Some(list) = value.list().filter(|list| list.len() == 3) else {
+            self.wrong(value, &rule());
+            return Vec3::NAN;
+        };
+        let mut vector = Vec3::NAN;
+        let mut good = true;
+        for (i, element) in list.enumerate() {
+            match element.number() {
+                Some(number) => vector[i] = number,
+                None => {
+                    good = false;
+                    self.wrong(element, &rule());
+                }
+            }
+        }
+        if !good {
+            self.reported.insert(value.path());
+            return Vec3::NAN;
+        }
+        vector
+    }
+
+    /// Three numbers, or one for all three.
+    fn triple(&mut self, value: Cursor, rule: &str) -> Option<[f32; 3]> {
+        match value.list() {
+            None if value.number().is_some() => value.number().map(|v| [v; 3]),
+            Some(list) if list.len() == 3 => {
+                let mut triple = [Some(0.0); 3];
+                for (to, element) in triple.iter_mut().zip(list) {
+                    *to = self.number(value.holding(element.value), rule);
+                }
+                let [r, g, b] = triple;
+                Some([r?, g?, b?])
+            }
+            _ => {
+                self.wrong(value, rule);
+                None
+            }
+        }
+    }
+
+    /// Three whole numbers from 0 to 255.
+    pub(super) fn colour(&mut self, value: Cursor, rule: &str) -> Option<[u8; 3]> {
+        let Some(list) = value.list().filter(|list| list.len() == 3) else {
+            let hint = value.text().and_then(hexadecimal);
+            let hint = hint.map_or_else(String::new, |[r, g, b]| format!("; write [{r}, {g}, {b}]"));
+            self.wrong(value, &format!("{rule}{hint}"));
+            return None;
+        };
+        let mut colour = [Some(0); 3];
+        for (to, element) in colour.iter_mut().zip(list) {
+            *to = element.integer().and_then(|v| u8::try_from(v).ok());
+            if to.is_none() {
+                self.wrong(element, rule);
+            }
+        }
+        let [r, g, b] = colour;
+        Some([r?, g?, b?])
+    }
+}
+
+/// The rule that a check broke.
+pub(super) fn rule_of(rule: check::Rule) -> String {
+    rule.err().unwrap_or_default()
+}
+
+/// What is needed instead of a value of another type.
+fn needs(what: &str, value: Cursor, rule: &str) -> String {
+    match value.text() {
+        Some(text) if text.trim().parse::<f64>().is_ok() => {
+            format!("it must be {what}, without quotes: {rule}")
+        }
+        _ => format!("it must be {what}: {rule}"),
+    }
+}
+
+/// `#ff8000` as three numbers.
+fn hexadecimal(text: &str) -> Option<[u8; 3]> {
+    let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii())?;
+    let channel = |i: usize| u8::from_str_radix(&digits[i..i + 2], 16).ok();
+    Some([channel(0)?, channel(2)?, channel(4)?])
+}

@@ -1,0 +1,184 @@
+//! What is not JSON: where, what was expected there, and the commonest slips by name.
+
+use serde::{Deserialize as _, de::IgnoredAny};
+
+/// JSON may be nested this deep. Scenes need four levels.
+const MAX_DEPTH: usize = 64;
+
+/// Strict JSON, or the byte where it is not and what was expected there.
+pub(super) fn check_syntax(text: &str) -> Result<(), (usize, String)> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let strict = IgnoredAny::deserialize(&mut json).and_then(|_| json.end());
+    strict.map_err(|e| explain(text, &e))?;
+    match too_deep(text) {
+        Some(at) => Err((at, format!("nested more than {MAX_DEPTH} levels deep; a scene needs four"))),
+        None => Ok(()),
+    }
+}
+
+/// Where nesting exceeds [`MAX_DEPTH`], in text that is JSON.
+fn too_deep(text: &str) -> Option<usize> {
+    let (mut depth, mut in_text, mut escaped) = (0usize, false, false);
+    for (at, byte) in text.bytes().enumerate() {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' if in_text => escaped = true,
+            b'"' => in_text = !in_text,
+            _ if in_text => {}
+            b'{' | b'[' => {
+                depth += 1;
+                if depth > MAX_DEPTH {
+                    return Some(at);
+                }
+            }
+            b'}' | b']' => depth -= 1,
+            _ => {}
+        }
+    }
+    None
+}
+
+/// What was expected, and a hint where the mistake is a common one.
+fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
+    if error.is_eof() {
+        let said = error.to_string();
+        let within = [("a string", "a text"), ("a list", "a list"), ("an object", "an object")]
+            .into_iter()
+            .find(|(theirs, _)| said.contains(theirs))
+            .map_or("where a value was expected".to_owned(), |(_, ours)| format!("within {ours}"));
+        return (text.len(), format!("the file ends {within}; it seems to be cut off"));
+    }
+    let line_start: usize =
+        text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
+    let mut at = (line_start + error.column().saturating_sub(1)).min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    let rest = &text[at..];
+    let found = rest.chars().next();
+    // The word that the place is within: NaN, -Infinity, 0x1F, .5, 'text'.
+    let part_of_word = |c: char| c.is_alphanumeric() || "+-._".contains(c);
+    let start = text[..at].char_indices().rev().take_while(|(_, c)| part_of_word(*c)).last();
+    let start = start.map_or(at, |(i, _)| i);
+    let word = &text[start..];
+    let word = &word[..word.find(|c| !part_of_word(c)).unwrap_or(word.len())];
+    let before = text[..start].trim_end().chars().next_back();
+    let said = error.to_string();
+    let said = said.split(" at line ").next().unwrap_or_default();
+    let lower = word.trim_start_matches(['+', '-']).to_lowercase();
+    let is_value = said != "key must be a string";
+
+    let what = if rest.starts_with("//") || rest.starts_with("/*") || found == Some('#') {
+        "comments are not part of JSON; take them out, or write a \"description\"".to_owned()
+    } else if found == Some('\'') {
+        "text and keys stand in double quotes (\"), not in single ones (')".to_owned()
+    } else if matches!(found, Some('“' | '”' | '„')) {
+        "text and keys stand in straight double quotes (\"), not in typographic ones".to_owned()
+    } else if matches!(found, Some('}' | ']')) && before == Some(',') {
+        "there is a comma after the last entry; take it out".to_owned()
+    } else if is_value && matches!(lower.as_str(), "nan" | "inf" | "infinity") {
+        at = start;
+        format!("{word} is not a number that JSON has; write a finite number")
+    } else if is_value && matches!(lower.as_str(), "true" | "false" | "null" | "none" | "undefined") {
+        at = start;
+        format!("{word} is not JSON; true, false and null are written in lower case")
+    } else if is_value && word.starts_with('+') {
+        at = start;
+        format!("{word}: numbers have no plus sign")
+    } else if is_value && word.starts_with(['.', '-']) && word.contains('.') {
+        at = start;
+        format!("{word}: numbers begin with a digit: 0.5, not .5")
+    } else if is_value && lower.starts_with("0x") {
+        at = start;
+        format!("{word}: numbers are decimal")
+    } else {
+        match said {
+            "expected value" => format!(
+                "expected a value (text in double quotes, a number, a list or an object), not {}",
+                shown(found, word)
+            ),
+            "key must be a string" => format!("expected a key in double quotes, not {}", shown(found, word)),
+            "trailing characters" => {
+                format!("expected the end of the file after the scene, not {}", shown(found, word))
+            }
+            "invalid number" => format!("{} is not a number as JSON writes them", shown(found, word)),
+            "expected ident" => {
+                at = start;
+                format!("{word} is not JSON; only true, false and null stand without quotes")
+            }
+            s if s.starts_with("control character") => {
+                at += rest.find(char::is_control).unwrap_or_default();
+                "a line break or control character within a text; end the text with \" or write \\n"
+                    .to_owned()
+            }
+            s if s.starts_with("expected") => format!("{s}, not {}", shown(found, word)),
+            s => s.to_owned(),
+        }
+    };
+    (at, what)
+}
+
+/// What is at a place, for a message.
+fn shown(found: Option<char>, word: &str) -> String {
+    match found {
+        _ if word.chars().count() > 1 => crate::text::shortened(word),
+        Some('\n' | '\r') => "the end of the line".to_owned(),
+        Some(c) if c.is_control() => format!("the character U+{:04X}", u32::from(c)),
+        Some(c) => format!("`{c}`"),
+        None => "the end of the file".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        registry::Registry,
+        scene::load::{Defaults, from_text},
+    };
+
+    #[test]
+    fn syntax_errors_say_where_and_what_was_expected() {
+        for (text, place, expected) in [
+            ("{\"a\": 1", "1:8", "the file ends within an object; it seems to be cut off"),
+            ("[1, 2", "1:6", "the file ends within a list"),
+            ("{\"a\": \"x", "1:9", "the file ends within a text"),
+            ("{\"a\":", "1:6", "the file ends where a value was expected"),
+            ("{\"a\": 1,}", "1:9", "comma after the last entry"),
+            ("[1,\n]", "2:1", "comma after the last entry"),
+            ("{\"a\": NaN}", "1:7", "NaN is not a number that JSON has"),
+            ("{\"a\": -Infinity}", "1:7", "-Infinity is not a number that JSON has"),
+            ("{\"a\": Infinity}", "1:7", "Infinity is not a number that JSON has"),
+            ("{\"a\": True}", "1:7", "lower case"),
+            ("{\"a\": nul}", "1:7", "nul is not JSON"),
+            ("{\"a\": .5}", "1:7", "numbers begin with a digit"),
+            ("{\"a\": -.5}", "1:7", "numbers begin with a digit"),
+            ("{\"a\": +5}", "1:7", "no plus sign"),
+            ("{\"a\": 0x1F}", "1:7", "decimal"),
+            ("{\"a\": 01}", "1:8", "not a number as JSON"),
+            ("{\"a\": 1 \"b\": 2}", "1:9", "expected `,` or `}`"),
+            ("{\"a\" 1}", "1:6", "expected `:`"),
+            ("{a: 1}", "1:2", "expected a key in double quotes"),
+            ("{'a': 1}", "1:2", "not in single ones"),
+            ("{\"a\": 1} x", "1:10", "expected the end of the file"),
+            ("{ // size\n}", "1:3", "comments"),
+            ("{\"a\": \"x\ny\"}", "1:9", "line break"),
+            ("{“a”: 1}", "1:2", "typographic"),
+            ("}", "1:1", "expected a value"),
+        ] {
+            let error = from_text(text, "s.json", &Registry::builtin(), Defaults::Use).expect_err(text);
+            let said = error.to_string();
+            assert!(said.starts_with(&format!("s.json:{place}: not JSON: ")), "{text:?}: {said}");
+            assert!(said.contains(expected), "{text:?}: {said}");
+        }
+    }
+
+    #[test]
+    fn deep_nesting_is_an_error_and_no_overflow_of_the_stack() {
+        let text = "[".repeat(1_000_000) + &"]".repeat(1_000_000);
+        let error = from_text(&text, "s.json", &Registry::builtin(), Defaults::Use).expect_err("deep");
+        assert_eq!(
+            error.to_string(),
+            "s.json:1:65: not JSON: nested more than 64 levels deep; a scene needs four"
+        );
+    }
+}

@@ -1,0 +1,321 @@
+//! Reading JSON by hand, with a path and a byte for everything that is wrong: scenes and the declarations of custom
+//! models are read alike.
+//!
+//! A [`Cursor`] stands at a value and knows the way to it; a [`Reader`] is asked for the value of a type, and reports
+//! what has another type, with its path, itself and the rule.
+
+use jsonc_parser::{CollectOptions, ParseOptions, common::Ranged, parse_to_ast};
+
+pub use jsonc_parser::ast::{ObjectProp, Value as Ast};
+
+use super::{
+    did_you_mean, listed,
+    path::{Path, Segment},
+    shortened,
+};
+
+/// JSON and nothing else.
+pub const STRICT: ParseOptions = ParseOptions {
+    allow_comments: false,
+    allow_loose_object_property_names: false,
+    allow_trailing_commas: false,
+    allow_missing_commas: false,
+    allow_single_quoted_strings: false,
+    allow_hexadecimal_numbers: false,
+    allow_unary_plus_numbers: false,
+    allow_bare_decimal_point_numbers: false,
+    allow_non_finite_numbers: false,
+    allow_extended_string_escapes: false,
+};
+
+/// The value in a text, if there is one.
+///
+/// # Errors
+/// The byte where the text is not JSON, and what is wrong there.
+pub fn parse<'a>(text: &'a str, options: &ParseOptions) -> Result<Option<Ast<'a>>, (usize, String)> {
+    let parsed = parse_to_ast(text, &CollectOptions::default(), options);
+    parsed.map(|p| p.value).map_err(|e| (e.range().start, e.kind().to_string()))
+}
+
+/// A value, and the way to it. The path is made when it is asked for: most values are right, and there may be many.
+#[derive(Clone, Copy)]
+pub struct Cursor<'p, 'a> {
+    /// The value.
+    pub value: &'p Ast<'a>,
+    way: Way<'p, 'a>,
+}
+
+/// The last step to a value.
+#[derive(Clone, Copy)]
+enum Way<'p, 'a> {
+    Root,
+    Key(&'p Cursor<'p, 'a>, &'static str),
+    Index(&'p Cursor<'p, 'a>, usize),
+}
+
+impl<'p, 'a> Cursor<'p, 'a> {
+    /// The outermost value.
+    #[must_use]
+    pub fn root(value: &'p Ast<'a>) -> Self {
+        Self { value, way: Way::Root }
+    }
+
+    /// The way from the outermost value.
+    #[must_use]
+    pub fn path(&self) -> Path {
+        match self.way {
+            Way::Root => Path::root(),
+            Way::Key(from, key) => from.path().then(Segment::Key(key.into())),
+            Way::Index(from, i) => from.path().then(Segment::Index(i)),
+        }
+    }
+
+    /// Another value, which messages call as this one.
+    #[must_use]
+    pub fn holding(self, value: &'p Ast<'a>) -> Self {
+        Self { value, ..self }
+    }
+
+    /// The byte at which the value begins.
+    #[must_use]
+    pub fn start(&self) -> usize {
+        self.value.start()
+    }
+
+    /// The text, if it is one.
+    #[must_use]
+    pub fn text(&self) -> Option<&'p str> {
+        match self.value {
+            Ast::StringLit(text) => Some(&text.value),
+            _ => None,
+        }
+    }
+
+    /// The number in 32 bits, rounded once; infinite if it is too large.
+    #[must_use]
+    pub fn number(&self) -> Option<f32> {
+        match self.value {
+            Ast::NumberLit(number) => number.value.parse().ok(),
+            _ => None,
+        }
+    }
+
+    /// The whole number. `32.0` and `3.2e1` are whole: JSON does not tell them from `32`.
+    #[must_use]
+    pub fn integer(&self) -> Option<i64> {
+        let Ast::NumberLit(number) = self.value else { return None };
+        if let Ok(integer) = number.value.parse() {
+            return Some(integer);
+        }
+        // Beyond this, neighbouring whole numbers are the same in 64 bits.
+        const EXACT: f64 = 9_007_199_254_740_992.0;
+        let v: f64 = number.value.parse().ok()?;
+        (v.fract() == 0.0 && v.abs() <= EXACT).then_some(v as i64)
+    }
+
+    /// The entries, if it is a list.
+    #[must_use]
+    pub fn list(&'p self) -> Option<impl ExactSizeIterator<Item = Self>> {
+        let Ast::Array(list) = self.value else { return None };
+        Some(list.elements.iter().enumerate().map(|(i, value)| Self { value, way: Way::Index(self, i) }))
+    }
+
+    /// The properties, if it is an object.
+    #[must_use]
+    pub fn properties(&self) -> Option<&'p [ObjectProp<'a>]> {
+        match self.value {
+            Ast::Object(object) => Some(&object.properties),
+            _ => None,
+        }
+    }
+
+    /// The first value under a key as it is written.
+    #[must_use]
+    pub fn get(&'p self, key: &'static str) -> Option<Self> {
+        let property = self.properties()?.iter().find(|p| p.name.as_str() == key)?;
+        Some(Self { value: &property.value, way: Way::Key(self, key) })
+    }
+}
+
+/// The known fields of an object, each key once.
+pub struct Fields<'p, 'a> {
+    /// The object.
+    pub of: Cursor<'p, 'a>,
+    fields: Vec<(&'static str, &'p ObjectProp<'a>)>,
+}
+
+impl<'a> Fields<'_, 'a> {
+    /// The value of a field, if it is given.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<Cursor<'_, 'a>> {
+        self.iter().find(|(k, _)| *k == key).map(|(_, value)| value)
+    }
+
+    /// The fields that are given, in the order of the text.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, Cursor<'_, 'a>)> {
+        self.fields.iter().map(|(k, p)| (*k, Cursor { value: &p.value, way: Way::Key(&self.of, k) }))
+    }
+
+    /// The way to a field, given or not.
+    #[must_use]
+    pub fn path(&self, key: &'static str) -> Path {
+        self.of.path().key(key)
+    }
+}
+
+/// A reader of one kind of text. Values that break a rule are reported and `None`.
+pub trait Reader {
+    /// The text that is read.
+    fn text(&self) -> &str;
+
+    /// Records a problem at a byte: a value as it is written and the rule that it breaks, or a whole predicate.
+    fn report(&mut self, at: usize, path: Path, found: Option<String>, rule: &str);
+
+    /// True if so much is wrong that unknown keys need not be listed any more.
+    fn has_enough(&self) -> bool {
+        false
+    }
+
+    /// The end of the message that a key is given twice.
+    fn twice(&self, _first: &ObjectProp, _again: &ObjectProp) -> String {
+        String::new()
+    }
+
+    /// The end of the message that a key is not known: the nearest known key, for example.
+    fn hint(&mut self, written: &str, known: &[&'static str], what: &str) -> String;
+
+    /// A value as messages show it.
+    fn shown(&self, value: &Ast) -> String {
+        describe(value, self.text())
+    }
+
+    /// Reports a value that breaks a rule.
+    fn wrong(&mut self, value: Cursor, rule: &str) {
+        let found = self.shown(value.value);
+        self.report(value.start(), value.path(), Some(found), rule);
+    }
+
+    /// Reports that a required field is missing.
+    fn lacking(&mut self, fields: &Fields, key: &'static str, why: &str) {
+        self.report(fields.of.start(), fields.path(key), None, &format!("is missing; {why}"));
+    }
+
+    /// The fields of an object. Reports what is not an object, unknown keys, and keys given twice.
+    fn fields<'p, 'a>(
+        &mut self,
+        of: Cursor<'p, 'a>,
+        known: &[&'static str],
+        what: &str,
+    ) -> Option<Fields<'p, 'a>> {
+        let Some(properties) = of.properties() else {
+            self.wrong(of, &format!("{what} must be an object, with the keys {}", listed(known, "and")));
+            return None;
+        };
+        let mut fields: Vec<(&'static str, &ObjectProp)> = Vec::with_capacity(properties.len().min(16));
+        for property in properties {
+            if self.has_enough() {
+                break;
+            }
+            let written = property.name.as_str();
+            let (path, predicate) = match canonical(written, known) {
+                None => {
+                    let hint = self.hint(written, known, what);
+                    (of.path().key(shortened(written)), format!("is not a key of {what}{hint}"))
+                }
+                Some(key) => match fields.iter().find(|(k, _)| *k == key) {
+                    None => {
+                        fields.push((key, property));
+                        continue;
+                    }
+                    Some((_, first)) => {
+                        (of.path().key(key), format!("is given twice{}", self.twice(first, property)))
+                    }
+                },
+            };
+            self.report(property.start(), path, None, &predicate);
+        }
+        Some(Fields { of, fields })
+    }
+
+    /// A text.
+    fn string<'p>(&mut self, value: Cursor<'p, '_>, rule: &str) -> Option<&'p str> {
+        value.text().or_else(|| {
+            self.wrong(value, rule);
+            None
+        })
+    }
+
+    /// Yes or no, or the default where it is not given.
+    fn flag(&mut self, fields: &Fields, key: &str, default: bool, rule: &str) -> bool {
+        match fields.get(key) {
+            None => default,
+            Some(Cursor { value: Ast::BooleanLit(flag), .. }) => flag.value,
+            Some(value) => {
+                self.wrong(value, rule);
+                default
+            }
+        }
+    }
+}
+
+/// A key as it is known: `color` is read as `colour`, `base_color` as `base_colour`.
+#[must_use]
+pub fn canonical<'k>(written: &str, known: &[&'k str]) -> Option<&'k str> {
+    let find = |key: &str| known.iter().find(|k| **k == key).copied();
+    find(written).or_else(|| written.contains("color").then(|| find(&written.replace("color", "colour")))?)
+}
+
+/// A value as it is written, if it is short, and what it is otherwise.
+#[must_use]
+pub fn describe(value: &Ast, text: &str) -> String {
+    match value {
+        Ast::Array(list) => {
+            let short = list.elements.len() <= 4;
+            let scalar = |e: &Ast| !matches!(e, Ast::Array(_) | Ast::Object(_));
+            if short && list.elements.iter().all(scalar) {
+                let elements: Vec<_> = list.elements.iter().map(|e| shortened(e.text(text))).collect();
+                return format!("[{}]", elements.join(", "));
+            }
+            format!("a list of {}", list.elements.len())
+        }
+        Ast::Object(object) if object.properties.is_empty() => "{}".to_owned(),
+        Ast::Object(_) => "an object".to_owned(),
+        _ => shortened(value.text(text)),
+    }
+}
+
+/// The byte and the value of a path; if the value is missing, the byte of what lacks it.
+#[must_use]
+pub fn locate<'b, 'a>(root: &'b Ast<'a>, path: &Path) -> (usize, Option<&'b Ast<'a>>) {
+    let mut value = root;
+    for segment in path.segments() {
+        let next = match (segment, value) {
+            (Segment::Index(i), Ast::Array(list)) => list.elements.get(*i),
+            (Segment::Key(key), Ast::Object(object)) => {
+                let same = |p: &&ObjectProp| canonical(p.name.as_str(), &[key]).is_some();
+                object.properties.iter().find(same).map(|p| &p.value)
+            }
+            _ => None,
+        };
+        match next {
+            Some(next) => value = next,
+            None => return (value.start(), None),
+        }
+    }
+    (value.start(), Some(value))
+}
+
+/// The end of the message that a key is not known: the nearest one, or all that there are.
+#[must_use]
+pub fn nearest_key<'k>(
+    written: &str,
+    known: &[&'k str],
+    other_words: impl Iterator<Item = (&'k str, &'k str)>,
+    what: &str,
+) -> String {
+    let candidates = known.iter().map(|k| (*k, *k)).chain(other_words);
+    match did_you_mean(&written.replace("color", "colour"), candidates) {
+        none if none.is_empty() => format!("; {what} has the keys {}", listed(known, "and")),
+        hint => hint,
+    }
+}

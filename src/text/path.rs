@@ -1,0 +1,87 @@
+//! The way to a value in JSON.
+
+use std::{borrow::Cow, fmt};
+
+use serde::{Serialize, Serializer};
+
+use super::quoted;
+
+/// One step on the way to a value.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Segment {
+    /// Into an object, by key.
+    Key(Cow<'static, str>),
+    /// Into a list, counted from 0.
+    Index(usize),
+}
+
+/// The way to a value from the outermost one: `objects[0].material.k_d`. Empty for that itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Path(Vec<Segment>);
+
+impl Path {
+    /// The outermost value.
+    #[must_use]
+    pub fn root() -> Self {
+        Self::default()
+    }
+
+    /// One step further.
+    #[must_use]
+    pub fn then(mut self, step: Segment) -> Self {
+        self.0.push(step);
+        self
+    }
+
+    /// The value under a key.
+    #[must_use]
+    pub fn key(&self, key: impl Into<Cow<'static, str>>) -> Self {
+        self.clone().then(Segment::Key(key.into()))
+    }
+
+    /// The entry of a list.
+    #[must_use]
+    pub fn index(&self, index: usize) -> Self {
+        self.clone().then(Segment::Index(index))
+    }
+
+    /// The steps from the outermost value.
+    #[must_use]
+    pub fn segments(&self) -> &[Segment] {
+        &self.0
+    }
+
+    /// Every path on the way to this one, the outermost value and this one among them.
+    pub fn ancestors(&self) -> impl Iterator<Item = Self> + '_ {
+        (0..=self.0.len()).map(|n| Self(self.0[..n].to_vec()))
+    }
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, segment) in self.0.iter().enumerate() {
+            match segment {
+                Segment::Index(index) => write!(f, "[{index}]")?,
+                Segment::Key(key) if is_plain(key) => {
+                    if i > 0 {
+                        f.write_str(".")?;
+                    }
+                    f.write_str(key)?;
+                }
+                Segment::Key(key) => write!(f, "[{}]", quoted(key))?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Serialize for Path {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// True if a key can stand in a path without quotes.
+fn is_plain(key: &str) -> bool {
+    !key.is_empty() && key.len() <= 60 && key.chars().all(|c| c.is_alphanumeric() || "_-$".contains(c))
+}
