@@ -26,6 +26,7 @@ mod keyboard;
 mod knobs;
 mod law_check;
 mod laws;
+mod links;
 mod marks;
 mod memory;
 mod missing_size;
