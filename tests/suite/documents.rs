@@ -294,7 +294,11 @@ fn modules() -> String {
         let names = names.replace("[`mod@", "`").replace("[`", "`").replace("`]", "`");
         vec![names, job.trim().trim_end_matches('.').replace('\n', " ")]
     });
-    table(&["module", "job"], rows)
+    let table = table(&["module", "job"], rows);
+    for module in lib.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')) {
+        assert!(table.contains(&code(module)), "the documentation of lib.rs lacks {module}");
+    }
+    table
 }
 
 #[test]
