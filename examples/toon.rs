@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example toon` draws a teapot with it to `renders/toon.png`. The struct holds
 //! the parameters, `DECLARATION` says what the model is called and claims, `response` is the equation,
-//! and `toon.wgsl` is the same equation for the graphics card. Within the crate the same code would be
+//! and `toon.wgsl` is the same equation for the GPU. Within the crate the same code would be
 //! `src/reflection/toon.rs` and one line in its `register_builtin`.
 #![allow(clippy::print_stdout, missing_docs)]
 

@@ -2,7 +2,7 @@
 //!
 //! **To add one**: write `reflection/x.rs` and `assets/shaders/reflection/x.wgsl`, and add its name to
 //! [`register_builtin`]. Everything else (scene files, knobs, hot-swap, laws, parity, CPU renderer,
-//! README row) follows from the declaration.
+//! row in docs/reflection-models.md) follows from the declaration.
 
 pub mod ends;
 pub mod law_report;

@@ -568,9 +568,9 @@ fn the_examples_are_all_there_and_say_the_truth() {
 }
 
 #[test]
-fn the_model_in_the_readme_works_and_keeps_what_it_claims() {
-    let readme = std::fs::read_to_string(crate::support::root().join("README.md")).unwrap();
-    let (_, rest) = readme.split_once("<!-- moss.wgsl -->\n\n```wgsl\n").unwrap();
+fn the_model_in_the_documents_works_and_keeps_what_it_claims() {
+    let page = std::fs::read_to_string(crate::support::root().join("docs/custom-models.md")).unwrap();
+    let (_, rest) = page.split_once("<!-- moss.wgsl -->\n\n```wgsl\n").unwrap();
     let (text, _) = rest.split_once("```\n\n<!-- end of moss.wgsl -->").unwrap();
     let registry = with("moss", text);
     let found = examined(&registry, "moss");

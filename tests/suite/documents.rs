@@ -1,0 +1,387 @@
+//! The documents: their tables are those of the registry, their examples are the examples, and the tour of the README
+//! is right.
+
+use std::fs;
+
+use glam::Vec3;
+use lights_camera_models::{
+    optics::{Frame, colour::Encoding},
+    parameter::{Parameter, Value, Values},
+    reference::{self, Settings},
+    reflection::ModelEntry,
+    registry::Registry,
+    render::capture::{evaluate::evaluate, png},
+    scene::{
+        Scene,
+        examples::EXAMPLES,
+        load::{self, Defaults},
+        save, schema,
+    },
+    shader::{compose::Sources, limits::LIMITS},
+};
+use serde_json::Value as Json;
+
+use crate::{
+    golden::{SAME_RENDERER, read_png, updating},
+    support::root,
+};
+
+#[path = "../../examples/toon.rs"]
+#[allow(dead_code)]
+mod example;
+
+#[test]
+fn gouraud_shading_loses_the_highlight_as_the_tour_says() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("there");
+    let number = |after: &str| {
+        let digits: String = readme.split(after).nth(1)?.chars().take_while(char::is_ascii_digit).collect();
+        digits.parse::<u32>().ok()
+    };
+    let tessellation = number("set the tessellation to ").expect("says it");
+    let alpha = number("and α to ").expect("says it");
+    // The brightest pixel of the sphere of the default scene.
+    let brightest = |shading: &str| {
+        let mut scene = Scene {
+            reflection_model: "blinn_phong".to_owned(),
+            shading_model: shading.to_owned(),
+            ..Scene::default()
+        };
+        scene.objects[0].tessellation = Some(tessellation);
+        scene.objects[0].material.set("alpha", Value::Integer(alpha.into()));
+        let settings = Settings { width: 640, height: 360, ..Settings::default() };
+        let picture = reference::render_rgb8(&scene, &Registry::builtin(), &settings);
+        picture.into_iter().max().expect("has pixels")
+    };
+    assert_eq!(brightest("phong"), 255, "there is a highlight");
+    assert!(brightest("gouraud") < 240, "it is lost");
+}
+
+/// Portraits side by side in the gallery.
+const GALLERY_COLUMNS: usize = 4;
+
+/// Rows of a table, with a heading.
+fn table(heading: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let heading: Vec<_> = heading.iter().map(|h| (*h).to_owned()).collect();
+    let rule = format!("|{}\n", "---|".repeat(heading.len()));
+    std::iter::once(line(&heading)).chain([rule]).chain(rows.map(|r| line(&r))).collect()
+}
+
+fn code(id: &str) -> String {
+    format!("`{id}`")
+}
+
+/// The tables and examples that are made from the program, by page and by the name of their place.
+fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
+    let registry = Registry::builtin();
+    let example = |file: &str, language: &str| {
+        let text = fs::read_to_string(root().join("examples").join(file)).expect("the example is there");
+        format!("```{language}\n{text}```\n")
+    };
+    let default = save::to_json(&Scene::default(), None, &registry);
+    vec![
+        (
+            "docs/scenes.md",
+            vec![
+                ("default.json", format!("```json\n{}\n```\n", default.trim_end())),
+                ("fields", fields(&schema::schema(&registry))),
+                ("tone mapping", tone_mapping(&schema::schema(&registry))),
+                ("scenes", scenes()),
+            ],
+        ),
+        (
+            "docs/reflection-models.md",
+            vec![
+                ("gallery", gallery(&registry)),
+                ("models", models(&registry)),
+                ("parameters", parameters(&registry)),
+            ],
+        ),
+        (
+            "docs/shading-and-lights.md",
+            vec![
+                ("shading models", shading_models(&registry)),
+                ("lights", lights(&registry)),
+                ("shapes", shapes(&registry)),
+            ],
+        ),
+        ("docs/custom-models.md", vec![("limits", limits())]),
+        (
+            "docs/extending.md",
+            vec![("toon.wgsl", example("toon.wgsl", "wgsl")), ("toon.rs", example("toon.rs", "rust"))],
+        ),
+        ("docs/architecture.md", vec![("modules", modules())]),
+    ]
+}
+
+fn models(registry: &Registry) -> String {
+    let rows = registry.models().iter().map(|m| {
+        let d = m.declaration;
+        let parameter = |p: &Parameter| match p.used_when {
+            Some(u) => format!(
+                "{} (with {})",
+                code(p.name),
+                u.choices.iter().map(|c| code(c)).collect::<Vec<_>>().join("/")
+            ),
+            None => code(p.name),
+        };
+        let parameters: Vec<_> = m.parameters.iter().map(parameter).collect();
+        let kept: Vec<_> = d.laws.list().iter().filter(|(_, kept)| *kept).map(|(law, _)| *law).collect();
+        vec![
+            code(d.id),
+            d.name.into(),
+            d.author.into(),
+            d.summary.into(),
+            parameters.join(", "),
+            kept.join(", "),
+        ]
+    });
+    table(&["id", "name", "author", "what it shows", "parameters", "laws kept"], rows)
+}
+
+fn parameters(registry: &Registry) -> String {
+    let rows = registry.material_parameters().map(|p| {
+        let symbol = p.symbol.replace('|', "\\|");
+        let unit = if p.unit.is_empty() { String::new() } else { format!(" ({})", p.unit) };
+        vec![
+            code(p.name),
+            symbol,
+            format!("{}{unit}", p.label),
+            p.rule(),
+            code(&p.default_value().to_string()),
+        ]
+    });
+    table(&["name", "symbol", "meaning", "values", "default"], rows)
+}
+
+fn shading_models(registry: &Registry) -> String {
+    let rows = registry.modes().iter().map(|m| {
+        let d = m.declaration;
+        vec![code(d.id), d.name.into(), d.author.into(), d.stage.phrase().into(), d.summary.into()]
+    });
+    table(&["id", "name", "author", "calculates", "what to look for"], rows)
+}
+
+fn lights(registry: &Registry) -> String {
+    let rows = registry.lights().iter().map(|l| {
+        let d = l.declaration;
+        let mut fields = vec![];
+        fields.extend(d.has_position.then(|| code("position")));
+        fields.extend(d.has_direction.then(|| code("direction")));
+        fields.extend(d.parameters.iter().map(|p| code(p.name)));
+        vec![code(d.id), d.summary.into(), format!("`{}`", d.equation), d.unit.into(), fields.join(", ")]
+    });
+    table(&["id", "what it does", "light at a point", "unit", "fields"], rows)
+}
+
+fn shapes(registry: &Registry) -> String {
+    let rows = registry.shapes().iter().map(|s| {
+        let d = s.declaration;
+        let (from, to) = (d.tessellation.start(), d.tessellation.end());
+        let tessellation = format!("{from}–{to}, default {}", d.default_tessellation);
+        vec![code(d.id), d.summary.into(), tessellation, d.tessellation_help.into()]
+    });
+    table(&["id", "what it shows", "tessellation", "meaning"], rows)
+}
+
+fn gallery(registry: &Registry) -> String {
+    let rows = registry.models().chunks(GALLERY_COLUMNS).flat_map(|models| {
+        let pictures = models
+            .iter()
+            .map(|m| format!("![{0}](images/models/{1}.png)", m.declaration.name, m.declaration.id));
+        let names = models.iter().map(|m| code(m.declaration.id));
+        [pictures.collect::<Vec<_>>(), names.collect()]
+    });
+    let whole = |mut row: Vec<String>| {
+        row.resize(GALLERY_COLUMNS, String::new());
+        row
+    };
+    table(&[""; GALLERY_COLUMNS], rows.map(whole))
+}
+
+/// The fields of scene files, from the schema.
+fn fields(schema: &Json) -> String {
+    let mut rows = Vec::new();
+    for (prefix, part) in [
+        ("", schema),
+        ("scene_size.", &schema["properties"]["scene_size"]),
+        ("lights[].", &schema["properties"]["lights"]["items"]),
+        ("observer.", &schema["properties"]["observer"]),
+        ("objects[].", &schema["properties"]["objects"]["items"]),
+        ("display.", &schema["properties"]["display"]),
+    ] {
+        let required: Vec<_> = part["required"].as_array().into_iter().flatten().collect();
+        let is_required = |name: &str| required.iter().any(|r| *r == name);
+        let known = part["properties"].as_object().expect("an object");
+        let (needed, free): (Vec<_>, Vec<_>) = known.iter().partition(|(name, _)| is_required(name));
+        for (name, field) in needed.into_iter().chain(free) {
+            let default = &field["default"];
+            let without = match (is_required(name), default) {
+                (true, Json::Null) if name == "scene_size" => "asked for".to_owned(),
+                (true, Json::Null) => "required".to_owned(),
+                (true, _) => format!("{}, asked for", code(&default.to_string())),
+                (false, Json::Null) => String::new(),
+                (false, _) => code(&default.to_string()),
+            };
+            let meaning = field["description"].as_str().expect("every field is described");
+            rows.push(vec![code(&format!("{prefix}{name}")), meaning.to_owned(), range(field), without]);
+        }
+    }
+    table(&["field", "meaning", "range", "default"], rows.into_iter())
+}
+
+/// The range of a field that is one number.
+fn range(field: &Json) -> String {
+    let number = |key: &str| field[key].as_number().map(ToString::to_string);
+    match (number("minimum"), number("exclusiveMinimum"), number("maximum")) {
+        (Some(min), _, Some(max)) => format!("{min} to {max}"),
+        (Some(min), _, None) => format!("{min} or more"),
+        (None, Some(above), Some(max)) => format!("above {above}, up to {max}"),
+        _ => String::new(),
+    }
+}
+
+fn tone_mapping(schema: &Json) -> String {
+    let field = &schema["properties"]["display"]["properties"]["tone_mapping"];
+    let texts = |key: &str| {
+        let list = field[key].as_array().expect("a list").iter();
+        list.map(|text| text.as_str().expect("a text").to_owned()).collect::<Vec<_>>()
+    };
+    let rows = texts("enum").into_iter().zip(texts("enumDescriptions")).map(|(id, help)| {
+        let (name, help) = help.split_once(": ").expect("a name");
+        vec![code(&id), name.to_owned(), help.to_owned()]
+    });
+    table(&["`tone_mapping`", "name", "effect"], rows)
+}
+
+fn scenes() -> String {
+    let rows = EXAMPLES.iter().map(|e| {
+        let link = format!("[{}](../scenes/{})", e.file.trim_end_matches(".json"), e.file);
+        vec![link, e.description.clone()]
+    });
+    table(&["scene", "what it shows"], rows)
+}
+
+/// What a shader may hold.
+fn limits() -> String {
+    let l = LIMITS;
+    let kib = |bytes: u64| format!("{} KiB", bytes >> 10);
+    let rows = [
+        ("text, with everything that is joined to it", format!("{} MiB", l.bytes >> 20)),
+        ("statements", l.statements.to_string()),
+        ("functions, constants, types and module variables", l.declarations.to_string()),
+        ("brackets within brackets", l.nesting.to_string()),
+        ("operators and calls on one path through an expression", l.depth.to_string()),
+        ("blocks within blocks (each `else if` counts as one)", l.blocks.to_string()),
+        ("loops within loops", l.loops.to_string()),
+        ("cases of a `switch`", l.cases.to_string()),
+        ("elements of an array", l.elements.to_string()),
+        ("a value", kib(l.value_bytes.into())),
+        ("all variables of a function, with those of the functions that it calls", kib(l.variable_bytes)),
+        ("steps of a function, with every call written out", l.steps.to_string()),
+    ];
+    table(&["what", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
+}
+
+/// The modules as `lib.rs` lists them.
+fn modules() -> String {
+    let lib = fs::read_to_string(root().join("src/lib.rs")).expect("there");
+    let text: Vec<_> = lib.lines().map_while(|l| l.strip_prefix("//!")).map(str::trim).collect();
+    let joined = text.join("\n").replace("\n- ", "\n\n- ");
+    let items = joined.split("\n\n").filter_map(|item| item.trim().strip_prefix("- "));
+    let rows = items.map(|item| {
+        let (names, job) = item.split_once(": ").expect("a module and its job");
+        let names = names.replace("[`mod@", "`").replace("[`", "`").replace("`]", "`");
+        vec![names, job.trim().trim_end_matches('.').replace('\n', " ")]
+    });
+    let table = table(&["module", "job"], rows);
+    for module in lib.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')) {
+        assert!(table.contains(&code(module)), "the documentation of lib.rs lacks {module}");
+    }
+    table
+}
+
+#[test]
+fn the_tables_and_examples_of_the_documents_are_up_to_date() {
+    for (document, sections) in sections() {
+        let path = root().join(document);
+        let old = fs::read_to_string(&path).expect("the document is there");
+        let mut text = old.clone();
+        for (name, content) in sections {
+            let (open, close) = (format!("<!-- {name} -->\n"), format!("<!-- end of {name} -->"));
+            let start = text.find(&open).unwrap_or_else(|| panic!("{document} lacks {open}")) + open.len();
+            let end =
+                text[start..].find(&close).unwrap_or_else(|| panic!("{document} lacks {close}")) + start;
+            text.replace_range(start..end, &format!("\n{content}\n"));
+        }
+        if updating() {
+            fs::write(&path, &text).expect("the document can be written");
+        } else {
+            assert!(text == old, "{document} is not up to date; run the tests once with LCM_UPDATE=1");
+        }
+    }
+}
+
+#[test]
+fn the_readme_is_short_and_counts_right() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("there");
+    assert!(readme.lines().count() <= 150);
+    let registry = Registry::builtin();
+    for said in [
+        format!("{} reflection models", registry.models().len()),
+        format!("{} shading\n  models", registry.modes().len()),
+        format!("{} types of light", registry.lights().len()),
+    ] {
+        assert!(readme.contains(&said), "{said}");
+    }
+}
+
+#[test]
+fn the_gallery_shows_every_model_as_it_is() {
+    let registry = Registry::builtin();
+    let path = root().join("scenes/portrait.json");
+    let mut scene = load::file(&path, &registry, Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene;
+    let settings = reference::Settings { width: 240, height: 180, ..reference::Settings::default() };
+    let mut portraits = Vec::new();
+    for model in registry.models() {
+        scene.reflection_model = model.declaration.id.to_owned();
+        let picture = reference::render_rgb8(&scene, &registry, &settings);
+        let path = root().join(format!("docs/images/models/{}.png", model.declaration.id));
+        let agrees = || {
+            read_png(&path).is_ok_and(|(width, height, old)| {
+                (width, height) == (settings.width, settings.height)
+                    && SAME_RENDERER.broken(&picture, &old).is_none()
+            })
+        };
+        if updating() && !agrees() {
+            fs::create_dir_all(root().join("docs/images/models")).expect("the folder can be made");
+            png::write(&path, settings.width, settings.height, &picture, &[])
+                .expect("the picture can be written");
+        }
+        assert!(agrees(), "{} is not what the model looks like; accept with LCM_UPDATE=1", path.display());
+        portraits.push((model.declaration.id, picture));
+    }
+    for (i, (a, one)) in portraits.iter().enumerate() {
+        for (b, other) in &portraits[i + 1..] {
+            assert!(SAME_RENDERER.broken(one, other).is_some(), "{a} and {b} look the same");
+        }
+    }
+}
+
+#[test]
+fn the_model_of_the_example_is_the_same_in_rust_and_in_wgsl() {
+    let model = ModelEntry::of::<example::Toon>();
+    let values = Values::default();
+    let frame = Frame::LOCAL;
+    // Away from the edges of the tones, where the last bit decides.
+    let directions = (0..4).map(|i| 0.125 + 0.25 * i as f32);
+    let pairs: Vec<_> = directions.map(|z: f32| (Vec3::new((1.0 - z * z).sqrt(), 0.0, z), Vec3::Z)).collect();
+    let answers = evaluate(&Sources::default(), &model, &values, Encoding::Srgb, &pairs)
+        .expect("software Vulkan is installed");
+    let surface = model.instantiate(&values, Encoding::Srgb);
+    for (i, ((l, v), gpu)) in pairs.iter().zip(answers).enumerate() {
+        let cpu = surface.response(*l, *v, &frame).diffuse;
+        assert!((cpu - 0.25 * (i as f32 + 1.0)).abs().max_element() < 1e-6, "{l}: {cpu}");
+        assert!((gpu.diffuse - cpu).abs().max_element() < 1e-6, "{l}: GPU {}, CPU {cpu}", gpu.diffuse);
+    }
+}
