@@ -11,7 +11,7 @@ use bevy::{
 };
 use glam::Vec2;
 
-use super::PicturePlace;
+use super::{PicturePlace, WindowView};
 use crate::{
     document::Selection,
     panel::{
@@ -19,10 +19,7 @@ use crate::{
         state::{Action, Lab},
     },
     registry::Registry,
-    render::{
-        camera::PictureCamera,
-        entities::{CurrentScene, LitObject, SceneEntities},
-    },
+    render::entities::{CurrentScene, LitObject, SceneEntities},
 };
 
 /// How far from a light's mark a click still means it, points.
@@ -34,7 +31,7 @@ const CLICK_SLACK: f32 = 4.0;
 pub(super) fn pick(
     buttons: Res<ButtonInput<MouseButton>>,
     window: Single<&Window, With<PrimaryWindow>>,
-    cameras: Query<(&Camera, &GlobalTransform), With<PictureCamera>>,
+    cameras: Query<(&Camera, &GlobalTransform), With<WindowView>>,
     scene: Res<CurrentScene>,
     entities: Res<SceneEntities>,
     objects: Query<(), With<LitObject>>,
