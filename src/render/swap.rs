@@ -29,7 +29,7 @@ use crate::{
 };
 
 /// What an object is drawn with at present.
-#[derive(Clone, Component, Debug, PartialEq)]
+#[derive(Clone, Component, Debug, Default, PartialEq)]
 pub struct Drawn {
     model: String,
     mode: String,

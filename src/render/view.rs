@@ -358,6 +358,49 @@ mod tests {
     }
 
     #[test]
+    fn a_change_of_what_one_view_overrides_draws_no_other() {
+        let mut app = app(3);
+        let world = app.world_mut();
+        let views: Vec<_> = world.query_filtered::<Entity, With<View>>().iter(world).collect();
+        for view in &views[..2] {
+            world.entity_mut(*view).insert(Overrides::default());
+        }
+        rest_all(&mut app);
+        let drawable = |app: &mut App| app.world_mut().spawn(Drawn::default()).id();
+        let changes: [(&str, &dyn Fn(&mut App), [bool; 3]); 4] = [
+            (
+                "an override",
+                &|app| {
+                    let mut overrides = app.world_mut().get_mut::<Overrides>(views[0]).unwrap();
+                    overrides.shading_model = Some("flat".to_owned());
+                },
+                [true, false, false],
+            ),
+            (
+                "a stand-in",
+                &|app| {
+                    let stand_in = drawable(app);
+                    app.world_mut().entity_mut(stand_in).insert(StandIn { view: views[1] });
+                },
+                [false, true, false],
+            ),
+            ("an object", &|app| _ = drawable(app), [false, false, true]),
+            (
+                "the terms",
+                &|app| app.world_mut().resource_mut::<ShownTerms>().set_changed(),
+                [false, false, true],
+            ),
+        ];
+        for (what, change, expected) in changes {
+            change(&mut app);
+            app.update();
+            let draws = |view: &Entity| app.world().get::<Drawing>(*view).unwrap().draws();
+            assert_eq!(views.iter().map(draws).collect::<Vec<_>>(), expected, "{what}");
+            rest_all(&mut app);
+        }
+    }
+
+    #[test]
     fn textures_have_the_size_at_which_a_view_is_seen_and_none_is_made_in_vain() {
         let mut app = app(1);
         let texture = |app: &mut App| {
