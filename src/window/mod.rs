@@ -581,7 +581,6 @@ impl Default for Settling {
 /// What a frame shows beside the input that egui itself watches.
 #[derive(Clone, PartialEq)]
 struct Snapshot {
-    scene: crate::scene::Scene,
     rect: [f32; 4],
     camera: Option<bevy::transform::components::Transform>,
     terms: ShownTerms,
@@ -594,6 +593,7 @@ struct Snapshot {
 /// Asks for another frame while something changes, and for none when nothing does.
 fn redraw(
     lab: Res<Lab>,
+    scene: Res<CurrentScene>,
     terms: Res<ShownTerms>,
     live: Res<LiveShaders>,
     bench: Res<Bench>,
@@ -609,7 +609,6 @@ fn redraw(
     }
     let rect = lab.picture_rect;
     let now = Snapshot {
-        scene: lab.document.scene().clone(),
         rect: [rect.min.x, rect.min.y, rect.max.x, rect.max.y],
         camera: cameras.iter().next().copied(),
         terms: *terms,
@@ -618,7 +617,8 @@ fn redraw(
         question: lab.question.is_some(),
         shaders: lab.shaders.clone(),
     };
-    if settling.last.as_deref() != Some(&now) {
+    // An edit of the panels reaches the scene in the next frame.
+    if scene.is_changed() || lab.document != scene.0 || settling.last.as_deref() != Some(&now) {
         settling.last = Some(Box::new(now));
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }
