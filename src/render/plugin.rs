@@ -111,15 +111,15 @@ fn upload_lights(
     terms: Res<ShownTerms>,
     registry: Res<Registry>,
     shared: Res<IlluminationBuffer>,
-    stages: Query<(&Stage, Ref<Overrides>)>,
+    stages: Query<(Ref<Stage>, Ref<Overrides>)>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
 ) {
     let changed = scene.is_changed() || terms.is_changed();
     let none = Overrides::default();
     let changed_stages = stages
         .iter()
-        .filter(|(_, overrides)| changed || overrides.is_changed())
-        .map(|(stage, overrides)| (&stage.illumination, overrides.into_inner()));
+        .filter(|(stage, overrides)| changed || stage.is_added() || overrides.is_changed())
+        .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
     for (handle, overrides) in changed.then_some((&shared.0, &none)).into_iter().chain(changed_stages) {
         let display = overrides.display_of(&scene.0);
         let records: Vec<_> = scene.0.shining().map(|l| record(l, &registry, display.encoding)).collect();
