@@ -371,7 +371,8 @@ mod tests {
             (
                 "an override",
                 &|app| {
-                    let mut overrides = app.world_mut().get_mut::<Overrides>(views[0]).unwrap();
+                    let mut overrides =
+                        app.world_mut().get_mut::<Overrides>(views[0]).expect("it has overrides");
                     overrides.shading_model = Some("flat".to_owned());
                 },
                 [true, false, false],
@@ -394,7 +395,7 @@ mod tests {
         for (what, change, expected) in changes {
             change(&mut app);
             app.update();
-            let draws = |view: &Entity| app.world().get::<Drawing>(*view).unwrap().draws();
+            let draws = |view: &Entity| app.world().get::<Drawing>(*view).is_some_and(Drawing::draws);
             assert_eq!(views.iter().map(draws).collect::<Vec<_>>(), expected, "{what}");
             rest_all(&mut app);
         }

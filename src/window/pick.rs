@@ -126,7 +126,7 @@ mod tests {
                 PerspectiveProjection { fov: 1.4, near: NEAR, aspect_ratio: 4.0 / 3.0, ..Default::default() };
             camera.computed.clip_from_view = lens.get_clip_from_view();
             let place =
-                GlobalTransform::from(Transform::from_translation(scene.observer.position + 3.0 * Vec3::Z));
+                GlobalTransform::from(Transform::from_translation(scene.observer.position + 6.0 * Vec3::Z));
             let light = anchor(&scene.lights[0], &scene).expect("it has a place");
             let at = camera.world_to_viewport(&place, light).expect("it is seen");
             let mut window =
