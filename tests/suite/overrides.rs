@@ -33,7 +33,7 @@ fn scene() -> Scene {
     let mut scene = close_up("sphere", "point");
     let front = scene.objects[0].clone();
     for (kind, x, colour, model) in
-        [("cube", 3.9, [40, 90, 220], None), ("cone", 6.3, [60, 200, 90], Some("phong"))]
+        [("cube", 3.9, [40, 90, 220], None), ("torus", 6.3, [60, 200, 90], Some("phong"))]
     {
         let mut object = Object {
             kind: kind.to_owned(),
@@ -172,6 +172,9 @@ fn a_change_of_the_overrides_draws_that_view_and_a_change_of_the_scene_draws_all
     let mut moved = scene.clone();
     moved.objects[0].position.x += 0.4;
     moved.objects.remove(1);
+    let mut hidden = Object { visible: false, ..moved.objects[0].clone() };
+    hidden.position.x -= 1.0;
+    moved.objects.push(hidden);
     renderer.set_scene(moved.clone());
     let (plain, overridden) = rest(&mut renderer, &|_| {});
     assert_eq!((plain, overridden), (0, 0));
@@ -179,7 +182,7 @@ fn a_change_of_the_overrides_draws_that_view_and_a_change_of_the_scene_draws_all
     let expected = alone(&overrides.applied(&moved), TermSelection::Diffuse);
     assert!(picture_of(&mut renderer, view) == expected);
     let world = renderer.app().world_mut();
-    assert_eq!(world.query::<&StandIn>().iter(world).count(), 2);
+    assert_eq!(world.query::<&StandIn>().iter(world).count(), 3);
 
     // Without overrides it shows what the others show.
     renderer.app().world_mut().entity_mut(view).remove::<Overrides>();
