@@ -15,7 +15,7 @@ use lights_camera_models::{
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
-        swap::shared_mesh,
+        meshes::shared_mesh,
     },
     scene::{Light, Object, Observer, Scene},
 };

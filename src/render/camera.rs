@@ -1,6 +1,6 @@
 //! The camera of the picture: it stands where the observer stands until someone moves it.
 
-use super::entities::CurrentScene;
+use super::{entities::CurrentScene, overrides::Overrides};
 use crate::{
     optics::{colour::BACKGROUND, tone::ToneMapping},
     scene::{
@@ -9,13 +9,20 @@ use crate::{
     },
 };
 use bevy::{
-    camera::{Camera, Camera3d, ClearColorConfig, Hdr, PerspectiveProjection, Projection},
+    camera::{
+        Camera, Camera3d, ClearColorConfig, Hdr, PerspectiveProjection, Projection, visibility::RenderLayers,
+    },
     color::Color,
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     ecs::prelude::*,
     render::view::Msaa,
     transform::components::Transform,
 };
+
+/// The render layer of objects as the scene has them.
+pub const SCENE_LAYER: usize = 0;
+/// The render layer of gizmos, which every view shows.
+pub const GIZMO_LAYER: usize = 1;
 
 /// The camera that draws the picture.
 #[derive(Component, Debug, Clone, Copy)]
@@ -46,6 +53,7 @@ pub fn picture_camera(samples: u8) -> impl Bundle {
         Tonemapping::None,
         // Dithering would make pictures differ between runs and renderers.
         DebandDither::Disabled,
+        RenderLayers::from_layers(&[SCENE_LAYER, GIZMO_LAYER]),
         if samples == 4 { Msaa::Sample4 } else { Msaa::Off },
     )
 }
@@ -74,13 +82,20 @@ pub fn tonemapping(tone: ToneMapping) -> Tonemapping {
 }
 
 /// Keeps cameras that follow the observer at its place, and every picture camera's field of view and
-/// tone mapping at the scene's.
+/// tone mapping at the scene's or its own.
 pub fn follow_scene(
     scene: Res<CurrentScene>,
-    mut cameras: Query<(&PictureCamera, &mut Transform, &mut Projection, &mut Tonemapping, Has<Hdr>)>,
+    mut cameras: Query<(
+        &PictureCamera,
+        Option<&Overrides>,
+        &mut Transform,
+        &mut Projection,
+        &mut Tonemapping,
+        Has<Hdr>,
+    )>,
 ) {
     let observer = &scene.0.observer;
-    for (camera, mut transform, mut lens, mut tone, hdr) in &mut cameras {
+    for (camera, overrides, mut transform, mut lens, mut tone, hdr) in &mut cameras {
         if camera.follows_observer {
             let wanted =
                 Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
@@ -95,7 +110,8 @@ pub fn follow_scene(
         {
             perspective.fov = fov;
         }
-        let wanted = if hdr { tonemapping(scene.0.display.tone_mapping) } else { Tonemapping::None };
+        let display = overrides.map_or(scene.0.display, |o| o.display_of(&scene.0));
+        let wanted = if hdr { tonemapping(display.tone_mapping) } else { Tonemapping::None };
         if *tone != wanted {
             *tone = wanted;
         }

@@ -14,6 +14,7 @@ use crate::{
 };
 use bevy::{camera::visibility::Visibility, ecs::prelude::*, log::warn, transform::components::Transform};
 use glam::Vec3;
+use std::{iter, ops::Range};
 
 /// The scene that is shown.
 #[derive(Clone, Debug, Default, PartialEq, Resource)]
@@ -66,8 +67,28 @@ fn light_transform(light: &Light) -> Transform {
     Transform::from_translation(light.position.unwrap_or(Vec3::ZERO))
 }
 
-fn label(name: Option<&String>, kind: &str, index: usize) -> Name {
-    Name::new(name.cloned().unwrap_or_else(|| format!("{kind} {}", index + 1)))
+/// What tools call an entity: the name of its part, or else its type. A number would change with every part before it.
+fn label(name: Option<&String>, kind: &str) -> Name {
+    Name::new(name.cloned().unwrap_or_else(|| kind.to_owned()))
+}
+
+/// Matches the entities of `old` parts with `new` parts: equal parts at the beginning and at the end keep their
+/// entities, those between get the entities that are left. Returns which of the new parts differ from what their
+/// entities stand for, and the entities that stand for nothing any more.
+fn align<T: PartialEq>(entities: &mut Vec<Entity>, old: &[T], new: &[T]) -> (Range<usize>, Vec<Entity>) {
+    // Someone else's hands were here: nothing is known.
+    let old = if entities.len() == old.len() { old } else { &[] };
+    let equal = |(a, b): &(&T, &T)| a == b;
+    let before = old.iter().zip(new).take_while(equal).count();
+    let rest = (&old[before..], &new[before..]);
+    let after = rest.0.iter().rev().zip(rest.1.iter().rev()).take_while(equal).count();
+    let end = new.len() - after;
+    let old_end = entities.len().saturating_sub(after);
+    if old_end > end {
+        return (before..end, entities.drain(end..old_end).collect());
+    }
+    entities.splice(old_end..old_end, iter::repeat_n(Entity::PLACEHOLDER, end - old_end));
+    (before..end, Vec::new())
 }
 
 /// Makes the entities equal to the scene. Runs when [`CurrentScene`] changed; touches only what
@@ -81,36 +102,29 @@ pub fn reconcile(
     objects: Query<&LitObject>,
     eyes: Query<&Eye>,
 ) {
-    let mirrored = entities.mirrored.replace(scene.0.clone());
-    let mirrored_light = |i: usize| mirrored.as_ref().and_then(|s| s.lights.get(i));
-    let mirrored_object = |i: usize| mirrored.as_ref().and_then(|s| s.objects.get(i));
+    let entities = &mut *entities;
     let Scene { lights: wanted_lights, objects: wanted_objects, observer, .. } = &scene.0;
-
-    let keep = wanted_lights.len().min(entities.lights.len());
-    for extra in entities.lights.split_off(keep) {
-        commands.entity(extra).try_despawn();
+    let mirrored = entities.mirrored.replace(scene.0.clone());
+    let (old_lights, old_objects) =
+        mirrored.as_ref().map_or((&[][..], &[][..]), |s| (&s.lights[..], &s.objects[..]));
+    let (changed_lights, surplus_lights) = align(&mut entities.lights, old_lights, wanted_lights);
+    let (changed_objects, surplus_objects) = align(&mut entities.objects, old_objects, wanted_objects);
+    for surplus in surplus_lights.into_iter().chain(surplus_objects) {
+        commands.entity(surplus).try_despawn();
     }
-    for (i, light) in wanted_lights.iter().enumerate() {
-        let current = entities.lights.get(i).and_then(|e| lights.get(*e).ok());
-        if current.is_some() && mirrored_light(i) == Some(light) {
+
+    for (i, (light, slot)) in wanted_lights.iter().zip(&mut entities.lights).enumerate() {
+        let current = lights.get(*slot).ok();
+        if current.is_some() && !changed_lights.contains(&i) {
             continue;
         }
         let old_kind = current.map(|c| c.0.kind.as_str());
-        let mut entity = match entities.lights.get(i) {
-            Some(e) if current.is_some() => commands.entity(*e),
-            _ => {
-                let e = commands.spawn_empty();
-                match entities.lights.get_mut(i) {
-                    Some(slot) => *slot = e.id(),
-                    None => entities.lights.push(e.id()),
-                }
-                e
-            }
-        };
+        let mut entity = if current.is_some() { commands.entity(*slot) } else { commands.spawn_empty() };
+        *slot = entity.id();
         entity.insert((
             LightSource(light.clone()),
             light_transform(light),
-            label(light.name.as_ref(), &light.kind, i),
+            label(light.name.as_ref(), &light.kind),
         ));
         if old_kind != Some(light.kind.as_str()) {
             if let Some(old) = old_kind.and_then(|k| registry.light(k)) {
@@ -123,33 +137,19 @@ pub fn reconcile(
         }
     }
 
-    let keep = wanted_objects.len().min(entities.objects.len());
-    for extra in entities.objects.split_off(keep) {
-        commands.entity(extra).try_despawn();
-    }
-    for (i, object) in wanted_objects.iter().enumerate() {
-        let current = entities.objects.get(i).and_then(|e| objects.get(*e).ok());
-        if current.is_some() && mirrored_object(i) == Some(object) {
+    for (i, (object, slot)) in wanted_objects.iter().zip(&mut entities.objects).enumerate() {
+        let known = objects.contains(*slot);
+        if known && !changed_objects.contains(&i) {
             continue;
         }
-        let parts = (
+        let mut entity = if known { commands.entity(*slot) } else { commands.spawn_empty() };
+        *slot = entity.id();
+        entity.insert((
             LitObject(object.clone()),
             object_transform(object),
             if object.visible { Visibility::Inherited } else { Visibility::Hidden },
-            label(object.name.as_ref(), &object.kind, i),
-        );
-        match entities.objects.get_mut(i) {
-            Some(e) if current.is_some() => {
-                commands.entity(*e).insert(parts);
-            }
-            slot => {
-                let e = commands.spawn(parts).id();
-                match slot {
-                    Some(slot) => *slot = e,
-                    None => entities.objects.push(e),
-                }
-            }
-        }
+            label(object.name.as_ref(), &object.kind),
+        ));
     }
 
     match entities.observer.filter(|e| eyes.contains(*e)) {
@@ -203,7 +203,7 @@ pub fn absorb(
         }
         if source.0 != *known {
             let light = source.0.clone();
-            commands.entity(*entity).insert(label(light.name.as_ref(), &light.kind, i));
+            commands.entity(*entity).insert(label(light.name.as_ref(), &light.kind));
             put(&mut next, &scene.0, |s| s.lights.get_mut(i).map(|l| *l = light));
         }
     }
@@ -224,7 +224,7 @@ pub fn absorb(
         }
         if lit.0 != *known {
             let object = lit.0.clone();
-            commands.entity(*entity).insert(label(object.name.as_ref(), &object.kind, i));
+            commands.entity(*entity).insert(label(object.name.as_ref(), &object.kind));
             put(&mut next, &scene.0, |s| s.objects.get_mut(i).map(|o| *o = object));
         }
     }
@@ -255,4 +255,31 @@ pub fn absorb(
 /// Edits a copy of the scene that is made at the first edit.
 fn put(next: &mut Option<Scene>, scene: &Scene, edit: impl FnOnce(&mut Scene) -> Option<()>) {
     let _ = edit(next.get_or_insert_with(|| scene.clone()));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The parts as numbers: which differ, which entities go, and the place in `old` that each new one had.
+    fn aligned(old: &[u32], new: &[u32]) -> (Range<usize>, Vec<u32>, Vec<Option<u32>>) {
+        let entity = |i: usize| Entity::from_raw_u32(i as u32).expect("a number of an entity");
+        let mut entities: Vec<_> = (0..old.len()).map(entity).collect();
+        let (changed, surplus) = align(&mut entities, old, new);
+        let place = |e: &Entity| (*e != Entity::PLACEHOLDER).then(|| e.index_u32());
+        (changed, surplus.iter().filter_map(place).collect(), entities.iter().map(place).collect())
+    }
+
+    #[test]
+    fn equal_parts_at_both_ends_keep_their_entities() {
+        assert_eq!(aligned(&[1, 2, 3], &[1, 2, 3]), (3..3, vec![], vec![Some(0), Some(1), Some(2)]));
+        assert_eq!(aligned(&[1, 2, 3], &[2, 3]), (0..0, vec![0], vec![Some(1), Some(2)]));
+        assert_eq!(aligned(&[1, 2, 3], &[1, 3]), (1..1, vec![1], vec![Some(0), Some(2)]));
+        assert_eq!(aligned(&[1, 2], &[9, 1, 2]), (0..1, vec![], vec![None, Some(0), Some(1)]));
+        assert_eq!(aligned(&[1, 2, 3], &[1, 9, 3]), (1..2, vec![], vec![Some(0), Some(1), Some(2)]));
+        assert_eq!(aligned(&[1, 1, 1], &[1, 1]), (2..2, vec![2], vec![Some(0), Some(1)]));
+        assert_eq!(aligned(&[1, 2, 3, 4], &[8, 9, 4]), (0..2, vec![2], vec![Some(0), Some(1), Some(3)]));
+        assert_eq!(aligned(&[], &[1, 2]), (0..2, vec![], vec![None, None]));
+        assert_eq!(aligned(&[1, 2], &[]), (0..0, vec![0, 1], vec![]));
+    }
 }

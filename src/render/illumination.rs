@@ -1,5 +1,6 @@
 //! The buffer of lights: one, of fixed capacity, shared by all materials and visible to the vertex
-//! and fragment stages (rule 7). Changing a light rewrites the buffer and touches no material.
+//! and fragment stages (rule 7). Changing a light rewrites the buffer and touches no material. A view with
+//! overrides has a buffer of its own.
 
 use bevy::{
     asset::{Assets, Handle, RenderAssetUsages},
@@ -29,15 +30,21 @@ pub const LIGHT_LAYOUT: [(&str, usize); 6] =
 pub const ILLUMINATION_LAYOUT: [(&str, usize); 5] =
     [("count", 0), ("terms", 4), ("exposure", 8), ("gamma_naive", 12), ("lights", HEADER_BYTES)];
 
-/// The shared buffer of all lights of the scene.
+/// The buffer of all lights of the scene, as views without overrides show them.
 #[derive(Clone, Debug, Resource)]
 pub struct IlluminationBuffer(pub Handle<ShaderBuffer>);
 
+impl IlluminationBuffer {
+    /// A new buffer that has no lights yet.
+    pub(super) fn without_lights(buffers: &mut Assets<ShaderBuffer>) -> Self {
+        let bytes = illumination_bytes(&[], TermSelection::All, &Display::default());
+        Self(buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default())))
+    }
+}
+
 impl FromWorld for IlluminationBuffer {
     fn from_world(world: &mut World) -> Self {
-        let bytes = illumination_bytes(&[], TermSelection::All, &Display::default());
-        let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
-        Self(buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default())))
+        Self::without_lights(&mut world.resource_mut::<Assets<ShaderBuffer>>())
     }
 }
 

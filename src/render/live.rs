@@ -24,6 +24,7 @@ use bevy::{
 
 use super::{
     entities::CurrentScene,
+    overrides::Overrides,
     plugin::{LabFrame, LabSystems},
     swap::Drawn,
     trial::{Bench, COMPOSED, Tools, TrialPlugin, Verdict},
@@ -317,7 +318,10 @@ impl LiveShaders {
     fn read_wanted(&mut self, world: &mut World) {
         let Some(scene) = world.get_resource::<CurrentScene>() else { return };
         let registry = world.resource::<Registry>();
-        let wanted: Vec<_> = registry.wants_reading(scene.0.models()).map(Path::to_owned).collect();
+        let overridden = world.try_query::<&Overrides>();
+        let overridden = overridden.iter().flat_map(|query| query.iter_manual(world));
+        let models = overridden.filter_map(|o| o.reflection_model.as_deref()).chain(scene.0.models());
+        let wanted: Vec<_> = registry.wants_reading(models).map(Path::to_owned).collect();
         for file in wanted {
             // One that is known has a mistake.
             if self.path_of(&file).is_some_and(|path| !self.own.contains_key(&path)) {
@@ -904,7 +908,8 @@ impl Visible {
 
 /// Exchanges the shaders whose files changed.
 fn exchange(world: &mut World) {
-    if world.is_resource_changed::<CurrentScene>() {
+    let mut overrides = world.query_filtered::<(), Changed<Overrides>>();
+    if world.is_resource_changed::<CurrentScene>() || overrides.iter(world).next().is_some() {
         world.resource_scope(|world, mut live: Mut<LiveShaders>| live.read_wanted(world));
     }
     if !world.resource::<LiveShaders>().is_busy() {

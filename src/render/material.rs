@@ -157,6 +157,8 @@ pub struct Attachment {
     pub attach: fn(&mut EntityWorldMut, MaterialInputs),
     /// Takes the material off.
     pub detach: fn(&mut EntityWorldMut),
+    /// Lets go of the materials that a light buffer lit.
+    pub(super) forget: fn(&mut World, AssetId<ShaderBuffer>),
 }
 
 /// The [`Attachment`] of every registered model.
@@ -172,6 +174,10 @@ impl Attachments {
     #[must_use]
     pub fn get(&self, id: &str) -> Option<Attachment> {
         self.by_id.get(id).copied().or(self.own)
+    }
+
+    pub(super) fn all(&self) -> Vec<Attachment> {
+        self.by_id.values().copied().chain(self.own).collect()
     }
 }
 
@@ -203,16 +209,19 @@ fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
         app.add_plugins(MaterialPlugin::<ModelMaterial<M>>::default());
     }
     app.init_resource::<Attachments>();
-    Attachment { attach: attach::<M>, detach: detach::<M> }
+    Attachment { attach: attach::<M>, detach: detach::<M>, forget: forget::<M> }
 }
 
-/// The materials of one model by shader: one for each shading mode in use.
+/// The materials of one model by shader and light buffer: one for each shading mode in use, in the views without
+/// overrides and in each view with.
 #[derive(Resource)]
-struct SharedMaterials<M: Clone + 'static>(HashMap<AssetId<Shader>, Handle<ModelMaterial<M>>>);
+struct SharedMaterials<M: Clone + 'static>(
+    HashMap<(AssetId<Shader>, AssetId<ShaderBuffer>), Handle<ModelMaterial<M>>>,
+);
 
 fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInputs) {
     let handle = entity.world_scope(|world: &mut World| {
-        let key = inputs.shader.id();
+        let key = (inputs.shader.id(), inputs.illumination.id());
         world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
         world.resource_scope(|world, mut shared: Mut<SharedMaterials<M>>| {
             let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
@@ -237,4 +246,10 @@ fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInput
 
 fn detach<M: Clone + 'static>(entity: &mut EntityWorldMut) {
     entity.remove::<MeshMaterial3d<ModelMaterial<M>>>();
+}
+
+fn forget<M: Clone + 'static>(world: &mut World, illumination: AssetId<ShaderBuffer>) {
+    if let Some(mut shared) = world.get_resource_mut::<SharedMaterials<M>>() {
+        shared.0.retain(|(_, lit_by), _| *lit_by != illumination);
+    }
 }

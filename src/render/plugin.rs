@@ -16,7 +16,10 @@ use super::{
     illumination::{IlluminationBuffer, illumination_bytes},
     live::LiveShadersPlugin,
     material::MaterialApp as _,
-    swap::{self, ParameterTables, ShapeMeshes},
+    meshes::ShapeMeshes,
+    overrides::{Overrides, Stage, set_stages},
+    swap::swap,
+    tables::ParameterTables,
     view::ViewPlugin,
 };
 use crate::{
@@ -92,8 +95,9 @@ impl Plugin for ScenePlugin {
                 LabFrame,
                 (
                     reconcile.in_set(LabSystems::Spawn).run_if(resource_changed::<CurrentScene>),
+                    set_stages.in_set(LabSystems::Spawn),
                     absorb.in_set(LabSystems::Edit),
-                    swap::swap.in_set(LabSystems::Swap),
+                    swap.in_set(LabSystems::Swap),
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
             )
@@ -101,25 +105,29 @@ impl Plugin for ScenePlugin {
     }
 }
 
-/// Writes the lights and how they are shown into the shared buffer when any of it changed.
+/// Writes the lights and how they are shown into the buffers of the views when any of it changed.
 fn upload_lights(
     scene: Res<CurrentScene>,
     terms: Res<ShownTerms>,
     registry: Res<Registry>,
-    buffer: Res<IlluminationBuffer>,
+    shared: Res<IlluminationBuffer>,
+    stages: Query<(Ref<Stage>, Ref<Overrides>)>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
-    mut last: Local<Vec<u8>>,
 ) {
-    if !scene.is_changed() && !terms.is_changed() && !last.is_empty() {
-        return;
-    }
-    let display = &scene.0.display;
-    let records: Vec<_> = scene.0.shining().map(|l| record(l, &registry, display.encoding)).collect();
-    let bytes = illumination_bytes(&records, terms.0, display);
-    if *last != bytes {
-        if let Some(mut buffer) = buffers.get_mut(&buffer.0) {
-            buffer.data = Some(bytes.clone());
+    let changed = scene.is_changed() || terms.is_changed();
+    let none = Overrides::default();
+    let changed_stages = stages
+        .iter()
+        .filter(|(stage, overrides)| changed || stage.is_added() || overrides.is_changed())
+        .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
+    for (handle, overrides) in changed.then_some((&shared.0, &none)).into_iter().chain(changed_stages) {
+        let display = overrides.display_of(&scene.0);
+        let records: Vec<_> = scene.0.shining().map(|l| record(l, &registry, display.encoding)).collect();
+        let bytes = illumination_bytes(&records, overrides.terms.unwrap_or(terms.0), &display);
+        if buffers.get(handle).is_some_and(|known| known.data.as_ref() != Some(&bytes))
+            && let Some(mut buffer) = buffers.get_mut(handle)
+        {
+            buffer.data = Some(bytes);
         }
-        *last = bytes;
     }
 }

@@ -23,8 +23,16 @@ use bevy::{
     transform::components::Transform,
 };
 use glam::UVec2;
+use std::collections::HashSet;
 
-use super::{entities::CurrentScene, plugin::ShownTerms, swap::Drawn};
+use super::{
+    entities::CurrentScene,
+    illumination::IlluminationBuffer,
+    overrides::{Overrides, Stage, StandIn},
+    plugin::ShownTerms,
+    swap::Drawn,
+    tables::ParameterTables,
+};
 use crate::registry::Registry;
 
 /// So many pictures are drawn after a change: what the renderer could not prepare in the first is in the second.
@@ -124,6 +132,7 @@ struct Look {
     lens: Option<[f32; 2]>,
     background: Option<Color>,
     tone: Tonemapping,
+    overrides: Option<Overrides>,
 }
 
 /// The texture that a view draws into.
@@ -162,31 +171,56 @@ struct Changes<'w, 's> {
     scene: Res<'w, CurrentScene>,
     terms: Res<'w, ShownTerms>,
     registry: Res<'w, Registry>,
-    drawn: Query<'w, 's, (), Changed<Drawn>>,
+    shared: Res<'w, IlluminationBuffer>,
+    tables: Res<'w, ParameterTables>,
+    stages: Query<'w, 's, (Entity, &'static Stage)>,
+    drawn: Query<'w, 's, Option<&'static StandIn>, Changed<Drawn>>,
     shaders: MessageReader<'w, 's, AssetEvent<Shader>>,
     meshes: MessageReader<'w, 's, AssetEvent<Mesh>>,
     buffers: MessageReader<'w, 's, AssetEvent<ShaderBuffer>>,
 }
 
 impl Changes<'_, '_> {
-    fn any(&mut self) -> bool {
+    /// True if every view has to be drawn; else those with overrides that have to be, and `None` for those without.
+    fn find(&mut self) -> (bool, HashSet<Option<Entity>>) {
         // All are read, so that none is left over for the next frame.
-        let told = [self.shaders.read().count(), self.meshes.read().count(), self.buffers.read().count()];
-        told.iter().any(|count| *count > 0)
-            || self.scene.is_changed()
-            || self.terms.is_changed()
-            || self.registry.is_changed()
-            || !self.drawn.is_empty()
+        let told = [self.shaders.read().count(), self.meshes.read().count()];
+        let mut all =
+            told.iter().any(|count| *count > 0) || self.scene.is_changed() || self.registry.is_changed();
+        let mut some: HashSet<_> = self.drawn.iter().map(|s| s.map(|s| s.view)).collect();
+        if self.terms.is_changed() {
+            some.insert(None);
+        }
+        for event in self.buffers.read() {
+            let (AssetEvent::Added { id } | AssetEvent::Modified { id }) = event else { continue };
+            let lit =
+                |(view, stage): (Entity, &Stage)| (stage.illumination.id() == *id).then_some(Some(view));
+            let shared = || (self.shared.0.id() == *id).then_some(None);
+            match self.tables.view_of(*id).or_else(shared).or_else(|| self.stages.iter().find_map(lit)) {
+                Some(view) => _ = some.insert(view),
+                None => all = true,
+            }
+        }
+        (all, some)
     }
 }
 
 /// Decides which views are drawn in this frame.
 fn rest(
     mut changes: Changes,
-    mut views: Query<(&View, &mut Drawing, &mut Camera, &Transform, &Projection, &Tonemapping)>,
+    mut views: Query<(
+        Entity,
+        &View,
+        &mut Drawing,
+        &mut Camera,
+        &Transform,
+        &Projection,
+        &Tonemapping,
+        Option<&Overrides>,
+    )>,
 ) {
-    let changed = changes.any();
-    for (view, mut drawing, mut camera, transform, lens, tone) in &mut views {
+    let (all, some) = changes.find();
+    for (entity, view, mut drawing, mut camera, transform, lens, tone, overrides) in &mut views {
         let look = Look {
             view: *view,
             transform: *transform,
@@ -199,8 +233,9 @@ fn rest(
                 _ => None,
             },
             tone: *tone,
+            overrides: overrides.cloned(),
         };
-        if changed || drawing.last.as_ref() != Some(&look) {
+        if all || some.contains(&overrides.map(|_| entity)) || drawing.last.as_ref() != Some(&look) {
             drawing.last = Some(look);
             drawing.due = PICTURES;
         }
@@ -236,10 +271,12 @@ mod tests {
             .init_asset::<Image>()
             .add_message::<AssetEvent<Shader>>()
             .add_message::<AssetEvent<Mesh>>()
-            .add_message::<AssetEvent<ShaderBuffer>>()
             .insert_resource(CurrentScene(Scene { objects: vec![Object::default(); 4], ..Scene::default() }))
             .insert_resource(Registry::builtin())
+            .init_asset::<ShaderBuffer>()
             .init_resource::<ShownTerms>()
+            .init_resource::<IlluminationBuffer>()
+            .init_resource::<ParameterTables>()
             .add_systems(Update, (fit, rest).chain());
         for _ in 0..views {
             app.world_mut().spawn((
@@ -318,6 +355,50 @@ mod tests {
         rest_all(&mut app);
         one::<Transform>(app.world_mut()).translation.y = 3.0;
         assert_eq!(drawn(&mut app), [true, false]);
+    }
+
+    #[test]
+    fn a_change_of_what_one_view_overrides_draws_no_other() {
+        let mut app = app(3);
+        let world = app.world_mut();
+        let views: Vec<_> = world.query_filtered::<Entity, With<View>>().iter(world).collect();
+        for view in &views[..2] {
+            world.entity_mut(*view).insert(Overrides::default());
+        }
+        rest_all(&mut app);
+        let drawable = |app: &mut App| app.world_mut().spawn(Drawn::default()).id();
+        let changes: [(&str, &dyn Fn(&mut App), [bool; 3]); 4] = [
+            (
+                "an override",
+                &|app| {
+                    let mut overrides =
+                        app.world_mut().get_mut::<Overrides>(views[0]).expect("it has overrides");
+                    overrides.shading_model = Some("flat".to_owned());
+                },
+                [true, false, false],
+            ),
+            (
+                "a stand-in",
+                &|app| {
+                    let stand_in = drawable(app);
+                    app.world_mut().entity_mut(stand_in).insert(StandIn { view: views[1] });
+                },
+                [false, true, false],
+            ),
+            ("an object", &|app| _ = drawable(app), [false, false, true]),
+            (
+                "the terms",
+                &|app| app.world_mut().resource_mut::<ShownTerms>().set_changed(),
+                [false, false, true],
+            ),
+        ];
+        for (what, change, expected) in changes {
+            change(&mut app);
+            app.update();
+            let draws = |view: &Entity| app.world().get::<Drawing>(*view).is_some_and(Drawing::draws);
+            assert_eq!(views.iter().map(draws).collect::<Vec<_>>(), expected, "{what}");
+            rest_all(&mut app);
+        }
     }
 
     #[test]

@@ -14,6 +14,7 @@ use bevy_egui::EguiPostUpdateSet;
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraSystemSet};
 use glam::{Quat, Vec3};
 
+use super::WindowView;
 use crate::{
     document::{Edit, Selection},
     panel::state::{Action, Lab, Severity, Steer},
@@ -85,7 +86,7 @@ pub(super) fn gate(
     mut wheel: MessageReader<MouseWheel>,
     mut motion: MessageReader<MouseMotion>,
     mut dragging: Local<bool>,
-    mut cameras: Query<(&mut PanOrbitCamera, &mut PictureCamera)>,
+    mut cameras: Query<(&mut PanOrbitCamera, &mut PictureCamera), With<WindowView>>,
 ) {
     let pressed = [MouseButton::Left, MouseButton::Right];
     if lab.pointer_in_picture && buttons.any_just_pressed(pressed) {
@@ -120,7 +121,7 @@ pub(super) fn gate(
 /// While the camera stands at the observer, the controls know its place, so that a drag starts there.
 fn keep_at_observer(
     scene: Res<CurrentScene>,
-    mut cameras: Query<(&mut PanOrbitCamera, &mut Transform, &PictureCamera)>,
+    mut cameras: Query<(&mut PanOrbitCamera, &mut Transform, &PictureCamera), With<WindowView>>,
     mut known: Local<Option<(Observer, Vec3)>>,
 ) {
     let observer = scene.0.observer;
@@ -137,7 +138,7 @@ fn keep_at_observer(
     }
 }
 
-fn tell_lab(mut lab: ResMut<Lab>, cameras: Query<(&Transform, &PictureCamera)>) {
+fn tell_lab(mut lab: ResMut<Lab>, cameras: Query<(&Transform, &PictureCamera), With<WindowView>>) {
     if let Some((transform, picture)) = cameras.iter().next()
         && ((lab.camera, lab.eye) != (transform.rotation, transform.translation)
             || lab.camera_left == picture.follows_observer)
@@ -176,7 +177,12 @@ fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
 #[derive(SystemParam)]
 pub(super) struct CameraControl<'w, 's> {
     scene: Res<'w, CurrentScene>,
-    cameras: Query<'w, 's, (&'static mut PanOrbitCamera, &'static mut Transform, &'static mut PictureCamera)>,
+    cameras: Query<
+        'w,
+        's,
+        (&'static mut PanOrbitCamera, &'static mut Transform, &'static mut PictureCamera),
+        With<WindowView>,
+    >,
 }
 
 impl CameraControl<'_, '_> {

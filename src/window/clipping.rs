@@ -12,6 +12,7 @@ use bevy::{
     render::{
         RenderApp, RenderStartup,
         camera::ExtractedCamera,
+        extract_component::ExtractComponentPlugin,
         extract_resource::{ExtractResource, ExtractResourcePlugin},
         gpu_readback::{Readback, ReadbackComplete},
         render_asset::RenderAssets,
@@ -28,7 +29,7 @@ use bevy::{
 };
 use wgpu::{BufferUsages, ShaderStages, util::BufferInitDescriptor};
 
-use super::{SETTLING_FRAMES, Settling};
+use super::{SETTLING_FRAMES, Settling, WindowView};
 use crate::{
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
@@ -37,6 +38,7 @@ use crate::{
     },
     render::{
         entities::CurrentScene,
+        overrides::Overrides,
         view::{Drawing, ViewSystems},
     },
     scene::Display,
@@ -62,8 +64,11 @@ impl Plugin for ClippingPlugin {
         let buffer = world.resource_mut::<Assets<ShaderBuffer>>().add(buffer);
         let question = Question { number: 0, open: false, limit: 1.0, shader, buffer };
         world.insert_resource(question.clone());
-        app.add_plugins(ExtractResourcePlugin::<Question>::default())
-            .add_systems(PostUpdate, ask.after(ViewSystems).after(super::redraw));
+        app.add_plugins((
+            ExtractResourcePlugin::<Question>::default(),
+            ExtractComponentPlugin::<WindowView>::default(),
+        ))
+        .add_systems(PostUpdate, ask.after(ViewSystems).after(super::redraw));
         if let Some(render) = app.get_sub_app_mut(RenderApp) {
             // The pass is prepared before anything is handed over.
             render
@@ -109,18 +114,18 @@ fn limit(display: &Display) -> f32 {
 /// Asks about the last picture after a change, and keeps frames coming until the answer is there.
 fn ask(
     scene: Res<CurrentScene>,
-    views: Query<&Drawing>,
+    views: Query<(&Drawing, Option<&Overrides>), With<WindowView>>,
     mut question: ResMut<Question>,
     mut patience: Local<u32>,
     mut readback: Local<Option<Entity>>,
     mut requests: MessageWriter<RequestRedraw>,
     mut commands: Commands,
 ) {
-    if views.iter().any(|drawing| drawing.draws() && drawing.is_done()) {
+    if let Some((_, overrides)) = views.iter().find(|(drawing, _)| drawing.draws() && drawing.is_done()) {
         *patience = PATIENCE;
         question.number = question.number.wrapping_add(1);
         question.open = true;
-        question.limit = limit(&scene.0.display);
+        question.limit = limit(&overrides.and_then(|o| o.display).unwrap_or(scene.0.display));
         if readback.is_none() {
             let asked = Readback::buffer(question.buffer.clone());
             *readback = Some(commands.spawn(asked).observe(answered).id());
@@ -183,7 +188,7 @@ fn prepare(question: Res<Question>, cache: Res<PipelineCache>, mut commands: Com
 }
 
 fn count(
-    view: ViewQuery<(&ExtractedCamera, &ViewTarget)>,
+    view: ViewQuery<(&ExtractedCamera, &ViewTarget), With<WindowView>>,
     question: Res<Question>,
     pass: Res<Pass>,
     cache: Res<PipelineCache>,

@@ -3,6 +3,7 @@
 
 use bevy::{
     app::{App, Plugin},
+    camera::visibility::RenderLayers,
     color::{Alpha as _, Color},
     ecs::prelude::*,
     gizmos::{
@@ -18,6 +19,7 @@ use glam::Vec3;
 use crate::{
     panel::state::{Lab, ThemeChoice},
     render::{
+        camera::GIZMO_LAYER,
         entities::CurrentScene,
         plugin::{LabFrame, LabSystems},
     },
@@ -34,6 +36,7 @@ impl Plugin for GizmosPlugin {
         use bevy::gizmos::AppGizmoBuilder;
         let mut config = GizmoConfig::default();
         config.line.width = 1.0;
+        config.render_layers = RenderLayers::layer(GIZMO_LAYER);
         app.insert_gizmo_config(InRoom, config).add_systems(LabFrame, draw.in_set(LabSystems::Capture));
     }
 }

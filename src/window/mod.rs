@@ -27,6 +27,7 @@ use bevy::{
     prelude::DefaultPlugins,
     render::{
         RenderPlugin,
+        extract_component::ExtractComponent,
         pipelined_rendering::PipelinedRenderingPlugin,
         render_resource::TextureUsages,
         renderer::RenderAdapterInfo,
@@ -97,6 +98,11 @@ const SLEEP: Duration = Duration::from_secs(3600);
 /// Frames that are drawn after the last change: the panels lay themselves out anew in the first and
 /// settle in the second.
 const SETTLING_FRAMES: u32 = 3;
+
+/// The view that the window shows between its panels, and whose camera the pointer moves. Other views are their
+/// owners' business.
+#[derive(Component, ExtractComponent, Clone, Copy, Debug, Default)]
+pub struct WindowView;
 
 /// Opens the window and stays until it is closed.
 ///
@@ -336,6 +342,7 @@ fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>
         .spawn((picture_camera(samples), Hdr, RenderTarget::None { size: UVec2::ONE }, camera::orbit()))
         .insert((
             PictureCamera { follows_observer: true, fits_width: true },
+            WindowView,
             // The panels say how large.
             View::for_display(UVec2::ZERO),
         ));
@@ -473,7 +480,7 @@ fn close_requested(
 fn fit_picture(
     lab: Res<Lab>,
     window: Single<&Window, With<PrimaryWindow>>,
-    mut views: Query<(Entity, &mut View, &mut Drawing, &mut Camera), With<PictureCamera>>,
+    mut views: Query<(Entity, &mut View, &mut Drawing, &mut Camera), With<WindowView>>,
     mut controls: ResMut<ActiveCameraData>,
     mut room: Local<Option<bool>>,
 ) {
@@ -504,8 +511,8 @@ fn fit_picture(
 fn show_picture(
     lab: Res<Lab>,
     window: Single<&Window, With<PrimaryWindow>>,
-    views: Query<&RenderTarget, With<PictureCamera>>,
-    mut shows: Single<&mut Shows>,
+    views: Query<&RenderTarget, With<WindowView>>,
+    mut shows: Single<&mut Shows, With<PrimaryEguiContext>>,
 ) {
     let at = PicturePlace::of(&lab, &window).at;
     let pictures = views.iter().filter_map(texture_of).map(|texture| (texture.clone(), at)).collect();
@@ -574,7 +581,6 @@ impl Default for Settling {
 /// What a frame shows beside the input that egui itself watches.
 #[derive(Clone, PartialEq)]
 struct Snapshot {
-    scene: crate::scene::Scene,
     rect: [f32; 4],
     camera: Option<bevy::transform::components::Transform>,
     terms: ShownTerms,
@@ -587,10 +593,12 @@ struct Snapshot {
 /// Asks for another frame while something changes, and for none when nothing does.
 fn redraw(
     lab: Res<Lab>,
+    scene: Res<CurrentScene>,
     terms: Res<ShownTerms>,
     live: Res<LiveShaders>,
     bench: Res<Bench>,
-    cameras: Query<&bevy::transform::components::Transform, With<PictureCamera>>,
+    cameras: Query<&bevy::transform::components::Transform, With<WindowView>>,
+    drawings: Query<&Drawing>,
     mut textures: MessageReader<AssetEvent<Image>>,
     mut settling: ResMut<Settling>,
     mut requests: MessageWriter<RequestRedraw>,
@@ -601,7 +609,6 @@ fn redraw(
     }
     let rect = lab.picture_rect;
     let now = Snapshot {
-        scene: lab.document.scene().clone(),
         rect: [rect.min.x, rect.min.y, rect.max.x, rect.max.y],
         camera: cameras.iter().next().copied(),
         terms: *terms,
@@ -610,9 +617,13 @@ fn redraw(
         question: lab.question.is_some(),
         shaders: lab.shaders.clone(),
     };
-    if settling.last.as_deref() != Some(&now) {
+    // An edit of the panels reaches the scene in the next frame.
+    if scene.is_changed() || lab.document != scene.0 || settling.last.as_deref() != Some(&now) {
         settling.last = Some(Box::new(now));
         settling.frames = settling.frames.max(SETTLING_FRAMES);
+    }
+    if drawings.iter().any(|drawing| drawing.draws() && !drawing.is_done()) {
+        settling.frames = settling.frames.max(1);
     }
     if live.is_busy() && !bench.is_waiting() && !live.is_reading() {
         // Problems are told after a while, and what is not on the picture is tried one in a frame.

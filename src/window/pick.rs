@@ -11,7 +11,7 @@ use bevy::{
 };
 use glam::Vec2;
 
-use super::PicturePlace;
+use super::{PicturePlace, WindowView};
 use crate::{
     document::Selection,
     panel::{
@@ -19,10 +19,7 @@ use crate::{
         state::{Action, Lab},
     },
     registry::Registry,
-    render::{
-        camera::PictureCamera,
-        entities::{CurrentScene, LitObject, SceneEntities},
-    },
+    render::entities::{CurrentScene, LitObject, SceneEntities},
 };
 
 /// How far from a light's mark a click still means it, points.
@@ -34,7 +31,7 @@ const CLICK_SLACK: f32 = 4.0;
 pub(super) fn pick(
     buttons: Res<ButtonInput<MouseButton>>,
     window: Single<&Window, With<PrimaryWindow>>,
-    cameras: Query<(&Camera, &GlobalTransform), With<PictureCamera>>,
+    cameras: Query<(&Camera, &GlobalTransform), With<WindowView>>,
     scene: Res<CurrentScene>,
     entities: Res<SceneEntities>,
     objects: Query<(), With<LitObject>>,
@@ -93,4 +90,71 @@ fn nearest_light(
         .filter(|(_, distance)| *distance <= reach)
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(i, _)| i)
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{
+        asset::Assets,
+        camera::{CameraProjection as _, PerspectiveProjection, RenderTargetInfo},
+        mesh::Mesh,
+        transform::components::Transform,
+        window::WindowResolution,
+    };
+    use bevy_egui::egui::{Pos2, Rect, vec2};
+    use glam::{UVec2, Vec3};
+
+    use super::*;
+    use crate::{
+        render::camera::picture_camera,
+        scene::{Scene, observer::NEAR},
+    };
+
+    const SIZE: UVec2 = UVec2::new(400, 300);
+
+    #[test]
+    fn a_click_selects_a_light_however_many_cameras_there_are() {
+        for others in 0..3 {
+            let scene = Scene::default();
+            let mut lab = Lab::new(scene.clone());
+            lab.selection = Selection::Observer;
+            lab.picture_rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
+            (lab.zoom, lab.pointer_in_picture) = (1.0, true);
+            let mut camera = Camera::default();
+            camera.computed.target_info = Some(RenderTargetInfo { physical_size: SIZE, scale_factor: 1.0 });
+            let lens =
+                PerspectiveProjection { fov: 1.4, near: NEAR, aspect_ratio: 4.0 / 3.0, ..Default::default() };
+            camera.computed.clip_from_view = lens.get_clip_from_view();
+            let place =
+                GlobalTransform::from(Transform::from_translation(scene.observer.position + 6.0 * Vec3::Z));
+            let light = anchor(&scene.lights[0], &scene).expect("it has a place");
+            let at = camera.world_to_viewport(&place, light).expect("it is seen");
+            let mut window =
+                Window { resolution: WindowResolution::new(SIZE.x, SIZE.y), ..Window::default() };
+            window.set_cursor_position(Some(at));
+
+            let mut world = World::new();
+            world.insert_resource(lab);
+            world.insert_resource(CurrentScene(scene));
+            world.insert_resource(Registry::builtin());
+            world.init_resource::<SceneEntities>();
+            world.init_resource::<Assets<Mesh>>();
+            world.init_resource::<ButtonInput<MouseButton>>();
+            world.spawn((window, PrimaryWindow));
+            for _ in 0..others {
+                // They look elsewhere.
+                world.spawn((picture_camera(1), GlobalTransform::from_xyz(0.0, 0.0, -50.0)));
+            }
+            world.spawn((picture_camera(1), WindowView)).insert((camera, place));
+            let mut schedule = Schedule::default();
+            schedule.add_systems(pick);
+            world.resource_mut::<ButtonInput<MouseButton>>().press(MouseButton::Left);
+            schedule.run(&mut world);
+            let mut buttons = world.resource_mut::<ButtonInput<MouseButton>>();
+            buttons.clear();
+            buttons.release(MouseButton::Left);
+            schedule.run(&mut world);
+            assert_eq!(world.resource::<Lab>().selection, Selection::Light(0), "{others} more");
+        }
+    }
 }

@@ -31,6 +31,7 @@ mod marks;
 mod memory;
 mod missing_size;
 mod modules;
+mod overrides;
 mod panels;
 mod pictures;
 mod placing;

@@ -344,12 +344,21 @@ impl GpuRenderer {
     /// # Errors
     /// [`GpuError::Copy`] when the picture does not exist yet or the device was lost.
     pub fn read(&mut self) -> Result<Vec<u8>, GpuError> {
+        let target = self.target.clone();
+        self.read_view(&target)
+    }
+
+    /// As [`read`](Self::read), from the texture of another view of the same size and format.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_view(&mut self, texture: &Handle<Image>) -> Result<Vec<u8>, GpuError> {
         let missing = || GpuError::Copy("nothing has been drawn yet".to_owned());
         let render_app = self.app.get_sub_app(RenderApp).ok_or_else(missing)?;
         let world = render_app.world();
         let device = world.resource::<RenderDevice>();
         let queue = world.resource::<RenderQueue>();
-        let image = world.resource::<RenderAssets<GpuImage>>().get(&self.target).ok_or_else(missing)?;
+        let image = world.resource::<RenderAssets<GpuImage>>().get(texture).ok_or_else(missing)?;
 
         let row = self.width * self.output.bytes_per_pixel();
         let padded = row.next_multiple_of(256);

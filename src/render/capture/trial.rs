@@ -33,7 +33,7 @@ use crate::{
     render::{
         illumination::IlluminationBuffer,
         material::{Attachments, MaterialInputs},
-        swap::{face_mesh, shared_mesh},
+        meshes::{face_mesh, shared_mesh},
         trial::{
             Bench, COMPOSED, Tools, Verdict,
             process::{Answer, Budget, Request, refused_whole},

@@ -1,0 +1,117 @@
+//! Meshes for the renderer, shared by all objects of one type and tessellation.
+
+use std::collections::{HashMap, HashSet};
+
+use bevy::{
+    asset::{Assets, Handle, RenderAssetUsages},
+    ecs::prelude::*,
+    mesh::{Indices, Mesh, PrimitiveTopology},
+};
+
+use super::{
+    entities::LitObject,
+    material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
+};
+use crate::{
+    registry::Registry,
+    shape::{PolygonMesh, ShapeEntry},
+};
+
+/// The meshes by object type and tessellation: with shared vertices for modes that interpolate, with
+/// the vertices of each polygon apart for modes that calculate per polygon. Both are made together, so
+/// that changing the mode finds its mesh ready.
+#[derive(Default, Resource)]
+pub struct ShapeMeshes(HashMap<(&'static str, u32), MeshPair>);
+
+#[derive(Clone)]
+pub(super) struct MeshPair {
+    pub(super) shared: Handle<Mesh>,
+    pub(super) faces: Handle<Mesh>,
+}
+
+impl ShapeMeshes {
+    /// The meshes of an object type that is cut so finely.
+    pub(super) fn get(
+        &mut self,
+        shape: &ShapeEntry,
+        tessellation: u32,
+        assets: &mut Assets<Mesh>,
+    ) -> MeshPair {
+        let make = || {
+            let mesh = shape.mesh(tessellation);
+            MeshPair { shared: assets.add(shared_mesh(&mesh)), faces: assets.add(face_mesh(&mesh)) }
+        };
+        self.0.entry((shape.declaration.id, tessellation)).or_insert_with(make).clone()
+    }
+}
+
+/// The mesh for modes that interpolate over shared vertices.
+#[must_use]
+pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
+    let indices = mesh
+        .polygons
+        .iter()
+        .flat_map(|p| p.triangles().iter().flatten().map(|&i| p.corners()[i]))
+        .collect::<Vec<_>>();
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&mesh.positions))
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&mesh.vertex_normals()))
+        .with_inserted_attribute(TANGENT, arrays(&mesh.vertex_tangents()))
+        .with_inserted_indices(Indices::U32(indices))
+}
+
+/// The mesh for modes that calculate per polygon: no vertex is shared, and each knows its polygon.
+#[must_use]
+pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
+    let (vertex_normals, vertex_tangents) = (mesh.vertex_normals(), mesh.vertex_tangents());
+    let (polygon_normals, polygon_tangents) = (mesh.polygon_normals(), mesh.polygon_tangents());
+    let mut positions = Vec::new();
+    let mut normals = Vec::new();
+    let mut tangents = Vec::new();
+    let mut face_normals = Vec::new();
+    let mut face_tangents = Vec::new();
+    let mut face_centres = Vec::new();
+    let mut indices = Vec::new();
+    for (i, (polygon, centre)) in mesh.polygons.iter().zip(mesh.polygon_centres()).enumerate() {
+        let first = positions.len() as u32;
+        for &corner in polygon.corners() {
+            positions.push(mesh.positions[corner as usize]);
+            normals.push(vertex_normals[corner as usize]);
+            tangents.push(vertex_tangents[corner as usize]);
+            face_normals.push(polygon_normals[i]);
+            face_tangents.push(polygon_tangents[i]);
+            face_centres.push(centre);
+        }
+        indices.extend(polygon.triangles().iter().flatten().map(|&i| first + i as u32));
+    }
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&positions))
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&normals))
+        .with_inserted_attribute(TANGENT, arrays(&tangents))
+        .with_inserted_attribute(FACE_NORMAL, arrays(&face_normals))
+        .with_inserted_attribute(FACE_TANGENT, arrays(&face_tangents))
+        .with_inserted_attribute(FACE_CENTRE, arrays(&face_centres))
+        .with_inserted_indices(Indices::U32(indices))
+}
+
+fn arrays(vectors: &[glam::Vec3]) -> Vec<[f32; 3]> {
+    vectors.iter().map(|v| v.to_array()).collect()
+}
+
+/// Lets go of meshes that no object has any more: a slider over the tessellation makes hundreds.
+pub(super) fn forget_unused_meshes(world: &mut World, registry: &Registry) {
+    /// As many may stay for a change back.
+    const SPARE: usize = 16;
+    let mut query = world.query::<&LitObject>();
+    let used: HashSet<_> = query
+        .iter(world)
+        .filter_map(|object| {
+            let shape = registry.shape(&object.0.kind)?;
+            Some((shape.declaration.id, shape.tessellation(object.0.tessellation)))
+        })
+        .collect();
+    let mut meshes = world.resource_mut::<ShapeMeshes>();
+    if meshes.0.len() > used.len() + SPARE {
+        meshes.0.retain(|key, _| used.contains(key));
+    }
+}

@@ -1,0 +1,171 @@
+//! Views that show the scene otherwise than it says: under another reflection model, with other parameters, in
+//! another exposure.
+//!
+//! Such a view has a [`Stage`]: a render layer with a stand-in for every object, which has the material of the
+//! view, and lights of its own. Views without overrides share the objects themselves.
+
+use bevy::{
+    asset::{Assets, Handle},
+    camera::visibility::{RenderLayers, Visibility},
+    ecs::{entity::EntityHashMap, lifecycle::HookContext, prelude::*, world::DeferredWorld},
+    render::storage::ShaderBuffer,
+    transform::components::Transform,
+};
+
+use super::{
+    camera::{GIZMO_LAYER, SCENE_LAYER},
+    entities::SceneEntities,
+    illumination::IlluminationBuffer,
+    material::Attachments,
+    tables::ParameterTables,
+};
+use crate::{
+    optics::TermSelection,
+    parameter::Values,
+    scene::{Display, MAX_OBJECTS, Object, Scene},
+};
+
+/// What a view shows other than the scene says. Stands beside the camera of the view.
+#[derive(Clone, Component, Debug, Default, PartialEq)]
+pub struct Overrides {
+    /// The reflection model of every object.
+    pub reflection_model: Option<String>,
+    /// The shading model of every object.
+    pub shading_model: Option<String>,
+    /// Parameters of every object. Those that are absent stay as they are.
+    pub parameters: Values,
+    /// The terms of the equation that are shown.
+    pub terms: Option<TermSelection>,
+    /// Exposure, tone mapping and encoding.
+    pub display: Option<Display>,
+}
+
+impl Overrides {
+    /// The scene as the view shows it. Its terms are no part of it.
+    #[must_use]
+    pub fn applied(&self, scene: &Scene) -> Scene {
+        let mut shown = Scene { display: self.display_of(scene), ..scene.clone() };
+        shown.objects.iter_mut().for_each(|object| self.dress(object));
+        shown
+    }
+
+    /// Makes an object what the view shows.
+    pub(super) fn dress(&self, object: &mut Object) {
+        if self.reflection_model.is_some() {
+            object.reflection_model.clone_from(&self.reflection_model);
+        }
+        if self.shading_model.is_some() {
+            object.shading_model.clone_from(&self.shading_model);
+        }
+        object.material.0.extend(self.parameters.0.clone());
+    }
+
+    pub(super) fn model_of<'a>(&'a self, scene: &'a Scene, object: &'a Object) -> &'a str {
+        self.reflection_model.as_deref().unwrap_or_else(|| scene.model_of(object))
+    }
+
+    pub(super) fn mode_of<'a>(&'a self, scene: &'a Scene, object: &'a Object) -> &'a str {
+        self.shading_model.as_deref().unwrap_or_else(|| scene.mode_of(object))
+    }
+
+    pub(super) fn display_of(&self, scene: &Scene) -> Display {
+        self.display.unwrap_or(scene.display)
+    }
+}
+
+/// What a view with overrides has of its own. Comes and goes with its [`Overrides`].
+#[derive(Component, Debug)]
+#[component(on_remove = strike)]
+pub struct Stage {
+    layer: usize,
+    pub(super) illumination: Handle<ShaderBuffer>,
+    /// By object.
+    stand_ins: EntityHashMap<Entity>,
+}
+
+impl Stage {
+    pub(super) fn stand_in(&self, object: Entity) -> Option<Entity> {
+        self.stand_ins.get(&object).copied()
+    }
+}
+
+/// Stands for an object, whose child it is, in one view.
+#[derive(Clone, Component, Copy, Debug, PartialEq, Eq)]
+pub struct StandIn {
+    /// The view in which it is seen.
+    pub view: Entity,
+}
+
+/// Gives views with overrides their stages, and takes them from views that have none any more.
+pub(super) fn set_stages(
+    new: Query<Entity, (With<Overrides>, Without<Stage>)>,
+    done: Query<Entity, (With<Stage>, Without<Overrides>)>,
+    stages: Query<&Stage>,
+    mut buffers: ResMut<Assets<ShaderBuffer>>,
+    mut commands: Commands,
+) {
+    for view in &done {
+        commands
+            .entity(view)
+            .remove::<Stage>()
+            .insert(RenderLayers::from_layers(&[SCENE_LAYER, GIZMO_LAYER]));
+    }
+    let mut layers: Vec<_> = stages.iter().map(|stage| stage.layer).collect();
+    for view in &new {
+        let mut free = (GIZMO_LAYER + 1)..;
+        let Some(layer) = free.find(|layer| !layers.contains(layer)) else { continue };
+        layers.push(layer);
+        let stage = Stage {
+            layer,
+            illumination: IlluminationBuffer::without_lights(&mut buffers).0,
+            stand_ins: EntityHashMap::default(),
+        };
+        commands.entity(view).insert((stage, RenderLayers::from_layers(&[layer, GIZMO_LAYER])));
+    }
+}
+
+/// Takes down what only this view needed.
+fn strike(mut world: DeferredWorld, context: HookContext) {
+    let view = context.entity;
+    let Some(stage) = world.get::<Stage>(view) else { return };
+    let illumination = stage.illumination.id();
+    let stand_ins: Vec<_> = stage.stand_ins.values().copied().collect();
+    world.commands().queue(move |world: &mut World| {
+        for stand_in in stand_ins {
+            // Those of objects that are gone went with them.
+            let _ = world.try_despawn(stand_in);
+        }
+        world.resource_mut::<ParameterTables>().forget(view);
+        for attachment in world.resource::<Attachments>().all() {
+            (attachment.forget)(world, illumination);
+        }
+    });
+}
+
+/// Makes the stand-ins of a view for objects that have none.
+pub(super) fn stand_ins(world: &mut World, view: Entity) {
+    let Some(mut stage) = world.get_mut::<Stage>(view) else { return };
+    let (layer, mut known) = (stage.layer, std::mem::take(&mut stage.bypass_change_detection().stand_ins));
+    world.resource_scope(|world, entities: Mut<SceneEntities>| {
+        let objects = &entities.objects[..entities.objects.len().min(MAX_OBJECTS)];
+        if known.len() > objects.len() {
+            known.retain(|_, stand_in| world.get_entity(*stand_in).is_ok());
+        }
+        for &object in objects {
+            if known.contains_key(&object) || world.get_entity(object).is_err() {
+                continue;
+            }
+            let parts = (
+                StandIn { view },
+                ChildOf(object),
+                Transform::IDENTITY,
+                Visibility::Inherited,
+                RenderLayers::layer(layer),
+            );
+            known.insert(object, world.spawn(parts).id());
+        }
+    });
+    if let Some(mut stage) = world.get_mut::<Stage>(view) {
+        stage.bypass_change_detection().stand_ins = known;
+    }
+}
