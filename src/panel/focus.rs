@@ -42,8 +42,8 @@ pub(super) fn remember_regions(ctx: &Context) {
     });
 }
 
-/// What can have the focus, in the order of reading, as it was shown last; also what is scrolled out of sight.
-pub(super) fn stops(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
+/// What can have the focus, in the order of the Tab key, as it was shown last; also what is scrolled out of sight.
+fn drawn(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
     let mut stops: Vec<WidgetRect> = ctx.viewport(|viewport| {
         let widgets = &viewport.prev_pass.widgets;
         // A menu takes clicks as a whole, but is no stop.
@@ -55,6 +55,12 @@ pub(super) fn stops(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<Wi
     // Nor is an area that scrolls.
     let centres: Vec<_> = stops.iter().map(|w| w.rect.center()).collect();
     stops.retain(|w| centres.iter().filter(|centre| w.rect.contains(**centre)).count() < 3);
+    stops
+}
+
+/// The same in the order of reading.
+pub(super) fn stops(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
+    let mut stops = drawn(ctx, keep);
     stops.sort_by(|a, b| {
         (a.rect.center().y.round(), a.rect.left())
             .partial_cmp(&(b.rect.center().y.round(), b.rect.left()))
@@ -79,13 +85,15 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
     let Regions(regions) = ctx.data(|d| d.get_temp(memory())).unwrap_or_default();
     let firsts: Vec<Option<WidgetRect>> = regions
         .iter()
-        .map(|(_, rect)| {
+        .map(|(region, rect)| {
             let within = |w: &WidgetRect| {
                 w.layer_id.order == Order::Background
                     && w.interact_rect.is_positive()
                     && rect.contains(w.rect.center())
             };
-            stops(ctx, within).first().copied()
+            // From the first one over the picture, Tab reaches all of them.
+            let all = if *region == Region::Picture { drawn(ctx, within) } else { stops(ctx, within) };
+            all.first().copied()
         })
         .collect();
     let here = focused(ctx).and_then(|w| regions.iter().position(|(_, r)| r.contains(w.rect.center())));

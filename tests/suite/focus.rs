@@ -326,10 +326,10 @@ fn f6_reaches_the_examples_and_the_badges_and_shows_that_the_picture_has_the_key
     assert_eq!(focused(&bench), None);
     assert!(around(&mut bench));
     bench.key(Key::F6, Modifiers::NONE);
+    assert!(name(&bench).starts_with("Outside the view: "), "{}", name(&bench));
+    bench.key(Key::Tab, Modifiers::NONE);
     assert_eq!(name(&bench), "Not what it seems");
     assert!(bench.says("The whole story.") && !around(&mut bench));
-    bench.key(Key::Tab, Modifiers::NONE);
-    assert!(name(&bench).starts_with("Outside the view: "), "{}", name(&bench));
     bench.key(Key::F6, Modifiers::NONE);
     assert!(focused(&bench).is_some_and(|r| r.top() < 40.0), "the first panel again");
 }
