@@ -90,6 +90,8 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
                 w.layer_id.order == Order::Background
                     && w.interact_rect.is_positive()
                     && rect.contains(w.rect.center())
+                    // The edges of panels, which are dragged.
+                    && !(*region == Region::Picture && w.sense.senses_drag())
             };
             // From the first one over the picture, Tab reaches all of them.
             let all = if *region == Region::Picture { drawn(ctx, within) } else { stops(ctx, within) };
