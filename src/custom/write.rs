@@ -41,7 +41,7 @@ pub struct BadName {
 }
 
 /// The identifier of a model that people call by a name: `Student toon (2)` is `student_toon_2`. Spaces and signs
-/// become underscores; letters beyond a–z, dots and slashes are not guessed at.
+/// become underscores; of letters beyond a–z, dots and slashes only the name that would do makes something.
 ///
 /// # Errors
 /// The rule that the name breaks, and a name that would do.
@@ -56,11 +56,18 @@ pub fn id_of_name(name: &str) -> Result<String, BadName> {
     identifier(&id)
         .and_then(|()| if name.chars().all(plain) { Ok(id) } else { Err(identifier_rule()) })
         .map_err(|rule| {
-            let near: String = joined(name).chars().skip_while(|c| !c.is_ascii_lowercase()).collect();
+            let near: String = joined(&latin(name)).chars().skip_while(|c| !c.is_ascii_lowercase()).collect();
             let near: String = near.chars().take(LONGEST_ID).collect();
             let near = near.trim_end_matches('_');
             BadName { rule, instead: identifier(near).is_ok().then(|| near.to_owned()) }
         })
+}
+
+/// A name in the letters a–z: umlauts as Germans write them without, others as they sound.
+fn latin(name: &str) -> String {
+    let umlauts = [('ä', "ae"), ('ö', "oe"), ('ü', "ue"), ('Ä', "Ae"), ('Ö', "Oe"), ('Ü', "Ue")];
+    let name = umlauts.iter().fold(name.to_owned(), |name, (letter, two)| name.replace(*letter, two));
+    deunicode::deunicode(&name)
 }
 
 /// Lower case, with one underscore for whatever stands between letters and digits.

@@ -72,25 +72,43 @@ pub struct LawCheck {
     pub outcome: Option<Result<LawReport, String>>,
 }
 
+/// Why a name cannot be taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NameProblem {
+    /// A sentence.
+    pub why: String,
+    /// An identifier that is near to it and free.
+    pub instead: Option<String>,
+}
+
 /// The identifier for a new model that is to be called by a name.
 ///
 /// # Errors
-/// A sentence with the rule that the name breaks, and a name that would do.
-pub fn check_name(name: &str, registry: &Registry) -> Result<String, String> {
+/// The rule that the name breaks, and a name that would do.
+pub fn check_name(name: &str, registry: &Registry) -> Result<String, NameProblem> {
+    let problem = |why: String, instead: Option<String>| Err(NameProblem { why, instead });
     if name.trim().is_empty() {
-        return Err("Type a name, such as My velvet.".to_owned());
+        return problem("Type a name, such as My velvet.".to_owned(), None);
     }
-    let id = id_of_name(name).map_err(|bad| {
-        let instead = bad.instead.map_or_else(String::new, |id| format!(": {id} would do"));
-        format!("Only letters a–z, digits and spaces, beginning with a letter, at most 40{instead}.")
-    })?;
+    let id = match id_of_name(name) {
+        Ok(id) => id,
+        Err(bad) => {
+            let instead = bad.instead.map(|id| free_id(&id, registry));
+            let hint = instead.as_ref().map_or_else(String::new, |id| format!(": “{id}” would do"));
+            let rule = "Only letters a–z, digits and spaces, beginning with a letter, at most 40";
+            return problem(format!("{rule}{hint}."), instead);
+        }
+    };
     // A file that gives no model is a file too.
-    let broken = registry.broken_model(&id).map(|_| source_path(&id));
-    let taken = registry.model(&id).map(|m| m.declaration.name.to_owned()).or(broken);
-    match taken {
-        Some(by) => Err(format!("{by} is called {id} already; {} is free.", free_id(&id, registry))),
-        None => Ok(id),
-    }
+    let taken = if registry.model(&id).is_some() {
+        format!("There is already a model “{id}”")
+    } else if registry.broken_model(&id).is_some() {
+        format!("There is already a file {}", source_path(&id))
+    } else {
+        return Ok(id);
+    };
+    let free = free_id(&id, registry);
+    problem(format!("{taken}; “{free}” is free."), Some(free))
 }
 
 /// An id that no model has: the one given, or that with a number.
@@ -335,13 +353,18 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
             );
             ui.add(egui::Label::new(theme::small(ui, format!("Will be written to {path}"))).wrap());
         }
-        Err(why) => {
+        Err(NameProblem { why, instead }) => {
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), egui::Sense::hover());
                 icon::severity(ui.painter(), rect.center(), 5.5, Severity::Error, &palette);
                 ui.add(egui::Label::new(RichText::new(why).small().color(palette.error)).wrap());
             });
+            if let Some(id) = instead
+                && ui.button(format!("Use “{id}”")).clicked()
+            {
+                actions.push(Action::Author(Ask::Type(id.clone())));
+            }
         }
     }
     let what = "It is selected once created, and listed under “Custom models”. The first lines of the file declare its name and \
@@ -387,26 +410,26 @@ mod tests {
         }
         for (bad, word) in [
             ("", "such as My velvet"),
-            ("2 fast", "fast would do"),
-            ("../evil", "evil would do"),
-            ("velvet.wgsl", "velvet_wgsl would do"),
-            ("größe", "gr_e would do"),
-            ("漢字", "at most 40."),
-            (&"x".repeat(41), &format!("{} would do", "x".repeat(40))),
+            ("2 fast", "“fast” would do"),
+            ("../evil", "“evil” would do"),
+            ("velvet.wgsl", "“velvet_wgsl” would do"),
+            ("größe", "“groesse” would do"),
+            ("Évolué", "“evolue” would do"),
+            ("漢字", "“han_zi” would do"),
+            ("42", "at most 40."),
+            (&"x".repeat(41), &format!("“{}” would do", "x".repeat(40))),
         ] {
-            let said = check_name(bad, &registry).expect_err(bad);
+            let said = check_name(bad, &registry).expect_err(bad).why;
             assert!(said.contains(word), "{bad}: {said}");
             assert!(id_of_name(bad).is_err(), "{bad}");
         }
         let said = check_name("Phong", &registry).expect_err("there is one");
-        assert!(said.contains("Phong is called phong already; phong_2 is free"), "{said}");
+        assert_eq!(said.why, "There is already a model “phong”; “phong_2” is free.");
+        assert_eq!(said.instead.as_deref(), Some("phong_2"));
         assert!(check_name(&"x".repeat(40), &registry).is_ok());
         let mut registry = Registry::builtin();
         registry.mark_broken("my_velvet", "why".to_owned());
         let said = check_name("My velvet", &registry).expect_err("there is a file");
-        assert!(
-            said.contains("models/my_velvet.wgsl is called my_velvet already; my_velvet_2 is free"),
-            "{said}"
-        );
+        assert_eq!(said.why, "There is already a file models/my_velvet.wgsl; “my_velvet_2” is free.");
     }
 }

@@ -129,7 +129,12 @@ impl Dialogs {
         }
         self.folder.update(ctx);
         for dialog in [&self.open, &self.save, &self.folder] {
-            lighten(ctx, dialog, &palette);
+            let layer = LayerId::new(Order::Middle, dialog.get_window_id());
+            lighten(ctx, layer, &palette);
+            // It keeps the pointer to itself, but not the keys.
+            if *dialog.state() == DialogState::Open {
+                ctx.memory_mut(|m| m.set_modal_layer(layer));
+            }
         }
         ctx.set_global_style(plain);
         actions.extend(self.folder.take_picked().map(|folder| Action::Author(Ask::Export(folder))));
@@ -167,7 +172,7 @@ fn look(ui: &mut Ui, source: Option<Source>, registry: &Registry) {
 }
 
 /// The dialogs paint their fields on black in every theme, and offer no other colour.
-fn lighten(ctx: &Context, dialog: &FileDialog, palette: &Palette) {
+fn lighten(ctx: &Context, layer: LayerId, palette: &Palette) {
     const BLACK: Color32 = Color32::from_black_alpha(250);
     fn visit(shape: &mut Shape, to: Color32) {
         match shape {
@@ -176,7 +181,6 @@ fn lighten(ctx: &Context, dialog: &FileDialog, palette: &Palette) {
             _ => {}
         }
     }
-    let layer = LayerId::new(Order::Middle, dialog.get_window_id());
     ctx.graphics_mut(|graphics| {
         let Some(list) = graphics.get_mut(layer) else { return };
         for i in 0..list.next_idx().0 {

@@ -137,10 +137,13 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
     }
 }
 
+/// Width and height of a button, points.
+pub(super) const SIZE: f32 = 22.0;
+
 /// A button with nothing but a picture. `says` is its tooltip and its name.
 pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
     let palette = Palette::here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(22.0, 22.0), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(SIZE, SIZE), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, ui.is_enabled(), says));
     if ui.is_rect_visible(rect) {
         let hot = response.hovered() || response.has_focus();

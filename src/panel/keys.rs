@@ -158,7 +158,8 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
 /// What the mouse does, and keys that belong to a widget: for the list.
 pub const ELSEWHERE: &[(&str, &str, &str)] = &[
     ("Window", "F6, Shift+F6", "To the next panel, to the one before; Tab moves on within it, Esc leaves"),
-    ("Window", "F10, Alt and a letter", "The menus; arrows and Enter choose"),
+    ("Window", "F10, Alt and a letter", "The menus; arrows walk, Enter chooses"),
+    ("In the scene list", "↑ ↓", "Select the part above, the one below"),
     ("In a field", "↑ ↓", "A little more, a little less; with Shift ten times that"),
     ("In a field", "Enter, Esc", "Keep the value; go back to the one before"),
     ("On a slider", "← →", "A little less, a little more; Home and End: the ends"),

@@ -379,9 +379,8 @@ fn arrows(
             painter.galley(Align2::CENTER_CENTER.anchor_size(middle, text.size()).min, text, colour);
         }
         let place = Rect::from_center_size(at, Vec2::splat(3.0 * ARROW));
-        // Not a stop for the Tab key: the list has all lights.
         let id = Id::new(("light outside the view", lights[0]));
-        let response = ui.interact(place, id, Sense::CLICK).on_hover_cursor(CursorIcon::PointingHand);
+        let response = ui.interact(place, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
         let name = |i: usize| lab.name_of(Selection::Light(i), registry);
         let mut names: Vec<_> = lights.iter().take(NAMES).map(|i| name(*i)).collect();
         if lights.len() > NAMES {

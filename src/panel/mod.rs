@@ -24,6 +24,7 @@ use bevy_egui::{
 
 use crate::registry::Registry;
 pub use dialogs::Dialogs;
+use focus::Region;
 use state::{Action, Effect, Lab, LabEffect, Severity, ViewChange};
 use theme::Palette;
 
@@ -45,6 +46,7 @@ pub mod knob;
 pub mod laws;
 pub mod marks;
 pub mod maths;
+mod menu;
 pub mod messages;
 pub mod model_override;
 pub mod picture;
@@ -187,7 +189,8 @@ pub fn show(
     lab.panels = panels.list();
     lab.notice_shaders(registry);
     let palette = Palette::of(&lab.view);
-    focus::walk_menus(&ctx);
+    menu::walk(&ctx);
+    focus::reveal(&ctx);
     focus::forget_regions(&ctx);
     lab.zoom = ctx.zoom_factor();
     let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, lab, registry) };
@@ -204,22 +207,24 @@ pub fn show(
         let shown = egui::Panel::top(panel.id())
             .frame(frame)
             .show(ui, |ui| actions.extend(panel.show(ui, lab, registry)));
-        focus::region(&ctx, Place::Top, shown.response.rect);
+        focus::region(&ctx, Region::Panel(Place::Top), shown.response.rect);
     }
     for panel in panels.at(Place::Status).filter(|_| !presenting) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 2.0));
         let shown = egui::Panel::bottom(panel.id())
             .frame(frame)
             .show(ui, |ui| actions.extend(panel.show(ui, lab, registry)));
-        focus::region(&ctx, Place::Status, shown.response.rect);
+        focus::region(&ctx, Region::Panel(Place::Status), shown.response.rect);
     }
+    // Each size of everything has widths of its own. It takes effect a frame after it was chosen.
+    let zoom = zoom_percent(&ctx);
     let mut sizes = (lab.view.left_width, lab.view.right_width, lab.view.bottom_height);
     if lab.view.bottom_open && !presenting {
         bottom(ui, lab, registry, panels, &palette, whole, &mut sizes.2, &mut actions);
     }
     if lab.view.left_open && !presenting {
         let most = 0.26 * whole.width();
-        let panel = egui::Panel::left(Id::new(("left", lab.view.scale)))
+        let panel = egui::Panel::left(Id::new(("left", zoom)))
             .frame(theme::panel_frame(&palette, vec2(0.0, 4.0)))
             .default_size(sizes.0.min(most))
             .size_range(120f32.min(most)..=most);
@@ -228,12 +233,12 @@ pub fn show(
                 actions.extend(panel.show(ui, lab, registry));
             }
         });
-        focus::region(&ctx, Place::Left, response.response.rect);
+        focus::region(&ctx, Region::Panel(Place::Left), response.response.rect);
         sizes.0 = response.response.rect.width();
     }
     if lab.view.right_open && !presenting {
         let most = 0.45 * whole.width();
-        let panel = egui::Panel::right(Id::new(("right", lab.view.scale)))
+        let panel = egui::Panel::right(Id::new(("right", zoom)))
             .frame(Frame::new().fill(palette.panel).inner_margin(Margin {
                 left: 12,
                 right: 4,
@@ -247,7 +252,7 @@ pub fn show(
                 actions.extend(panel.show(ui, lab, registry));
             }
         });
-        focus::region(&ctx, Place::Right, response.response.rect);
+        focus::region(&ctx, Region::Panel(Place::Right), response.response.rect);
         sizes.1 = response.response.rect.width();
     }
     remember_sizes(&ctx, lab, sizes, &mut actions);
@@ -256,6 +261,7 @@ pub fn show(
         actions.extend(welcome::strip(ui, lab, registry));
     }
     let rect = ui.available_rect_before_wrap();
+    focus::region(&ctx, Region::Picture, rect);
     lab.picture_rect = rect;
     let (asked, covered) = picture::overlays(ui, rect, lab, registry);
     actions.extend(asked);
@@ -263,7 +269,7 @@ pub fn show(
     actions.extend(dialogs.update(&ctx, lab, registry));
     steering(&ctx, lab, rect, &covered, dialogs.is_open());
     focus::remember_regions(&ctx);
-    focus::show(&ctx, &palette);
+    focus::show(&ctx, &palette, rect);
 
     let mut effects = Vec::new();
     for action in actions {
@@ -279,6 +285,11 @@ pub fn show(
     }
     effects.retain(|effect| !matches!(effect, Effect::CopyText(_)));
     effects
+}
+
+/// The size of everything that is in force, per cent.
+fn zoom_percent(ctx: &egui::Context) -> u32 {
+    (100.0 * ctx.zoom_factor()).round() as u32
 }
 
 /// A drag is one step of the history, and so is typing in one field.
@@ -306,7 +317,8 @@ fn bottom(
     actions: &mut Vec<Action>,
 ) {
     let most = 0.6 * whole.height();
-    let strip = egui::Panel::bottom(Id::new(("bottom", lab.view.scale)))
+    let zoom = zoom_percent(ui.ctx());
+    let strip = egui::Panel::bottom(Id::new(("bottom", zoom)))
         .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
         .resizable(true)
         .default_size(height.min(most))
@@ -342,7 +354,7 @@ fn bottom(
         }
         ui.take_available_height();
     });
-    focus::region(ui.ctx(), Place::Bottom, response.response.rect);
+    focus::region(ui.ctx(), Region::Panel(Place::Bottom), response.response.rect);
     *height = response.response.rect.height();
 }
 
@@ -376,6 +388,8 @@ fn steering(ctx: &egui::Context, lab: &mut Lab, rect: Rect, covered: &[Rect], di
             && ctx.layer_id_at(p).is_none_or(|l| l.order == egui::Order::Background)
     });
     lab.pointer_in_picture = over && !busy && !ctx.egui_is_using_pointer();
+    // The chooser opens and closes by an action, and is not among egui's.
+    lab.popup_open = egui::Popup::is_any_open(ctx) || lab.view.chooser_open;
     lab.keyboard_free = !busy && ctx.memory(|m| m.focused()).is_none();
 }
 

@@ -202,9 +202,13 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab) {
             egui::StrokeKind::Inside,
         );
         icon::severity(&painter, pos2(place.left() + 14.0, place.center().y), 6.0, badge.severity, &palette);
-        let response = ui.interact(place, ui.id().with(("badge", i)), Sense::hover());
+        let response = ui.interact(place, ui.id().with(("badge", i)), Sense::hover() | Sense::FOCUSABLE);
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &badge.text));
         if !badge.help.is_empty() {
+            // By key there is no other way to its help.
+            if response.has_focus() {
+                response.show_tooltip_text(&badge.help);
+            }
             response.on_hover_text(&badge.help);
         }
         y = place.bottom() + 4.0;

@@ -87,6 +87,9 @@ pub struct Lab {
     /// Whether the pointer is over the picture with no panel, menu or dialog between; written by the
     /// panels. What turns the camera must ask here first.
     pub pointer_in_picture: bool,
+    /// True if a menu or a list is open, which the next click elsewhere closes and does nothing else; written by the
+    /// panels.
+    pub popup_open: bool,
     /// Whether keys may steer the picture: no field has the focus and no question is open; written by
     /// the panels.
     pub keyboard_free: bool,
@@ -112,6 +115,8 @@ pub struct Lab {
     /// What the document had and no model takes at present.
     pub(super) aside: Aside,
     known_terms: KnownTerms,
+    /// The step that a message offers to undo: how many were done with it, and its name.
+    undo_offered: Option<(usize, Option<String>)>,
     /// True if the camera has left the observer, fed by the app.
     pub camera_left: bool,
 }
@@ -607,6 +612,7 @@ impl Lab {
             picture_rect: egui::Rect::NOTHING,
             zoom: 1.0,
             pointer_in_picture: false,
+            popup_open: false,
             keyboard_free: true,
             panels: Vec::new(),
             renaming: None,
@@ -619,6 +625,7 @@ impl Lab {
             seen_troubles: Vec::new(),
             aside: Aside::default(),
             known_terms: KnownTerms::default(),
+            undo_offered: None,
             camera_left: false,
             document: Document::new(scene),
         };
@@ -734,6 +741,20 @@ impl Lab {
         }
     }
 
+    /// How many steps are done, and the last one's name.
+    fn last_step(&self) -> (usize, Option<String>) {
+        let done = self.document.done();
+        let last = done.checked_sub(1).and_then(|last| self.document.steps().nth(last));
+        (done, last.map(str::to_owned))
+    }
+
+    /// No message offers any more to undo the last step.
+    fn withdraw_undo(&mut self) {
+        let undo = |note: &Note| note.offer.as_ref().is_some_and(|(_, action)| **action == Action::Undo);
+        self.messages.iter_mut().filter(|note| undo(note)).for_each(|note| note.offer = None);
+        self.undo_offered = None;
+    }
+
     /// The worst severity among the messages.
     #[must_use]
     pub fn worst(&self) -> Option<Severity> {
@@ -787,6 +808,15 @@ impl Lab {
 
     /// Carries out an action. Returns what needs files, entities or the operating system.
     pub fn apply(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
+        let effects = self.carry_out(action, registry);
+        // It would undo something else.
+        if self.undo_offered.as_ref().is_some_and(|step| *step != self.last_step()) {
+            self.withdraw_undo();
+        }
+        effects
+    }
+
+    fn carry_out(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
         match action {
             Action::New => return self.unless_unsaved(Action::New, |lab| lab.start_new()),
             Action::Quit => return self.unless_unsaved(Action::Quit, |_| vec![Effect::Quit]),
@@ -1025,8 +1055,10 @@ impl Lab {
     }
 
     fn remember_file(&mut self, path: &Path) {
-        self.recent_files.retain(|p| p != path);
-        self.recent_files.insert(0, path.to_owned());
+        // The next start may be in another folder.
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        self.recent_files.retain(|p| *p != path);
+        self.recent_files.insert(0, path);
         self.recent_files.truncate(RECENT_FILES);
     }
 
@@ -1205,15 +1237,25 @@ impl Lab {
             Selection::Object(_) if self.document.objects.len() <= 1 => {
                 self.say(Severity::Info, "Can’t delete the last object: a scene needs at least one.");
             }
-            Selection::Light(i) if i < self.document.lights.len() => {
+            Selection::Light(_) | Selection::Object(_) if self.exists(part) => {
+                let text = format!("Deleted “{}”.", self.name_of(part, registry));
                 self.document.remove(part, registry);
-                self.select_new(Selection::Light(i.min(self.document.lights.len() - 1)));
+                // What was selected stays so; in the place of what is gone comes its neighbour.
+                let (lights, objects) = (self.document.lights.len(), self.document.objects.len());
+                self.select_new(match (self.selection, part) {
+                    (Selection::Light(at), Selection::Light(gone)) => {
+                        Selection::Light((at - usize::from(at > gone)).min(lights - 1))
+                    }
+                    (Selection::Object(at), Selection::Object(gone)) => {
+                        Selection::Object((at - usize::from(at > gone)).min(objects - 1))
+                    }
+                    (other, _) => other,
+                });
                 self.renaming = None;
-            }
-            Selection::Object(i) if i < self.document.objects.len() => {
-                self.document.remove(part, registry);
-                self.select_new(Selection::Object(i.min(self.document.objects.len() - 1)));
-                self.renaming = None;
+                self.withdraw_undo();
+                self.undo_offered = Some(self.last_step());
+                let offer = Some(("Undo", Box::new(Action::Undo)));
+                self.note(Note { severity: Severity::Info, text, offer });
             }
             Selection::Observer => {
                 self.say(Severity::Info, "The observer stays: a scene has exactly one.");

@@ -90,7 +90,9 @@ impl Panel for StatusLine {
 /// The last message, if it is good news and still true.
 fn latest(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     let Some(message) = lab.messages.last().filter(|m| m.severity == Severity::Info) else { return };
-    if lab.view.bottom_open || lab.is_dirty() {
+    // An undo is offered as long as it undoes what the message is about.
+    let undo = message.offer.as_ref().is_some_and(|(_, action)| **action == Action::Undo);
+    if lab.view.bottom_open || (lab.is_dirty() && !undo) {
         return;
     }
     let room = (ui.available_width() - 360.0).max(80.0);

@@ -5,9 +5,10 @@ use bevy_egui::egui::{self, Align, Button, Key, Layout, RichText, Ui, WidgetInfo
 use super::{
     Panel, Place,
     author::{Ask, SHADER_TAB},
-    chooser, focus,
+    chooser,
     history::HISTORY_TAB,
     keys::{self, Binding},
+    menu,
     state::{Action, Lab, ThemeChoice, ViewChange},
     theme::{self, Palette},
     welcome,
@@ -142,7 +143,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             ui.set_width(MENU_WIDTH);
             item(ui, "New default scene", Action::New, actions);
             item(ui, "Open…", Action::OpenDialog, actions);
-            ui.menu_button("Open recent", |ui| {
+            menu::submenu(ui, "Open recent", |ui| {
                 if lab.recent_files.is_empty() {
                     ui.weak("Files that you open or save appear here.");
                     return;
@@ -159,7 +160,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                 ui.separator();
                 item(ui, "Clear the list", Action::ClearRecent, actions);
             });
-            ui.menu_button("Examples", |ui| welcome::menu(ui, registry, actions));
+            menu::submenu(ui, "Examples", |ui| welcome::menu(ui, registry, actions));
             ui.separator();
             item(ui, "Save", Action::Save, actions);
             item(ui, "Save as…", Action::SaveAsDialog, actions);
@@ -181,7 +182,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             let history = Action::View(ViewChange::BottomTab(HISTORY_TAB.to_owned()));
             item(ui, "History…", history, actions);
             ui.separator();
-            ui.menu_button("Add a light", |ui| {
+            menu::submenu(ui, "Add a light", |ui| {
                 for light in registry.lights() {
                     let d = light.declaration;
                     if ui.button(format!("{}  {}", d.glyph, d.name)).on_hover_text(d.summary).clicked() {
@@ -190,7 +191,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                     }
                 }
             });
-            ui.menu_button("Add an object", |ui| {
+            menu::submenu(ui, "Add an object", |ui| {
                 for shape in registry.shapes() {
                     let d = shape.declaration;
                     if ui.button(format!("{}  {}", d.glyph, d.name)).on_hover_text(d.summary).clicked() {
@@ -221,7 +222,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                 item(ui, "Focus selection", Action::FocusSelection, actions);
                 item(ui, "Set observer to this view", Action::ObserverFromView, actions);
                 ui.separator();
-                ui.menu_button("Terms of the equation", |ui| {
+                menu::submenu(ui, "Terms of the equation", |ui| {
                     for terms in lab.offered_terms(registry) {
                         let name = match terms {
                             TermSelection::All => "All terms".to_owned(),
@@ -279,12 +280,12 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                     check(ui, panel.title, shown, key, view(change), actions);
                 }
                 ui.separator();
-                ui.menu_button(format!("Size of everything: {} %", v.scale), |ui| {
+                menu::submenu(ui, format!("Size of everything: {} %", v.scale), |ui| {
                     item(ui, "Larger", view(ViewChange::Larger), actions);
                     item(ui, "Smaller", view(ViewChange::Smaller), actions);
                     item(ui, "100 %", view(ViewChange::Scale(100)), actions);
                 });
-                ui.menu_button("Theme", |ui| {
+                menu::submenu(ui, "Theme", |ui| {
                     for (choice, name) in [(ThemeChoice::Dark, "Dark"), (ThemeChoice::Light, "Light")] {
                         if ui.radio(v.theme == choice, name).clicked() {
                             actions.push(view(ViewChange::Theme(choice)));
@@ -308,7 +309,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             item(ui, "About", Action::View(ViewChange::About(true)), actions);
         });
         let bar = [(Key::F, file), (Key::E, edit), (Key::V, view_menu), (Key::H, help)];
-        focus::open_menus(ui.ctx(), &bar.map(|(key, menu)| (key, menu.response)));
+        menu::bar(ui.ctx(), &bar.map(|(key, menu)| (key, menu.response)));
     });
 }
 
@@ -333,11 +334,12 @@ fn shading(
         segmented(ui, "Shading", names, chosen, tip)
     } else {
         let shown = chosen.map_or("–", |i| names[i]);
+        let mut by_key = false;
         let menu =
             egui::ComboBox::from_id_salt("shading").width(88.0).selected_text(shown).show_ui(ui, |ui| {
                 let mut picked = None;
                 for (i, name) in names.iter().enumerate() {
-                    let response = ui.selectable_label(chosen == Some(i), *name);
+                    let response = menu::choice(ui, chosen == Some(i), *name, &mut by_key);
                     if response.clicked() {
                         picked = Some(i);
                     }
@@ -347,6 +349,9 @@ fn shading(
             });
         menu.response
             .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Shading: {shown}")));
+        if by_key {
+            menu.response.request_focus();
+        }
         menu.inner.flatten()
     };
     if let Some(i) = picked {

@@ -1,7 +1,7 @@
 //! The tree at the left: room, observer, lights, objects.
 
 use bevy_egui::egui::{
-    self, Align2, FontId, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, TextStyle, Ui, WidgetInfo,
+    self, Align2, FontId, Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, TextStyle, Ui, WidgetInfo,
     WidgetType, pos2, vec2,
 };
 
@@ -54,6 +54,7 @@ impl Panel for Tree {
             i if i == 3 + lights => Row::Objects,
             i => Row::Part(Selection::Object(i - 4 - lights)),
         };
+        actions.extend(step(ui, lab).map(Action::Select));
         let height = 26.0;
         ui.spacing_mut().item_spacing.y = 0.0;
         let total = 4 + lights + objects;
@@ -117,6 +118,32 @@ impl Panel for Tree {
     }
 }
 
+fn row_id(part: Selection) -> Id {
+    Id::new(("row", part))
+}
+
+/// The part that an arrow key leads to, from the row that has the focus; it gets the focus.
+fn step(ui: &Ui, lab: &Lab) -> Option<Selection> {
+    let focus = ui.memory(egui::Memory::focused)?;
+    let keys = [Key::ArrowUp, Key::ArrowDown];
+    let way = keys.map(|key| ui.input(|i| i.num_presses(key)));
+    if way == [0, 0] || ui.input(|i| i.modifiers.any()) || egui::Popup::is_any_open(ui.ctx()) {
+        return None;
+    }
+    let lights = (0..lab.document.lights.len()).map(Selection::Light);
+    let objects = (0..lab.document.objects.len()).map(Selection::Object);
+    let parts: Vec<_> =
+        [Selection::Room, Selection::Observer].into_iter().chain(lights).chain(objects).collect();
+    let at = parts.iter().position(|part| row_id(*part) == focus)?;
+    let next = parts[(at + way[1]).saturating_sub(way[0]).min(parts.len() - 1)];
+    // Else egui moves it once more, by geometry.
+    ui.memory_mut(|m| {
+        m.move_focus(egui::FocusDirection::None);
+        m.request_focus(row_id(next));
+    });
+    Some(next)
+}
+
 fn add_item(ui: &mut Ui, glyph: &str, name: &str, summary: &str, action: Action, actions: &mut Vec<Action>) {
     let response = ui.button(format!("{glyph}  {name}"));
     let response = if summary.is_empty() { response } else { response.on_hover_text(summary) };
@@ -163,8 +190,7 @@ fn part_row(
     let selected = lab.selection == part;
     let name = lab.name_of(part, registry);
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
-    let id = ui.id().with(("row", part));
-    let response = ui.interact(rect, id, Sense::click());
+    let response = ui.interact(rect, row_id(part), Sense::click());
     response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, &name));
     let hovered = ui.rect_contains_pointer(rect);
     let painter = ui.painter_at(rect);
@@ -225,7 +251,8 @@ fn part_row(
         toggle(ui, centre(36.0), hovered, part, there, &name, actions);
         colour_dot(ui, centre(12.0), rgb, part, &name, actions);
     }
-    if response.clicked() {
+    // The menu of a row is about what is selected.
+    if response.clicked() || response.secondary_clicked() {
         actions.push(Action::Select(part));
     }
     if nested && response.has_focus() && ui.input(|i| i.key_pressed(Key::Delete)) {

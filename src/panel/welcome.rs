@@ -6,6 +6,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
+    focus::{self, Region},
     icon::{self, Icon},
     keys,
     preview::{self, Source},
@@ -31,7 +32,8 @@ pub fn strip(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         return actions;
     }
     let palette = Palette::here(ui);
-    egui::Panel::bottom("examples").frame(theme::panel_frame(&palette, vec2(12.0, 4.0))).show(ui, |ui| {
+    let panel = egui::Panel::bottom("examples").frame(theme::panel_frame(&palette, vec2(12.0, 4.0)));
+    let shown = panel.show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.label(theme::strong(ui, "Examples"));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -67,6 +69,7 @@ pub fn strip(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
             });
         });
     });
+    focus::region(ui.ctx(), Region::Examples, shown.response.rect);
     actions
 }
 

@@ -42,7 +42,7 @@ pub(super) fn pick(
 ) {
     let pointer = window.cursor_position();
     if buttons.just_pressed(MouseButton::Left) {
-        *pressed_at = pointer.filter(|_| lab.pointer_in_picture);
+        *pressed_at = pointer.filter(|_| lab.pointer_in_picture && !lab.popup_open);
     }
     if !buttons.just_released(MouseButton::Left) {
         return;

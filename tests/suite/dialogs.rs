@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use bevy_egui::egui::{Color32, Event, Id, Key, Modifiers, Shape, vec2};
+use bevy_egui::egui::{Color32, Event, Id, Key, Modifiers, Order, Shape, vec2};
 use lights_camera_models::{
     optics::colour::srgb_decode,
     panel::{
@@ -106,4 +106,31 @@ fn the_selected_scene_is_shown_with_its_description_and_what_is_wrong_with_it() 
     select(&mut bench, "broken.json");
     until(&mut bench, "the mistake", |b| b.says("lights"));
     assert!(bench.tree.iter().any(|s| s.label.contains("broken.json:1")), "where the mistake is");
+}
+
+#[test]
+fn the_keys_stay_in_the_dialog() {
+    let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
+    let key = Event::Key {
+        key: Key::F,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: Modifiers::ALT,
+    };
+    bench.frame(vec![Event::ModifiersChanged(Modifiers::ALT), key, Event::Text("f".to_owned())]);
+    bench.frame(vec![Event::ModifiersChanged(Modifiers::NONE)]);
+    bench.settle();
+    assert!(!bench.says("New default scene"), "Alt+F opens no menu over the dialog");
+    assert!(bench.says("shapes.json"), "and its letter is not searched for");
+    for _ in 0..40 {
+        bench.key(Key::Tab, Modifiers::NONE);
+        let focus = bench.ctx.memory(bevy_egui::egui::Memory::focused);
+        let layer =
+            focus.and_then(|id| bench.ctx.viewport(|v| v.prev_pass.widgets.get(id).map(|w| w.layer_id)));
+        assert!(
+            layer.is_none_or(|layer| layer.order != Order::Background),
+            "Tab leaves the dialog: {layer:?}"
+        );
+    }
 }

@@ -1,12 +1,13 @@
 //! The window by keyboard alone, without a window: where the focus goes, and that it is seen.
 
-use bevy_egui::egui::{self, Key, Modifiers, Rect};
+use bevy_egui::egui::{self, Key, Modifiers, PointerButton, Popup, Rect, vec2};
 use lights_camera_models::{
     document::Selection,
     panel::{
-        state::{Action, Effect, Lab, Steer},
+        state::{Action, Badge, Effect, Lab, Severity, Steer, ViewChange},
         theme::DARK,
     },
+    scene::{Object, Scene},
 };
 
 use crate::panels::Bench;
@@ -14,6 +15,25 @@ use crate::panels::Bench;
 fn focused(bench: &Bench) -> Option<Rect> {
     let id = bench.ctx.memory(egui::Memory::focused)?;
     bench.ctx.viewport(|v| v.prev_pass.widgets.get(id).map(|w| w.rect))
+}
+
+/// True if all of what has the focus is in sight.
+fn in_sight(bench: &Bench) -> bool {
+    let id = bench.ctx.memory(egui::Memory::focused);
+    let widget = id.and_then(|id| bench.ctx.viewport(|v| v.prev_pass.widgets.get(id).copied()));
+    widget.is_some_and(|w| w.interact_rect.expand(0.5).contains_rect(w.rect))
+}
+
+/// The name of what has the focus.
+fn name(bench: &Bench) -> String {
+    let Some(rect) = focused(bench) else { return "nothing".to_owned() };
+    // The tree has what is smaller within it too.
+    let seen = bench.tree.iter().filter(|s| !s.label.is_empty());
+    let near = seen.min_by(|a, b| {
+        let apart = |s: &Rect| (s.min - rect.min).length() + (s.max - rect.max).length();
+        apart(&a.rect).total_cmp(&apart(&b.rect))
+    });
+    near.map_or_else(String::new, |s| s.label.clone())
 }
 
 /// Frames in the colour of the accent.
@@ -139,4 +159,177 @@ fn the_menus_open_with_alt_and_with_f10() {
     let mode = bench.lab.document.shading_model.clone();
     bench.key(Key::F, Modifiers::ALT);
     assert_eq!(bench.lab.document.shading_model, mode);
+}
+
+#[test]
+fn what_gets_the_focus_comes_into_sight() {
+    let mut bench = Bench::with_everything();
+    bench.size = vec2(1280.0, 480.0);
+    bench.settle();
+    (0..3).for_each(|_| bench.key(Key::F6, Modifiers::NONE));
+    for way in [Modifiers::NONE, Modifiers::SHIFT] {
+        for i in 0..30 {
+            bench.key(Key::Tab, way);
+            assert!(in_sight(&bench), "{i} {way:?}: {} at {:?}", name(&bench), focused(&bench));
+        }
+    }
+}
+
+#[test]
+fn arrows_in_the_scene_list_select_the_row_they_lead_to() {
+    let scene = Scene { objects: vec![Object::default(); 60], ..Scene::default() };
+    let mut bench = Bench::new(Lab::new(scene));
+    bench.size = vec2(1280.0, 480.0);
+    bench.settle();
+    (0..2).for_each(|_| bench.key(Key::F6, Modifiers::NONE));
+    for i in 0..40 {
+        bench.key(Key::ArrowDown, Modifiers::NONE);
+        assert!(in_sight(&bench), "{i}");
+    }
+    // Room, observer, one light.
+    assert_eq!(bench.lab.selection, Selection::Object(40 - 3));
+    (0..39).for_each(|_| bench.key(Key::ArrowUp, Modifiers::NONE));
+    assert_eq!(bench.lab.selection, Selection::Observer);
+    assert!(in_sight(&bench) && name(&bench) == "Observer");
+}
+
+#[test]
+fn the_menu_of_a_row_is_about_what_is_selected() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Duplicate(Selection::Object(0)));
+    bench.apply(Action::Select(Selection::Room));
+    let row = bench.find("Observer").expect("listed").rect.center();
+    bench.click_at(row, PointerButton::Secondary);
+    assert_eq!(bench.lab.selection, Selection::Observer);
+}
+
+#[test]
+fn a_deletion_keeps_the_selection_and_is_said_with_a_way_back() {
+    let mut bench = Bench::new(Lab::default());
+    (0..2).for_each(|_| bench.apply(Action::Duplicate(Selection::Object(0))));
+    bench.apply(Action::Select(Selection::Object(2)));
+    let before = bench.lab.document.scene().clone();
+    bench.apply(Action::Remove(Selection::Object(0)));
+    assert_eq!(bench.lab.selection, Selection::Object(1), "the same object");
+    assert!(bench.says("Deleted “"), "{:?}", bench.lab.messages);
+    bench.click("Undo");
+    assert_eq!(*bench.lab.document.scene(), before);
+    // What would undo something else is not offered.
+    bench.apply(Action::Remove(Selection::Object(0)));
+    bench.apply(Action::Edit(bench.lab.edit_mode("flat")));
+    assert!(bench.lab.messages.iter().all(|note| note.offer.is_none()));
+}
+
+#[test]
+fn after_the_name_come_the_buttons_and_the_bin_last() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Select(Selection::Object(0)));
+    let at = bench.field("Name").rect.center();
+    bench.click_at(at, PointerButton::Primary);
+    for says in ["Look at", "Duplicate", "Delete"] {
+        bench.key(Key::Tab, Modifiers::NONE);
+        assert!(name(&bench).starts_with(says), "{says}: {}", name(&bench));
+    }
+}
+
+#[test]
+fn menus_open_with_the_focus_on_their_first_entry_and_arrows_change_them() {
+    let mut bench = Bench::new(Lab::default());
+    for (key, modifiers) in [(Key::F, Modifiers::ALT), (Key::F10, Modifiers::NONE)] {
+        bench.key(key, modifiers);
+        assert!(name(&bench).starts_with("New default scene"), "{}", name(&bench));
+        bench.key(Key::Escape, Modifiers::NONE);
+    }
+    bench.key(Key::F, Modifiers::ALT);
+    bench.key(Key::ArrowRight, Modifiers::NONE);
+    assert!(bench.says("New reflection model…") && !bench.says("New default scene"));
+    assert!(focused(&bench).is_some_and(|r| r.height() < 40.0));
+    bench.key(Key::ArrowLeft, Modifiers::NONE);
+    bench.key(Key::ArrowLeft, Modifiers::NONE);
+    assert!(name(&bench).starts_with("Keys and mouse"), "{}", name(&bench));
+}
+
+#[test]
+fn right_goes_into_a_menu_within_a_menu_and_left_comes_back() {
+    let mut bench = Bench::new(Lab::default());
+    let to = |bench: &mut Bench, entry: &str| {
+        for _ in 0..20 {
+            if name(bench).starts_with(entry) {
+                return;
+            }
+            bench.key(Key::ArrowDown, Modifiers::NONE);
+        }
+        panic!("never at {entry}");
+    };
+    bench.key(Key::E, Modifiers::ALT);
+    to(&mut bench, "Add a light");
+    let parent = focused(&bench).expect("the entry");
+    for open in [Key::ArrowRight, Key::Enter] {
+        bench.key(open, Modifiers::NONE);
+        let first = focused(&bench).expect("the first light");
+        assert!(first.left() > parent.left() + 20.0, "{open:?}: within the menu that hangs there");
+        bench.key(Key::ArrowDown, Modifiers::NONE);
+        let second = focused(&bench).expect("the second light");
+        assert!(second.top() > first.top() && (second.left() - first.left()).abs() < 2.0, "{open:?}");
+        bench.key(Key::ArrowLeft, Modifiers::NONE);
+        assert_eq!(focused(&bench), Some(parent), "{open:?}");
+    }
+    bench.key(Key::ArrowRight, Modifiers::NONE);
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(bench.lab.document.lights.len(), 2);
+    assert!(!Popup::is_any_open(&bench.ctx));
+}
+
+#[test]
+fn entries_scrolled_out_of_a_long_menu_are_reached() {
+    let mut bench = Bench::new(Lab::default());
+    bench.size = vec2(1280.0, 360.0);
+    bench.settle();
+    bench.key(Key::V, Modifiers::ALT);
+    bench.key(Key::ArrowUp, Modifiers::NONE);
+    assert!(name(&bench).starts_with("Full screen"), "{}", name(&bench));
+    assert!(in_sight(&bench));
+}
+
+#[test]
+fn enter_closes_a_drop_down_list_and_its_button_has_the_focus() {
+    let mut bench = Bench::new(Lab::default());
+    bench.apply(Action::Select(Selection::Light(0)));
+    let button = bench.tree.iter().find(|s| s.label.starts_with("type: ")).expect("a list of types").rect;
+    bench.click_at(button.center(), PointerButton::Primary);
+    let before = bench.lab.document.lights[0].kind.clone();
+    bench.key(Key::ArrowDown, Modifiers::NONE);
+    bench.key(Key::ArrowDown, Modifiers::NONE);
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_ne!(bench.lab.document.lights[0].kind, before);
+    assert!(!Popup::is_any_open(&bench.ctx));
+    assert!(name(&bench).starts_with("type: "), "{}", name(&bench));
+}
+
+#[test]
+fn f6_reaches_the_examples_and_the_badges_and_shows_that_the_picture_has_the_keys() {
+    let mut bench = Bench::new(Lab::default());
+    bench.lab.badges = vec![Badge {
+        severity: Severity::Info,
+        text: "Not what it seems".to_owned(),
+        help: "The whole story.".to_owned(),
+    }];
+    bench.apply(Action::View(ViewChange::Examples(true)));
+    (0..5).for_each(|_| bench.key(Key::F6, Modifiers::NONE));
+    assert!(focused(&bench).is_some_and(|r| r.top() > bench.lab.picture_rect.bottom()), "{}", name(&bench));
+    let picture = bench.lab.picture_rect;
+    let around = |bench: &mut Bench| {
+        rings(bench).into_iter().any(|r| picture.contains_rect(r) && r.width() > picture.width() - 8.0)
+    };
+    assert!(!around(&mut bench));
+    bench.key(Key::F6, Modifiers::NONE);
+    assert_eq!(focused(&bench), None);
+    assert!(around(&mut bench));
+    bench.key(Key::F6, Modifiers::NONE);
+    assert!(name(&bench).starts_with("Outside the view: "), "{}", name(&bench));
+    bench.key(Key::Tab, Modifiers::NONE);
+    assert_eq!(name(&bench), "Not what it seems");
+    assert!(bench.says("The whole story.") && !around(&mut bench));
+    bench.key(Key::F6, Modifiers::NONE);
+    assert!(focused(&bench).is_some_and(|r| r.top() < 40.0), "the first panel again");
 }

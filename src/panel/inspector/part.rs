@@ -1,6 +1,6 @@
 //! Widgets that all parts of the scene share: headings, groups, text fields, knobs for positions and directions.
 
-use bevy_egui::egui::{self, Align, CollapsingHeader, Key, Layout, RichText, TextEdit, Ui, WidgetInfo};
+use bevy_egui::egui::{self, CollapsingHeader, Key, RichText, TextEdit, Ui, WidgetInfo};
 use glam::Vec3;
 
 use crate::{
@@ -57,17 +57,18 @@ pub(super) fn header(
         text_field(ui, "name", "Name", own.unwrap_or_default(), &name, width, true, |text| {
             actions.push(rename(text))
         });
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if icon::button(ui, Icon::Bin, &format!("Delete {name}")).clicked() {
-                actions.push(Action::Remove(part));
-            }
-            if icon::button(ui, Icon::Duplicate, &format!("Duplicate {name}")).clicked() {
-                actions.push(Action::Duplicate(part));
-            }
-            if icon::button(ui, Icon::Target, &format!("Look at {name}  (C)")).clicked() {
-                actions.push(Action::FocusSelection);
-            }
-        });
+        // At the right edge, and for the Tab key in this order.
+        let buttons = 3.0 * icon::SIZE + 2.0 * ui.spacing().item_spacing.x;
+        ui.add_space(ui.available_width() - buttons);
+        if icon::button(ui, Icon::Target, &format!("Look at {name}  (C)")).clicked() {
+            actions.push(Action::FocusSelection);
+        }
+        if icon::button(ui, Icon::Duplicate, &format!("Duplicate {name}")).clicked() {
+            actions.push(Action::Duplicate(part));
+        }
+        if icon::button(ui, Icon::Bin, &format!("Delete {name}")).clicked() {
+            actions.push(Action::Remove(part));
+        }
     });
     ui.add_space(4.0);
 }

@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 
 use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
 use crate::panel::{
-    chooser, maths,
+    chooser, maths, menu,
     theme::{self, Palette},
 };
 
@@ -100,13 +100,14 @@ pub fn choice_with_help(
             let width = (ui.available_width() - 4.0).clamp(80.0, 190.0);
             let now = options.get(chosen).copied();
             let [shown, _, summary] = now.unwrap_or(["–", "", ""]);
+            let mut by_key = false;
             let combo = egui::ComboBox::from_id_salt(id)
                 .width(width)
                 .truncate()
                 .selected_text(shown)
                 .show_ui(ui, |ui| {
                     for (i, option) in options.iter().enumerate() {
-                        let response = ui.selectable_label(i == chosen, option[0]);
+                        let response = menu::choice(ui, i == chosen, option[0], &mut by_key);
                         if response.clicked() && i != chosen {
                             out = Some(i);
                         }
@@ -118,6 +119,9 @@ pub fn choice_with_help(
             combo.response.widget_info(|| {
                 WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{}: {shown}", caption.label))
             });
+            if by_key {
+                combo.response.request_focus();
+            }
             if caption.disabled.is_some() {
                 explain(combo.response, |ui| tooltip(ui, caption, "", ""));
             } else if !summary.is_empty() {

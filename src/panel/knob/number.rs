@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     document::limits::{Limits, number},
-    panel::{maths, theme::Palette},
+    panel::{maths, menu, theme::Palette},
 };
 
 /// The unit as a choice: each option is a sign and a word. As wide as a plain unit, so that fields stay in
@@ -29,13 +29,18 @@ pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<
     let corners = [tip, tip + vec2(-3.5, -4.0), tip + vec2(3.5, -4.0)];
     ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), colour, Stroke::NONE));
     let mut out = None;
+    let mut by_key = false;
     egui::Popup::menu(&response).show(|ui| {
         for (i, [sign, word]) in options.iter().enumerate() {
-            if ui.selectable_label(i == chosen, format!("{sign}  {word}")).clicked() && i != chosen {
+            let choice = menu::choice(ui, i == chosen, format!("{sign}  {word}"), &mut by_key);
+            if choice.clicked() && i != chosen {
                 out = Some(i);
             }
         }
     });
+    if by_key {
+        response.request_focus();
+    }
     response
         .on_hover_cursor(CursorIcon::PointingHand)
         .on_hover_text(format!("In {word}. Choose another unit: the light stays the same."));

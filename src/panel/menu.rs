@@ -1,0 +1,152 @@
+//! Menus and drop-down lists by keyboard: arrows walk through them, open what hangs at an entry, and change menus.
+
+use bevy_egui::egui::{
+    self, Context, Event, Id, IntoAtoms, Key, Modifiers, Order, Popup, Response, Ui,
+    containers::menu::{MenuState, SubMenu},
+};
+
+use super::focus::{focused, stops};
+
+/// A menu is shown within so many passes; one that has no entries never gets the focus.
+const PATIENCE: u64 = 4;
+
+/// The menu whose first entry gets the focus as soon as it is shown, and the last pass in which it can.
+fn entered() -> Id {
+    Id::new("menu entered by key")
+}
+
+fn enter(ctx: &Context, menu: Id) {
+    let last = ctx.cumulative_pass_nr() + PATIENCE;
+    ctx.data_mut(|d| d.insert_temp(entered(), (menu, last)));
+    ctx.request_repaint();
+}
+
+/// The bar of menus: each opens with Alt and its letter, the first with F10; Left and Right go to the neighbours.
+pub(super) fn bar(ctx: &Context, menus: &[(Key, Response)]) {
+    // What must be answered or chosen first has the keys.
+    if ctx.memory(egui::Memory::top_modal_layer).is_some() {
+        return;
+    }
+    let ids: Vec<Id> = menus.iter().map(|(_, button)| Popup::default_response_id(button)).collect();
+    let open = ids.iter().position(|id| Popup::is_id_open(ctx, *id));
+    let wanted = ctx.input_mut(|input| {
+        let by_letter = menus.iter().position(|(key, _)| input.consume_key(Modifiers::ALT, *key));
+        let first = input.consume_key(Modifiers::NONE, Key::F10).then_some(0);
+        let count = ids.len();
+        let sideways = open.and_then(|at| {
+            let right = input.consume_key(Modifiers::NONE, Key::ArrowRight).then_some((at + 1) % count);
+            right.or_else(|| {
+                input.consume_key(Modifiers::NONE, Key::ArrowLeft).then_some((at + count - 1) % count)
+            })
+        });
+        by_letter.or(first).or(sideways)
+    });
+    let Some(wanted) = wanted else { return };
+    ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
+    if open == Some(wanted) {
+        Popup::close_id(ctx, ids[wanted]);
+        return;
+    }
+    Popup::open_id(ctx, ids[wanted]);
+    enter(ctx, ids[wanted]);
+}
+
+/// A menu at an entry of another one: Right or Enter goes into it, Left back to the entry.
+pub(super) fn submenu<'a>(ui: &mut Ui, text: impl IntoAtoms<'a>, content: impl FnOnce(&mut Ui)) {
+    let response = ui.menu_button(text, content).response;
+    let id = SubMenu::id_from_widget_id(response.id);
+    let open = MenuState::from_ui(ui, |menu, _| menu.open_item == Some(id));
+    let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let here = response.has_focus();
+    if here && response.enabled() && pressed(Key::ArrowRight) {
+        // egui forgets what is open and was never shown.
+        MenuState::mark_shown(ui.ctx(), id);
+        MenuState::from_ui(ui, |menu, _| menu.open_item = Some(id));
+        enter(ui.ctx(), id);
+    } else if here && open && response.clicked() {
+        enter(ui.ctx(), id);
+    }
+    let within = || here || focused(ui.ctx()).is_some_and(|w| w.layer_id.id == id);
+    if open && within() && pressed(Key::ArrowLeft) {
+        MenuState::from_ui(ui, |menu, _| menu.open_item = None);
+        response.request_focus();
+    }
+}
+
+/// An entry of a drop-down list. It closes the list by key as by a click; `by_key` tells them apart, since then the
+/// focus goes back to the button.
+pub(super) fn choice(ui: &mut Ui, chosen: bool, text: impl Into<String>, by_key: &mut bool) -> Response {
+    let text: String = text.into();
+    let response = ui.selectable_label(chosen, text);
+    if response.clicked() {
+        *by_key = response.has_focus();
+        ui.close();
+    }
+    response
+}
+
+/// Lets the arrow keys walk through an open menu or list, however it was opened. Call before the widgets see the keys.
+pub(super) fn walk(ctx: &Context) {
+    // A letter with Alt opens a menu, and is no text; on a Mac it is.
+    if !cfg!(target_os = "macos") && ctx.input(|i| i.modifiers.alt && !i.modifiers.ctrl) {
+        ctx.input_mut(|i| i.events.retain(|e| !matches!(e, Event::Text(_))));
+    }
+    if !Popup::is_any_open(ctx) || ctx.text_edit_focused() {
+        return;
+    }
+    // What is dragged, as in a picker of colours, has the arrows for itself.
+    let now = focused(ctx).filter(|w| w.layer_id.order == Order::Foreground);
+    if now.is_some_and(|w| w.sense.senses_drag()) {
+        return;
+    }
+    let mut step = 0_isize;
+    let mut stays = false;
+    ctx.input_mut(|input| {
+        input.events.retain(|event| {
+            let Event::Key { key, pressed: true, modifiers: Modifiers::NONE, .. } = event else {
+                return true;
+            };
+            match key {
+                Key::ArrowDown => step += 1,
+                Key::ArrowUp => step -= 1,
+                // They open and close what hangs at an entry, and change menus; see `submenu` and `bar`.
+                Key::ArrowLeft | Key::ArrowRight => {
+                    stays = true;
+                    return true;
+                }
+                _ => return true,
+            }
+            false
+        });
+    });
+    if stays {
+        ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
+    }
+    let entering: Option<(Id, u64)> = ctx.data(|d| d.get_temp(entered()));
+    let entering = entering.filter(|(_, last)| ctx.cumulative_pass_nr() <= *last).map(|(menu, _)| menu);
+    if entering.is_some() {
+        step = 1;
+    }
+    if step == 0 {
+        return;
+    }
+    let top = || ctx.memory(|m| m.areas().top_layer_id(Order::Foreground)).map(|layer| layer.id);
+    let menu = entering.or_else(|| now.map(|w| w.layer_id.id)).or_else(top);
+    let stops = stops(ctx, |w| {
+        w.layer_id.order == Order::Foreground && Some(w.layer_id.id) == menu && !w.sense.senses_drag()
+    });
+    if stops.is_empty() {
+        ctx.request_repaint();
+        return;
+    }
+    ctx.data_mut(|d| d.remove::<(Id, u64)>(entered()));
+    let count = stops.len() as isize;
+    let at = now
+        .and_then(|now| stops.iter().position(|s| s.id == now.id))
+        .map_or_else(|| if step > 0 { 0 } else { count - 1 }, |at| (at as isize + step).rem_euclid(count));
+    // Else egui moves it once more, by geometry.
+    ctx.memory_mut(|m| {
+        m.move_focus(egui::FocusDirection::None);
+        m.request_focus(stops[at as usize].id);
+    });
+}
