@@ -215,8 +215,8 @@ pub fn place(light: &Light, scene: &Scene, lens: &Lens) -> Option<Vec3> {
         at.is_some_and(|at| lens.rect.shrink2(vec2(INSET_BELOW, INSET_BELOW)).contains(at))
     };
     let farthest = |from: Vec3| {
-        let steps = (0..=32).map(|k| from + back * (depth * k as f32 / 32.0));
-        steps.filter(|p| scene.scene_size.contains(*p) && seen(*p)).last()
+        let mut steps = (0..=32).map(|k| from + back * (depth * k as f32 / 32.0));
+        steps.rfind(|p| scene.scene_size.contains(*p) && seen(*p))
     };
     let ahead = lens.eye + lens.to_camera.inverse() * Vec3::new(0.0, 0.0, -depth);
     Some(farthest(middle).or_else(|| farthest(ahead)).unwrap_or(far))

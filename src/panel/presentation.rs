@@ -212,7 +212,7 @@ impl Block {
             out
         };
         let steps = (1..=64).map(|k| whole * k as f32 / 64.0 + 0.5);
-        let ranges = steps.map(fill).find(|r| r.len() <= columns).unwrap_or_else(|| vec![0..all.len()]);
+        let ranges = steps.map(fill).find(|r| r.len() <= columns).unwrap_or_else(|| fill(f32::INFINITY));
         let mut block = Self { even, ..Self::default() };
         let mut at = 0.0;
         for range in ranges.into_iter().filter(|r| !r.is_empty()) {

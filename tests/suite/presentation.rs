@@ -278,6 +278,27 @@ fn badges_of_a_presentation_are_as_large_as_the_rest() {
     }
 }
 
+#[test]
+fn pictures_of_presentations() -> Result<(), Box<dyn std::error::Error>> {
+    let Some(folder) = std::env::var_os("LCM_PANEL_PICTURES").map(std::path::PathBuf::from) else {
+        return Ok(());
+    };
+    std::fs::create_dir_all(&folder)?;
+    for (model, size, scale) in [
+        ("hapke", (1280.0, 720.0), 100),
+        ("eon", (1280.0, 720.0), 150),
+        ("disney", (1920.0, 1080.0), 100),
+        ("blinn_phong", (1280.0, 720.0), 200),
+    ] {
+        let mut bench = bench(size, model);
+        bench.lab.clipping = Clipping::new(vec![50; GRID[0] * GRID[1]]);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        bench.picture(&folder.join(format!("presentation-{model}.png")), egui::Color32::from_gray(46))?;
+    }
+    Ok(())
+}
+
 // ── what stands still ──
 
 fn scene_called(name: &str) -> Lab {
