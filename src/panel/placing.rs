@@ -25,11 +25,11 @@ const PROBE: [u32; 2] = [128, 72];
 /// The most objects in such a picture: those nearest to the camera.
 const PROBED: usize = 200;
 /// What a new light may take of what is left up to the brightest that the display shows.
-const SHARE: f32 = 0.5;
+const SHARE: f32 = 0.35;
 /// The least that a new light adds, in the scale of the display's values from 0 to 1, even if it clips for that.
-const VISIBLE: f32 = 0.07;
+const VISIBLE: f32 = 0.05;
 /// The part of what the light reaches that gets at least so much brighter.
-const VISIBLE_PART: f32 = 0.05;
+const VISIBLE_PART: f32 = 0.04;
 
 /// A scene, and the camera before which something is placed.
 pub(super) struct Stand<'a> {
