@@ -222,7 +222,9 @@ impl Block {
             let (mut narrow, mut wide) = (0.0, each);
             while wide - narrow > 4.0 {
                 let middle = 0.5 * (narrow + wide);
-                *(if height(middle) <= high { &mut wide } else { &mut narrow }) = middle;
+                // Lower would be without stacked fractions, broken anywhere.
+                let same = (height(middle) - high).abs() < 0.5;
+                *(if same { &mut wide } else { &mut narrow }) = middle;
             }
             block.columns.push((range, at, wide));
             block.size = vec2(at + wide, block.size.y.max(high));

@@ -382,7 +382,7 @@ fn nothing_moves_when_a_field_gets_the_focus() {
 #[test]
 fn fields_keep_their_width_when_a_scroll_bar_appears() {
     let widths = [1600.0, 420.0].map(|height| {
-        let mut bench = bench((1280.0, height), "phong");
+        let bench = bench((1280.0, height), "phong");
         let position = bench.tree.iter().filter(|s| s.role == Role::TextInput || s.role == Role::SpinButton);
         position
             .filter(|s| s.rect.left() > 900.0)
