@@ -28,6 +28,8 @@ const PROBED: usize = 200;
 const SHARE: f32 = 0.35;
 /// The least that a new light adds, in the scale of the display's values from 0 to 1, even if it clips for that.
 const VISIBLE: f32 = 0.05;
+/// The part of what the light reaches that may clip for that.
+const HIGHLIGHTS: f32 = 0.008;
 /// The part of what the light reaches that gets at least so much brighter.
 const VISIBLE_PART: f32 = 0.04;
 
@@ -174,7 +176,9 @@ impl<'a> Stand<'a> {
         let spared = (clipping::TOLERATED * f64::from(width * height)) as usize;
         let most = factors[spared.saturating_sub(clipped).min(factors.len() - 1)];
         let least = floors[(VISIBLE_PART * floors.len() as f32) as usize];
-        let factor = (SHARE * most).max(least);
+        // So that it is seen, highlights may clip, and no more than those.
+        let clipping = factors[(HIGHLIGHTS * factors.len() as f32) as usize];
+        let factor = (SHARE * most).max(least.min(clipping.max(most)));
         let intensity = f64::from(default) * f64::from(factor).clamp(1e-3, 1e3);
         (significant(intensity, 2) as f32, factor > most)
     }
