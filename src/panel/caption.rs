@@ -1,12 +1,14 @@
 //! The picture in words, so that a screenshot says what it shows.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
 
-use super::state::Lab;
+use bevy_egui::egui::{Color32, FontId, Galley, Pos2, Ui, Vec2, pos2, vec2};
+
+use super::{maths, state::Lab, theme};
 use crate::document::limits::number;
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    parameter::{Parameter, Value},
+    parameter::{Parameter, ParameterKind, Value},
     reflection::usage,
     registry::Registry,
     scene::Object,
@@ -14,30 +16,67 @@ use crate::{
 
 /// More values would be a list, not a caption.
 const VALUES: usize = 4;
+/// More lines would hide the picture.
+const LINES: usize = 2;
+/// Between parts of the caption.
+const DOT: &str = " · ";
+
+/// Part of the caption; a line is never broken within one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// The symbol before the words; often empty.
+    pub symbol: &'static str,
+    /// The words or the number.
+    pub text: String,
+    /// What has the highest goes first where there is little room; 0 stays.
+    pub rank: u8,
+}
+
+impl Part {
+    fn new(rank: u8, text: impl Into<String>) -> Self {
+        Self { symbol: "", text: text.into(), rank }
+    }
+
+    fn words(&self) -> String {
+        format!("{} {}", self.symbol, self.text).trim_start().to_owned()
+    }
+}
 
 /// The models, the shading and the display of the picture; with one object, its key values.
 #[must_use]
 pub fn caption_text(lab: &Lab, registry: &Registry) -> String {
+    parts(lab, registry).iter().map(Part::words).collect::<Vec<_>>().join(DOT)
+}
+
+/// Ids of the models that the picture shows.
+#[must_use]
+pub fn models_shown(lab: &Lab) -> BTreeSet<&str> {
+    lab.document.shown().map(|o| lab.document.model_of(o)).collect()
+}
+
+/// The same in parts.
+#[must_use]
+pub fn parts(lab: &Lab, registry: &Registry) -> Vec<Part> {
     let scene = &lab.document;
-    let models: BTreeSet<_> = scene.shown().map(|o| scene.model_of(o)).collect();
+    let models = models_shown(lab);
     let modes: BTreeSet<_> = scene.shown().map(|o| scene.mode_of(o)).collect();
     let mut parts = Vec::new();
     match single(&models) {
-        Some(id) => parts.push(registry.model(id).map_or(id, |m| m.declaration.name).to_owned()),
-        None if models.is_empty() => parts.push("nothing visible".to_owned()),
-        None => parts.push(format!("{} models", models.len())),
+        Some(id) => parts.push(Part::new(0, registry.model(id).map_or(id, |m| m.declaration.name))),
+        None if models.is_empty() => parts.push(Part::new(0, "nothing visible")),
+        None => parts.push(Part::new(0, format!("{} models", models.len()))),
     }
     match single(&modes) {
         Some(id) => match registry.mode(id) {
             Some(mode) => {
                 let d = mode.declaration;
-                parts.push(format!("{} shading", d.name));
-                parts.push(format!("computed {}", d.stage.phrase()));
+                parts.push(Part::new(0, format!("{} shading", d.name)));
+                parts.push(Part::new(3, format!("computed {}", d.stage.phrase())));
             }
-            None => parts.push(format!("{id} shading")),
+            None => parts.push(Part::new(0, format!("{id} shading"))),
         },
         None if modes.is_empty() => {}
-        None => parts.push(format!("{} shading models", modes.len())),
+        None => parts.push(Part::new(0, format!("{} shading models", modes.len()))),
     }
     let mut objects = scene.shown();
     if let (Some(object), None) = (objects.next(), objects.next()) {
@@ -45,43 +84,112 @@ pub fn caption_text(lab: &Lab, registry: &Registry) -> String {
     }
     match lab.view.terms {
         TermSelection::All => {}
-        other => parts.push(format!("{} term alone", other.id())),
+        other => parts.push(Part::new(1, format!("{} term alone", other.id()))),
     }
     match scene.display.exposure {
         0.0 => {}
-        ev => parts.push(format!("{}{} EV", if ev > 0.0 { "+" } else { "" }, number(f64::from(ev)))),
+        ev => {
+            let sign = if ev > 0.0 { "+" } else { "" };
+            parts.push(Part::new(1, format!("{sign}{} EV", number(f64::from(ev)))));
+        }
     }
     match scene.display.tone_mapping {
         ToneMapping::None => {}
-        tone => parts.push(tone.name().to_owned()),
+        tone => parts.push(Part::new(1, tone.name())),
     }
     if scene.display.encoding == Encoding::Off {
-        parts.push("gamma-naive".to_owned());
+        parts.push(Part::new(1, "gamma-naive"));
     }
-    parts.join(" · ")
+    parts
 }
 
 fn single<'a>(all: &BTreeSet<&'a str>) -> Option<&'a str> {
     all.first().copied().filter(|_| all.len() == 1)
 }
 
-/// The numbers of the material: all of them where they are few, else those that are not the defaults. The equation ends
-/// with what shapes the highlight, so the last ones come first.
-fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<String> {
+/// The values of the material in the order of their declaration: all of them where they are few, else those that are
+/// not the defaults and then the first.
+fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<Part> {
     let Some(model) = registry.model(model) else { return Vec::new() };
-    let value = |p: &Parameter| match object.material.get(p) {
-        Value::Number(v) => Some(number(f64::from(v))),
-        Value::Integer(v) => Some(v.to_string()),
-        _ => None,
+    let value = |p: &'static Parameter| {
+        let (symbol, text) = match (object.material.get(p), &p.kind) {
+            (Value::Number(v), _) => (p.symbol, number(f64::from(v))),
+            (Value::Integer(v), _) => (p.symbol, v.to_string()),
+            // The name of a distribution needs no letter.
+            (Value::Choice(id), ParameterKind::Choice { options, .. }) => {
+                let name = options.iter().find(|(o, _)| **o == *id).map_or(&*id, |(_, name)| *name);
+                ("", name.split(" (").next().unwrap_or(name).to_owned())
+            }
+            _ => return None,
+        };
+        Some((p, Part { symbol, text, rank: 2 }))
     };
-    let used = |p: &&Parameter| usage::unused(model.parameters, p, &object.material).is_none();
-    let numbers: Vec<_> =
-        model.parameters.iter().rev().filter(used).filter_map(|p| Some((p, value(p)?))).collect();
-    let few = numbers.len() <= VALUES;
-    numbers
-        .into_iter()
-        .filter(|(p, _)| few || object.material.get(p) != p.default_value())
-        .take(VALUES)
-        .map(|(p, value)| format!("{} {value}", p.symbol))
-        .collect()
+    let used = |p: &&'static Parameter| usage::unused(model.parameters, p, &object.material).is_none();
+    let mut all: Vec<_> = model.parameters.iter().filter(used).filter_map(value).enumerate().collect();
+    all.sort_by_key(|(_, (p, _))| object.material.get(p) == p.default_value());
+    all.truncate(VALUES);
+    all.sort_by_key(|(i, _)| *i);
+    all.into_iter().map(|(_, (_, part))| part).collect()
+}
+
+/// A caption in lines.
+pub(super) struct Lines {
+    runs: Vec<(Vec2, Arc<Galley>)>,
+    /// The room that it takes.
+    pub(super) size: Vec2,
+    /// True if parts were left out.
+    pub(super) cut: bool,
+}
+
+impl Lines {
+    /// Sets parts of a caption in lines of at most this width, broken between parts.
+    pub(super) fn of(ui: &Ui, mut parts: Vec<Part>, size: f32, colour: Color32, width: f32) -> Self {
+        let all = parts.len();
+        loop {
+            let lines = Self::set(ui, &parts, size, colour, width);
+            let last = parts.iter().rposition(|p| p.rank > 0 && parts.iter().all(|q| q.rank <= p.rank));
+            match last {
+                Some(i) if lines.1 > LINES => drop(parts.remove(i)),
+                _ => return Self { cut: parts.len() < all, ..lines.0 },
+            }
+        }
+    }
+
+    /// The lines, and how many they are.
+    fn set(ui: &Ui, parts: &[Part], size: f32, colour: Color32, width: f32) -> (Self, usize) {
+        let font = FontId::proportional(size);
+        let text = |text: &str| theme::elided(ui, text, font.clone(), colour, width);
+        let dot = text(DOT);
+        let height = text("A").size().y;
+        let baseline =
+            |g: &Galley| g.rows.first().and_then(|r| r.row.glyphs.first()).map_or(0.0, |g| g.pos.y);
+        let (mut runs, mut at, mut most, mut rows) = (Vec::new(), Vec2::ZERO, 0.0f32, 1);
+        for (i, part) in parts.iter().enumerate() {
+            let galley = text(&part.text);
+            let symbol = (!part.symbol.is_empty())
+                .then(|| maths::lay_out(ui, &maths::parse_symbol(part.symbol), 1.1 * size, colour));
+            let lead = symbol.as_ref().map_or(0.0, |s| s.width + 0.3 * size);
+            if at.x > 0.0 && at.x + dot.size().x + lead + galley.size().x > width {
+                at = vec2(0.0, at.y + height);
+                rows += 1;
+            } else if i > 0 {
+                runs.push((at, dot.clone()));
+                at.x += dot.size().x;
+            }
+            let foot = at + vec2(0.0, baseline(&galley));
+            runs.extend(symbol.into_iter().flat_map(|s| s.pieces).map(|p| (foot + p.offset, p.galley)));
+            at.x += lead;
+            let end = at.x + galley.size().x;
+            runs.push((at, galley));
+            at.x = end;
+            most = most.max(end);
+        }
+        (Self { runs, size: vec2(most, at.y + height), cut: false }, rows)
+    }
+
+    pub(super) fn paint(self, ui: &Ui, at: Pos2, colour: Color32) {
+        for (offset, galley) in self.runs {
+            ui.painter().galley(pos2(at.x + offset.x, at.y + offset.y), galley, colour);
+        }
+    }
 }

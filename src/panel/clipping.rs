@@ -8,6 +8,9 @@ use crate::document::limits;
 /// Fields across and down in which clipped pixels are counted.
 pub const GRID: [usize; 2] = [128, 96];
 
+/// The part of a picture that may clip without a sign: sharp highlights. New lights keep to it.
+pub const TOLERATED: f64 = 0.001;
+
 /// Where the picture clips.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clipping {
@@ -39,17 +42,21 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// The sign in the corner of a picture of so many pixels.
+/// The sign in the corner of a picture of so many pixels; for a few of them only while they are shown.
 #[must_use]
 pub fn badge(lab: &Lab, pixels: f64) -> Option<Badge> {
     let clipping = lab.clipping.as_ref()?;
-    let share = percent(clipping.pixels() as f64 / pixels.max(1.0));
+    let share = clipping.pixels() as f64 / pixels.max(1.0);
+    if share < TOLERATED && !lab.view.show_clipping {
+        return None;
+    }
+    let share = percent(share);
     Some(Badge {
         severity: Severity::Warning,
         text: format!("Clipped: {share} of the picture"),
         help: "Some pixels ask for more light than the display can show. They are cut off: highlights lose their \
                shape, and colours shift. A lower exposure, a weaker light or tone mapping brings them back. \
-               View › Show clipped pixels shows where."
+               Click to show where."
             .to_owned(),
     })
 }
@@ -100,5 +107,8 @@ mod tests {
         assert_eq!(badge(&lab, 100.0), None);
         lab.clipping = Clipping::new(counts);
         assert_eq!(badge(&lab, 100.0).map(|b| b.text).as_deref(), Some("Clipped: 5 % of the picture"));
+        assert_eq!(badge(&lab, 10_000.0), None, "new lights may clip as much");
+        lab.view.show_clipping = true;
+        assert!(badge(&lab, 10_000.0).is_some(), "where they are shown, that can be ended");
     }
 }

@@ -198,6 +198,30 @@ pub fn anchor(light: &Light, scene: &Scene) -> Option<Vec3> {
     })
 }
 
+/// The place of a light's mark in the view: for light from a direction, as far from the objects as it can be seen.
+#[must_use]
+pub fn place(light: &Light, scene: &Scene, lens: &Lens) -> Option<Vec3> {
+    let far = anchor(light, scene)?;
+    if light.position.is_some() || lens.shows(far) {
+        return Some(far);
+    }
+    let objects = &scene.objects;
+    let middle = objects.iter().map(|o| o.position).sum::<Vec3>() / objects.len().max(1) as f32;
+    let back = -light.direction.and_then(Vec3::try_normalize)?;
+    let depth = lens.seen(middle).length();
+    // Not so near to the camera that its arrows fill the picture.
+    let seen = |p: Vec3| {
+        let at = lens.project(p).filter(|_| -lens.seen(p).z > 0.4 * depth);
+        at.is_some_and(|at| lens.rect.shrink2(vec2(INSET_BELOW, INSET_BELOW)).contains(at))
+    };
+    let farthest = |from: Vec3| {
+        let mut steps = (0..=32).map(|k| from + back * (depth * k as f32 / 32.0));
+        steps.rfind(|p| scene.scene_size.contains(*p) && seen(*p))
+    };
+    let ahead = lens.eye + lens.to_camera.inverse() * Vec3::new(0.0, 0.0, -depth);
+    Some(farthest(middle).or_else(|| farthest(ahead)).unwrap_or(far))
+}
+
 /// Paints the marks into the rectangle of the picture. Returns what was asked for, and the places that can be
 /// clicked, which do not belong to the picture.
 pub fn marks(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Vec<Rect>) {
@@ -221,7 +245,9 @@ pub fn marks(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action
     order.sort_by_key(|i| chosen(*i));
     for i in order {
         let light = &scene.lights[i];
-        let (Some(at), Some(entry)) = (anchor(light, scene), registry.light(&light.kind)) else { continue };
+        let (Some(at), Some(entry)) = (place(light, scene, &lens), registry.light(&light.kind)) else {
+            continue;
+        };
         if !lens.shows(at) {
             outside.push((i, lens.towards(at)));
         }

@@ -261,9 +261,11 @@ pub fn show(
         actions.extend(welcome::strip(ui, lab, registry));
     }
     let rect = ui.available_rect_before_wrap();
+    let stage = presenting.then(|| presentation::Stage::of(ui, rect, lab, registry));
+    let rect = stage.as_ref().map_or(rect, |stage| stage.picture);
     focus::region(&ctx, Region::Picture, rect);
     lab.picture_rect = rect;
-    let (asked, covered) = picture::overlays(ui, rect, lab, registry);
+    let (asked, covered) = picture::overlays(ui, rect, stage.as_ref(), lab, registry);
     actions.extend(asked);
     actions.extend(question::show(&ctx, lab));
     actions.extend(dialogs.update(&ctx, lab, registry));
@@ -304,6 +306,9 @@ fn end_gesture(ctx: &egui::Context, lab: &mut Lab) {
     }
 }
 
+/// The least height of the strip with the shaders, points.
+const SHADER_STRIP: f32 = 184.0;
+
 /// The strip at the bottom. Tabs appear when there is more than one panel.
 #[allow(clippy::too_many_arguments)]
 fn bottom(
@@ -317,12 +322,15 @@ fn bottom(
     actions: &mut Vec<Action>,
 ) {
     let most = 0.6 * whole.height();
+    // An error with its line of source is seen whole.
+    let shader = lab.view.bottom_tab == author::SHADER_TAB;
+    let least = if shader { SHADER_STRIP } else { 72.0 };
     let zoom = zoom_percent(ui.ctx());
-    let strip = egui::Panel::bottom(Id::new(("bottom", zoom)))
+    let strip = egui::Panel::bottom(Id::new(("bottom", zoom, shader)))
         .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
         .resizable(true)
-        .default_size(height.min(most))
-        .size_range(72f32.min(most)..=most);
+        .default_size(height.max(least).min(most))
+        .size_range(least.min(most)..=most);
     let response = strip.show(ui, |ui| {
         let tabs: Vec<_> = panels.at(Place::Bottom).collect();
         let shown = tabs.iter().find(|p| p.id() == lab.view.bottom_tab).or(tabs.first());
@@ -355,7 +363,9 @@ fn bottom(
         ui.take_available_height();
     });
     focus::region(ui.ctx(), Region::Panel(Place::Bottom), response.response.rect);
-    *height = response.response.rect.height();
+    if response.response.rect.height() > least + 1.0 {
+        *height = response.response.rect.height();
+    }
 }
 
 /// Sizes that the user dragged are kept, once the dragging is over.

@@ -1,15 +1,16 @@
 //! What is painted over the picture: badges, caption, axes, hints.
 
 use bevy_egui::egui::{
-    self, Align2, Color32, FontFamily, FontId, Painter, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo,
+    self, Align2, CursorIcon, FontFamily, FontId, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo,
     WidgetType, pos2, vec2,
 };
 use glam::Vec3;
 
 use super::{
     author::SHADER_TAB,
-    caption::caption_text,
-    clipping, icon, marks, presentation,
+    caption::{self, Lines, caption_text, models_shown},
+    clipping, icon, marks,
+    presentation::Stage,
     state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
@@ -21,31 +22,42 @@ use crate::{
     text::{listed, plural},
 };
 
-/// Paints the overlays into the rectangle of the picture. Returns what was asked for there, and the places that
-/// can be clicked, which do not belong to the picture.
-pub fn overlays(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Vec<Rect>) {
+/// The least width of a picture with axes: in a narrower one they would hide more than they say.
+const AXES: f32 = 240.0;
+
+/// Paints the overlays into the rectangle of the picture, and around it what a presentation says. Returns what was
+/// asked for there, and the places that can be clicked, which do not belong to the picture.
+pub fn overlays(
+    ui: &mut Ui,
+    rect: Rect,
+    stage: Option<&Stage>,
+    lab: &Lab,
+    registry: &Registry,
+) -> (Vec<Action>, Vec<Rect>) {
     if rect.width() < 80.0 || rect.height() < 80.0 {
         return (Vec::new(), Vec::new());
     }
     clipping::paint(&ui.painter_at(rect), rect, lab, ui.pixels_per_point());
-    // In a presentation the picture has no marks, and what it says of itself stands below the equation.
-    let presenting = lab.view.presenting;
+    // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     let (mut actions, mut places) =
-        if presenting { Default::default() } else { marks::marks(ui, rect, lab, registry) };
-    let free = if presenting { presentation::overlay(ui, rect, lab, registry) } else { rect };
-    let (asked, covered) = stale(ui, free, lab, registry);
-    actions.extend(asked);
-    let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
-    badges(ui, free, top, lab);
-    if !presenting {
+        if stage.is_some() { Default::default() } else { marks::marks(ui, rect, lab, registry) };
+    ui.scope(|ui| {
+        let free = stage.map_or(rect, |stage| stage.paint(ui));
+        let (asked, covered) = stale(ui, free, lab, registry);
+        actions.extend(asked);
+        let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
+        let (asked, clicked) = badges(ui, free, top, lab, registry);
+        actions.extend(asked);
+        places.extend(clicked);
+        places.push(covered);
+        hint(ui, rect, lab);
+    });
+    if stage.is_none() {
         caption(ui, rect, lab, registry);
-        // In a narrow picture they would hide more than they say.
-        if rect.width() >= 240.0 {
+        if rect.width() >= AXES {
             axes(ui, rect, lab);
         }
     }
-    hint(ui, rect, lab);
-    places.push(covered);
     (actions, places)
 }
 
@@ -87,7 +99,7 @@ fn stale(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action
     let padding = vec2(10.0, 7.0);
     let left = 26.0;
     let margin = 10.0;
-    let room = (rect.width() - 2.0 * margin).min(560.0) - left - 2.0 * padding.x;
+    let room = (rect.width() - 2.0 * margin).min(560.0 * theme::scale_here(ui)) - left - 2.0 * padding.x;
     let ink = palette.panel;
     let lay_out = |text: &str, font: FontId, rows: usize| {
         let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, ink, room.max(64.0));
@@ -136,74 +148,73 @@ fn stale(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action
     (actions, place)
 }
 
-/// Words on a ground that can be read over any picture, in lines that leave the axes free. Returns the
-/// rectangle.
-fn plate(
-    painter: &Painter,
-    palette: &Palette,
-    anchor: Align2,
-    at: Pos2,
-    text: String,
-    font: FontId,
-    colour: Color32,
-    left: f32,
-) -> Rect {
-    let padding = vec2(8.0, 4.0);
-    let room = painter.clip_rect().width() - 116.0 - 2.0 * padding.x - left;
-    let galley = painter.layout(text, font, colour, room.max(64.0));
-    let size = galley.size() + 2.0 * padding + vec2(left, 0.0);
-    let rect = anchor.anchor_size(at, size);
-    painter.rect_filled(rect, 4.0, palette.panel.gamma_multiply(0.88));
-    painter.galley(rect.min + padding + vec2(left, 0.0), galley, colour);
-    rect
+/// Words on a ground that can be read over any picture. Returns the rectangle.
+fn plate(ui: &Ui, rect: Rect, anchor: Align2, at: Pos2, text: &str, font: FontId, left: f32) -> Rect {
+    let palette = Palette::here(ui);
+    let padding = vec2(8.0, 4.0) * theme::scale_here(ui);
+    let room = rect.width() - 16.0 - 2.0 * padding.x - left;
+    let galley = ui.painter().layout(text.to_owned(), font, palette.text, room.max(64.0));
+    let place = anchor.anchor_size(at, galley.size() + 2.0 * padding + vec2(left, 0.0));
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
+    painter.galley(place.min + padding + vec2(left, 0.0), galley, palette.text);
+    place
 }
 
-/// Says that terms of the equation are hidden.
-fn hidden_terms(lab: &Lab) -> Option<Badge> {
+/// A badge, and what a click on it does.
+type Sign = (Badge, Option<Action>);
+
+/// Says that terms of the equation are hidden, and shows them all.
+fn hidden_terms(lab: &Lab, registry: &Registry) -> Option<Sign> {
     let shown = match lab.view.terms {
         TermSelection::All => return None,
         other => other.id(),
     };
-    Some(Badge {
-        severity: Severity::Info,
-        text: format!("Only the {shown} term"),
-        help:
-            "The other terms of the equation are hidden. T goes on to the next; View › Terms of the equation \
-               shows them all."
-                .to_owned(),
-    })
+    let models = models_shown(lab);
+    let whose = match models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1) {
+        _ if !lab.lacks_term(registry) => String::new(),
+        Some(model) => format!(", which is 0 with {}", model.declaration.name),
+        None => ", which is 0 in this picture".to_owned(),
+    };
+    let badge = Badge {
+        severity: if whose.is_empty() { Severity::Info } else { Severity::Warning },
+        text: format!("Only the {shown} term{whose} · Show all"),
+        help: "The other terms of the equation are hidden. Click to show them all; T goes on to the next."
+            .to_owned(),
+    };
+    Some((badge, Some(Action::View(ViewChange::Terms(TermSelection::All)))))
 }
 
-fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab) {
+/// The badges. Returns what was asked for there, and the places that can be clicked.
+fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, registry: &Registry) -> (Vec<Action>, Vec<Rect>) {
     let palette = Palette::here(ui);
-    let mut y = top;
-    let hidden = hidden_terms(lab);
+    let scale = theme::scale_here(ui);
+    let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
     let per_point = ui.pixels_per_point();
     let clipped = clipping::badge(lab, f64::from(lab.picture_rect.area() * per_point * per_point));
-    let all = hidden.iter().chain(&lab.disk.badge).chain(&lab.badges).chain(&clipped);
-    for (i, badge) in all.enumerate() {
-        let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+    let toggle = Action::View(ViewChange::Clipping(!lab.view.show_clipping));
+    let told = lab.disk.badge.iter().chain(&lab.badges).map(|badge| (badge.clone(), None));
+    let all = hidden_terms(lab, registry).into_iter().chain(told);
+    let (mut actions, mut places) = (Vec::new(), Vec::new());
+    let mut at = pos2(rect.left() + 8.0, top);
+    for (i, (badge, action)) in all.chain(clipped.map(|badge| (badge, Some(toggle)))).enumerate() {
+        let place = plate(ui, rect, Align2::LEFT_TOP, at, &badge.text, font.clone(), 18.0 * scale);
+        let sense = if action.is_some() { Sense::click() } else { Sense::hover() | Sense::FOCUSABLE };
+        let response = ui.interact(place, ui.id().with(("badge", i)), sense);
         let painter = ui.painter_at(rect);
-        let left = 18.0;
-        let place = plate(
-            &painter,
-            &palette,
-            Align2::LEFT_TOP,
-            pos2(rect.left() + 8.0, y),
-            badge.text.clone(),
-            font,
-            palette.text,
-            left,
-        );
-        painter.rect_stroke(
-            place,
-            4.0,
-            Stroke::new(1.0, palette.severity(badge.severity)),
-            egui::StrokeKind::Inside,
-        );
-        icon::severity(&painter, pos2(place.left() + 14.0, place.center().y), 6.0, badge.severity, &palette);
-        let response = ui.interact(place, ui.id().with(("badge", i)), Sense::hover() | Sense::FOCUSABLE);
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &badge.text));
+        let here = action.is_some() && (response.hovered() || response.has_focus());
+        let rim = if here { palette.text } else { palette.severity(badge.severity) };
+        painter.rect_stroke(place, 4.0, Stroke::new(scale, rim), egui::StrokeKind::Inside);
+        let sign = pos2(place.left() + 14.0 * scale, place.center().y);
+        icon::severity(&painter, sign, 6.0 * scale, badge.severity, &palette);
+        let role = if action.is_some() { WidgetType::Button } else { WidgetType::Label };
+        response.widget_info(|| WidgetInfo::labeled(role, true, &badge.text));
+        if let Some(action) = action {
+            places.push(place);
+            actions.extend(response.clicked().then_some(action));
+        }
+        let pointer = if sense.senses_click() { CursorIcon::PointingHand } else { CursorIcon::Default };
+        let response = response.on_hover_cursor(pointer);
         if !badge.help.is_empty() {
             // By key there is no other way to its help.
             if response.has_focus() {
@@ -211,36 +222,38 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab) {
             }
             response.on_hover_text(&badge.help);
         }
-        y = place.bottom() + 4.0;
+        at.y = place.bottom() + 4.0;
     }
+    (actions, places)
 }
 
 fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) {
     let palette = Palette::here(ui);
-    let painter = ui.painter_at(rect);
     let term = match lab.view.terms {
         TermSelection::All => None,
         TermSelection::Ambient => Some(Term::Ambient),
         TermSelection::Diffuse => Some(Term::Diffuse),
         TermSelection::Specular => Some(Term::Specular),
     };
-    let font = TextStyle::Small.resolve(ui.style());
-    let at = rect.left_bottom() + vec2(8.0, -8.0);
+    let padding = vec2(8.0, 4.0);
     let left = if term.is_some() { 14.0 } else { 0.0 };
-    let place = plate(
-        &painter,
-        &palette,
-        Align2::LEFT_BOTTOM,
-        at,
-        caption_text(lab, registry),
-        font,
-        palette.text,
-        left,
-    );
+    // The axes have the corner, where there is room for them.
+    let corner = if rect.width() >= AXES { 100.0 } else { 0.0 };
+    let room = (rect.width() - 16.0 - corner - 2.0 * padding.x - left).max(64.0);
+    let size = TextStyle::Small.resolve(ui.style()).size;
+    let lines = Lines::of(ui, caption::parts(lab, registry), size, palette.text, room);
+    let size = lines.size + 2.0 * padding + vec2(left, 0.0);
+    let place = Align2::LEFT_BOTTOM.anchor_size(rect.left_bottom() + vec2(8.0, -8.0), size);
+    ui.painter().rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
+    if lines.cut {
+        let whole = ui.interact(place, ui.id().with("caption"), Sense::hover());
+        whole.on_hover_text(caption_text(lab, registry));
+    }
+    lines.paint(ui, place.min + padding + vec2(left, 0.0), palette.text);
     if let Some(term) = term {
-        let y = place.center().y;
         // The colour of the term in the equation.
-        painter.circle_filled(pos2(place.left() + 8.0 + 4.0, y), 4.0, palette.term_text(term));
+        let at = pos2(place.left() + 8.0 + 4.0, place.center().y);
+        ui.painter().circle_filled(at, 4.0, palette.term_text(term));
     }
 }
 
@@ -279,16 +292,6 @@ fn hint(ui: &Ui, rect: Rect, lab: &Lab) {
     } else {
         return;
     };
-    let palette = Palette::here(ui);
     let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, FontFamily::Proportional);
-    plate(
-        &ui.painter_at(rect),
-        &palette,
-        Align2::CENTER_CENTER,
-        rect.center(),
-        text.to_owned(),
-        font,
-        palette.text,
-        0.0,
-    );
+    plate(ui, rect, Align2::CENTER_CENTER, rect.center(), text, font, 0.0);
 }

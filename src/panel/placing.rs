@@ -5,10 +5,14 @@ use std::collections::HashMap;
 
 use glam::{Quat, Vec3};
 
-use crate::document::limits::significant;
+use super::clipping;
 use crate::{
+    document::limits::significant,
     light::LightEntry,
-    optics::tone::exposure_factor,
+    optics::{
+        colour::{srgb_decode, srgb_encode},
+        tone::exposure_factor,
+    },
     reference,
     registry::Registry,
     scene::{DEFAULT_SIZE, Light, Object, Observer, Scene, observer::WIDE},
@@ -20,10 +24,14 @@ const AIR: f32 = 0.3;
 const PROBE: [u32; 2] = [128, 72];
 /// The most objects in such a picture: those nearest to the camera.
 const PROBED: usize = 200;
-/// The part of such a picture that may clip all the same: sharp highlights.
-const HIGHLIGHTS: f32 = 0.005;
 /// What a new light may take of what is left up to the brightest that the display shows.
-const SHARE: f32 = 0.7;
+const SHARE: f32 = 0.35;
+/// The least that a new light adds, in the scale of the display's values from 0 to 1, even if it clips for that.
+const VISIBLE: f32 = 0.05;
+/// The part of what the light reaches that may clip for that.
+const HIGHLIGHTS: f32 = 0.008;
+/// The part of what the light reaches that gets at least so much brighter.
+const VISIBLE_PART: f32 = 0.04;
 
 /// A scene, and the camera before which something is placed.
 pub(super) struct Stand<'a> {
@@ -119,12 +127,12 @@ impl<'a> Stand<'a> {
 
     /// The direction from a place to the middle of what is seen.
     pub(super) fn towards_middle(&self, from: Vec3) -> Vec3 {
-        (self.middle() - from).try_normalize().map_or(Vec3::NEG_Y, round)
+        (self.middle() - from).try_normalize().map_or(Vec3::NEG_Y, |v| round(v, 100.0))
     }
 
-    /// The intensity at which a light that is added lights what the camera sees, and the brightest parts stay
-    /// within what the display shows: pictures with it and without it tell.
-    pub(super) fn intensity(&self, light: &Light, entry: &LightEntry) -> f32 {
+    /// The intensity at which a light that is added can be seen, and the brightest parts stay within what the display
+    /// shows: pictures with it and without it tell. True with it if the picture clips all the same.
+    pub(super) fn intensity(&self, light: &Light, entry: &LightEntry) -> (f32, bool) {
         let default = entry.declaration.default_intensity;
         let mut scene = self.scene.clone();
         scene.observer = Observer {
@@ -147,22 +155,32 @@ impl<'a> Stand<'a> {
         scene.lights = vec![Light { intensity: default, luminous_flux: None, ..light.clone() }];
         let added = reference::render(&scene, self.registry, &settings);
         let limit = self.brightest();
-        let mut factors: Vec<f32> = Vec::new();
+        let (mut factors, mut floors, mut clipped) = (Vec::new(), Vec::new(), 0);
         for (before, added) in before.pixels.iter().zip(&added.pixels) {
             let (before, added) = (before.truncate().max_element(), added.truncate().max_element());
-            // What clips already cannot be spared.
-            if added > 1e-9 && before < limit {
-                factors.push(SHARE * (limit - before) / added);
+            if before >= limit {
+                // What clips already cannot be spared.
+                clipped += 1;
+            } else if added > 1e-9 {
+                let brighter = srgb_decode((srgb_encode(before / limit) + VISIBLE).min(1.0)) * limit;
+                floors.push((brighter - before) / added);
+                factors.push((limit - before) / added);
             }
         }
         if factors.is_empty() {
-            return default;
+            return (default, false);
         }
         factors.sort_by(f32::total_cmp);
-        let factor = factors[(HIGHLIGHTS * factors.len() as f32) as usize];
-        // From a thousandth, since a light that cannot be seen helps nobody.
+        floors.sort_by(f32::total_cmp);
+        // As many pixels may clip as the picture has without a sign.
+        let spared = (clipping::TOLERATED * f64::from(width * height)) as usize;
+        let most = factors[spared.saturating_sub(clipped).min(factors.len() - 1)];
+        let least = floors[(VISIBLE_PART * floors.len() as f32) as usize];
+        // So that it is seen, highlights may clip, and no more than those.
+        let clipping = factors[(HIGHLIGHTS * factors.len() as f32) as usize];
+        let factor = (SHARE * most).max(least.min(clipping.max(most)));
         let intensity = f64::from(default) * f64::from(factor).clamp(1e-3, 1e3);
-        significant(intensity, 2) as f32
+        (significant(intensity, 2) as f32, factor > most)
     }
 
     /// The most light that the display still tells from more.
@@ -247,7 +265,14 @@ impl<'a> Stand<'a> {
             }
         }
         offsets.sort_by(|a, b| a.0.total_cmp(&b.0));
-        offsets.into_iter().map(|(_, way)| round(wanted + step * way)).find(|p| fits(*p))
+        let steps = self.steps();
+        offsets.into_iter().map(|(_, way)| round(wanted + step * way, steps)).find(|p| fits(*p))
+    }
+
+    /// Steps in a metre of what people like to read: 10, and more in a small room.
+    fn steps(&self) -> f32 {
+        let room = self.scene.scene_size.corner().min_element();
+        10f32.powf((20.0 / room).log10().ceil().max(1.0))
     }
 
     /// Where all is full: a place of a lattice in which nothing has its centre.
@@ -259,7 +284,7 @@ impl<'a> Stand<'a> {
             .chain([self.scene.observer.position])
             .collect();
         let taken = |p: Vec3| others.iter().any(|q| (p - *q).length() < 0.5 * step.min_element());
-        let inside = |p: Vec3| p.clamp(0.02 * corner, corner);
+        let inside = |p: Vec3| round(p.clamp(0.02 * corner, 0.99 * corner), 10.0 * self.steps());
         let wrapped = |start: f32, k: i32, step: f32, end: f32| {
             let q = start + k as f32 * step;
             if q > end { q - end } else { q }
@@ -279,7 +304,7 @@ impl<'a> Stand<'a> {
     }
 }
 
-/// Rounded to what people like to read.
-fn round(v: Vec3) -> Vec3 {
-    (v * 1000.0).round() / 1000.0
+/// Rounded to steps of so many in a metre.
+fn round(v: Vec3, steps: f32) -> Vec3 {
+    (v * steps).round() / steps
 }

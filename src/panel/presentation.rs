@@ -1,27 +1,38 @@
-//! The presentation (F5): the picture fills the screen, and the equation and the caption are laid over it, large
-//! enough for the last row.
+//! The presentation (F5): the picture fills the screen, with the equation and the caption over it, large enough for the
+//! last row. Where they would hide objects, the picture makes room for them.
 
-use std::{thread, time::Duration};
+use std::{
+    hash::{DefaultHasher, Hash, Hasher},
+    ops::Range,
+    thread,
+    time::Duration,
+};
 
 use bevy_egui::egui::{
-    Align2, Context, CornerRadius, FontId, Id, Rect, TextStyle, Ui, UiBuilder, Vec2, vec2,
+    Align2, Context, CornerRadius, FontId, Id, Pos2, Rect, TextStyle, Ui, UiBuilder, Vec2, vec2,
 };
 
 use super::{
-    caption::caption_text,
-    keys, maths,
+    caption::{self, Lines, models_shown},
+    keys,
+    marks::Lens,
+    maths::{self, Sizes},
     state::{Action, Lab, ViewChange},
     theme::{self, Palette},
 };
-use crate::{reflection::EquationPart, registry::Registry};
+use crate::{reflection::Term, registry::Registry};
 
 /// The size of the caption, as a fraction of the height of the screen. The capitals of its font are 0.727 of it high.
 const CAPTION: f32 = 0.036;
 /// The body size under which the smallest symbols of an equation have capitals of the same height: they are set 1.1
 /// times as large, in a font whose capitals are 0.66 of its size.
 const BODY: f32 = 0.035;
-/// The most of the height that the equation covers.
+/// The part of the height that the equation covers at most, if it can.
 const MOST: f32 = 0.4;
+/// The width of an equation that stands beside the objects, as a part of the screen's.
+const BESIDE: f32 = 0.34;
+/// The part of the objects that may be hidden.
+const HIDDEN: f32 = 0.005;
 /// How long it says how to leave, seconds.
 const REMINDER: f64 = 5.0;
 
@@ -31,70 +42,240 @@ pub fn left(ctx: &Context, lab: &Lab) -> Option<Action> {
     left.then_some(Action::View(ViewChange::Presenting(false)))
 }
 
-/// Lays equation and caption over the picture, each on a ground of its own, so that they can be read on any. Returns
-/// what is left below the equation.
-pub fn overlay(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> Rect {
-    let palette = Palette::here(ui);
-    let height = rect.height();
-    let padding = vec2(0.022, 0.014) * height;
-    let most = rect.width() - 2.0 * padding.x;
-    let font = FontId::proportional(CAPTION * height);
-    let caption = ui.painter().layout(caption_text(lab, registry), font, palette.text, most);
-    let plate = Align2::LEFT_BOTTOM.anchor_size(rect.left_bottom(), caption.size() + 2.0 * padding);
-    ui.painter().rect_filled(plate, CornerRadius { ne: 8, ..CornerRadius::ZERO }, palette.panel);
-    ui.painter().galley(plate.min + padding, caption, palette.text);
-    reminder(ui, rect);
+/// A definition: its term and its text.
+type Definition = (Term, &'static str);
 
-    let parts = registry.model(lab.model_shown()).map_or(&[][..], |m| m.declaration.equation);
-    let mut ui = ui.new_child(UiBuilder::new().id_salt("presentation").max_rect(rect));
-    ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * height));
-    let (count, size) = fitting(&mut ui, parts, vec2(most, MOST * height));
-    if count == 0 {
-        return rect;
-    }
-    let plate = Rect::from_min_size(rect.min, size + 2.0 * padding);
-    ui.painter().rect_filled(plate, CornerRadius { se: 8, ..CornerRadius::ZERO }, palette.panel);
-    let place = Rect::from_min_size(plate.min + padding, size);
-    maths::equation(&mut ui.new_child(UiBuilder::new().max_rect(place)), &parts[..count], |_| None);
-    rect.with_min_y(plate.bottom())
+/// The equation in columns.
+#[derive(Clone, Debug, Default)]
+struct Block {
+    /// The definitions of each column, where it begins and how wide it is.
+    columns: Vec<(Range<usize>, f32, f32)>,
+    /// True if terms are as small as definitions.
+    even: bool,
+    size: Vec2,
 }
 
-/// How many lines of an equation find room, and how much they need. The first say what the others only spell out.
-fn fitting(ui: &mut Ui, parts: &'static [EquationPart], room: Vec2) -> (usize, Vec2) {
-    let id = Id::new("fitting equation");
-    let key = (parts.as_ptr() as usize, parts.len(), [room.x.to_bits(), room.y.to_bits()]);
-    let known = ui.data(|d| d.get_temp::<((usize, usize, [u32; 2]), (usize, Vec2))>(id));
-    if let Some((_, fit)) = known.filter(|(of, _)| *of == key) {
-        return fit;
-    }
-    let heights = (1..=parts.len()).rev().map(|n| (n, measured(ui, &parts[..n], room.x)));
-    let (count, height) = heights.into_iter().find(|(n, h)| *n == 1 || *h <= room.y).unwrap_or_default();
-    // The narrowest width in which they are no higher.
-    let (mut narrow, mut wide) = (0.0, room.x);
-    while count > 0 && wide - narrow > 4.0 {
-        let middle = 0.5 * (narrow + wide);
-        let fits = measured(ui, &parts[..count], middle) <= height;
-        *(if fits { &mut wide } else { &mut narrow }) = middle;
-    }
-    let fit = (count, vec2(wide, height));
-    ui.data_mut(|d| d.insert_temp(id, (key, fit)));
-    fit
+/// What a presentation says, and where.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    /// The screen.
+    whole: Rect,
+    /// The place of the picture.
+    pub picture: Rect,
+    equation: Vec<Definition>,
+    block: Block,
+    plate: Rect,
+    caption: Rect,
+    parts: Vec<caption::Part>,
 }
 
-/// How high an equation is.
-fn measured(ui: &mut Ui, parts: &[EquationPart], width: f32) -> f32 {
+impl Stage {
+    /// What is said in this rectangle.
+    #[must_use]
+    pub fn of(ui: &mut Ui, whole: Rect, lab: &Lab, registry: &Registry) -> Self {
+        let models = models_shown(lab);
+        // Among several models, an equation would say of all what is true of one.
+        let model = models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1);
+        let equation = model.map_or_else(Vec::new, |m| maths::definitions(m.declaration.equation));
+        let parts = caption::parts(lab, registry);
+        // The camera that turns moves nothing: its place at the beginning counts.
+        let mut hasher = DefaultHasher::new();
+        let objects: Vec<_> = lab.document.shown().map(|o| (o.position, o.size)).collect();
+        format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui).0).hash(&mut hasher);
+        let (id, key) = (Id::new("stage of the presentation"), hasher.finish());
+        if let Some((_, stage)) = ui.data(|d| d.get_temp::<(u64, Self)>(id)).filter(|(of, _)| *of == key) {
+            return stage;
+        }
+        let stage = Self::laid_out(ui, whole, lab, equation, parts);
+        ui.data_mut(|d| d.insert_temp(id, (key, stage.clone())));
+        stage
+    }
+
+    fn laid_out(
+        ui: &mut Ui,
+        whole: Rect,
+        lab: &Lab,
+        equation: Vec<Definition>,
+        parts: Vec<caption::Part>,
+    ) -> Self {
+        let padding = padding(whole);
+        let most = whole.width() - 2.0 * padding.x;
+        let words = Lines::of(ui, parts.clone(), CAPTION * whole.height(), Palette::here(ui).text, most);
+        let caption = Align2::LEFT_BOTTOM.anchor_size(whole.left_bottom(), words.size + 2.0 * padding);
+        let room = whole.with_max_y(caption.top());
+        let mut ui = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(whole).invisible());
+        ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * whole.height()));
+        let mut block = |columns, width, even| Block::of(&mut ui, &equation, columns, width, even);
+        let narrow = block(1, BESIDE * whole.width(), false);
+        let mut wide = vec![block(1, most, false), block(2, most, false)];
+        if wide.iter().all(|b| b.size.y > MOST * whole.height()) {
+            wide.extend([block(2, most, true), block(3, most, true)]);
+        }
+        let discs = discs(lab, whole);
+        let hidden = |plate: Rect| {
+            let share =
+                |d: &(Pos2, f32)| if covers(plate, *d) || covers(caption, *d) { d.1 * d.1 } else { 0.0 };
+            discs.iter().map(share).sum::<f32>() / discs.iter().map(|d| d.1 * d.1).sum::<f32>().max(1.0)
+        };
+        let low = |b: &&Block| b.size.y <= MOST * whole.height();
+        let mut over = wide.iter().chain([&narrow]).filter(low).flat_map(|block| {
+            [Align2::LEFT_TOP, Align2::RIGHT_TOP, Align2::LEFT_BOTTOM]
+                .map(|corner| (block, corner.align_size_within_rect(block.size_with(padding), room)))
+        });
+        if let Some((block, plate)) = over.find(|(_, plate)| hidden(*plate) <= HIDDEN) {
+            let block = block.clone();
+            return Self { whole, picture: whole, equation, block, plate, caption, parts };
+        }
+        // At the side, or above; where the picture is larger.
+        let beside = |b: &Block| {
+            let plate = Align2::LEFT_TOP.align_size_within_rect(b.size_with(padding), room);
+            (b.clone(), plate, room.with_min_x(plate.right()))
+        };
+        let above = |b: &Block| {
+            let plate = Align2::LEFT_TOP.align_size_within_rect(b.size_with(padding), room);
+            (b.clone(), plate, room.with_min_y(plate.bottom().min(room.bottom() - 0.2 * room.height())))
+        };
+        let scale = |r: &Rect| (r.width() / whole.width()).min(r.height() / whole.height());
+        let sides = Some(&narrow).filter(|b| b.size.y <= 1.2 * MOST * whole.height()).map(beside);
+        let (block, plate, picture) = (sides.into_iter().chain(wide.iter().map(above)))
+            .max_by(|a, b| scale(&a.2).total_cmp(&scale(&b.2)))
+            .unwrap_or_else(|| (narrow.clone(), Rect::NOTHING, whole));
+        Self { whole, picture, equation, block, plate, caption, parts }
+    }
+
+    /// Paints equation and caption, each on a ground of its own, so that they can be read on any picture. Returns the
+    /// part of the picture that is free; what is shown there is as large.
+    pub(super) fn paint(&self, ui: &mut Ui) -> Rect {
+        let palette = Palette::here(ui);
+        let height = self.whole.height();
+        let padding = padding(self.whole);
+        if self.picture != self.whole {
+            let (whole, picture) = (self.whole, self.picture);
+            // The window beside the picture is of its colour.
+            for rest in [
+                whole.with_max_x(picture.left()),
+                whole.with_max_y(picture.top()),
+                whole.with_min_y(picture.bottom()),
+            ] {
+                ui.painter().rect_filled(rest, 0.0, palette.surround);
+            }
+        }
+        ui.painter().rect_filled(self.caption, CornerRadius { ne: 8, ..CornerRadius::ZERO }, palette.panel);
+        let width = self.whole.width() - 2.0 * padding.x;
+        let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width);
+        words.paint(ui, self.caption.min + padding, palette.text);
+        reminder(ui, self.picture.with_max_y(self.caption.top().min(self.picture.bottom())), height);
+        let mut free = self.picture;
+        if !self.equation.is_empty() {
+            ui.painter().rect_filled(self.plate, 8.0, palette.panel);
+            for (i, (which, start, width)) in self.block.columns.iter().enumerate() {
+                let size = vec2(*width, self.block.size.y);
+                let place = Rect::from_min_size(self.plate.min + padding + vec2(*start, 0.0), size);
+                let mut ui = ui.new_child(UiBuilder::new().id_salt(("column", i)).max_rect(place));
+                ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * height));
+                let sizes = Sizes { column: true, even: self.block.even };
+                maths::equation_of(&mut ui, &self.equation[which.clone()], sizes, |_| None);
+            }
+            let above = self.plate.left() < free.center().x && self.plate.top() <= free.top();
+            if above && self.plate.right() > free.left() {
+                free.min.y = free.min.y.max(self.plate.bottom());
+            }
+        }
+        ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(CAPTION * height));
+        free.with_max_y(free.bottom().min(self.caption.top()))
+    }
+}
+
+fn padding(whole: Rect) -> Vec2 {
+    vec2(0.022, 0.014) * whole.height()
+}
+
+impl Block {
+    /// Sets an equation in so many columns of the same width, as narrow as they can be without being higher.
+    fn of(ui: &mut Ui, all: &[Definition], columns: usize, width: f32, even: bool) -> Self {
+        let gap = 0.04 * width;
+        let sizes = Sizes { column: true, even };
+        let each = (width - gap * (columns - 1) as f32) / columns as f32;
+        let heights: Vec<_> = (0..all.len()).map(|i| measured(ui, &all[i..=i], each, sizes)).collect();
+        let whole: f32 = heights.iter().sum();
+        // The lowest height at which they are no more than so many.
+        let fill = |most: f32| {
+            let (mut out, mut start, mut height) = (Vec::new(), 0, 0.0);
+            for (i, high) in heights.iter().enumerate() {
+                if i > start && height + high > most {
+                    out.push(start..i);
+                    (start, height) = (i, 0.0);
+                }
+                height += high;
+            }
+            out.push(start..all.len());
+            out
+        };
+        let steps = (1..=64).map(|k| whole * k as f32 / 64.0 + 0.5);
+        let ranges = steps.map(fill).find(|r| r.len() <= columns).unwrap_or_else(|| fill(f32::INFINITY));
+        let mut block = Self { even, ..Self::default() };
+        let mut at = 0.0;
+        for range in ranges.into_iter().filter(|r| !r.is_empty()) {
+            let part = &all[range.clone()];
+            let mut height = |width| measured(ui, part, width, sizes);
+            let high = height(each);
+            let (mut narrow, mut wide) = (0.0, each);
+            while wide - narrow > 4.0 {
+                let middle = 0.5 * (narrow + wide);
+                // Lower would be without stacked fractions, broken anywhere.
+                let same = (height(middle) - high).abs() < 0.5;
+                *(if same { &mut wide } else { &mut narrow }) = middle;
+            }
+            block.columns.push((range, at, wide));
+            block.size = vec2(at + wide, block.size.y.max(high));
+            at += wide + gap;
+        }
+        block
+    }
+
+    fn size_with(&self, padding: Vec2) -> Vec2 {
+        if self.columns.is_empty() { Vec2::ZERO } else { self.size + 2.0 * padding }
+    }
+}
+
+/// How high definitions are, wide enough or not.
+fn measured(ui: &mut Ui, parts: &[Definition], width: f32, sizes: Sizes) -> f32 {
     let room = Rect::from_min_size(ui.max_rect().min, vec2(width, f32::INFINITY));
     let mut trial = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(room).invisible());
-    maths::equation(&mut trial, parts, |_| None).rect.height()
+    maths::equation_of(&mut trial, parts, sizes, |_| None).rect.height()
 }
 
-/// For a moment it says how to get out.
-fn reminder(ui: &Ui, rect: Rect) {
+/// The objects as the camera sees them: discs, without what is far outside the picture.
+fn discs(lab: &Lab, rect: Rect) -> Vec<(Pos2, f32)> {
+    let lens = Lens::of(lab, rect);
+    let right = lab.camera * glam::Vec3::X;
+    let disc = |o: &crate::scene::Object| {
+        // Half the size, and what corners reach beyond it.
+        let radius = 0.6 * o.size;
+        let at = lens.project(o.position)?;
+        Some((at, lens.project(o.position + radius * right)?.distance(at)))
+    };
+    lab.document.shown().filter_map(disc).filter(|(at, r)| rect.expand(*r).contains(*at)).collect()
+}
+
+/// True if a rectangle hides part of a disc.
+fn covers(rect: Rect, (at, radius): (Pos2, f32)) -> bool {
+    rect.is_positive() && at.distance(rect.clamp(at)) < radius
+}
+
+/// When the presentation began, seconds.
+fn since(ui: &Ui) -> (f64, f64) {
     let id = Id::new("presentation since");
     let (now, pass) = (ui.input(|i| i.time), ui.ctx().cumulative_pass_nr());
     let since =
         ui.data(|d| d.get_temp::<(f64, u64)>(id)).filter(|(_, last)| last + 2 > pass).map_or(now, |s| s.0);
     ui.data_mut(|d| d.insert_temp(id, (since, pass)));
+    (since, now)
+}
+
+/// For a moment it says how to get out.
+fn reminder(ui: &Ui, rect: Rect, height: f32) {
+    let (since, now) = since(ui);
     if now - since > REMINDER {
         return;
     }
@@ -107,11 +288,10 @@ fn reminder(ui: &Ui, rect: Rect) {
         });
     }
     let palette = Palette::here(ui);
-    let font = FontId::proportional(CAPTION * rect.height());
+    let font = FontId::proportional(CAPTION * height);
     let galley = ui.painter().layout_no_wrap("Esc leaves the presentation".to_owned(), font, palette.text);
-    // The caption has the bottom, the equation begins at the left.
-    let place =
-        Align2::RIGHT_TOP.anchor_size(rect.right_top() + vec2(-12.0, 12.0), galley.size() + vec2(24.0, 12.0));
+    let place = Align2::RIGHT_BOTTOM
+        .anchor_size(rect.right_bottom() - vec2(12.0, 12.0), galley.size() + vec2(24.0, 12.0));
     ui.painter().rect_filled(place, theme::UNIT, palette.panel);
     ui.painter().galley(place.min + vec2(12.0, 6.0), galley, palette.text);
 }

@@ -31,7 +31,8 @@ use crate::{
     optics::TermSelection,
     registry::Registry,
     scene::{
-        Display, Light, MAX_OBJECTS, Object, Scene, examples::EXAMPLES, load::Stamp, observer::rotation,
+        Display, Light, MAX_OBJECTS, Object, Scene, check::same_place, examples::EXAMPLES, load::Stamp,
+        observer::rotation,
     },
 };
 
@@ -41,6 +42,9 @@ pub const MODEL_SLOTS: usize = 9;
 pub const RECENT_FILES: usize = 10;
 /// The most messages that are kept; the oldest give way.
 pub const MAX_MESSAGES: usize = 500;
+/// What the scene has, and objects may override.
+const MODEL: &str = "reflection model";
+
 /// The state of the window.
 #[derive(Clone, Debug, Resource)]
 pub struct Lab {
@@ -711,6 +715,40 @@ impl Lab {
         self.known_terms.offered(&self.document, registry)
     }
 
+    /// True if nothing of the picture has the term that is shown alone.
+    #[must_use]
+    pub fn lacks_term(&self, registry: &Registry) -> bool {
+        let shown = self.view.terms;
+        shown != TermSelection::All && !self.known_terms.present(&self.document, registry).contains(&shown)
+    }
+
+    /// Why the observer cannot be where the camera is.
+    #[must_use]
+    pub fn observer_problem(&self) -> Option<&'static str> {
+        let scene = &self.document;
+        let taken = (scene.lights.iter().filter_map(|l| l.position))
+            .chain(scene.objects.iter().map(|o| o.position))
+            .any(|p| same_place(p, self.eye));
+        match scene.scene_size.contains(self.eye) {
+            false => Some("The view is outside the room."),
+            true if taken => Some("The view is from the place of a light or an object."),
+            true => None,
+        }
+    }
+
+    /// The name of the window: what it calls the document, and the file where that is called otherwise.
+    #[must_use]
+    pub fn window_title(&self) -> String {
+        let title = self.title();
+        match self.path.as_ref().filter(|p| p.file_stem().is_none_or(|stem| *stem != *title)) {
+            Some(path) => {
+                let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+                format!("{title} — {}", printable(&file))
+            }
+            None => title,
+        }
+    }
+
     /// The change that folds the strip at the bottom away, or unfolds it with the messages.
     #[must_use]
     pub fn strip_change(&self) -> ViewChange {
@@ -790,7 +828,10 @@ impl Lab {
         let mut offer = None;
         if self.camera_left {
             text.push_str(" The view you turned to is not in the file: it has the observer’s.");
-            offer = Some(("Set observer to this view", Box::new(Action::ObserverFromView)));
+            match self.observer_problem() {
+                None => offer = Some(("Set observer to this view", Box::new(Action::ObserverFromView))),
+                Some(why) => text.push_str(&format!(" {why}")),
+            }
         }
         self.messages.retain(|m| m.severity != Severity::Info || !m.text.starts_with("Saved to "));
         self.note(Note { severity: Severity::Info, text, offer });
@@ -1173,10 +1214,16 @@ impl Lab {
             intensity: d.default_intensity,
             ..Light::default()
         };
-        light.intensity = stand.intensity(&light, entry);
+        let (intensity, clips) = stand.intensity(&light, entry);
+        light.intensity = intensity;
         let at = self.document.lights.len();
         self.document.insert_light(at, light, "Add", self.selection, registry);
         self.select_new(Selection::Light(at));
+        if clips {
+            let name = self.name_of(self.selection, registry);
+            let text = format!("With {name} the picture clips: lower the exposure, or dim another light.");
+            self.say(Severity::Info, text);
+        }
     }
 
     fn add_object(&mut self, kind: &str, registry: &Registry) {
@@ -1271,11 +1318,14 @@ impl Lab {
 
     // ── changing the scene ──
 
-    // ── changing the scene ──
-
     fn edit(&mut self, edit: Edit, registry: &Registry) {
         let model = match &edit {
             Edit::Model(id) | Edit::Object(_, ObjectField::Model(Some(id))) => Some(id.clone()),
+            _ => None,
+        };
+        let scene_choice = match &edit {
+            Edit::Model(_) => Some(MODEL),
+            Edit::Mode(_) => Some("shading model"),
             _ => None,
         };
         let named =
@@ -1292,6 +1342,18 @@ impl Lab {
         }
         if let Some(id) = model {
             self.use_slot(&id);
+        }
+        if let Some(what) = scene_choice {
+            let own = |o: &Object| match what {
+                MODEL => o.reflection_model.is_some(),
+                _ => o.shading_model.is_some(),
+            };
+            if self.document.shown().next().is_some() && self.document.shown().all(own) {
+                let text = format!(
+                    "Every visible object overrides the {what}, so the scene’s does not show. Select an object to change its own."
+                );
+                self.say(Severity::Info, text);
+            }
         }
         if named {
             self.renaming = None;

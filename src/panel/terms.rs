@@ -31,6 +31,13 @@ pub(super) struct KnownTerms(Arc<Mutex<HashMap<String, Present>>>);
 impl KnownTerms {
     /// What the picture of a scene may show: all terms, and each that is there if there are others beside it.
     pub(super) fn offered(&self, scene: &Scene, registry: &Registry) -> Vec<TermSelection> {
+        let there = self.present(scene, registry);
+        let several = there.len() > 1;
+        [TermSelection::All].into_iter().chain(there.into_iter().filter(|_| several)).collect()
+    }
+
+    /// The terms that are not 0 everywhere in the picture of a scene.
+    pub(super) fn present(&self, scene: &Scene, registry: &Registry) -> Vec<TermSelection> {
         let mut present = [false; 3];
         let everywhere = shines_from_everywhere(scene, registry);
         let mut last = None;
@@ -48,9 +55,7 @@ impl KnownTerms {
             }
         }
         let single = [TermSelection::Ambient, TermSelection::Diffuse, TermSelection::Specular];
-        let there: Vec<_> = single.into_iter().zip(present).filter(|(_, p)| *p).map(|(t, _)| t).collect();
-        let several = there.len() > 1;
-        [TermSelection::All].into_iter().chain(there.into_iter().filter(|_| several)).collect()
+        single.into_iter().zip(present).filter(|(_, p)| *p).map(|(t, _)| t).collect()
     }
 
     fn of(&self, model: &ModelEntry, material: &Values, scene: &Scene, everywhere: bool) -> Present {

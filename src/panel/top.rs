@@ -44,7 +44,7 @@ impl Panel for TopBar {
             menus(ui, lab, registry, &table, &mut actions);
             divider(ui);
             // Where there is little room, the captions go first, then the choices of shading fold up.
-            let names: Vec<_> = registry.modes().iter().map(|m| m.declaration.short_name).collect();
+            let names: Vec<_> = registry.modes().iter().map(|m| m.declaration.name).collect();
             let buttons = names.iter().map(|n| segment_width(ui, n)).sum::<f32>() + 4.0;
             let captions = CAPTIONS.iter().map(|c| theme::small_width(ui, c) + 4.0).sum::<f32>();
             let left = ui.available_width() - chooser::WIDTH - 8.0 - 2.0 * 4.0;
@@ -220,7 +220,11 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
                 item(ui, "Home: the observer’s view", Action::HomeView, actions);
                 item(ui, "Focus selection", Action::FocusSelection, actions);
-                item(ui, "Set observer to this view", Action::ObserverFromView, actions);
+                let problem = lab.observer_problem();
+                let place =
+                    |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView, actions);
+                let place = ui.add_enabled_ui(problem.is_none(), place).response;
+                problem.map(|why| place.on_hover_text(why));
                 ui.separator();
                 menu::submenu(ui, "Terms of the equation", |ui| {
                     for terms in lab.offered_terms(registry) {

@@ -278,7 +278,10 @@ fn part_row(
             item(ui, "Show properties", Action::Select(part));
         }
         if part == Selection::Observer {
-            item(ui, "Set observer to this view", Action::ObserverFromView);
+            let problem = lab.observer_problem();
+            let place = |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView);
+            let place = ui.add_enabled_ui(problem.is_none(), place).response;
+            problem.map(|why| place.on_hover_text(why));
         }
     });
     if cut {

@@ -79,7 +79,7 @@ impl ReflectionModel for OrenNayar {
             EquationPart { term: Term::Diffuse, text: "C_1 = 1 − 0.5 σ^2/(σ^2 + 0.33)" },
             EquationPart {
                 term: Term::Diffuse,
-                text: "C_2 = 0.45 σ^2/(σ^2 + 0.09) (sin α − (2β/π)^3), (2β/π)^3 only where cos φ < 0",
+                text: "C_2 = 0.45 σ^2/(σ^2 + 0.09) (sin α − b), b = (2β/π)^3 where cos φ < 0, else 0",
             },
             EquationPart { term: Term::Diffuse, text: "C_3 = 0.125 σ^2/(σ^2 + 0.09) (4 α β/π^2)^2" },
             EquationPart { term: Term::Diffuse, text: "C_4 = σ^2/(σ^2 + 0.13) (1 − cos φ (2β/π)^2)" },

@@ -16,7 +16,6 @@ impl ShadingMode for Derivative {
     const DECLARATION: Declaration = Declaration {
         id: "derivative",
         name: "Derivative",
-        short_name: "Facet",
         author: "screen-space derivatives",
         source: "CA LC3: normals from partial derivatives; dFdx and dFdy, OpenGL Shading Language 1.10 (2004)",
         summary: "Facet normals from the derivatives of position on the screen; colour calculated at every pixel.",

@@ -14,7 +14,6 @@ impl ShadingMode for Flat {
     const DECLARATION: Declaration = Declaration {
         id: "flat",
         name: "Flat",
-        short_name: "Flat",
         author: "J. Bouknight 1970",
         source: "J. Bouknight (1970), A Procedure for Generation of Three-dimensional Half-toned Computer Graphics Presentations, Communications of the ACM 13(9)",
         summary: "One colour per polygon, calculated at its centre with its own normal.",

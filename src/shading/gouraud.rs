@@ -14,7 +14,6 @@ impl ShadingMode for Gouraud {
     const DECLARATION: Declaration = Declaration {
         id: "gouraud",
         name: "Gouraud",
-        short_name: "Gouraud",
         author: "H. Gouraud 1971",
         source: "H. Gouraud (1971), Continuous Shading of Curved Surfaces, IEEE Transactions on Computers C-20(6)",
         summary: "Colour calculated at the vertices, interpolated between them. Misses highlights that fall between vertices.",

@@ -65,8 +65,6 @@ pub struct Declaration {
     pub id: &'static str,
     /// The name that people read.
     pub name: &'static str,
-    /// Short name for narrow buttons.
-    pub short_name: &'static str,
     /// Author and year.
     pub author: &'static str,
     /// Author, year, title, where published.

@@ -14,7 +14,6 @@ impl ShadingMode for PhongShading {
     const DECLARATION: Declaration = Declaration {
         id: "phong",
         name: "Phong",
-        short_name: "Phong",
         author: "B. T. Phong 1975",
         source: "B. T. Phong (1975), Illumination for Computer Generated Pictures, Communications of the ACM 18(6), 311–317",
         summary: "Normals interpolated between the vertices and renormalised; colour calculated at every pixel.",

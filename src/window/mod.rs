@@ -547,7 +547,7 @@ impl PicturePlace {
 
 fn window_title(lab: Res<Lab>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
     let mark = if lab.is_dirty() { " •" } else { "" };
-    let title = format!("{}{mark} – Lights, Camera, Models!", lab.title());
+    let title = format!("{}{mark} – Lights, Camera, Models!", lab.window_title());
     if window.title != title {
         window.title = title;
     }

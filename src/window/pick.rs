@@ -15,7 +15,7 @@ use super::{PicturePlace, WindowView};
 use crate::{
     document::Selection,
     panel::{
-        marks::anchor,
+        marks::{self, Lens},
         state::{Action, Lab},
     },
     registry::Registry,
@@ -54,7 +54,8 @@ pub(super) fn pick(
     }
     let end = PicturePlace::of(&lab, &window).within(&window, end);
     let reach = LIGHT_REACH * lab.zoom * window.scale_factor();
-    let light = lab.view.show_gizmos.then(|| nearest_light(&scene, camera, place, end, reach)).flatten();
+    let light =
+        lab.view.show_gizmos.then(|| nearest_light(&scene, &lab, camera, place, end, reach)).flatten();
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
         let filter = |e: Entity| objects.contains(e);
@@ -73,18 +74,20 @@ pub(super) fn pick(
 
 fn nearest_light(
     scene: &CurrentScene,
+    lab: &Lab,
     camera: &Camera,
     place: &GlobalTransform,
     pointer: Vec2,
     reach: f32,
 ) -> Option<usize> {
+    let lens = Lens::of(lab, lab.picture_rect);
     scene
         .0
         .lights
         .iter()
         .enumerate()
         .filter_map(|(i, light)| {
-            let at = camera.world_to_viewport(place, anchor(light, &scene.0)?).ok()?;
+            let at = camera.world_to_viewport(place, marks::place(light, &scene.0, &lens)?).ok()?;
             Some((i, at.distance(pointer)))
         })
         .filter(|(_, distance)| *distance <= reach)
@@ -127,7 +130,7 @@ mod tests {
             camera.computed.clip_from_view = lens.get_clip_from_view();
             let place =
                 GlobalTransform::from(Transform::from_translation(scene.observer.position + 6.0 * Vec3::Z));
-            let light = anchor(&scene.lights[0], &scene).expect("it has a place");
+            let light = marks::anchor(&scene.lights[0], &scene).expect("it has a place");
             let at = camera.world_to_viewport(&place, light).expect("it is seen");
             let mut window =
                 Window { resolution: WindowResolution::new(SIZE.x, SIZE.y), ..Window::default() };

@@ -1,6 +1,6 @@
 //! The picture says where it clips: counted in what the renderer draws.
 
-use bevy_egui::egui::Color32;
+use bevy_egui::egui::{Color32, PointerButton};
 use lights_camera_models::panel::{
     clipping::{Clipping, GRID},
     state::{Action, Lab, ViewChange},
@@ -33,7 +33,14 @@ fn the_sign_tells_the_share_and_the_view_shows_where() {
     };
     assert_eq!(shown(&mut bench), [0, 0], "not before it is asked for");
     bench.apply(Action::View(ViewChange::Clipping(true)));
+    let selected = bench.lab.selection;
     let [there, elsewhere] = shown(&mut bench);
+    // The sign itself switches them on and off.
+    let sign = bench.tree.iter().find(|s| s.label.starts_with("Clipped")).map(|s| s.rect.center()).unwrap();
+    bench.click_at(sign, PointerButton::Primary);
+    assert!(!bench.lab.view.show_clipping);
+    bench.click_at(sign, PointerButton::Primary);
+    assert!(bench.lab.view.show_clipping && bench.lab.selection == selected);
     // A chequered pattern, less what the object's marks cover.
     assert!((3200..4900).contains(&there) && elsewhere == 0, "{there} and {elsewhere} of 8100");
 }

@@ -6,11 +6,12 @@ use lights_camera_models::{
     document::Selection,
     optics::colour::srgb_decode,
     panel::{
-        marks::{Lens, anchor},
+        marks::{Lens, anchor, place},
         state::{Action, Lab, ThemeChoice, ViewChange},
         theme,
     },
-    scene::{Light, Scene},
+    registry::Registry,
+    scene::{Light, Scene, examples::EXAMPLES},
 };
 
 use crate::{panels::Bench, screen::Picture};
@@ -162,4 +163,21 @@ fn many_lights_share_their_arrows() {
     assert!(matches!(first, Selection::Light(_)) && bench.lab.selection != first);
     let shapes = bench.shapes().len();
     assert!(shapes < 5000, "{shapes} shapes");
+}
+
+#[test]
+fn a_new_directional_light_has_its_mark_in_the_view() {
+    for example in EXAMPLES.iter() {
+        let registry = Registry::builtin();
+        let lab = Lab::new(example.scene(&registry).unwrap());
+        let mut bench = Bench::new(lab);
+        bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
+        bench.settle();
+        bench.apply(Action::AddLight("directional".to_owned()));
+        let light = bench.lab.document.lights.last().unwrap();
+        let rect = bench.lab.picture_rect;
+        let lens = Lens::of(&bench.lab, rect);
+        let at = place(light, &bench.lab.document, &lens).and_then(|p| lens.project(p)).unwrap();
+        assert!(rect.shrink(20.0).contains(at), "{}: {at:?} in {rect:?}", example.file);
+    }
 }

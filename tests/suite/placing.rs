@@ -4,7 +4,10 @@ use bevy_egui::egui::{Pos2, Rect, vec2};
 use glam::{Quat, Vec3};
 use lights_camera_models::{
     document::Selection,
-    optics::tone::{ToneMapping, exposure_factor},
+    optics::{
+        colour::srgb_encode,
+        tone::{ToneMapping, exposure_factor},
+    },
     panel::{
         marks::{Lens, anchor},
         state::{Action, Lab},
@@ -179,4 +182,65 @@ fn a_curve_of_tone_mapping_leaves_a_new_light_more_room() {
     lab2.apply(Action::AddLight("point".to_owned()), &registry);
     let of = |lab: &Lab| lab.document.lights.last().map_or(0.0, |l: &Light| l.intensity);
     assert!(of(&lab2) > 2.0 * of(&lab), "{} and {}", of(&lab2), of(&lab));
+}
+
+/// A scene with six more objects.
+fn crowded(registry: &Registry) -> Lab {
+    let mut lab = Lab::default();
+    for i in 0..6 {
+        let kind = registry.shapes()[i % registry.shapes().len()].declaration.id;
+        lab.apply(Action::AddObject(kind.to_owned()), registry);
+    }
+    lab
+}
+
+#[test]
+fn each_of_many_new_lights_can_be_seen() {
+    let registry = Registry::builtin();
+    for kind in ["point", "ambient", "directional", "spot"] {
+        let mut lab = crowded(&registry);
+        for nth in 0..5 {
+            let kind = if nth < 4 { "point" } else { kind };
+            let before = brightness(&lab, &registry);
+            lab.apply(Action::AddLight(kind.to_owned()), &registry);
+            let after = brightness(&lab, &registry);
+            let shown = |b: f32| srgb_encode(b.min(1.0));
+            let mut gains: Vec<_> = after.iter().zip(&before).map(|(a, b)| shown(*a) - shown(*b)).collect();
+            gains.sort_by(f32::total_cmp);
+            // Spots reach little of the scene.
+            let gain = gains[gains.len() * if kind == "spot" { 995 } else { 970 } / 1000];
+            let cd = lab.document.lights.last().map_or(0.0, |l| l.intensity);
+            assert!(gain > 0.035, "{kind} {nth} of {cd}: a gain of {gain}");
+        }
+    }
+}
+
+#[test]
+fn a_new_light_says_if_the_picture_clips_with_it() {
+    let registry = Registry::builtin();
+    let mut lab = crowded(&registry);
+    lab.apply(Action::AddLight("point".to_owned()), &registry);
+    assert!(lab.messages.is_empty(), "{:?}", lab.messages);
+    for _ in 0..15 {
+        lab.apply(Action::AddLight("point".to_owned()), &registry);
+    }
+    assert!(lab.messages.iter().any(|m| m.text.contains("the picture clips")));
+}
+
+#[test]
+fn new_positions_are_short_numbers() {
+    let registry = Registry::builtin();
+    let mut lab = crowded(&registry);
+    for kind in ["point", "spot", "directional", "point"] {
+        lab.apply(Action::AddLight(kind.to_owned()), &registry);
+    }
+    let decimals = |v: f32| v.to_string().split_once('.').map_or(0, |(_, d)| d.len());
+    let all = |v: Vec3| v.to_array().map(decimals).into_iter().max().unwrap_or(0);
+    for object in &lab.document.objects {
+        assert!(all(object.position) <= 1, "{}", object.position);
+    }
+    for light in &lab.document.lights[1..] {
+        assert!(light.position.is_none_or(|p| all(p) <= 1), "{:?}", light.position);
+        assert!(light.direction.is_none_or(|d| all(d) <= 2), "{:?}", light.direction);
+    }
 }

@@ -7,10 +7,14 @@ use lights_camera_models::{
     document::Selection,
     optics::TermSelection,
     panel::{
+        clipping::{Clipping, GRID},
+        marks::Lens,
+        maths::definitions,
         settings::SCALES,
         state::{Action, Effect, Lab, ViewChange},
     },
-    scene::Scene,
+    registry::Registry,
+    scene::{Scene, examples::EXAMPLES},
 };
 
 use crate::panels::{Bench, Seen};
@@ -181,6 +185,122 @@ fn equations_of_a_presentation_leave_room_for_the_picture() {
     }
 }
 
+/// The definitions that are shown, as a screen reader finds them.
+fn definitions_shown(bench: &Bench) -> Vec<String> {
+    let labels = bench.tree.iter().filter(|s| s.role == Role::Label && s.label.contains(" = "));
+    labels.flat_map(|s| s.label.split("; ").map(str::to_owned).collect::<Vec<_>>()).collect()
+}
+
+#[test]
+fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
+    for (kind, scale) in [("sphere", 100), ("teapot", 100), ("sphere", 200)] {
+        for model in Registry::builtin().models() {
+            let d = model.declaration;
+            let mut scene = Scene { reflection_model: d.id.to_owned(), ..Scene::default() };
+            scene.objects[0].kind = kind.to_owned();
+            let mut bench = Bench::new(Lab::new(scene));
+            bench.size = vec2(1280.0, 720.0);
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::View(ViewChange::Presenting(true)));
+            let shown = definitions_shown(&bench);
+            for (_, text) in definitions(d.equation) {
+                assert!(shown.iter().any(|s| s == text), "{}: {text} is not among {shown:?}", d.id);
+            }
+            let height = 720.0 / bench.lab.zoom;
+            for (high, text) in capitals(&mut bench) {
+                // Indices may be smaller: those of P_L and F_V are capitals.
+                let least = if text.chars().count() == 1 { 0.017 } else { 0.025 };
+                assert!(high >= least * height, "{}, {scale} %: {text}: {high} of {height}", d.id);
+            }
+            let picture = bench.lab.picture_rect;
+            assert!(
+                picture.width() * picture.height() > 0.2 * 1280.0 * 720.0 / bench.lab.zoom.powi(2),
+                "{}: {picture:?}",
+                d.id
+            );
+            let lens = Lens::of(&bench.lab, picture);
+            let object = &bench.lab.document.objects[0];
+            let at = lens.project(object.position).unwrap();
+            let edge = lens.project(object.position + 0.5 * object.size * glam::Vec3::X).unwrap();
+            for shape in bench.shapes() {
+                let Shape::Rect(r) = shape else { continue };
+                // Around the picture, rectangles have no rounded corner.
+                let hidden = r.rect.clamp(at).distance(at) < edge.distance(at);
+                assert!(
+                    !hidden || r.rect == picture || r.rect.contains_rect(picture),
+                    "{}, {kind}: {:?} hides it",
+                    d.id,
+                    r.rect
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn lines_of_a_presentation_have_the_same_size_at_every_scale() {
+    let sizes: Vec<_> = [100, 150, 200]
+        .map(|scale| {
+            let mut bench = bench((1280.0, 720.0), "blinn_phong");
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::View(ViewChange::Presenting(true)));
+            let zoom = bench.lab.zoom;
+            let terms = capitals(&mut bench).into_iter().filter(|(_, text)| text == "I");
+            terms.map(|(high, _)| (high * zoom).round() as i32).collect::<Vec<_>>()
+        })
+        .to_vec();
+    for heights in &sizes {
+        assert!(heights.len() >= 4 && heights.iter().all(|h| (h - sizes[0][0]).abs() <= 1), "{sizes:?}");
+    }
+}
+
+#[test]
+fn a_presentation_of_many_models_shows_the_equation_of_none() {
+    let registry = Registry::builtin();
+    let example = EXAMPLES.iter().find(|e| e.file == "model_matrix.json").unwrap();
+    let mut bench = Bench::new(Lab::new(example.scene(&registry).unwrap()));
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    assert_eq!(definitions_shown(&bench), [""; 0]);
+}
+
+#[test]
+fn badges_of_a_presentation_are_as_large_as_the_rest() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    let all = GRID[0] * GRID[1];
+    bench.lab.clipping = Clipping::new(vec![50; all]);
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let capitals = capitals(&mut bench);
+    for word in ["Clipped", "Only the"] {
+        assert!(capitals.iter().any(|(_, text)| text.starts_with(word)), "{word}");
+    }
+    for (high, text) in capitals {
+        assert!(high >= 0.025 * 720.0, "{text}: {high}");
+    }
+}
+
+#[test]
+fn pictures_of_presentations() -> Result<(), Box<dyn std::error::Error>> {
+    let Some(folder) = std::env::var_os("LCM_PANEL_PICTURES").map(std::path::PathBuf::from) else {
+        return Ok(());
+    };
+    std::fs::create_dir_all(&folder)?;
+    for (model, size, scale) in [
+        ("hapke", (1280.0, 720.0), 100),
+        ("eon", (1280.0, 720.0), 150),
+        ("disney", (1920.0, 1080.0), 100),
+        ("blinn_phong", (1280.0, 720.0), 200),
+    ] {
+        let mut bench = bench(size, model);
+        bench.lab.clipping = Clipping::new(vec![50; GRID[0] * GRID[1]]);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        bench.picture(&folder.join(format!("presentation-{model}.png")), egui::Color32::from_gray(46))?;
+    }
+    Ok(())
+}
+
 // ── what stands still ──
 
 fn scene_called(name: &str) -> Lab {
@@ -256,6 +376,23 @@ fn nothing_moves_when_a_field_gets_the_focus() {
             assert!(moved < 0.1, "with the focus in {label}, {other} moved from {was:?} to {is:?}");
         }
         bench.key(Key::Escape, Modifiers::NONE);
+    }
+}
+
+#[test]
+fn fields_keep_their_width_when_a_scroll_bar_appears() {
+    let widths = [1600.0, 420.0].map(|height| {
+        let bench = bench((1280.0, height), "phong");
+        let position = bench.tree.iter().filter(|s| s.role == Role::TextInput || s.role == Role::SpinButton);
+        position
+            .filter(|s| s.rect.left() > 900.0)
+            .map(|s| (s.label.clone(), s.rect.x_range()))
+            .collect::<HashMap<_, _>>()
+    });
+    let both: Vec<_> = widths[1].iter().filter_map(|(k, x)| Some((k, x, widths[0].get(k)?))).collect();
+    assert!(both.len() > 3, "{widths:?}");
+    for (label, short, tall) in both {
+        assert_eq!(short, tall, "{label}");
     }
 }
 

@@ -1,8 +1,8 @@
 //! The scene list: hiding, colours, deleting, names for life; and what the picture and the messages say of it.
 
-use std::path::PathBuf;
+use std::{collections::BTreeSet, path::PathBuf};
 
-use bevy_egui::egui::{Key, Modifiers, PointerButton};
+use bevy_egui::egui::{Key, Modifiers, PointerButton, Shape, accesskit::Role};
 use lights_camera_models::{
     document::{Edit, LightField, ObjectField, Selection, names::name_of},
     optics::TermSelection,
@@ -182,7 +182,7 @@ fn the_caption_says_what_the_picture_shows() {
     });
     assert_eq!(
         caption_text(&lab, &registry),
-        "Phong · Phong shading · computed per pixel · α 32 · k_s 0.5 · k_d 0.8 · k_a 0.1"
+        "Phong · Phong shading · computed per pixel · k_a 0.1 · k_d 0.8 · k_s 0.5 · α 32"
     );
     // The scene's shading reaches no object that has its own.
     lab.document.amend(|scene| scene.objects[0].shading_model = Some("gouraud".to_owned()));
@@ -268,4 +268,123 @@ fn a_light_that_is_off_is_no_light_from_everywhere() {
     let mut bench = Bench::new(Lab::new(scene));
     bench.apply(Action::Edit(edit));
     assert_eq!(bench.lab.document.shining().count(), 0);
+}
+
+#[test]
+fn the_caption_has_key_values_in_the_order_of_their_declaration() {
+    for (model, values) in [
+        ("disney", " · m 0 · "),
+        ("hapke", " · w "),
+        ("microfacet", " · GGX · α_x "),
+        ("blinn_phong", " · k_a 0.1 · k_d 0.8 · k_s 0.5 · α 32"),
+    ] {
+        let bench = Bench::with_model(model);
+        let caption = caption_text(&bench.lab, &bench.registry);
+        assert!(caption.contains(values), "{caption}");
+        assert!(caption.matches(" · ").count() <= 6, "{caption}");
+    }
+    // What was changed is shown, wherever it stands.
+    let mut bench = Bench::with_model("disney");
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("clearcoat", Value::Number(0.25)))));
+    assert!(caption_text(&bench.lab, &bench.registry).ends_with(" 0.25"));
+}
+
+#[test]
+fn the_caption_is_broken_between_its_parts_and_never_long() {
+    for (scale, size) in
+        [(100, (1280.0, 720.0)), (150, (1280.0, 720.0)), (200, (1280.0, 720.0)), (200, (1920.0, 1080.0))]
+    {
+        for model in ["blinn_phong", "microfacet"] {
+            let mut bench = Bench::with_model(model);
+            bench.size = size.into();
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            let foot = bench.lab.picture_rect.with_min_y(bench.lab.picture_rect.bottom() - 60.0);
+            let right = bench.lab.picture_rect.right() - 90.0;
+            let texts: Vec<_> = (bench.shapes().into_iter())
+                .filter_map(|shape| match shape {
+                    Shape::Text(t) if foot.contains(t.pos) && t.pos.x < right => {
+                        Some((t.galley.text().to_owned(), t.pos.y, t.galley.rows.len()))
+                    }
+                    _ => None,
+                })
+                .collect();
+            assert!(texts.iter().any(|(t, ..)| t.contains("shading")), "{scale}: {texts:?}");
+            assert!(texts.iter().all(|(t, _, rows)| *rows == 1 && !t.contains('_')), "{scale}: {texts:?}");
+            let lines: BTreeSet<_> =
+                texts.iter().filter(|(t, ..)| t.len() > 4).map(|(_, y, _)| y.round() as i32).collect();
+            assert!(lines.len() <= 2, "{scale}: {texts:?}");
+        }
+    }
+}
+
+#[test]
+fn a_badge_brings_hidden_terms_back_whatever_is_selected() {
+    let mut bench = Bench::with_model("phong");
+    let badge = |bench: &Bench| bench.tree.iter().find(|s| s.label.starts_with("Only the")).cloned();
+    for part in [Selection::Room, Selection::Observer, Selection::Light(0)] {
+        bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
+        bench.apply(Action::Select(part));
+        let button = badge(&bench).unwrap();
+        assert_eq!((button.role, button.label.as_str()), (Role::Button, "Only the specular term · Show all"));
+        bench.click_at(button.rect.center(), PointerButton::Primary);
+        assert_eq!((bench.lab.view.terms, bench.lab.selection), (TermSelection::All, part));
+        assert!(badge(&bench).is_none());
+    }
+    // A model that lacks the term shows black, and the badge says why.
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
+    bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
+    assert!(badge(&bench).unwrap().label.contains("which is 0 with Lambert"));
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
+    assert!(!badge(&bench).unwrap().label.contains("which is 0"));
+}
+
+#[test]
+fn the_observer_is_offered_no_place_outside_the_room() {
+    let mut bench = Bench::new(Lab::default());
+    bench.lab.camera_left = true;
+    bench.lab.eye = glam::Vec3::new(5.0, 5.0, 14.0);
+    bench.lab.saved(PathBuf::from("/somewhere/lecture.json"), &bench.registry);
+    bench.settle();
+    assert!(bench.says("The view is outside the room"));
+    assert!(bench.find("Set observer to this view").is_none());
+    bench.apply(Action::Select(Selection::Observer));
+    let button = bench.find("Set observer to this view").cloned().unwrap();
+    assert!(button.disabled);
+    bench.hover(button.rect.center());
+    bench.lab.eye.z = 9.0;
+    bench.settle();
+    assert!(!bench.find("Set observer to this view").unwrap().disabled);
+}
+
+#[test]
+fn the_window_names_the_file_beside_the_scene() {
+    let mut lab = Lab::default();
+    assert_eq!(lab.window_title(), "Default scene");
+    lab.path = Some(PathBuf::from("/somewhere/my-lesson.json"));
+    assert_eq!(lab.window_title(), "Default scene — my-lesson.json");
+    lab.document.amend(|scene| scene.name = None);
+    assert_eq!(lab.window_title(), "my-lesson");
+}
+
+#[test]
+fn a_choice_that_every_object_overrides_says_why_nothing_changes() {
+    let mut bench = Bench::new(with_objects(&["sphere", "sphere"]));
+    bench.lab.document.amend(|scene| scene.objects[0].shading_model = Some("phong".to_owned()));
+    bench.apply(Action::Select(Selection::Room));
+    bench.letter(Key::F, "f");
+    assert!(bench.lab.messages.is_empty(), "one object follows");
+    bench.lab.document.amend(|scene| scene.objects[1].shading_model = Some("gouraud".to_owned()));
+    bench.letter(Key::G, "g");
+    assert!(bench.lab.messages.iter().any(|m| m.text.contains("overrides the shading model")));
+}
+
+#[test]
+fn a_shading_model_has_one_name_everywhere() {
+    let mut bench = Bench::new(Lab::default());
+    bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
+    bench.settle();
+    for mode in bench.registry.clone().modes() {
+        let name = format!("Shading: {}", mode.declaration.name);
+        assert!(bench.find(&name).is_some_and(|s| s.role == Role::RadioButton), "{name}");
+    }
 }

@@ -628,6 +628,33 @@ fn a_model_without_equation_source_and_laws_is_shown_as_it_is() {
     assert!(!bench.tree.iter().any(|s| s.label == "✗ not reciprocal"), "what is not claimed is not denied");
 }
 
+/// Asserts that these are whole within the strip.
+fn whole(bench: &Bench, labels: &[&str]) {
+    let scale = bench.lab.zoom;
+    let bottom = (720.0 - 22.0) / scale;
+    for label in labels {
+        let all: Vec<_> = bench.tree.iter().filter(|s| s.label.starts_with(label)).map(|s| s.rect).collect();
+        let low = all.iter().max_by(|a, b| a.bottom().total_cmp(&b.bottom())).expect(label);
+        assert!(
+            low.bottom() <= bottom && low.height() > 12.0 && low.right() <= 1280.0 / scale,
+            "{label}: {low:?} of {bottom}"
+        );
+    }
+}
+
+#[test]
+fn the_panel_is_whole_where_everything_is_larger() {
+    for scale in [100, 150] {
+        let mut bench = bench_with(Vec::new());
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
+        whole(&bench, &["New model…", "Duplicate as a file…", "Open in editor"]);
+        bench.lab.shaders.troubles = vec![broken_lambert()];
+        bench.settle();
+        whole(&bench, &["Open in editor", "line 12: ", "The picture shows the last good"]);
+    }
+}
+
 // ── pictures ──
 
 #[test]

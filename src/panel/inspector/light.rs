@@ -113,7 +113,7 @@ fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightFiel
     } else {
         format!("Φ = I · {} sr = {} lm", rounded(solid_angle), rounded(flux))
     };
-    maths::equation_of(ui, &[(Term::Total, &conversion)], |symbol| match symbol {
+    maths::equation_of(ui, &[(Term::Total, &conversion)], maths::Sizes::default(), |symbol| match symbol {
         "I" => Some("the intensity of the light: what it sends into each direction".to_owned()),
         "Φ" => Some("the luminous flux: what it sends out in all directions together".to_owned()),
         _ => None,

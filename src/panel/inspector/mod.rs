@@ -38,8 +38,9 @@ impl Panel for Inspector {
         let mut actions = Vec::new();
         // Each part has fields of its own: what is typed about one must not turn up in another.
         ui.push_id(lab.selection, |ui| {
+            // The scroll bar floats over a margin, so that nothing moves when it comes.
+            ui.spacing_mut().scroll.floating_allocated_width = 0.0;
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                // The scroll bar floats over this margin.
                 ui.set_max_width(ui.available_width() - 8.0);
                 match lab.selection {
                     Selection::Room => room(ui, lab, registry, &mut actions),

@@ -1,6 +1,6 @@
 //! The properties of the observer.
 
-use bevy_egui::egui::{RichText, Ui};
+use bevy_egui::egui::{Button, RichText, Ui};
 
 use super::part::{direction_knob, position_limits, section};
 use crate::{
@@ -57,9 +57,11 @@ pub(super) fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
             if ui.button("View as observer").on_hover_text("Move the camera to the observer (H)").clicked() {
                 actions.push(Action::HomeView);
             }
+            let problem = lab.observer_problem();
             if ui
-                .button("Set observer to this view")
+                .add_enabled(problem.is_none(), Button::new("Set observer to this view"))
                 .on_hover_text("Make the place of the camera that of the observer")
+                .on_disabled_hover_text(problem.unwrap_or_default())
                 .clicked()
             {
                 actions.push(Action::ObserverFromView);

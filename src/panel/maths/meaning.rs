@@ -1,7 +1,7 @@
 //! The meanings of symbols, for tooltips.
 
 use super::atom::{Atom, parse, same_symbol};
-use crate::reflection::EquationPart;
+use crate::reflection::{EquationPart, Term};
 
 /// The meaning of a symbol that all equations share.
 #[must_use]
@@ -76,25 +76,61 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
     MEANINGS.iter().find(|(s, _)| same_symbol(s, symbol)).map(|(_, m)| *m)
 }
 
-/// The part of an equation that defines a symbol: it begins with the symbol and an equals sign, or has them
-/// after a comma.
+/// The parts of an equation, one for each definition: a part may have several, with commas between.
+#[must_use]
+pub fn definitions(parts: &[EquationPart]) -> Vec<(Term, &'static str)> {
+    parts.iter().flat_map(|part| split(part.text).into_iter().map(|text| (part.term, text))).collect()
+}
+
+fn split(text: &str) -> Vec<&str> {
+    let (mut pieces, mut start, mut depth) = (Vec::new(), 0, 0);
+    for (i, c) in text.char_indices() {
+        match c {
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth -= 1,
+            ',' if depth == 0 && defines(&text[i + 1..]) => {
+                pieces.push(text[start..i].trim());
+                start = i + 1;
+            }
+            _ => {}
+        }
+    }
+    pieces.push(text[start..].trim());
+    pieces
+}
+
+/// True if a text begins with one thing and an equals sign: `F_0 = …`, `cos g = …`.
+fn defines(text: &str) -> bool {
+    text.split_once('=').is_some_and(|(head, _)| {
+        !head.contains([',', '+', '−', '·', '/', '<', '>'])
+            && (1..=2).contains(&head.split_whitespace().count())
+    })
+}
+
+/// The definition of a symbol in an equation: it begins with the symbol and an equals sign.
 #[must_use]
 pub fn definition(parts: &[EquationPart], symbol: &str) -> Option<&'static str> {
-    let defines = |part: &&EquationPart| {
-        let atoms: Vec<_> = parse(part.text).into_iter().filter(|a| *a != Atom::Space).collect();
-        let here = |i: usize| atoms[i].symbol().is_some_and(|s| same_symbol(&s, symbol));
-        let sign = |a: &Atom, text: &str| matches!(a, Atom::Upright { base, .. } if base == text);
-        (0..atoms.len()).any(|i| {
-            here(i) && atoms.get(i + 1).is_some_and(|a| sign(a, "=")) && (i == 0 || sign(&atoms[i - 1], ","))
-        })
+    let of = |text: &str| {
+        let mut atoms = parse(text).into_iter().filter(|a| *a != Atom::Space);
+        let named = atoms.next().and_then(|a| a.symbol()).is_some_and(|s| same_symbol(&s, symbol));
+        named && atoms.next().is_some_and(|a| a.base() == "=")
     };
-    parts.iter().find(defines).map(|p| p.text)
+    definitions(parts).into_iter().map(|(_, text)| text).find(|text| of(text))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reflection::Term;
+
+    #[test]
+    fn a_part_is_split_where_another_definition_begins() {
+        assert_eq!(
+            split("a = max(x, y = z), cos g = L·V , y_{ab} = 2"),
+            ["a = max(x, y = z)", "cos g = L·V", "y_{ab} = 2"]
+        );
+        assert_eq!(split("t = max(a, b), or 1 where s < 0"), ["t = max(a, b), or 1 where s < 0"]);
+        assert_eq!(split("x = ), y = 1"), ["x = ), y = 1"]);
+    }
 
     #[test]
     fn every_symbol_of_every_equation_is_explained() {

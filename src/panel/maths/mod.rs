@@ -19,7 +19,7 @@ mod atom;
 mod meaning;
 
 pub use atom::{Atom, parse, parse_symbol, same_symbol};
-pub use meaning::{definition, meaning};
+pub use meaning::{definition, definitions, meaning};
 
 /// A run of characters, and where it stands.
 #[derive(Clone)]
@@ -121,14 +121,27 @@ pub fn highlighted(ctx: &egui::Context) -> Option<String> {
     stored.filter(|(pass, _)| now.saturating_sub(*pass) <= 1).map(|(_, symbol)| symbol)
 }
 
-/// An equation, a line for each part, coloured by term. `name` gives the meaning of a symbol for its tooltip. Hovering a symbol highlights it; so does [`highlight`].
-pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
-    let parts: Vec<_> = parts.iter().map(|p| (p.term, p.text)).collect();
-    equation_of(ui, &parts, name)
+/// The sizes of an equation that is set.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sizes {
+    /// True if it is a column of an equation: nothing is set smaller for being too long.
+    pub column: bool,
+    /// True if terms are as small as definitions.
+    pub even: bool,
 }
 
-/// The same for text that is made while the program runs.
-pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> Option<String>) -> Response {
+/// An equation, a line for each definition, coloured by term. `name` gives the meaning of a symbol for its tooltip. Hovering a symbol highlights it; so does [`highlight`].
+pub fn equation(ui: &mut Ui, parts: &[EquationPart], name: impl Fn(&str) -> Option<String>) -> Response {
+    equation_of(ui, &definitions(parts), Sizes::default(), name)
+}
+
+/// The same for parts that are split already, in other sizes.
+pub fn equation_of(
+    ui: &mut Ui,
+    parts: &[(Term, &str)],
+    sizes: Sizes,
+    name: impl Fn(&str) -> Option<String>,
+) -> Response {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let width = ui.available_width();
@@ -136,12 +149,13 @@ pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> O
     let mut lines: Vec<(Set, f32, Color32)> = Vec::new();
     let mut height = 0.0;
     for (term, text) in parts {
-        let size = if parts.len() > 1 { size_of(*term, text) } else { SIZE };
+        let alone = parts.len() == 1 && !sizes.column;
+        let size = if alone { SIZE } else { size_of(*term, text) };
         let helper = size < SIZE;
+        let size = if sizes.even { HELPER } else { size };
         let leading = if helper { 6.0 } else { 8.0 };
         let colour = if helper { palette.text } else { palette.term_text(*term) };
-        // A presentation must be read from the last row.
-        let setter = Setter { ui, size: size * scale, colour, stacked: true, shrinks: scale <= 1.0 };
+        let setter = Setter { ui, size: size * scale, colour, stacked: true, shrinks: !sizes.column };
         for line in setter.lines(&formula::tree(text), width) {
             let baseline = height + line.ascent + 0.5 * leading * scale;
             height = baseline + line.descent + 0.5 * leading * scale;
@@ -177,12 +191,14 @@ pub fn equation_of(ui: &mut Ui, parts: &[(Term, &str)], name: impl Fn(&str) -> O
 
 /// The size of letters in the terms of an equation.
 pub(super) const SIZE: f32 = 17.0;
+/// The size of letters in the definitions beside them.
+const HELPER: f32 = 14.5;
 
 /// The size of letters in a part of an equation: smaller where it defines what another part uses.
 pub(super) fn size_of(term: Term, text: &str) -> f32 {
     let first = parse(text).first().and_then(Atom::symbol);
     let helper = term != Term::Total && first.is_none_or(|s| s != "I" && !s.starts_with("I_"));
-    if helper { 14.5 } else { SIZE }
+    if helper { HELPER } else { SIZE }
 }
 
 #[cfg(test)]
