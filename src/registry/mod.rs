@@ -94,7 +94,7 @@ pub struct Registry {
 /// A model from a file.
 #[derive(Clone, Debug)]
 pub struct CustomModel {
-    /// What the rest of the program knows of it. Its [`Source`] is `models/ID.wgsl`; the text built into that is
+    /// What the rest of the program knows of it. Its [`Source`](crate::shader::Source) is `models/ID.wgsl`; the text built into that is
     /// a stand-in that is drawn as long as the file has no good version.
     pub entry: ModelEntry,
     /// The file.
@@ -300,7 +300,7 @@ impl Registry {
     }
 
     /// The files that are to be read now that these models are used: of some only the declaration is known. See
-    /// [`own::read`](reflection::own::read).
+    /// [`custom::read`](crate::custom::read).
     pub fn wants_reading<'a>(
         &'a self,
         used: impl IntoIterator<Item = &'a str>,

@@ -1,6 +1,6 @@
 //! The scene: a value (R13), and one way to make it, JSON.
 //!
-//! [`Scene`] is what everything else works on: the loader makes it, [`spawn`] turns it into entities,
+//! [`Scene`] is what everything else works on: the loader makes it, [`render::entities`](crate::render::entities) turns it into entities,
 //! the panels edit it, the CPU renderer draws it. Angles are degrees, lengths metres, colours
 //! sRGB-encoded integers: the values as users write them.
 
