@@ -27,7 +27,7 @@ fn unmet<'a>(
 /// The reason for which a parameter has no effect at present, without a full stop; `None` if it has one.
 ///
 /// ```
-/// use lights_camera_models::{reflection::{parameter::Values, usage}, registry::Registry};
+/// use lights_camera_models::{parameter::Values, reflection::usage, registry::Registry};
 /// let registry = Registry::builtin();
 /// let model = registry.model("microfacet").unwrap();
 /// let gamma = model.parameter("gamma").unwrap();

@@ -343,12 +343,12 @@ fn a_new_model_is_named_and_written() {
     // The field has the focus, and typing replaces the proposal.
     bench.frame(vec![Event::Text("größe".to_owned())]);
     bench.settle();
-    assert!(bench.says("gr_e would do"), "what would be right");
+    assert!(bench.says("“groesse” would do"), "what would be right");
     assert!(bench.find("Create").expect("there").disabled);
     bench.key(Key::Enter, Modifiers::NONE);
     assert!(bench.lab.draft.is_some() && bench.effects.is_empty(), "nothing is written under a wrong name");
     bench.type_into("Name of the model", "phong");
-    assert!(bench.says("Phong is called phong already"));
+    assert!(bench.says("There is already a model “phong”"));
     bench.type_into("Name of the model", "Student toon");
     assert!(bench.says("student_toon"), "says what it becomes");
     assert!(bench.says("/home/mira/lab/models/student_toon.wgsl"), "says where");
