@@ -94,8 +94,8 @@ fn limited(c: &mut Criterion) {
     let model = registry.model("disney").expect("built in");
     let composed = compose_evaluation(&Sources::default(), model);
     let module = validate(&composed).expect("valid WGSL");
-    let mode = &registry.modes()[0];
-    let drawn = compose(&Sources::default(), model, mode, registry.lights());
+    let shading = &registry.shading_models()[0];
+    let drawn = compose(&Sources::default(), model, shading, registry.lights());
     let mut group = c.benchmark_group("limits");
     group.bench_function("text of a shader that draws", |b| b.iter(|| check_text(black_box(&drawn))));
     group.bench_function("text of a model", |b| b.iter(|| check_text(black_box(&composed))));

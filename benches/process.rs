@@ -32,12 +32,12 @@ fn render(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// What own models cost commands that do not name them, and one that lists them.
+/// What custom models cost commands that do not name them, and one that lists them.
 fn custom_models(criterion: &mut Criterion) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(root.join("assets/models/charlie_sheen.wgsl")).expect("it is shipped");
     let scene = root.join("scenes/default.json");
-    let mut group = criterion.benchmark_group("own models in the folder, whole process");
+    let mut group = criterion.benchmark_group("custom models in the folder, whole process");
     group.sample_size(21);
     for count in [0, 500] {
         let folder = tempfile::tempdir().expect("a folder");

@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut registry = Registry::builtin();
     registry.add_reflection_model::<Toon>();
 
-    let mut teapot = Object { kind: "teapot".to_owned(), size: 3.4, ..Object::default() };
+    let mut teapot = Object { object_type: "teapot".to_owned(), size: 3.4, ..Object::default() };
     teapot.material.set("base_colour", Value::Colour([240, 150, 40]));
     let scene = Scene {
         reflection_model: "toon".to_owned(),

@@ -1,4 +1,4 @@
-//! `lcm models new`, `duplicate` and `check`: own models, from the first line to their laws.
+//! `lcm models new`, `duplicate` and `check`: custom models, from the first line to their laws.
 
 use std::{io, path::PathBuf};
 
@@ -49,7 +49,7 @@ fn id_of(name: &str) -> Result<String, Failure> {
     custom::id_of_name(name).map_err(|rule| Failure::Usage(format!("NAME is {}, but {rule}", quoted(name))))
 }
 
-/// Writes a new file for an own model, and says what to do with it.
+/// Writes a new file for a custom model, and says what to do with it.
 fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
     if Registry::builtin().model(id).is_some() {
         return Err(Failure::Usage(format!("{id} is the id of a built-in model; choose another name")));

@@ -48,7 +48,7 @@ pub(super) struct Settings {
 /// Who evaluates a model.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum Machine {
-    /// The Rust functions; the WGSL of own models, interpreted
+    /// The Rust functions; the WGSL of custom models, interpreted
     Cpu,
     /// The WGSL functions, in a compute pass; software Vulkan will do
     Gpu,

@@ -25,7 +25,7 @@ pub(super) struct Arguments {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Write a commented file for an own model to start from
+    /// Write a commented file for a custom model to start from
     New {
         /// What the model is to be called; its id and the name of the file follow
         name: String,

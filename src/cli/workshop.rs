@@ -1,4 +1,4 @@
-//! Shaders and own models on disk: where commands find them, and what is said of those that are wrong.
+//! Shaders and custom models on disk: where commands find them, and what is said of those that are wrong.
 
 use std::{
     collections::BTreeSet,
@@ -31,13 +31,13 @@ use crate::{
     shading::Stage,
 };
 
-/// Where shaders and own models are.
+/// Where shaders and custom models are.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Places {
-    /// Read shaders from FOLDER/shaders instead of using the built-in ones, and own models from FOLDER/models
+    /// Read shaders from FOLDER/shaders instead of using the built-in ones, and custom models from FOLDER/models
     #[arg(long, global = true, value_name = "FOLDER")]
     assets: Option<PathBuf>,
-    /// Read own models from this folder
+    /// Read custom models from this folder
     #[arg(long, global = true, value_name = "FOLDER")]
     models: Option<PathBuf>,
 }
@@ -52,7 +52,7 @@ fn pasted(word: &str) -> String {
     }
 }
 
-/// What is known, and where it was read from. Of the folder of own models only so much is read as a command needs.
+/// What is known, and where it was read from. Of the folder of custom models only so much is read as a command needs.
 pub(super) struct Workshop {
     pub registry: Registry,
     pub folders: Folders,
@@ -119,7 +119,7 @@ impl Workshop {
         &self.registry
     }
 
-    /// Reads a scene from the content of a file, with the own models that it names. Only what is wrong with it makes
+    /// Reads a scene from the content of a file, with the custom models that it names. Only what is wrong with it makes
     /// the declarations of others necessary: it may have parameters that they declare, and messages list them.
     pub(super) fn load(&mut self, bytes: &[u8], name: &str, defaults: Defaults) -> Result<Loaded, LoadError> {
         loop {
@@ -159,7 +159,7 @@ impl Places {
             .map_err(|e| Failure::Usage(e.to_string()))
     }
 
-    /// Reads the shaders; one that cannot be read is an error. Own models are read when they are needed.
+    /// Reads the shaders; one that cannot be read is an error. Custom models are read when they are needed.
     pub(super) fn open(&self, options: Options) -> Result<Workshop, Failure> {
         if let Some(named) = self.models.as_deref().filter(|m| !m.exists()) {
             return Err(Failure::Usage(format!(
@@ -170,7 +170,7 @@ impl Places {
         self.open_for_writing(options)
     }
 
-    /// As [`open`](Self::open), for commands that make the folder of own models if it is not there.
+    /// As [`open`](Self::open), for commands that make the folder of custom models if it is not there.
     pub(super) fn open_for_writing(&self, options: Options) -> Result<Workshop, Failure> {
         let folders = self.folders()?;
         let mut registry = Registry::builtin();
@@ -188,7 +188,7 @@ impl Places {
         Ok(Workshop { registry, folders, options, for_window: false, tried: BTreeSet::new() })
     }
 
-    /// Reads what a window starts with: the declarations of all own models, since it lists them. Those that its scene
+    /// Reads what a window starts with: the declarations of all custom models, since it lists them. Those that its scene
     /// does not use are drawn as stand-ins until they are read, and so are those that are wrong. Nothing that is wrong
     /// keeps the window from opening.
     pub(super) fn open_for_window(&self, options: Options) -> Result<Workshop, Failure> {
@@ -266,28 +266,32 @@ pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
     if registry.sources().edited().next().is_none() {
         return Ok(());
     }
-    let pairs: BTreeSet<_> = scene.objects.iter().map(|o| (scene.model_of(o), scene.mode_of(o))).collect();
-    for (model, mode) in pairs {
-        let (Some(model), Some(mode)) = (registry.model(model), registry.mode(mode)) else { continue };
-        let composed = compose(registry.sources(), model, mode, registry.lights());
-        let faces = mode.declaration.stage == Stage::Polygon;
+    let pairs: BTreeSet<_> =
+        scene.objects.iter().map(|o| (scene.model_of(o), scene.shading_model_of(o))).collect();
+    for (model, shading) in pairs {
+        let (Some(model), Some(shading)) = (registry.model(model), registry.shading_model(shading)) else {
+            continue;
+        };
+        let composed = compose(registry.sources(), model, shading, registry.lights());
+        let faces = shading.declaration.stage == Stage::Polygon;
         validate_drawing(&composed, faces).map_err(|problem| invalid(registry, &problem))?;
     }
     Ok(())
 }
 
 /// The edited shaders that a scene is drawn with on the graphics card and not on the CPU. There everything is Rust
-/// but own models, with what they import and the functions that they share.
+/// but custom models, with what they import and the functions that they share.
 pub(super) fn not_followed_on_cpu(registry: &Registry, scene: &Scene) -> BTreeSet<String> {
     if registry.sources().edited().all(|path| path.starts_with("models/")) {
         return BTreeSet::new();
     }
-    let pairs: BTreeSet<_> = scene.objects.iter().map(|o| (scene.model_of(o), scene.mode_of(o))).collect();
-    let known = pairs.into_iter().filter_map(|(m, n)| Some((registry.model(m)?, registry.mode(n)?)));
+    let pairs: BTreeSet<_> =
+        scene.objects.iter().map(|o| (scene.model_of(o), scene.shading_model_of(o))).collect();
+    let known = pairs.into_iter().filter_map(|(m, n)| Some((registry.model(m)?, registry.shading_model(n)?)));
     known
-        .flat_map(|(model, mode)| {
+        .flat_map(|(model, shading)| {
             let own = model.declaration.family == Family::Custom;
-            files(registry.sources(), model, mode, registry.lights())
+            files(registry.sources(), model, shading, registry.lights())
                 .into_iter()
                 .filter(move |file| file.edited && !(own && file.part == Part::Vocabulary))
                 .map(|file| file.path)

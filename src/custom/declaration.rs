@@ -1,4 +1,4 @@
-//! The declaration at the top of an own model: a comment `/* lcm { … } */` whose inside is JSON with
+//! The declaration at the top of a custom model: a comment `/* lcm { … } */` whose inside is JSON with
 //! comments and trailing commas. Every mistake is told with its place, the value and the rule.
 
 use jsonc_parser::{ParseOptions, common::Ranged as _};

@@ -1,4 +1,4 @@
-//! The folder of own models. A model is known by the name of its file alone, by its declaration, or whole; only
+//! The folder of custom models. A model is known by the name of its file alone, by its declaration, or whole; only
 //! as much is read as somebody needs, so that neither many files nor a bad one are in the way of the others.
 //!
 //! [`read_model`] reads one model whole, [`declare_rest`] the declarations of all others, many at a time. The

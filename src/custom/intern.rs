@@ -1,4 +1,4 @@
-//! Declarations of own models live as long as the program, as those of built-in models do. Equal ones are
+//! Declarations of custom models live as long as the program, as those of built-in models do. Equal ones are
 //! the same one: reading a file again whose declaration did not change keeps nothing new, and whoever asks
 //! whether it changed compares pointers.
 

@@ -57,7 +57,7 @@ pub use write::{BadName, NotDuplicated, duplicate, id_of_name, template};
 /// The ending of the files.
 pub const EXTENSION: &str = "wgsl";
 
-/// What every own model's material is made of: they share one type of material, since their shaders, not
+/// What every custom model's material is made of: they share one type of material, since their shaders, not
 /// their types, tell them apart.
 #[derive(Clone, Copy, Debug)]
 pub struct CustomFile;
@@ -103,7 +103,7 @@ fn problem(path: &Path, text: &str, (at, message): text::Mistake) -> ShaderProbl
 }
 
 /// Reads a model: its declaration, and its WGSL as far as one can tell without drawing. A registry that knows
-/// an own model of the same id takes this one for its next version.
+/// a custom model of the same id takes this one for its next version.
 ///
 /// # Errors
 /// Everything that is wrong with the declaration, or the first thing that is wrong with the WGSL.
@@ -135,11 +135,11 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
     {
         return Err(problem_at(at, format!("ambient_response must be {AMBIENT_RESPONSE}")));
     }
-    for mode in registry.modes() {
-        let composed = compose(&sources, &model.entry, mode, registry.lights());
-        let faces = mode.declaration.stage == Stage::Polygon;
+    for shading in registry.shading_models() {
+        let composed = compose(&sources, &model.entry, shading, registry.lights());
+        let faces = shading.declaration.stage == Stage::Polygon;
         validate_drawing(&composed, faces).map_err(|found| {
-            // What the light loop, a light or a mode calls its own comes after the model, and is told to be there twice.
+            // What the light loop, a light or a shading model calls its own comes after the model, and is told to be there twice.
             let name =
                 found.message.strip_prefix("redefinition of `").and_then(|rest| rest.split('`').next());
             match name.and_then(|name| Some((name, text::defined_at(text, name)?))) {

@@ -1,4 +1,4 @@
-//! Own models on the CPU: their WGSL, interpreted.
+//! Custom models on the CPU: their WGSL, interpreted.
 
 use std::sync::{
     Arc, OnceLock,
@@ -19,7 +19,7 @@ use crate::{
     shader::interpret::Program,
 };
 
-/// An own model as the CPU runs it.
+/// A custom model as the CPU runs it.
 pub struct OnCpu {
     programs: Result<Programs, String>,
     /// Whether a function did not come to an end.
@@ -206,7 +206,7 @@ fn row(
     bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 
-/// An own model with its parameters set.
+/// A custom model with its parameters set.
 struct Interpreted {
     on_cpu: Arc<OnCpu>,
     ambient: Ambient,

@@ -1,4 +1,4 @@
-//! New files for own models: a commented one to start from, and copies of models that there are.
+//! New files for custom models: a commented one to start from, and copies of models that there are.
 
 use std::fmt::Write as _;
 

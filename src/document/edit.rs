@@ -25,8 +25,8 @@ pub enum Edit {
     Display(Display),
     /// The reflection model of the scene.
     Model(String),
-    /// The shading mode of the scene.
-    Mode(String),
+    /// The shading model of the scene.
+    ShadingModel(String),
     /// The observer.
     Observer(Observer),
     /// A field of a light.
@@ -43,7 +43,7 @@ pub enum LightField {
     /// False switches it off.
     Enabled(bool),
     /// The type.
-    Kind(String),
+    Type(String),
     /// Where it stands.
     Position(Vec3),
     /// Where it shines.
@@ -68,7 +68,7 @@ pub enum ObjectField {
     /// False hides it.
     Visible(bool),
     /// The type.
-    Kind(String),
+    Type(String),
     /// Where its centre is.
     Position(Vec3),
     /// Largest extent.
@@ -79,8 +79,8 @@ pub enum ObjectField {
     Tessellation(Option<u32>),
     /// Its own reflection model; `None` for the scene's.
     Model(Option<String>),
-    /// Its own shading mode; `None` for the scene's.
-    Mode(Option<String>),
+    /// Its own shading model; `None` for the scene's.
+    ShadingModel(Option<String>),
     /// A parameter of the material.
     Material(&'static str, Value),
     /// Several parameters of the material at once: a measured material.
@@ -99,7 +99,7 @@ impl LightField {
             Self::Name(_) => "Name",
             Self::Enabled(true) => "Switch on",
             Self::Enabled(false) => "Switch off",
-            Self::Kind(_) => "Type",
+            Self::Type(_) => "Type",
             Self::Position(_) => "Position",
             Self::Direction(_) => "Direction",
             Self::Colour(_) => "Colour",
@@ -108,7 +108,7 @@ impl LightField {
             Self::LuminousFlux(_) => "Luminous flux",
             Self::Parameter(id, _) => {
                 let declared =
-                    registry.light(&light.kind).map_or(&[][..], |entry| entry.declaration.parameters);
+                    registry.light(&light.light_type).map_or(&[][..], |entry| entry.declaration.parameters);
                 return declared.iter().find(|p| p.name == *id).map_or(*id, |p| p.label).to_owned();
             }
         }
@@ -120,7 +120,7 @@ impl LightField {
         match self {
             Self::Name(name) => light.name = named(&name),
             Self::Enabled(on) => light.enabled = on,
-            Self::Kind(kind) => light.kind = kind,
+            Self::Type(id) => light.light_type = id,
             Self::Position(p) => light.position = Some(p),
             Self::Direction(d) => light.direction = Some(d),
             Self::Colour(c) => (light.colour, light.colour_temperature) = (c, None),
@@ -129,8 +129,8 @@ impl LightField {
             }
             Self::Intensity(v) => (light.intensity, light.luminous_flux) = (v, None),
             Self::LuminousFlux(v) => {
-                let kind = registry.light(&light.kind);
-                light.intensity = kind.map_or(light.intensity, |k| k.declaration.default_intensity);
+                let entry = registry.light(&light.light_type);
+                light.intensity = entry.map_or(light.intensity, |e| e.declaration.default_intensity);
                 light.luminous_flux = Some(v);
             }
             Self::Parameter(name, value) => light.parameters.set(name, value),
@@ -145,13 +145,13 @@ impl ObjectField {
             Self::Name(_) => "Name",
             Self::Visible(true) => "Show",
             Self::Visible(false) => "Hide",
-            Self::Kind(_) => "Type",
+            Self::Type(_) => "Type",
             Self::Position(_) => "Position",
             Self::Size(_) => "Size",
             Self::Rotation(_) => "Rotation",
             Self::Tessellation(_) => "Tessellation",
             Self::Model(_) => "Reflection model",
-            Self::Mode(_) => "Shading model",
+            Self::ShadingModel(_) => "Shading model",
             Self::Material(id, _) => registry.material_parameter(id).map_or(*id, |p| p.label),
             Self::Preset(_) => "Measured material",
         }
@@ -162,17 +162,17 @@ impl ObjectField {
         match self {
             Self::Name(name) => o.name = named(&name),
             Self::Visible(on) => o.visible = on,
-            Self::Kind(kind) => {
+            Self::Type(id) => {
                 // The number counts something else in each type.
                 o.tessellation = None;
-                o.kind = kind;
+                o.object_type = id;
             }
             Self::Position(p) => o.position = p,
             Self::Size(v) => o.size = v,
             Self::Rotation(r) => o.rotation = r,
             Self::Tessellation(n) => o.tessellation = n,
             Self::Model(id) => o.reflection_model = id,
-            Self::Mode(id) => o.shading_model = id,
+            Self::ShadingModel(id) => o.shading_model = id,
             Self::Material(name, value) => o.material.set(name, value),
             Self::Preset(all) => all.into_iter().for_each(|(name, value)| o.material.set(name, value)),
         }
@@ -229,8 +229,8 @@ impl Document {
                 let step = format!("Reflection model: {name}");
                 rest(self, &step, &mut |s| s.reflection_model.clone_from(&id));
             }
-            Edit::Mode(id) => {
-                let name = registry.mode(&id).map_or(&*id, |m| m.declaration.name);
+            Edit::ShadingModel(id) => {
+                let name = registry.shading_model(&id).map_or(&*id, |m| m.declaration.name);
                 let step = format!("Shading model: {name}");
                 rest(self, &step, &mut |s| s.shading_model.clone_from(&id));
             }
@@ -241,7 +241,7 @@ impl Document {
                 self.change(name, Extent::Light(i), selection, |s| field.put(&mut s.lights[i], registry));
             }
             // The others keep their numbers.
-            Edit::Object(i, field @ (ObjectField::Name(_) | ObjectField::Kind(_))) => {
+            Edit::Object(i, field @ (ObjectField::Name(_) | ObjectField::Type(_))) => {
                 let name = step(&field.label(registry), &self.name_of(Selection::Object(i), registry));
                 self.change_parts(name, selection, registry, |document, names| {
                     field.put(&mut document.scene.objects[i]);
@@ -260,12 +260,12 @@ impl Document {
     pub fn change_light_type(
         &mut self,
         i: usize,
-        kind: &str,
+        id: &str,
         (position, direction): (Vec3, Vec3),
         selection: Selection,
         registry: &Registry,
     ) {
-        let Some(new) = registry.light(kind).filter(|_| i < self.scene.lights.len()) else { return };
+        let Some(new) = registry.light(id).filter(|_| i < self.scene.lights.len()) else { return };
         let name = step("Type", &self.name_of(Selection::Light(i), registry));
         self.change_parts(name, selection, registry, |document, names| {
             names.lights[i] = None;

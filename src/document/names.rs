@@ -14,29 +14,30 @@ pub fn name_of(scene: &Scene, part: Selection, registry: &Registry) -> String {
         Selection::Observer => "Observer".to_owned(),
         Selection::Light(i) => {
             let Some(light) = scene.lights.get(i) else { return "light".to_owned() };
-            let number = || scene.lights[..=i].iter().filter(|l| l.kind == light.kind).count();
+            let number = || scene.lights[..=i].iter().filter(|l| l.light_type == light.light_type).count();
             light
                 .name
                 .clone()
-                .unwrap_or_else(|| format!("{} {}", light_type(&light.kind, registry), number()))
+                .unwrap_or_else(|| format!("{} {}", light_type(&light.light_type, registry), number()))
         }
         Selection::Object(i) => {
             let Some(object) = scene.objects.get(i) else { return "object".to_owned() };
-            let number = || scene.objects[..=i].iter().filter(|o| o.kind == object.kind).count();
+            let number =
+                || scene.objects[..=i].iter().filter(|o| o.object_type == object.object_type).count();
             object
                 .name
                 .clone()
-                .unwrap_or_else(|| format!("{} {}", object_type(&object.kind, registry), number()))
+                .unwrap_or_else(|| format!("{} {}", object_type(&object.object_type, registry), number()))
         }
     }
 }
 
-fn light_type<'a>(kind: &'a str, registry: &Registry) -> &'a str {
-    registry.light(kind).map_or(kind, |entry| entry.declaration.name)
+fn light_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
+    registry.light(id).map_or(id, |entry| entry.declaration.name)
 }
 
-fn object_type<'a>(kind: &'a str, registry: &Registry) -> &'a str {
-    registry.shape(kind).map_or(kind, |entry| entry.declaration.name)
+fn object_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
+    registry.shape(id).map_or(id, |entry| entry.declaration.name)
 }
 
 /// "lamp" → "lamp 2", "lamp 2" → "lamp 3": the next number that is free.
@@ -61,8 +62,8 @@ pub(super) struct Names {
 
 impl Names {
     pub(super) fn of(scene: &Scene, registry: &Registry) -> Self {
-        let lights = scene.lights.iter().map(|l| (&l.name, light_type(&l.kind, registry)));
-        let objects = scene.objects.iter().map(|o| (&o.name, object_type(&o.kind, registry)));
+        let lights = scene.lights.iter().map(|l| (&l.name, light_type(&l.light_type, registry)));
+        let objects = scene.objects.iter().map(|o| (&o.name, object_type(&o.object_type, registry)));
         Self { lights: numbered(lights), objects: numbered(objects) }
     }
 
@@ -93,10 +94,10 @@ impl Names {
 
 fn numbered<'a>(parts: impl Iterator<Item = (&'a Option<String>, &'a str)>) -> Vec<Option<String>> {
     let mut numbers: HashMap<&str, usize> = HashMap::new();
-    let name = |(own, kind): (&Option<String>, &'a str)| {
-        let number = numbers.entry(kind).or_default();
+    let name = |(own, type_name): (&Option<String>, &'a str)| {
+        let number = numbers.entry(type_name).or_default();
         *number += 1;
-        own.clone().unwrap_or_else(|| format!("{kind} {number}"))
+        own.clone().unwrap_or_else(|| format!("{type_name} {number}"))
     };
     parts.map(name).map(Some).collect()
 }

@@ -31,7 +31,7 @@ impl Document {
             Err(format!("{what} is {}, but must be {}.", limits::number(f64::from(value)), limits.rule()))
         };
         let model = |id: &str| known(registry.model(id).is_some(), "reflection model", id);
-        let mode = |id: &str| known(registry.mode(id).is_some(), "shading model", id);
+        let shading = |id: &str| known(registry.shading_model(id).is_some(), "shading model", id);
         let place = |part: Selection, p: Vec3| {
             for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
                 let what = format!("{}: {letter}", name(part));
@@ -66,7 +66,7 @@ impl Document {
             }
             Edit::Display(d) => legal("The exposure".to_owned(), d.exposure, limits::exposure()),
             Edit::Model(id) => model(id),
-            Edit::Mode(id) => mode(id),
+            Edit::ShadingModel(id) => shading(id),
             Edit::Observer(o) => {
                 place(Selection::Observer, o.position)?;
                 direction(Selection::Observer, o.direction)?;
@@ -75,11 +75,11 @@ impl Document {
             Edit::Light(i, field) => {
                 let light = light(*i)?;
                 let part = Selection::Light(*i);
-                let entry = registry.light(&light.kind);
+                let entry = registry.light(&light.light_type);
                 let declaration = entry.map(|e| e.declaration);
                 match field {
                     LightField::Name(_) | LightField::Enabled(_) | LightField::Colour(_) => Ok(()),
-                    LightField::Kind(id) => known(registry.light(id).is_some(), "light type", id),
+                    LightField::Type(id) => known(registry.light(id).is_some(), "light type", id),
                     LightField::Position(p) => place(part, *p),
                     LightField::Direction(d) => direction(part, *d),
                     LightField::Intensity(v) => match declaration {
@@ -115,7 +115,7 @@ impl Document {
                 let part = Selection::Object(*i);
                 match field {
                     ObjectField::Name(_) | ObjectField::Visible(_) => Ok(()),
-                    ObjectField::Kind(id) => known(registry.shape(id).is_some(), "object type", id),
+                    ObjectField::Type(id) => known(registry.shape(id).is_some(), "object type", id),
                     ObjectField::Position(p) => place(part, *p),
                     ObjectField::Size(v) => legal(
                         format!("{}: the size", name(part)),
@@ -125,7 +125,7 @@ impl Document {
                     ObjectField::Rotation(r) if r.is_finite() => Ok(()),
                     ObjectField::Rotation(_) => Err(format!("{}: the rotation must be finite.", name(part))),
                     ObjectField::Tessellation(None) => Ok(()),
-                    ObjectField::Tessellation(Some(n)) => match registry.shape(&object.kind) {
+                    ObjectField::Tessellation(Some(n)) => match registry.shape(&object.object_type) {
                         Some(s) => legal(
                             format!("{}: the tessellation", name(part)),
                             *n as f32,
@@ -134,7 +134,7 @@ impl Document {
                         None => Ok(()),
                     },
                     ObjectField::Model(id) => id.as_deref().map_or(Ok(()), model),
-                    ObjectField::Mode(id) => id.as_deref().map_or(Ok(()), mode),
+                    ObjectField::ShadingModel(id) => id.as_deref().map_or(Ok(()), shading),
                     ObjectField::Material(id, value) => material(id, value),
                     ObjectField::Preset(all) => all.iter().try_for_each(|(id, value)| material(id, value)),
                 }

@@ -1,4 +1,4 @@
-//! Where shaders and own models are read from, and copies of them to edit.
+//! Where shaders and custom models are read from, and copies of them to edit.
 
 use std::{
     env, fs, io,
@@ -50,12 +50,12 @@ pub enum AssetError {
     },
 }
 
-/// Where shaders and own models are read from.
+/// Where shaders and custom models are read from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Folders {
     /// The folder whose files replace the built-in shaders; none when those are used.
     pub shaders: Option<PathBuf>,
-    /// The folder whose files are own models. It need not exist yet.
+    /// The folder whose files are custom models. It need not exist yet.
     pub models: Option<PathBuf>,
 }
 
@@ -95,7 +95,7 @@ impl Folders {
     ///
     /// Shaders are those of `assets/shaders` where `assets` is the folder that is named; else that below
     /// `$BEVY_ASSET_ROOT`, below `$CARGO_MANIFEST_DIR` (as `cargo run` sets it) or beside the program, whichever
-    /// is there first; else the built-in ones. Own models are those of the folder that is named, else of `models`
+    /// is there first; else the built-in ones. Custom models are those of the folder that is named, else of `models`
     /// beside the shaders, else of `models` in the user's data (`$LCM_DATA_DIR`, or where the operating system
     /// has them).
     ///
@@ -148,7 +148,7 @@ fn shaders_of(folder: &Path) -> Result<PathBuf, AssetError> {
 }
 
 /// Every file that shaders are made of, with its built-in text: what all models need, models, light types and
-/// modes. Without own models.
+/// shading models. Without custom models.
 #[must_use]
 pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
     let shared = [
@@ -167,7 +167,7 @@ pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
         .chain(shared)
         .chain(models.map(|d| d.wgsl))
         .chain(registry.lights().iter().map(|l| l.declaration.wgsl))
-        .chain(registry.modes().iter().map(|m| m.declaration.wgsl))
+        .chain(registry.shading_models().iter().map(|m| m.declaration.wgsl))
         .collect()
 }
 

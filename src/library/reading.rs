@@ -1,4 +1,4 @@
-//! Reading own models: at once, or on a thread of its own where a window must not wait for it.
+//! Reading custom models: at once, or on a thread of its own where a window must not wait for it.
 
 use std::{
     collections::BTreeMap,
@@ -104,7 +104,7 @@ impl Reader {
     pub fn apart(wake: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
         let theirs = shared.clone();
-        let started = thread::Builder::new().name("own models".to_owned()).spawn(move || {
+        let started = thread::Builder::new().name("custom models".to_owned()).spawn(move || {
             let mut told = Instant::now();
             loop {
                 let mut state = theirs.lock();

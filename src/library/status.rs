@@ -10,7 +10,7 @@ use crate::shader::check::ShaderProblem;
 pub struct ShaderStatus {
     /// The folder whose shader files are watched; none when the built-in copies are in use.
     pub shaders: Option<PathBuf>,
-    /// The folder whose files are own models.
+    /// The folder whose files are custom models.
     pub models: Option<PathBuf>,
     /// What is wrong, one entry for each problem.
     pub troubles: Vec<Trouble>,

@@ -22,7 +22,7 @@ use crate::{
 /// Id of the panel that shows the shaders.
 pub const SHADER_TAB: &str = "shader";
 
-/// What can be asked about models and shaders of one's own.
+/// What can be asked about custom models and shaders.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ask {
     /// Begin a new model: ask what it shall be called.
@@ -150,7 +150,7 @@ impl Lab {
         }
     }
 
-    /// Carries out what is asked about models and shaders of one's own.
+    /// Carries out what is asked about custom models and shaders.
     pub(super) fn author(&mut self, ask: Ask, registry: &Registry) -> Vec<Effect> {
         match ask {
             Ask::New => self.draft = Some(ModelDraft { of: None, name: free_id("my_model", registry) }),
@@ -235,7 +235,7 @@ impl Lab {
 pub const BUILT_IN: &str = "The shaders are built in, so there is no file to open. Write them out for editing first: \
      Edit, “Export shaders for editing…”. Or copy the model as a file.";
 
-/// The buttons about own models, for the chooser and the panel.
+/// The buttons about custom models, for the chooser and the panel.
 pub fn buttons(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
     let shown = registry.model(lab.model_shown()).map(|m| m.declaration);

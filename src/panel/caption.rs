@@ -59,24 +59,24 @@ pub fn models_shown(lab: &Lab) -> BTreeSet<&str> {
 pub fn parts(lab: &Lab, registry: &Registry) -> Vec<Part> {
     let scene = &lab.document;
     let models = models_shown(lab);
-    let modes: BTreeSet<_> = scene.shown().map(|o| scene.mode_of(o)).collect();
+    let shadings: BTreeSet<_> = scene.shown().map(|o| scene.shading_model_of(o)).collect();
     let mut parts = Vec::new();
     match single(&models) {
         Some(id) => parts.push(Part::new(0, registry.model(id).map_or(id, |m| m.declaration.name))),
         None if models.is_empty() => parts.push(Part::new(0, "nothing visible")),
         None => parts.push(Part::new(0, format!("{} models", models.len()))),
     }
-    match single(&modes) {
-        Some(id) => match registry.mode(id) {
-            Some(mode) => {
-                let d = mode.declaration;
+    match single(&shadings) {
+        Some(id) => match registry.shading_model(id) {
+            Some(shading) => {
+                let d = shading.declaration;
                 parts.push(Part::new(0, format!("{} shading", d.name)));
                 parts.push(Part::new(3, format!("computed {}", d.stage.phrase())));
             }
             None => parts.push(Part::new(0, format!("{id} shading"))),
         },
-        None if modes.is_empty() => {}
-        None => parts.push(Part::new(0, format!("{} shading models", modes.len()))),
+        None if shadings.is_empty() => {}
+        None => parts.push(Part::new(0, format!("{} shading models", shadings.len()))),
     }
     let mut objects = scene.shown();
     if let (Some(object), None) = (objects.next(), objects.next()) {

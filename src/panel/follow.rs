@@ -1,4 +1,4 @@
-//! Models of one's own are read again while the window is open: what becomes of the values of the document that
+//! Custom models are read again while the window is open: what becomes of the values of the document that
 //! no model takes any more.
 //!
 //! They are put aside, so that the document can be saved, and come back when a model takes them again.

@@ -111,9 +111,9 @@ fn about(ui: &mut Ui, lab: &Lab, registry: &Registry) {
     ui.add(egui::Label::new(env!("CARGO_PKG_DESCRIPTION")).wrap());
     ui.add_space(8.0);
     let line = format!(
-        "{} reflection models · {} shading modes · {} light types · {} object types",
+        "{} reflection models · {} shading models · {} light types · {} object types",
         registry.models().len(),
-        registry.modes().len(),
+        registry.shading_models().len(),
         registry.lights().len(),
         registry.shapes().len()
     );

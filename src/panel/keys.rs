@@ -83,11 +83,18 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
     let toggle = "Hide or show the object, switch the light off or on";
     add("Edit", false, false, Key::V, toggle, Action::Toggle(lab.selection));
     add("Edit", false, false, Key::F2, "Rename", Action::BeginRename(lab.selection));
-    for mode in registry.modes() {
-        let d = mode.declaration;
+    for shading in registry.shading_models() {
+        let d = shading.declaration;
         if let Some(key) = Key::from_name(&d.key.to_string()) {
             let label = format!("{} shading", d.name);
-            add("Reflection and shading", false, false, key, &label, Action::Edit(lab.edit_mode(d.id)));
+            add(
+                "Reflection and shading",
+                false,
+                false,
+                key,
+                &label,
+                Action::Edit(lab.edit_shading_model(d.id)),
+            );
         }
     }
     let chooser = Action::View(ViewChange::Chooser(!lab.view.chooser_open));
@@ -255,9 +262,9 @@ mod tests {
     fn every_shading_mode_has_its_key() {
         let registry = Registry::builtin();
         let table = bindings(&Lab::default(), &registry);
-        for mode in registry.modes() {
-            let edit = Action::Edit(Edit::Mode(mode.declaration.id.to_owned()));
-            assert_eq!(keys_of(&table, &edit), mode.declaration.key.to_string());
+        for shading in registry.shading_models() {
+            let edit = Action::Edit(Edit::ShadingModel(shading.declaration.id.to_owned()));
+            assert_eq!(keys_of(&table, &edit), shading.declaration.key.to_string());
         }
     }
 }

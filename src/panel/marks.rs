@@ -245,7 +245,7 @@ pub fn marks(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action
     order.sort_by_key(|i| chosen(*i));
     for i in order {
         let light = &scene.lights[i];
-        let (Some(at), Some(entry)) = (place(light, scene, &lens), registry.light(&light.kind)) else {
+        let (Some(at), Some(entry)) = (place(light, scene, &lens), registry.light(&light.light_type)) else {
             continue;
         };
         if !lens.shows(at) {
@@ -341,7 +341,7 @@ fn observer(ink: &mut Ink, observer: &Observer, selected: bool) {
 
 /// The corners of the box around the selected object, so that little of the object is covered.
 fn corners(ink: &mut Ink, object: &Object, registry: &Registry) {
-    let Some(shape) = registry.shape(&object.kind) else { return };
+    let Some(shape) = registry.shape(&object.object_type) else { return };
     // The coarsest mesh has the extent of any other, nearly.
     let mesh = shape.mesh(*shape.declaration.tessellation.start());
     let extent = mesh.positions.iter().fold(Vec3::ZERO, |extent, p| extent.max(p.abs()));

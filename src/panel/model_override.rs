@@ -16,14 +16,15 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
     let palette = Palette::here(ui);
     let model_name =
         |id: &str| registry.model(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned());
-    let mode_name =
-        |id: &str| registry.mode(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned());
+    let shading_name = |id: &str| {
+        registry.shading_model(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned())
+    };
     let own: Vec<String> = object
         .reflection_model
         .as_deref()
         .map(model_name)
         .into_iter()
-        .chain(object.shading_model.as_deref().map(|id| format!("{} shading", mode_name(id))))
+        .chain(object.shading_model.as_deref().map(|id| format!("{} shading", shading_name(id))))
         .collect();
     let (word, colour) =
         if own.is_empty() { ("Override", palette.weak) } else { ("Overridden", palette.accent) };
@@ -37,31 +38,33 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
 
     let id = ui.make_persistent_id("model override");
     let scene_model = model_name(&lab.document.reflection_model);
-    let scene_mode = mode_name(&lab.document.shading_model);
+    let scene_shading = shading_name(&lab.document.shading_model);
     let out = knob::drop_down(&button, id, |ui, list| {
         let mut out = None;
         ui.label(theme::strong(ui, "Override model and shading"));
         ui.label(theme::small(
             ui,
-            format!("Of this object alone; the scene has {scene_model} and {scene_mode} shading."),
+            format!("Of this object alone; the scene has {scene_model} and {scene_shading} shading."),
         ));
         ui.add_space(4.0);
-        let modes = registry.modes();
+        let shadings = registry.shading_models();
         let mut names = vec!["Scene default"];
-        names.extend(modes.iter().map(|m| m.declaration.name));
+        names.extend(shadings.iter().map(|m| m.declaration.name));
         let chosen = object
             .shading_model
             .as_ref()
-            .map_or(Some(0), |id| modes.iter().position(|m| m.declaration.id == id).map(|k| k + 1));
+            .map_or(Some(0), |id| shadings.iter().position(|m| m.declaration.id == id).map(|k| k + 1));
         let tip = |ui: &mut Ui, i: usize| {
             ui.set_max_width(300.0);
-            match i.checked_sub(1).map(|k| modes[k].declaration) {
+            match i.checked_sub(1).map(|k| shadings[k].declaration) {
                 Some(d) => ui.label(d.summary),
-                None => ui.label(format!("The shading of the scene: {scene_mode}.")),
+                None => ui.label(format!("The shading of the scene: {scene_shading}.")),
             };
         };
         if let Some(i) = segmented(ui, "Shading of this object", &names, chosen, tip) {
-            out = Some(ObjectField::Mode(i.checked_sub(1).map(|k| modes[k].declaration.id.to_owned())));
+            out = Some(ObjectField::ShadingModel(
+                i.checked_sub(1).map(|k| shadings[k].declaration.id.to_owned()),
+            ));
         }
         ui.add_space(6.0);
         let own = object.reflection_model.as_deref();

@@ -53,15 +53,15 @@ impl<'a> Stand<'a> {
                 (shape.declaration.id, mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max))
             })
             .collect();
-        let radius = |o: &Object| radii.get(o.kind.as_str()).map_or(0.0, |r| r * o.size);
+        let radius = |o: &Object| radii.get(o.object_type.as_str()).map_or(0.0, |r| r * o.size);
         let taken = scene.objects.iter().map(|o| (o.position, radius(o))).collect();
         Self { scene, registry, eye, turn, taken, radii }
     }
 
     /// Position and size of a new object.
-    pub(super) fn object(&self, kind: &str) -> (Vec3, f32) {
+    pub(super) fn object(&self, id: &str) -> (Vec3, f32) {
         let size = DEFAULT_SIZE.min(0.5 * self.scene.scene_size.corner().min_element());
-        let unit = self.radii.get(kind).copied().unwrap_or(0.5);
+        let unit = self.radii.get(id).copied().unwrap_or(0.5);
         let wanted = self.middle();
         // Where there is no room for it, it is smaller.
         let smaller = [4.0, 8.0, 16.0].map(|divisor| (divisor, true));
@@ -85,7 +85,7 @@ impl<'a> Stand<'a> {
 
     /// The place of a copy of an object.
     pub(super) fn copy(&self, of: &Object) -> Vec3 {
-        let radius = self.radii.get(of.kind.as_str()).map_or(0.0, |r| r * of.size);
+        let radius = self.radii.get(of.object_type.as_str()).map_or(0.0, |r| r * of.size);
         let free = |p: Vec3| self.free(p, radius);
         let step = 0.55 * of.size;
         self.search(of.position, step, |p| free(p) && self.sees(p, radius) && self.is_beside_all(p, radius))
@@ -143,7 +143,7 @@ impl<'a> Stand<'a> {
         scene.objects.sort_by(|a, b| a.position.distance(self.eye).total_cmp(&b.position.distance(self.eye)));
         scene.objects.truncate(PROBED);
         for object in &mut scene.objects {
-            if let Some(shape) = self.registry.shape(&object.kind) {
+            if let Some(shape) = self.registry.shape(&object.object_type) {
                 let range = &shape.declaration.tessellation;
                 let count = shape.tessellation(object.tessellation).min(32);
                 object.tessellation = Some(count.clamp(*range.start(), *range.end()));

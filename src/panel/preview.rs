@@ -165,10 +165,10 @@ fn make(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
 
 fn facts(scene: &Scene, registry: &Registry) -> String {
     let model = registry.model(&scene.reflection_model).map_or("–", |m| m.declaration.name);
-    let mode = registry.mode(&scene.shading_model).map_or("–", |m| m.declaration.name);
+    let shading = registry.shading_model(&scene.shading_model).map_or("–", |m| m.declaration.name);
     let [objects, lights] =
         [(scene.objects.len(), "object"), (scene.lights.len(), "light")].map(|(n, what)| plural(n, what));
-    format!("{objects} · {lights} · {model} · {mode} shading")
+    format!("{objects} · {lights} · {model} · {shading} shading")
 }
 
 /// Paints the picture of a scene, or says why there is none yet.

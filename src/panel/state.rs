@@ -72,7 +72,7 @@ pub struct Lab {
     pub disk: OnDisk,
     /// Where shaders are edited and what is wrong with them, fed by the app.
     pub shaders: ShaderStatus,
-    /// The model of one's own that is about to be written.
+    /// The custom model that is about to be written.
     pub draft: Option<ModelDraft>,
     /// The last check of the laws of a model.
     pub laws: Option<LawCheck>,
@@ -429,7 +429,7 @@ pub enum Action {
     Steer(Steer),
     /// Put text on the clipboard.
     Copy(String),
-    /// Something about models and shaders of one's own.
+    /// Something about custom models and shaders.
     Author(Ask),
     /// Say something.
     Say(Severity, String),
@@ -550,7 +550,7 @@ pub enum Effect {
     CopyText(String),
     /// Write the settings.
     SaveSettings,
-    /// Write the file of a new model of one's own.
+    /// Write the file of a new custom model.
     NewModel {
         /// Its id, which is also the name of the file.
         id: String,
@@ -667,14 +667,14 @@ impl Lab {
     /// The selected object, if it has a reflection model of its own: the choice at the top is then about
     /// that one, since a choice for the scene would not reach it.
     #[must_use]
-    pub fn own_model(&self) -> Option<(usize, &str)> {
+    pub fn model_override(&self) -> Option<(usize, &str)> {
         let Selection::Object(i) = self.selection else { return None };
         Some((i, self.document.objects.get(i)?.reflection_model.as_deref()?))
     }
 
-    /// The same for its shading mode.
+    /// The same for its shading model.
     #[must_use]
-    pub fn own_mode(&self) -> Option<(usize, &str)> {
+    pub fn shading_override(&self) -> Option<(usize, &str)> {
         let Selection::Object(i) = self.selection else { return None };
         Some((i, self.document.objects.get(i)?.shading_model.as_deref()?))
     }
@@ -682,30 +682,30 @@ impl Lab {
     /// Id of the reflection model that the top of the window shows and changes.
     #[must_use]
     pub fn model_shown(&self) -> &str {
-        self.own_model().map_or(&self.document.reflection_model, |(_, id)| id)
+        self.model_override().map_or(&self.document.reflection_model, |(_, id)| id)
     }
 
-    /// Id of the shading mode that the top of the window shows and changes.
+    /// Id of the shading model that the top of the window shows and changes.
     #[must_use]
-    pub fn mode_shown(&self) -> &str {
-        self.own_mode().map_or(&self.document.shading_model, |(_, id)| id)
+    pub fn shading_shown(&self) -> &str {
+        self.shading_override().map_or(&self.document.shading_model, |(_, id)| id)
     }
 
     /// The edit that chooses another reflection model at the top of the window.
     #[must_use]
     pub fn edit_model(&self, id: &str) -> Edit {
-        match self.own_model() {
+        match self.model_override() {
             Some((i, _)) => Edit::Object(i, ObjectField::Model(Some(id.to_owned()))),
             None => Edit::Model(id.to_owned()),
         }
     }
 
-    /// The edit that chooses another shading mode at the top of the window.
+    /// The edit that chooses another shading model at the top of the window.
     #[must_use]
-    pub fn edit_mode(&self, id: &str) -> Edit {
-        match self.own_mode() {
-            Some((i, _)) => Edit::Object(i, ObjectField::Mode(Some(id.to_owned()))),
-            None => Edit::Mode(id.to_owned()),
+    pub fn edit_shading_model(&self, id: &str) -> Edit {
+        match self.shading_override() {
+            Some((i, _)) => Edit::Object(i, ObjectField::ShadingModel(Some(id.to_owned()))),
+            None => Edit::ShadingModel(id.to_owned()),
         }
     }
 
@@ -913,8 +913,8 @@ impl Lab {
             Action::Select(selection) => self.select(selection),
             Action::SelectNext => self.step_selection(1),
             Action::SelectPrevious => self.step_selection(-1),
-            Action::AddLight(kind) => self.add_light(&kind, registry),
-            Action::AddObject(kind) => self.add_object(&kind, registry),
+            Action::AddLight(id) => self.add_light(&id, registry),
+            Action::AddObject(id) => self.add_object(&id, registry),
             Action::Duplicate(part) => self.duplicate(part, registry),
             Action::Remove(part) => self.remove(part, registry),
             Action::Toggle(part) => match part {
@@ -1198,8 +1198,8 @@ impl Lab {
 
     // ── lights and objects ──
 
-    fn add_light(&mut self, kind: &str, registry: &Registry) {
-        let Some(entry) = registry.light(kind) else { return };
+    fn add_light(&mut self, id: &str, registry: &Registry) {
+        let Some(entry) = registry.light(id) else { return };
         if self.document.lights.len() >= MAX_LIGHTS {
             self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
             return;
@@ -1208,7 +1208,7 @@ impl Lab {
         let stand = self.stand(registry);
         let position = stand.light(None);
         let mut light = Light {
-            kind: kind.to_owned(),
+            light_type: id.to_owned(),
             position: d.has_position.then_some(position),
             direction: d.has_direction.then(|| stand.towards_middle(position)),
             intensity: d.default_intensity,
@@ -1226,16 +1226,16 @@ impl Lab {
         }
     }
 
-    fn add_object(&mut self, kind: &str, registry: &Registry) {
-        if registry.shape(kind).is_none() {
+    fn add_object(&mut self, id: &str, registry: &Registry) {
+        if registry.shape(id).is_none() {
             return;
         }
         if self.document.objects.len() >= MAX_OBJECTS {
             self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
             return;
         }
-        let (position, size) = self.stand(registry).object(kind);
-        let object = Object { kind: kind.to_owned(), position, size, ..Object::default() };
+        let (position, size) = self.stand(registry).object(id);
+        let object = Object { object_type: id.to_owned(), position, size, ..Object::default() };
         let at = self.document.objects.len();
         self.document.insert_object(at, object, "Add", self.selection, registry);
         self.select_new(Selection::Object(at));
@@ -1325,14 +1325,14 @@ impl Lab {
         };
         let scene_choice = match &edit {
             Edit::Model(_) => Some(MODEL),
-            Edit::Mode(_) => Some("shading model"),
+            Edit::ShadingModel(_) => Some("shading model"),
             _ => None,
         };
         let named =
             matches!(edit, Edit::Light(_, LightField::Name(_)) | Edit::Object(_, ObjectField::Name(_)));
         let done = match edit {
-            Edit::Light(i, LightField::Kind(kind)) if registry.light(&kind).is_some() => {
-                self.change_light_kind(i, &kind, registry);
+            Edit::Light(i, LightField::Type(id)) if registry.light(&id).is_some() => {
+                self.change_light_type(i, &id, registry);
                 Ok(())
             }
             edit => self.document.edit(edit, self.selection, registry),
@@ -1372,12 +1372,12 @@ impl Lab {
         Ok(())
     }
 
-    fn change_light_kind(&mut self, i: usize, kind: &str, registry: &Registry) {
+    fn change_light_type(&mut self, i: usize, id: &str, registry: &Registry) {
         let Some(light) = self.document.lights.get(i) else { return };
         let stand = self.stand(registry);
         let position = light.position.unwrap_or_else(|| stand.light(None));
         let direction = light.direction.unwrap_or_else(|| stand.towards_middle(position));
-        self.document.change_light_type(i, kind, (position, direction), self.selection, registry);
+        self.document.change_light_type(i, id, (position, direction), self.selection, registry);
     }
 
     /// Takes a step back, or does it again, until so many are done.

@@ -44,7 +44,7 @@ impl Panel for TopBar {
             menus(ui, lab, registry, &table, &mut actions);
             divider(ui);
             // Where there is little room, the captions go first, then the choices of shading fold up.
-            let names: Vec<_> = registry.modes().iter().map(|m| m.declaration.name).collect();
+            let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
             let buttons = names.iter().map(|n| segment_width(ui, n)).sum::<f32>() + 4.0;
             let captions = CAPTIONS.iter().map(|c| theme::small_width(ui, c) + 4.0).sum::<f32>();
             let left = ui.available_width() - chooser::WIDTH - 8.0 - 2.0 * 4.0;
@@ -317,7 +317,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
     });
 }
 
-/// One button for each shading mode, as one control.
+/// One button for each shading model, as one control.
 fn shading(
     ui: &mut Ui,
     lab: &Lab,
@@ -326,9 +326,9 @@ fn shading(
     apart: bool,
     actions: &mut Vec<Action>,
 ) {
-    let chosen = registry.modes().iter().position(|m| m.declaration.id == lab.mode_shown());
+    let chosen = registry.shading_models().iter().position(|m| m.declaration.id == lab.shading_shown());
     let tip = |ui: &mut Ui, i: usize| {
-        let d = registry.modes()[i].declaration;
+        let d = registry.shading_models()[i].declaration;
         ui.set_max_width(300.0);
         ui.label(theme::strong(ui, format!("{} shading", d.name)));
         ui.label(d.summary);
@@ -359,13 +359,13 @@ fn shading(
         menu.inner.flatten()
     };
     if let Some(i) = picked {
-        actions.push(Action::Edit(lab.edit_mode(registry.modes()[i].declaration.id)));
+        actions.push(Action::Edit(lab.edit_shading_model(registry.shading_models()[i].declaration.id)));
     }
 }
 
 /// Says that the choices at the top are about the selected object alone, where it has its own.
 fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
-    let what = match (lab.own_model().is_some(), lab.own_mode().is_some()) {
+    let what = match (lab.model_override().is_some(), lab.shading_override().is_some()) {
         (true, true) => "reflection and shading",
         (true, false) => "reflection",
         (false, true) => "shading",
@@ -391,8 +391,9 @@ fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
              panel at the right it can be made to follow the scene again."
         ));
         let model = registry.model(&lab.document.reflection_model).map_or("–", |m| m.declaration.name);
-        let mode = registry.mode(&lab.document.shading_model).map_or("–", |m| m.declaration.name);
-        ui.label(theme::small(ui, format!("The scene: {model}, {mode} shading")));
+        let shading =
+            registry.shading_model(&lab.document.shading_model).map_or("–", |m| m.declaration.name);
+        ui.label(theme::small(ui, format!("The scene: {model}, {shading} shading")));
     });
 }
 

@@ -221,12 +221,12 @@ fn part_row(
         Selection::Observer => icon::paint(&painter, square, Icon::Eye, palette.text),
         Selection::Light(i) => {
             let light = &lab.document.lights[i];
-            glyph(registry.light(&light.kind).map_or("?", |e| e.declaration.glyph));
+            glyph(registry.light(&light.light_type).map_or("?", |e| e.declaration.glyph));
             dot = Some(light.rgb8());
         }
         Selection::Object(i) => {
             let object = &lab.document.objects[i];
-            glyph(registry.shape(&object.kind).map_or("?", |e| e.declaration.glyph));
+            glyph(registry.shape(&object.object_type).map_or("?", |e| e.declaration.glyph));
             let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
             dot = Some([colour.x as u8, colour.y as u8, colour.z as u8]);
         }

@@ -27,7 +27,7 @@ impl Lights {
         let lights = scene
             .shining()
             .filter_map(|light| {
-                let incident = registry.light(&light.kind)?.incident;
+                let incident = registry.light(&light.light_type)?.incident;
                 Some((incident, record(light, registry, scene.display.encoding)))
             })
             .collect();

@@ -13,11 +13,11 @@
 //! assert_eq!(rgb.len(), 64 * 36 * 3);
 //! ```
 //!
-//! Kinds of objects, lights, models and modes are looked up in the registry. A scene that was checked
+//! Kinds of objects, lights, models and shading models are looked up in the registry. A scene that was checked
 //! names only known ones; an object or light of an unknown kind is left out.
 //!
-//! A mode of [`Stage::Vertex`] or [`Stage::Pixel`] is asked once per vertex, which polygons share: the
-//! face normal, tangent and centre of its [`Corner`] are then the vertex's own. A mode of
+//! A shading model of [`Stage::Vertex`] or [`Stage::Pixel`] is asked once per vertex, which polygons share: the
+//! face normal, tangent and centre of its [`Corner`] are then the vertex's own. A shading model of
 //! [`Stage::Polygon`] is asked once per polygon, at its centre.
 
 use std::{
@@ -34,7 +34,7 @@ use crate::{
     reflection::Surface,
     registry::Registry,
     scene::{Display, Object, Scene, observer::clip_from_room},
-    shading::{Corner, Lighting, ModeEntry, Stage, Varying},
+    shading::{Corner, Lighting, ShadingEntry, Stage, Varying},
     shape::PolygonMesh,
 };
 
@@ -166,7 +166,7 @@ impl Prepared {
 struct Draw<'a> {
     object: &'a Object,
     shape: &'a Prepared,
-    mode: &'a ModeEntry,
+    shading: &'a ShadingEntry,
     surface: Arc<dyn Surface>,
     /// Whether the model needs tangents.
     anisotropic: bool,
@@ -245,7 +245,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                 Some(Draw {
                     object,
                     shape,
-                    mode: registry.mode(scene.mode_of(object))?,
+                    shading: registry.shading_model(scene.shading_model_of(object))?,
                     surface: model.instantiate(&object.material, scene.display.encoding),
                     anisotropic: model.declaration.anisotropic,
                 })
@@ -272,7 +272,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                     let triangle = &triangles[object as usize][triangle as usize];
                     let lighting = lights.on(&*draw.surface);
                     let tile = tile.get_or_insert_with(Tile::new);
-                    tile.draw(triangle, draw.mode, &lighting, origin(i, &screen), &screen);
+                    tile.draw(triangle, draw.shading, &lighting, origin(i, &screen), &screen);
                 }
                 if !rest.is_empty() {
                     return None;
@@ -299,7 +299,7 @@ fn origin(tile: usize, screen: &Screen) -> [usize; 2] {
 
 /// Under which an object's mesh is kept.
 fn key(object: &Object, registry: &Registry) -> Option<(&'static str, u32)> {
-    let entry = registry.shape(&object.kind)?;
+    let entry = registry.shape(&object.object_type)?;
     Some((entry.declaration.id, entry.tessellation(object.tessellation)))
 }
 
@@ -320,9 +320,9 @@ fn rotation(degrees: Vec3) -> Mat3 {
     Mat3::from_euler(EulerRot::ZYX, r.z, r.y, r.x)
 }
 
-/// The triangles of an object that may be seen, shaded as far as its mode does at corners.
+/// The triangles of an object that may be seen, shaded as far as its shading model does at corners.
 fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Screen) -> Vec<Triangle> {
-    let Draw { object, shape, mode, surface, anisotropic } = draw;
+    let Draw { object, shape, shading, surface, anisotropic } = draw;
     let mesh = &shape.mesh;
     let rotation = rotation(object.rotation);
     let room = |p: Vec3| rotation * (p * object.size) + object.position;
@@ -344,7 +344,7 @@ fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Scree
         .collect();
 
     // What corners carry is calculated once per polygon or once per vertex, and only where needed.
-    let per_polygon = mode.declaration.stage == Stage::Polygon;
+    let per_polygon = shading.declaration.stage == Stage::Polygon;
     let mut needed: Vec<u32> = if per_polygon {
         visible.iter().map(|(polygon, _)| *polygon).collect()
     } else {
@@ -375,7 +375,7 @@ fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Scree
                 face_tangent: tangent,
                 face_centre: position,
             };
-            (mode.vertex)(&lighting as &dyn Lighting, &corner)
+            (shading.vertex)(&lighting as &dyn Lighting, &corner)
         })
         .collect();
     let mut place = vec![0u32; if per_polygon { mesh.polygons.len() } else { mesh.positions.len() }];

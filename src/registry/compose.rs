@@ -3,7 +3,7 @@
 //!
 //! A source for drawing holds, in this order: terms, the light record, the row of an object (generated
 //! from the declaration of the model), the reading of curves where rows have them, the model, the light
-//! types, the dispatch over light types (generated), the light loop, the shading mode, and the wrapper
+//! types, the dispatch over light types (generated), the light loop, the shading model, and the wrapper
 //! with bindings and entry points.
 
 use std::fmt::Write as _;
@@ -19,7 +19,7 @@ use crate::{
             parameter_struct,
         },
     },
-    shading::ModeEntry,
+    shading::ShadingEntry,
 };
 
 /// The WGSL struct `Row` of a model, what one object has in the table that the shader reads, and the
@@ -84,15 +84,20 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
     text
 }
 
-/// The complete source for drawing with a model and a mode under the given light types.
+/// The complete source for drawing with a model and a shading model under the given light types.
 #[must_use]
-pub fn compose(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[LightEntry]) -> Composed {
+pub fn compose(
+    sources: &Sources,
+    model: &ModelEntry,
+    shading: &ShadingEntry,
+    lights: &[LightEntry],
+) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&LIGHTS, &SHADING]).for_each(|s| c.source(s));
     push_model(&mut c, model);
     lights.iter().for_each(|light| c.source(&light.declaration.wgsl));
     c.push("(light types)", &light_dispatch(lights));
-    [&LOOP, &mode.declaration.wgsl, &WRAPPER].into_iter().for_each(|s| c.source(s));
+    [&LOOP, &shading.declaration.wgsl, &WRAPPER].into_iter().for_each(|s| c.source(s));
     c.composed
 }
 
@@ -103,8 +108,8 @@ pub enum Part {
     Model,
     /// A file of the author's that another one asks for.
     Import,
-    /// The shading mode.
-    Mode,
+    /// The shading model.
+    ShadingModel,
     /// The light loop.
     Loop,
     /// A light type.
@@ -113,7 +118,7 @@ pub enum Part {
     Vocabulary,
     /// The light record.
     LightRecord,
-    /// What goes into and out of a shading mode.
+    /// What goes into and out of a shading model.
     Stages,
     /// Bindings and entry points.
     Wrapper,
@@ -126,13 +131,18 @@ pub struct File {
     pub part: Part,
     /// Its path, as messages name it.
     pub path: String,
-    /// Whether its text differs from the built-in one. Own models have none to differ from.
+    /// Whether its text differs from the built-in one. Custom models have none to differ from.
     pub edited: bool,
 }
 
 /// The files that [`compose`] joins; what is generated is left out.
 #[must_use]
-pub fn files(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[LightEntry]) -> Vec<File> {
+pub fn files(
+    sources: &Sources,
+    model: &ModelEntry,
+    shading: &ShadingEntry,
+    lights: &[LightEntry],
+) -> Vec<File> {
     let known = OPTICS
         .iter()
         .chain([&ALBEDO])
@@ -143,7 +153,7 @@ pub fn files(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[
             (Part::Stages, &SHADING),
             (Part::Model, &model.declaration.wgsl),
             (Part::Loop, &LOOP),
-            (Part::Mode, &mode.declaration.wgsl),
+            (Part::ShadingModel, &shading.declaration.wgsl),
             (Part::Wrapper, &WRAPPER),
         ])
         .collect::<Vec<_>>();
@@ -154,7 +164,7 @@ pub fn files(sources: &Sources, model: &ModelEntry, mode: &ModeEntry, lights: &[
         let edited = !own && source.is_some_and(|(_, s)| differs(s));
         File { part: source.map_or(Part::Import, |(part, _)| *part), path: path.to_owned(), edited }
     };
-    let composed = compose(sources, model, mode, lights);
+    let composed = compose(sources, model, shading, lights);
     let mut all: Vec<_> = composed.map.files().filter(|path| !path.starts_with('(')).map(file).collect();
     all.sort_by_key(|file| file.part);
     all
@@ -179,10 +189,10 @@ mod tests {
     fn every_line_leads_back_to_its_file() {
         let registry = Registry::builtin();
         for model in registry.models() {
-            for mode in registry.modes() {
-                let composed = compose(&Sources::default(), model, mode, registry.lights());
+            for shading in registry.shading_models() {
+                let composed = compose(&Sources::default(), model, shading, registry.lights());
                 let pieces =
-                    [OPTICS[0], OPTICS[1], LOOP, WRAPPER, model.declaration.wgsl, mode.declaration.wgsl];
+                    [OPTICS[0], OPTICS[1], LOOP, WRAPPER, model.declaration.wgsl, shading.declaration.wgsl];
                 for (i, line) in composed.text.lines().enumerate() {
                     let (path, at) = composed.map.locate(i + 1).expect("every line has a place");
                     if let Some(source) = pieces.iter().find(|s| s.path == path) {
@@ -198,7 +208,8 @@ mod tests {
         let registry = Registry::builtin();
         let mut sources = Sources::default();
         sources.edit("loop.wgsl", "// edited");
-        let composed = compose(&sources, &registry.models()[0], &registry.modes()[0], registry.lights());
+        let composed =
+            compose(&sources, &registry.models()[0], &registry.shading_models()[0], registry.lights());
         assert!(composed.text.contains("// edited"));
         assert!(!composed.text.contains("fn illuminate"));
     }
@@ -211,10 +222,10 @@ mod tests {
         sources.edit("reflection/phong.wgsl", registry.model("phong").expect("there").declaration.wgsl.text);
         sources.edit("shading/gouraud.wgsl", "#import \"noise.wgsl\"\n");
         sources.edit("shading/noise.wgsl", "fn noise() {}");
-        let (model, mode) =
-            (registry.model("phong").expect("there"), registry.mode("gouraud").expect("there"));
-        let all = files(&sources, model, mode, registry.lights());
-        let composed = compose(&sources, model, mode, registry.lights());
+        let (model, shading) =
+            (registry.model("phong").expect("there"), registry.shading_model("gouraud").expect("there"));
+        let all = files(&sources, model, shading, registry.lights());
+        let composed = compose(&sources, model, shading, registry.lights());
         let real = composed.map.files().filter(|path| !path.starts_with('(')).count();
         assert_eq!(all.len(), real);
         let of = |part: Part| {
@@ -222,7 +233,7 @@ mod tests {
         };
         assert_eq!(all[0].part, Part::Model);
         assert_eq!(of(Part::Model), [("reflection/phong.wgsl", false)], "read from disk, but the same");
-        assert_eq!(of(Part::Mode), [("shading/gouraud.wgsl", true)]);
+        assert_eq!(of(Part::ShadingModel), [("shading/gouraud.wgsl", true)]);
         assert_eq!(of(Part::Loop), [("loop.wgsl", true)]);
         assert_eq!(of(Part::Import), [("shading/noise.wgsl", false)]);
         assert_eq!(of(Part::LightType).len(), registry.lights().len());

@@ -1,4 +1,4 @@
-//! What is known: reflection models, shading modes, light types and object types, looked up by id.
+//! What is known: reflection models, shading models, light types and object types, looked up by id.
 //!
 //! The registry is a value. The command line and the CPU renderer use it as it is; in the Bevy app it
 //! is a resource, and `App` offers the same calls, so that a plugin outside this crate registers
@@ -26,7 +26,7 @@ use crate::{
     parameter::{BLOCK_BYTES, Parameter, Value, layout},
     reflection::{self, Family, Measured, ModelEntry, ReflectionModel, usage},
     shader::compose::Sources,
-    shading::{self, ModeEntry, ShadingMode},
+    shading::{self, ShadingEntry, ShadingModel},
     shape::{self, ObjectType, ShapeEntry},
     watch::Print,
 };
@@ -35,8 +35,8 @@ use crate::{
 pub trait Register {
     /// Makes a reflection model known. A second one with the same id replaces the first.
     fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self;
-    /// Makes a shading mode known.
-    fn add_shading_mode<S: ShadingMode>(&mut self) -> &mut Self;
+    /// Makes a shading model known.
+    fn add_shading_model<S: ShadingModel>(&mut self) -> &mut Self;
     /// Makes a light type known.
     fn add_light_type<L: LightType>(&mut self) -> &mut Self;
     /// Makes an object type known.
@@ -62,8 +62,8 @@ impl<R: Register> reflection::Take for Adding<'_, R> {
 }
 
 impl<R: Register> shading::Take for Adding<'_, R> {
-    fn take<T: ShadingMode>(&mut self) {
-        self.0.add_shading_mode::<T>();
+    fn take<T: ShadingModel>(&mut self) {
+        self.0.add_shading_model::<T>();
     }
 }
 
@@ -83,7 +83,7 @@ impl<R: Register> shape::Take for Adding<'_, R> {
 #[derive(Clone, Debug, Default, Resource)]
 pub struct Registry {
     models: Vec<ModelEntry>,
-    modes: Vec<ModeEntry>,
+    shadings: Vec<ShadingEntry>,
     lights: Vec<LightEntry>,
     shapes: Vec<ShapeEntry>,
     sources: Sources,
@@ -103,7 +103,7 @@ pub struct CustomModel {
     pub text: Arc<str>,
 }
 
-/// How much of an own model was read.
+/// How much of a custom model was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// The declaration. The rest is read when the model is used; until then a stand-in is drawn.
@@ -114,19 +114,19 @@ pub enum Extent {
     Whole,
 }
 
-/// The file of an own model.
+/// The file of a custom model.
 #[derive(Clone, Debug)]
 struct CustomSource {
     path: PathBuf,
     extent: Extent,
 }
 
-/// What is known of files: shaders and own models.
+/// What is known of files: shaders and custom models.
 #[derive(Clone, Debug, Default)]
 struct Files {
     /// The folder that shaders were read from.
     shaders: Option<PathBuf>,
-    /// The folder that own models were read from.
+    /// The folder that custom models were read from.
     models: Option<PathBuf>,
     /// The files by the id of their model.
     own: BTreeMap<&'static str, CustomSource>,
@@ -137,7 +137,7 @@ struct Files {
 }
 
 impl Registry {
-    /// The built-in models, modes, lights and shapes.
+    /// The built-in models, shading models, lights and shapes.
     #[must_use]
     pub fn builtin() -> Self {
         let mut registry = Self::default();
@@ -151,10 +151,10 @@ impl Registry {
         &self.models
     }
 
-    /// All shading modes.
+    /// All shading models.
     #[must_use]
-    pub fn modes(&self) -> &[ModeEntry] {
-        &self.modes
+    pub fn shading_models(&self) -> &[ShadingEntry] {
+        &self.shadings
     }
 
     /// All light types. The index is the number that shaders know the type by.
@@ -175,10 +175,10 @@ impl Registry {
         self.models.iter().find(|m| m.declaration.id == id)
     }
 
-    /// The shading mode of that id.
+    /// The shading model of that id.
     #[must_use]
-    pub fn mode(&self, id: &str) -> Option<&ModeEntry> {
-        self.modes.iter().find(|m| m.declaration.id == id)
+    pub fn shading_model(&self, id: &str) -> Option<&ShadingEntry> {
+        self.shadings.iter().find(|m| m.declaration.id == id)
     }
 
     /// The light type of that id.
@@ -199,7 +199,7 @@ impl Registry {
         self.shapes.iter().find(|s| s.declaration.id == id)
     }
 
-    /// The current texts of shader files, where they differ from the built-in ones, and those of own models.
+    /// The current texts of shader files, where they differ from the built-in ones, and those of custom models.
     #[must_use]
     pub fn sources(&self) -> &Sources {
         &self.sources
@@ -257,7 +257,7 @@ impl Registry {
         put(&mut self.models, model.entry, |m| m.declaration.id);
     }
 
-    /// Puts the own models in the order of their ids, whichever was read first.
+    /// Puts the custom models in the order of their ids, whichever was read first.
     pub(crate) fn sort_custom_models(&mut self) {
         let is_own = |m: &ModelEntry| self.files.own.contains_key(m.declaration.id);
         let places: Vec<_> = (0..self.models.len()).filter(|i| is_own(&self.models[*i])).collect();
@@ -323,12 +323,12 @@ impl Registry {
         self.models.iter().filter_map(|m| Some((m, self.custom_file(m.declaration.id)?)))
     }
 
-    /// Notes where own models are read from.
+    /// Notes where custom models are read from.
     pub fn set_custom_folder(&mut self, folder: &Path) {
         self.files_mut().models = Some(folder.to_owned());
     }
 
-    /// Where own models are read from, if they are.
+    /// Where custom models are read from, if they are.
     #[must_use]
     pub fn custom_folder(&self) -> Option<&Path> {
         self.files.models.as_deref()
@@ -417,8 +417,8 @@ impl Register for Registry {
         self
     }
 
-    fn add_shading_mode<S: ShadingMode>(&mut self) -> &mut Self {
-        put(&mut self.modes, ModeEntry::of::<S>(), |m| m.declaration.id);
+    fn add_shading_model<S: ShadingModel>(&mut self) -> &mut Self {
+        put(&mut self.shadings, ShadingEntry::of::<S>(), |m| m.declaration.id);
         self
     }
 

@@ -68,8 +68,8 @@ fn light_transform(light: &Light) -> Transform {
 }
 
 /// What tools call an entity: the name of its part, or else its type. A number would change with every part before it.
-fn label(name: Option<&String>, kind: &str) -> Name {
-    Name::new(name.cloned().unwrap_or_else(|| kind.to_owned()))
+fn label(name: Option<&String>, type_name: &str) -> Name {
+    Name::new(name.cloned().unwrap_or_else(|| type_name.to_owned()))
 }
 
 /// Matches the entities of `old` parts with `new` parts: equal parts at the beginning and at the end keep their
@@ -118,21 +118,21 @@ pub fn reconcile(
         if current.is_some() && !changed_lights.contains(&i) {
             continue;
         }
-        let old_kind = current.map(|c| c.0.kind.as_str());
+        let old_type = current.map(|c| c.0.light_type.as_str());
         let mut entity = if current.is_some() { commands.entity(*slot) } else { commands.spawn_empty() };
         *slot = entity.id();
         entity.insert((
             LightSource(light.clone()),
             light_transform(light),
-            label(light.name.as_ref(), &light.kind),
+            label(light.name.as_ref(), &light.light_type),
         ));
-        if old_kind != Some(light.kind.as_str()) {
-            if let Some(old) = old_kind.and_then(|k| registry.light(k)) {
+        if old_type != Some(light.light_type.as_str()) {
+            if let Some(old) = old_type.and_then(|k| registry.light(k)) {
                 (old.unmark)(&mut entity);
             }
-            match registry.light(&light.kind) {
+            match registry.light(&light.light_type) {
                 Some(entry) => (entry.mark)(&mut entity),
-                None => warn!("light {i} has the unknown type `{}` and gives no light", light.kind),
+                None => warn!("light {i} has the unknown type `{}` and gives no light", light.light_type),
             }
         }
     }
@@ -148,7 +148,7 @@ pub fn reconcile(
             LitObject(object.clone()),
             object_transform(object),
             if object.visible { Visibility::Inherited } else { Visibility::Hidden },
-            label(object.name.as_ref(), &object.kind),
+            label(object.name.as_ref(), &object.object_type),
         ));
     }
 
@@ -189,12 +189,12 @@ pub fn absorb(
         }
         if source.0 != *known {
             *transform = light_transform(&source.0);
-            if source.0.kind != known.kind {
+            if source.0.light_type != known.light_type {
                 let mut entity = commands.entity(*entity);
-                if let Some(old) = registry.light(&known.kind) {
+                if let Some(old) = registry.light(&known.light_type) {
                     (old.unmark)(&mut entity);
                 }
-                if let Some(new) = registry.light(&source.0.kind) {
+                if let Some(new) = registry.light(&source.0.light_type) {
                     (new.mark)(&mut entity);
                 }
             }
@@ -203,7 +203,7 @@ pub fn absorb(
         }
         if source.0 != *known {
             let light = source.0.clone();
-            commands.entity(*entity).insert(label(light.name.as_ref(), &light.kind));
+            commands.entity(*entity).insert(label(light.name.as_ref(), &light.light_type));
             put(&mut next, &scene.0, |s| s.lights.get_mut(i).map(|l| *l = light));
         }
     }
@@ -224,7 +224,7 @@ pub fn absorb(
         }
         if lit.0 != *known {
             let object = lit.0.clone();
-            commands.entity(*entity).insert(label(object.name.as_ref(), &object.kind));
+            commands.entity(*entity).insert(label(object.name.as_ref(), &object.object_type));
             put(&mut next, &scene.0, |s| s.objects.get_mut(i).map(|o| *o = object));
         }
     }

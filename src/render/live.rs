@@ -1,7 +1,7 @@
 //! The shaders on the picture: composed when first needed, exchanged when a file they are made of changes, and
 //! kept when the change cannot be drawn with.
 //!
-//! Each model in each shading mode has one shader, and each of those goes its own way: what a change of a shared
+//! Each reflection model in each shading model has one shader, and each of those goes its own way: what a change of a shared
 //! file breaks for one model does not disturb the others. A shader is exchanged only after it was tried
 //! ([`trial`](super::trial)). Its asset stays the same, so cameras, materials and objects know nothing of it.
 
@@ -49,16 +49,16 @@ use crate::{
         limits,
         slim::slim,
     },
-    shading::{ModeEntry, Stage},
+    shading::{ShadingEntry, Stage},
 };
 
 /// A broken file is not complained of so soon after it changed: many editors empty a file before they write it.
 pub const GRACE: Duration = Duration::from_millis(150);
 /// So long a frame may try shaders before it is drawn: with many on the picture, the window goes on answering.
 const SLICE: Duration = Duration::from_millis(200);
-/// As many own models that were read are tried at the same time.
+/// As many custom models that were read are tried at the same time.
 const ARRIVING: usize = 16;
-/// How the paths of own models begin.
+/// How the paths of custom models begin.
 const MODELS: &str = "models/";
 /// A failure of the renderer so soon after an exchange is blamed on it.
 const PROBATION: Duration = Duration::from_secs(5);
@@ -83,11 +83,11 @@ impl Plugin for LiveShadersPlugin {
     }
 }
 
-/// What tells shaders apart: model, mode, and the number of light types that were known.
+/// What tells shaders apart: model, shading model, and the number of light types that were known.
 type Key = (&'static str, &'static str, usize);
 
-fn key(model: &ModelEntry, mode: &ModeEntry, registry: &Registry) -> Key {
-    (model.declaration.id, mode.declaration.id, registry.lights().len())
+fn key(model: &ModelEntry, shading: &ShadingEntry, registry: &Registry) -> Key {
+    (model.declaration.id, shading.declaration.id, registry.lights().len())
 }
 
 /// What tells the layouts of rows of one model apart: equal declarations are one, as are equal parameters.
@@ -123,7 +123,7 @@ struct Refused {
     at: Instant,
 }
 
-/// The shaders by model and mode, and the texts that they are made of.
+/// The shaders by model and shading model, and the texts that they are made of.
 #[derive(Default, Resource)]
 pub struct LiveShaders {
     /// The texts of the files as they are.
@@ -135,17 +135,17 @@ pub struct LiveShaders {
     resting: HashMap<Key, Handle<Shader>>,
     /// How often shaders were looked through for some that may rest.
     looks: u64,
-    /// The files of own models and their texts, whatever these are worth.
+    /// The files of custom models and their texts, whatever these are worth.
     own: BTreeMap<String, (PathBuf, String)>,
-    /// Reads own models.
+    /// Reads custom models.
     reader: Reader,
-    /// Own models that were read and are still to be tried.
+    /// Custom models that were read and are still to be tried.
     arriving: Vec<CustomModel>,
     /// An object waits for a shader that is tried for the first time.
     awaited: bool,
     /// The composed texts that were tried with success in this frame.
     approved: HashSet<String>,
-    /// Files that cannot be read and own models with mistakes, and since when.
+    /// Files that cannot be read and custom models with mistakes, and since when.
     unusable: BTreeMap<String, (Vec<ShaderProblem>, Instant)>,
     /// Changed files that no shader is made of: whether they are right is tried on the side.
     unused: BTreeSet<String>,
@@ -256,7 +256,7 @@ impl LiveShaders {
         }
     }
 
-    /// Reads a file that may have changed. Files that are none of ours are passed over; own models go into the
+    /// Reads a file that may have changed. Files that are none of ours are passed over; custom models go into the
     /// registry once they were tried.
     pub fn look_at(&mut self, file: &Path, registry: &mut Registry) {
         let Some(path) = self.path_of(file) else { return };
@@ -289,7 +289,7 @@ impl LiveShaders {
         }
     }
 
-    /// Reads an own model anew. One with a mistake leaves what is known of it as it was.
+    /// Reads a custom model anew. One with a mistake leaves what is known of it as it was.
     fn read_model(&mut self, path: &str, registry: &mut Registry) {
         let Some((file, text)) = self.own.get(path).cloned() else { return };
         self.arriving.retain(|model| model.path != file);
@@ -300,7 +300,7 @@ impl LiveShaders {
         }
     }
 
-    /// Takes what became of reading an own model, unless its file has another text by now.
+    /// Takes what became of reading a custom model, unless its file has another text by now.
     fn take_read(&mut self, done: Done, registry: &mut Registry) {
         if self.own.get(&done.source).is_none_or(|(_, text)| *text != done.text) {
             return;
@@ -340,18 +340,18 @@ impl LiveShaders {
                 || self.arriving.iter().any(|m| m.entry.declaration.id == model.declaration.id))
     }
 
-    /// Has own models read on a thread of its own, which calls `wake`.
+    /// Has custom models read on a thread of its own, which calls `wake`.
     pub fn read_apart(&mut self, wake: impl Fn() + Send + 'static) {
         self.reader = Reader::apart(wake);
     }
 
-    /// True while a thread reads own models; it wakes who waits.
+    /// True while a thread reads custom models; it wakes who waits.
     #[must_use]
     pub fn is_reading(&self) -> bool {
         self.reader.is_reading()
     }
 
-    /// An own model has mistakes. A new one whose declaration is right can be chosen all the same, and is drawn as
+    /// A custom model has mistakes. A new one whose declaration is right can be chosen all the same, and is drawn as
     /// a stand-in.
     fn refuse_model(&mut self, path: &str, problems: Vec<ShaderProblem>, registry: &mut Registry) {
         if let Some((file, text)) = self.own.get(path)
@@ -372,7 +372,7 @@ impl LiveShaders {
         sources
     }
 
-    /// Tries the own models that were read, and makes those known that can be drawn with: parameters, text and
+    /// Tries the custom models that were read, and makes those known that can be drawn with: parameters, text and
     /// shader are exchanged together or not at all.
     fn adopt(&mut self, world: &mut World, visible: &Visible) {
         let mut arriving = std::mem::take(&mut self.arriving);
@@ -380,19 +380,26 @@ impl LiveShaders {
         for model in arriving {
             let registry = world.resource::<Registry>().clone();
             let path = model.entry.declaration.wgsl.path;
-            let modes: Vec<_> =
-                registry.modes().iter().filter(|m| visible.shows(model.entry.declaration.id, m)).collect();
-            let modes = if modes.is_empty() { registry.modes().iter().take(1).collect() } else { modes };
+            let shadings: Vec<_> = registry
+                .shading_models()
+                .iter()
+                .filter(|m| visible.shows(model.entry.declaration.id, m))
+                .collect();
+            let shadings = if shadings.is_empty() {
+                registry.shading_models().iter().take(1).collect()
+            } else {
+                shadings
+            };
             let mut current = self.current.clone();
             current.edit(path, model.text.clone());
             let mut lenient = self.lenient();
             lenient.edit(path, model.text.clone());
-            let verdict = modes.into_iter().map(|mode| {
-                let wanted = compose(&current, &model.entry, mode, registry.lights());
-                match self.try_out(world, &wanted, &model.entry, mode) {
+            let verdict = shadings.into_iter().map(|shading| {
+                let wanted = compose(&current, &model.entry, shading, registry.lights());
+                match self.try_out(world, &wanted, &model.entry, shading) {
                     Verdict::Bad(_) => {
-                        let wanted = compose(&lenient, &model.entry, mode, registry.lights());
-                        self.try_out(world, &wanted, &model.entry, mode)
+                        let wanted = compose(&lenient, &model.entry, shading, registry.lights());
+                        self.try_out(world, &wanted, &model.entry, shading)
                     }
                     verdict => verdict,
                 }
@@ -425,12 +432,12 @@ impl LiveShaders {
         world: &mut World,
         composed: &Composed,
         model: &ModelEntry,
-        mode: &ModeEntry,
+        shading: &ShadingEntry,
     ) -> Verdict {
         if composed.problem.is_none() && self.approved.contains(&composed.text) {
             return Verdict::Good;
         }
-        let verdict = try_out(world, composed, model, mode);
+        let verdict = try_out(world, composed, model, shading);
         if verdict == Verdict::Good {
             self.approved.insert(composed.text.clone());
         }
@@ -507,7 +514,7 @@ impl LiveShaders {
         used
     }
 
-    /// Reads the own models again that a change of another file may mend or change. Those that only share its
+    /// Reads the custom models again that a change of another file may mend or change. Those that only share its
     /// functions need it if the CPU calculates their answer to light from everywhere, and they were drawn.
     fn read_again(&mut self, path: &str, registry: &mut Registry) {
         let concerned = |own_path: &str| {
@@ -528,15 +535,15 @@ impl LiveShaders {
         again.iter().for_each(|own| self.read_model(own, registry));
     }
 
-    /// The shader of a model and a mode; none yet while another process tries it.
+    /// The shader of a model and a shading model; none yet while another process tries it.
     pub(crate) fn get(
         &mut self,
         world: &mut World,
         model: &ModelEntry,
-        mode: &ModeEntry,
+        shading: &ShadingEntry,
         registry: &Registry,
     ) -> Option<Handle<Shader>> {
-        let key = key(model, mode, registry);
+        let key = key(model, shading, registry);
         let layout = layout_of(model);
         if let Some(live) = self.shaders.get(&key).filter(|live| live.layout == layout) {
             return Some(live.handle.clone());
@@ -549,7 +556,7 @@ impl LiveShaders {
             self.awaited = true;
             return None;
         }
-        let wanted = compose(&self.current, model, mode, registry.lights());
+        let wanted = compose(&self.current, model, shading, registry.lights());
         // From here on these files are used.
         for path in wanted.map.files() {
             self.unused.remove(path);
@@ -561,7 +568,7 @@ impl LiveShaders {
         if self.is_built_in(&wanted) {
             shown = Some(wanted);
         } else {
-            match self.try_out(world, &wanted, model, mode) {
+            match self.try_out(world, &wanted, model, shading) {
                 Verdict::Good => {
                     self.note_good(&wanted);
                     shown = Some(wanted);
@@ -578,7 +585,7 @@ impl LiveShaders {
         }
         let shown = match shown {
             Some(shown) => shown,
-            None => self.last_good(world, model, mode, registry)?,
+            None => self.last_good(world, model, shading, registry)?,
         };
         let asset = self.asset(&shown, key);
         let replaced = self.replaced(key, registry);
@@ -599,7 +606,7 @@ impl LiveShaders {
     }
 
     /// The asset that a shader takes over: that of the same model as it was declared before or as it rested, or of an
-    /// own model that is gone. Bevy never lets go of a pipeline, but makes it anew when its shader changes; with an
+    /// custom model that is gone. Bevy never lets go of a pipeline, but makes it anew when its shader changes; with an
     /// asset for each declaration, each would keep megabytes.
     fn replaced(&mut self, key: Key, registry: &Registry) -> Option<Handle<Shader>> {
         if let Some(live) = self.shaders.remove(&key) {
@@ -608,7 +615,7 @@ impl LiveShaders {
         if let Some(handle) = self.resting.remove(&key) {
             return Some(handle);
         }
-        // Materials of own models are of one type, so any of them may take it.
+        // Materials of custom models are of one type, so any of them may take it.
         registry.custom_file(key.0)?;
         let gone = |known: &&Key| known.1 == key.1 && registry.model(known.0).is_none();
         let known = *self.shaders.keys().chain(self.resting.keys()).find(gone)?;
@@ -642,15 +649,15 @@ impl LiveShaders {
         &mut self,
         world: &mut World,
         model: &ModelEntry,
-        mode: &ModeEntry,
+        shading: &ShadingEntry,
         registry: &Registry,
     ) -> Option<Composed> {
         for sources in [self.lenient(), self.good.clone()] {
-            let composed = compose(&sources, model, mode, registry.lights());
+            let composed = compose(&sources, model, shading, registry.lights());
             if self.is_built_in(&composed) {
                 return Some(composed);
             }
-            match self.try_out(world, &composed, model, mode) {
+            match self.try_out(world, &composed, model, shading) {
                 Verdict::Good => return Some(composed),
                 Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
                     self.awaited = true;
@@ -659,7 +666,7 @@ impl LiveShaders {
                 Verdict::Bad(_) | Verdict::NotYet => {}
             }
         }
-        Some(compose(&Sources::default(), model, mode, registry.lights()))
+        Some(compose(&Sources::default(), model, shading, registry.lights()))
     }
 
     /// Whether a composed source holds nothing but what was built in, which tests have tried.
@@ -714,8 +721,9 @@ impl LiveShaders {
 
     /// Exchanges a shader for what its files say now, if that can be drawn with.
     fn refresh(&mut self, world: &mut World, registry: &Registry, key: Key) {
-        let entries = registry.model(key.0).zip(registry.mode(key.1));
-        let Some((model, mode)) = entries.filter(|(model, mode)| self::key(model, mode, registry) == key)
+        let entries = registry.model(key.0).zip(registry.shading_model(key.1));
+        let Some((model, shading)) =
+            entries.filter(|(model, shading)| self::key(model, shading, registry) == key)
         else {
             // Other light types were known then; nothing is drawn with it any more.
             if let Some(live) = self.shaders.get_mut(&key) {
@@ -723,12 +731,12 @@ impl LiveShaders {
             }
             return;
         };
-        let wanted = compose(&self.current, model, mode, registry.lights());
+        let wanted = compose(&self.current, model, shading, registry.lights());
         let shown_already = self.shaders.get(&key).is_some_and(|live| live.shown == wanted);
         let verdict = if shown_already || self.is_built_in(&wanted) {
             Verdict::Good
         } else {
-            self.try_out(world, &wanted, model, mode)
+            self.try_out(world, &wanted, model, shading)
         };
         if verdict == Verdict::Good {
             self.note_good(&wanted);
@@ -799,22 +807,24 @@ impl LiveShaders {
         })
     }
 
-    /// Tries a file that nothing on the picture is made of, with a model or mode that it belongs to.
+    /// Tries a file that nothing on the picture is made of, with a model or shading model that it belongs to.
     fn try_unused(&mut self, world: &mut World, registry: &Registry, visible: &Visible, path: &str) {
-        let modes = registry.modes();
+        let shadings = registry.shading_models();
         let models = registry.models();
-        let mode = modes.iter().find(|m| m.declaration.wgsl.path == path);
+        let shading = shadings.iter().find(|m| m.declaration.wgsl.path == path);
         let model = models.iter().find(|m| m.declaration.wgsl.path == path);
-        if mode.is_none() && model.is_none() {
+        if shading.is_none() && model.is_none() {
             return;
         }
-        let shown_mode = || modes.iter().find(|m| visible.0.iter().any(|(_, id)| id == m.declaration.id));
-        let Some((model, mode)) = model.or(models.first()).zip(mode.or_else(shown_mode).or(modes.first()))
+        let shown_shading =
+            || shadings.iter().find(|m| visible.0.iter().any(|(_, id)| id == m.declaration.id));
+        let Some((model, shading)) =
+            model.or(models.first()).zip(shading.or_else(shown_shading).or(shadings.first()))
         else {
             return;
         };
-        let composed = compose(&self.current, model, mode, registry.lights());
-        match self.try_out(world, &composed, model, mode) {
+        let composed = compose(&self.current, model, shading, registry.lights());
+        match self.try_out(world, &composed, model, shading) {
             Verdict::Good => {
                 self.unused_problems.remove(path);
                 self.note_good(&composed);
@@ -884,25 +894,25 @@ impl LiveShaders {
     }
 }
 
-/// The models and modes on the picture.
+/// The models and shading models on the picture.
 struct Visible(Vec<(String, String)>);
 
 impl Visible {
     fn of(world: &mut World) -> Self {
         let mut query = world.query::<&Drawn>();
         let mut pairs: Vec<_> =
-            query.iter(world).map(|d| (d.model().to_owned(), d.mode().to_owned())).collect();
+            query.iter(world).map(|d| (d.model().to_owned(), d.shading().to_owned())).collect();
         pairs.sort_unstable();
         pairs.dedup();
         Self(pairs)
     }
 
-    fn shows(&self, model: &str, mode: &ModeEntry) -> bool {
-        self.0.iter().any(|(m, s)| m == model && s == mode.declaration.id)
+    fn shows(&self, model: &str, shading: &ShadingEntry) -> bool {
+        self.0.iter().any(|(m, s)| m == model && s == shading.declaration.id)
     }
 
     fn has(&self, key: &Key) -> bool {
-        self.0.iter().any(|(model, mode)| model == key.0 && mode == key.1)
+        self.0.iter().any(|(model, shading)| model == key.0 && shading == key.1)
     }
 }
 
@@ -941,7 +951,7 @@ fn exchange(world: &mut World) {
     });
 }
 
-fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, mode: &ModeEntry) -> Verdict {
+fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, shading: &ShadingEntry) -> Verdict {
     let (Some(device), Some(adapter)) =
         (world.get_resource::<RenderDevice>().cloned(), world.get_resource::<RenderAdapter>().cloned())
     else {
@@ -950,7 +960,7 @@ fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, mode: &Mo
     world.resource_scope(|world, mut bench: Mut<Bench>| {
         let tools = Tools { device: &device, adapter: &adapter, shaders: world.resource::<Assets<Shader>>() };
         let row = || model.row(&Values::default(), Encoding::Srgb, false);
-        bench.try_out(composed, mode.declaration.stage == Stage::Polygon, row, tools)
+        bench.try_out(composed, shading.declaration.stage == Stage::Polygon, row, tools)
     })
 }
 

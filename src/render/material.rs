@@ -2,8 +2,8 @@
 //!
 //! A material holds the table of the parameters of all objects under its model, whose layout follows
 //! from the declaration, the shared buffer of lights, and the composed shader of its model and shading
-//! mode, which is part of the pipeline key. Each object knows its row of the table by its mesh tag, so
-//! all objects under one model and mode share one material and are drawn together.
+//! shading model, which is part of the pipeline key. Each object knows its row of the table by its mesh tag, so
+//! all objects under one model and shading model share one material and are drawn together.
 
 use std::{collections::HashMap, marker::PhantomData};
 
@@ -33,13 +33,13 @@ use crate::{custom::CustomFile, reflection::ReflectionModel};
 /// The tangent of the vertex. Three numbers, not Bevy's four: the bitangent is always `n × t`.
 pub const TANGENT: MeshVertexAttribute =
     MeshVertexAttribute::new("BrushTangent", 0x4c43_4d03, VertexFormat::Float32x3);
-/// The normal of the polygon (DD8), on meshes for modes that calculate per polygon.
+/// The normal of the polygon (DD8), on meshes for shading models that calculate per polygon.
 pub const FACE_NORMAL: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceNormal", 0x4c43_4d01, VertexFormat::Float32x3);
-/// The tangent of the polygon, on meshes for modes that calculate per polygon.
+/// The tangent of the polygon, on meshes for shading models that calculate per polygon.
 pub const FACE_TANGENT: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceTangent", 0x4c43_4d04, VertexFormat::Float32x3);
-/// The centre of the polygon, on meshes for modes that calculate per polygon.
+/// The centre of the polygon, on meshes for shading models that calculate per polygon.
 pub const FACE_CENTRE: MeshVertexAttribute =
     MeshVertexAttribute::new("FaceCentre", 0x4c43_4d02, VertexFormat::Float32x3);
 
@@ -50,7 +50,7 @@ pub struct MaterialInputs {
     pub parameters: Handle<ShaderBuffer>,
     /// The lights of the scene, shared by all materials.
     pub illumination: Handle<ShaderBuffer>,
-    /// The composed shader of model and mode.
+    /// The composed shader of model and shading model.
     pub shader: Handle<Shader>,
     /// True if the mesh carries [`FACE_NORMAL`], [`FACE_TANGENT`] and [`FACE_CENTRE`].
     pub faces: bool,
@@ -212,7 +212,7 @@ fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
     Attachment { attach: attach::<M>, detach: detach::<M>, forget: forget::<M> }
 }
 
-/// The materials of one model by shader and light buffer: one for each shading mode in use, in the views without
+/// The materials of one model by shader and light buffer: one for each shading model in use, in the views without
 /// overrides and in each view with.
 #[derive(Resource)]
 struct SharedMaterials<M: Clone + 'static>(

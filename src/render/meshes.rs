@@ -17,9 +17,9 @@ use crate::{
     shape::{PolygonMesh, ShapeEntry},
 };
 
-/// The meshes by object type and tessellation: with shared vertices for modes that interpolate, with
-/// the vertices of each polygon apart for modes that calculate per polygon. Both are made together, so
-/// that changing the mode finds its mesh ready.
+/// The meshes by object type and tessellation: with shared vertices for shading models that interpolate, with
+/// the vertices of each polygon apart for shading models that calculate per polygon. Both are made together, so
+/// that changing the shading model finds its mesh ready.
 #[derive(Default, Resource)]
 pub struct ShapeMeshes(HashMap<(&'static str, u32), MeshPair>);
 
@@ -45,7 +45,7 @@ impl ShapeMeshes {
     }
 }
 
-/// The mesh for modes that interpolate over shared vertices.
+/// The mesh for shading models that interpolate over shared vertices.
 #[must_use]
 pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
     let indices = mesh
@@ -60,7 +60,7 @@ pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
         .with_inserted_indices(Indices::U32(indices))
 }
 
-/// The mesh for modes that calculate per polygon: no vertex is shared, and each knows its polygon.
+/// The mesh for shading models that calculate per polygon: no vertex is shared, and each knows its polygon.
 #[must_use]
 pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
     let (vertex_normals, vertex_tangents) = (mesh.vertex_normals(), mesh.vertex_tangents());
@@ -106,7 +106,7 @@ pub(super) fn forget_unused_meshes(world: &mut World, registry: &Registry) {
     let used: HashSet<_> = query
         .iter(world)
         .filter_map(|object| {
-            let shape = registry.shape(&object.0.kind)?;
+            let shape = registry.shape(&object.0.object_type)?;
             Some((shape.declaration.id, shape.tessellation(object.0.tessellation)))
         })
         .collect();

@@ -64,8 +64,8 @@ impl Overrides {
         self.reflection_model.as_deref().unwrap_or_else(|| scene.model_of(object))
     }
 
-    pub(super) fn mode_of<'a>(&'a self, scene: &'a Scene, object: &'a Object) -> &'a str {
-        self.shading_model.as_deref().unwrap_or_else(|| scene.mode_of(object))
+    pub(super) fn shading_model_of<'a>(&'a self, scene: &'a Scene, object: &'a Object) -> &'a str {
+        self.shading_model.as_deref().unwrap_or_else(|| scene.shading_model_of(object))
     }
 
     pub(super) fn display_of(&self, scene: &Scene) -> Display {

@@ -43,7 +43,7 @@ pub enum LabSystems {
     Spawn,
     /// Changes to entities go back into the scene.
     Edit,
-    /// Objects get the meshes and materials of their models and modes.
+    /// Objects get the meshes and materials of their models and shading models.
     Swap,
     /// Lights and display settings go to the renderer.
     Upload,

@@ -7,7 +7,7 @@ use crate::{
     light::LightType,
     reflection::ReflectionModel,
     registry::{Register, Registry},
-    shading::ShadingMode,
+    shading::ShadingModel,
     shape::ObjectType,
 };
 
@@ -19,9 +19,9 @@ impl Register for App {
         self
     }
 
-    fn add_shading_mode<S: ShadingMode>(&mut self) -> &mut Self {
+    fn add_shading_model<S: ShadingModel>(&mut self) -> &mut Self {
         self.init_resource::<Registry>();
-        self.world_mut().resource_mut::<Registry>().add_shading_mode::<S>();
+        self.world_mut().resource_mut::<Registry>().add_shading_model::<S>();
         self
     }
 

@@ -1,4 +1,4 @@
-//! Exchanging models, modes, parameters and shapes at run time: the frame after the choice shows the
+//! Exchanging models, shading models, parameters and shapes at run time: the frame after the choice shows the
 //! new one, and no frame is without the object.
 
 use std::cell::LazyCell;
@@ -32,7 +32,7 @@ use crate::{
 #[derive(Clone, Component, Debug, Default, PartialEq)]
 pub struct Drawn {
     model: String,
-    mode: String,
+    shading: String,
     encoding: Encoding,
     everywhere: bool,
     /// What was known of the model: a file that is read again makes another.
@@ -50,10 +50,10 @@ impl Drawn {
         &self.model
     }
 
-    /// Id of the shading mode.
+    /// Id of the shading model.
     #[must_use]
-    pub fn mode(&self) -> &str {
-        &self.mode
+    pub fn shading(&self) -> &str {
+        &self.shading
     }
 }
 
@@ -78,7 +78,7 @@ struct Changed {
     scene: bool,
 }
 
-/// Gives every object whose shape, model, mode or parameters changed its mesh and its material. Exclusive, so that
+/// Gives every object whose shape, model, shading model or parameters changed its mesh and its material. Exclusive, so that
 /// mesh and material change in one step.
 pub fn swap(world: &mut World) {
     let objects = world.resource::<SceneEntities>().objects.len().min(MAX_OBJECTS);
@@ -136,13 +136,13 @@ fn find(world: &mut World, view: Option<Entity>, changed: Changed, pending: &mut
         let Some(Ok((drawn, waits))) = drawable.map(|d| drawables.get(world, d)) else { continue };
         let (Some(drawable), Ok(object)) = (drawable, objects.get(world, entity)) else { continue };
         let now = || {
-            let (model, mode) = overrides.map_or_else(
-                || (scene.model_of(&object.0), scene.mode_of(&object.0)),
-                |o| (o.model_of(scene, &object.0), o.mode_of(scene, &object.0)),
+            let (model, shading) = overrides.map_or_else(
+                || (scene.model_of(&object.0), scene.shading_model_of(&object.0)),
+                |o| (o.model_of(scene, &object.0), o.shading_model_of(scene, &object.0)),
             );
             Drawn {
                 model: model.to_owned(),
-                mode: mode.to_owned(),
+                shading: shading.to_owned(),
                 encoding,
                 everywhere: *everywhere,
                 version: registry.model(model).map_or(0, ModelEntry::version),
@@ -165,9 +165,11 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     let Pending { view, object, drawable, shown, now } = pending;
     // The checker refuses scenes with unknown ids; should one come from elsewhere, the object
     // keeps what it has.
-    let (Some(model), Some(mode), Some(shape)) =
-        (registry.model(&now.model), registry.mode(&now.mode), registry.shape(&shown.kind))
-    else {
+    let (Some(model), Some(shading), Some(shape)) = (
+        registry.model(&now.model),
+        registry.shading_model(&now.shading),
+        registry.shape(&shown.object_type),
+    ) else {
         return;
     };
     let tessellation = shape.tessellation(shown.tessellation);
@@ -175,13 +177,13 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         meshes.get(shape, tessellation, &mut world.resource_mut::<Assets<Mesh>>())
     });
     let shader = world
-        .resource_scope(|world, mut shaders: Mut<LiveShaders>| shaders.get(world, model, mode, registry));
+        .resource_scope(|world, mut shaders: Mut<LiveShaders>| shaders.get(world, model, shading, registry));
     let Some(shader) = shader else {
         world.entity_mut(drawable).insert(AwaitsShader);
         return;
     };
     let Some(row) = row_of(world, object) else { return };
-    let faces = mode.declaration.stage == shading::Stage::Polygon;
+    let faces = shading.declaration.stage == shading::Stage::Polygon;
     let parameters = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
         tables.set(view, model, row, bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
     });

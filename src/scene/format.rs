@@ -30,7 +30,7 @@ pub(super) struct SceneFile<'a> {
     scene_size: SizeFile,
     /// How light leaves the surface of every object that names no model itself.
     reflection_model: &'a str,
-    /// Where the reflection model is calculated, for every object that names no mode itself.
+    /// Where the reflection model is calculated, for every object that names no shading model itself.
     shading_model: &'a str,
     /// The lights, 1 to 256.
     lights: Vec<LightFile<'a>>,
@@ -62,9 +62,9 @@ struct SizeFile {
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct LightFile<'a> {
-    /// What kind of light it is.
+    /// The light type.
     #[serde(rename = "type")]
-    kind: &'a str,
+    light_type: &'a str,
     /// What you call it.
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<&'a str>,
@@ -120,9 +120,9 @@ struct ObserverFile {
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ObjectFile<'a> {
-    /// What shape it has.
+    /// The object type.
     #[serde(rename = "type")]
-    kind: &'a str,
+    object_type: &'a str,
     /// What you call it.
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<&'a str>,
@@ -231,9 +231,9 @@ impl<'a> SceneFile<'a> {
 
 impl<'a> LightFile<'a> {
     fn new(light: &'a Light, registry: &Registry) -> Self {
-        let declared = registry.light(&light.kind).map_or(&[][..], |l| l.declaration.parameters);
+        let declared = registry.light(&light.light_type).map_or(&[][..], |l| l.declaration.parameters);
         Self {
-            kind: &light.kind,
+            light_type: &light.light_type,
             name: light.name.as_deref(),
             enabled: (!light.enabled).then_some(false),
             position: light.position.map(Into::into),
@@ -260,7 +260,7 @@ impl ObserverFile {
 impl<'a> ObjectFile<'a> {
     fn new(object: &'a Object, declared: &[&'static Parameter]) -> Self {
         Self {
-            kind: &object.kind,
+            object_type: &object.object_type,
             name: object.name.as_deref(),
             visible: (!object.visible).then_some(false),
             position: object.position.into(),

@@ -59,7 +59,7 @@ pub struct Scene {
     pub scene_size: SceneSize,
     /// Id of the reflection model of every object that names none itself.
     pub reflection_model: String,
-    /// Id of the shading mode of every object that names none itself.
+    /// Id of the shading model of every object that names none itself.
     pub shading_model: String,
     /// The lights, 1 to 256.
     pub lights: Vec<Light>,
@@ -107,7 +107,7 @@ impl Default for SceneSize {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
     /// Id of the light type.
-    pub kind: String,
+    pub light_type: String,
     /// What the user calls it.
     pub name: Option<String>,
     /// False while it is switched off.
@@ -143,7 +143,7 @@ pub struct Observer {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// Id of the object type.
-    pub kind: String,
+    pub object_type: String,
     /// What the user calls it.
     pub name: Option<String>,
     /// False while it is hidden.
@@ -158,7 +158,7 @@ pub struct Object {
     pub tessellation: Option<u32>,
     /// Id of its own reflection model, if it has one.
     pub reflection_model: Option<String>,
-    /// Id of its own shading mode, if it has one.
+    /// Id of its own shading model, if it has one.
     pub shading_model: Option<String>,
     /// Parameters by name, of this model and of any other.
     pub material: Values,
@@ -179,7 +179,7 @@ impl Default for Light {
     /// A white point light of 20 cd near the upper right front corner of the default room.
     fn default() -> Self {
         Self {
-            kind: "point".to_owned(),
+            light_type: "point".to_owned(),
             name: None,
             enabled: true,
             position: Some(Vec3::new(7.5, 8.0, 9.0)),
@@ -196,8 +196,8 @@ impl Default for Light {
 impl Light {
     /// The intensity in the unit of its type, whichever way it is given.
     #[must_use]
-    pub fn intensity_as(&self, kind: &LightEntry) -> f32 {
-        match self.luminous_flux.zip(kind.solid_angle(&self.parameters)) {
+    pub fn intensity_as(&self, entry: &LightEntry) -> f32 {
+        match self.luminous_flux.zip(entry.solid_angle(&self.parameters)) {
             // A cone may be so narrow that the quotient is not finite in 32 bits.
             Some((flux, solid_angle)) => ((f64::from(flux) / solid_angle) as f32).min(f32::MAX),
             None => self.intensity,
@@ -226,7 +226,7 @@ impl Light {
     pub fn set_type(&mut self, to: &LightEntry, registry: &Registry, room: SceneSize) {
         let new = to.declaration;
         let flux = self.luminous_flux.filter(|_| to.has_flux());
-        self.intensity = match registry.light(&self.kind) {
+        self.intensity = match registry.light(&self.light_type) {
             Some(old) if flux.is_none() && old.declaration.unit == new.unit => self.intensity_as(old),
             // 20 cd and 20 lx are worlds apart: another unit starts from its own default.
             _ => new.default_intensity,
@@ -242,7 +242,7 @@ impl Light {
             }
         }
         self.parameters = parameters;
-        new.id.clone_into(&mut self.kind);
+        new.id.clone_into(&mut self.light_type);
     }
 }
 
@@ -261,7 +261,7 @@ impl Default for Object {
     /// A sphere of default material in the centre of the default room.
     fn default() -> Self {
         Self {
-            kind: "sphere".to_owned(),
+            object_type: "sphere".to_owned(),
             name: None,
             visible: true,
             position: Vec3::splat(5.0),
@@ -317,9 +317,9 @@ impl Scene {
         object.reflection_model.as_deref().unwrap_or(&self.reflection_model)
     }
 
-    /// The shading mode of an object: its own, or the scene's.
+    /// The shading model of an object: its own, or the scene's.
     #[must_use]
-    pub fn mode_of<'a>(&'a self, object: &'a Object) -> &'a str {
+    pub fn shading_model_of<'a>(&'a self, object: &'a Object) -> &'a str {
         object.shading_model.as_deref().unwrap_or(&self.shading_model)
     }
 }
@@ -327,7 +327,8 @@ impl Scene {
 /// A light of the scene as calculation sees it. A light of an unknown type gives no light.
 #[must_use]
 pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRecord {
-    let Some((kind, entry)) = registry.light_index(&light.kind).zip(registry.light(&light.kind)) else {
+    let Some((kind, entry)) = registry.light_index(&light.light_type).zip(registry.light(&light.light_type))
+    else {
         return LightRecord { kind: u32::MAX, ..LightRecord::default() };
     };
     LightRecord {
@@ -344,7 +345,7 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
 #[must_use]
 pub fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
     scene.shining().any(|light| {
-        registry.light(&light.kind).is_some_and(|entry| {
+        registry.light(&light.light_type).is_some_and(|entry| {
             let record = record(light, registry, scene.display.encoding);
             matches!((entry.incident)(&record, Vec3::ZERO), Incident::Everywhere { .. })
         })
@@ -357,7 +358,7 @@ mod tests {
 
     #[test]
     fn unknown_light_types_give_no_light_and_no_panic() {
-        let light = Light { kind: "laser".to_owned(), ..Light::default() };
+        let light = Light { light_type: "laser".to_owned(), ..Light::default() };
         assert_eq!(record(&light, &Registry::builtin(), Encoding::Srgb).kind, u32::MAX);
     }
 

@@ -28,10 +28,11 @@ pub fn schema(registry: &Registry) -> Json {
     tidy(&mut schema);
 
     let models = || registry.models().iter().map(|m| &m.declaration).map(|d| (d.id, d.name, d.summary));
-    let modes = || registry.modes().iter().map(|m| &m.declaration).map(|d| (d.id, d.name, d.summary));
+    let shadings =
+        || registry.shading_models().iter().map(|m| &m.declaration).map(|d| (d.id, d.name, d.summary));
     let scene = &mut schema["properties"];
     choose(&mut scene["reflection_model"], models());
-    choose(&mut scene["shading_model"], modes());
+    choose(&mut scene["shading_model"], shadings());
     scene["reflection_model"]["default"] = super::DEFAULT_REFLECTION_MODEL.into();
     scene["shading_model"]["default"] = super::DEFAULT_SHADING_MODEL.into();
     let tones = ToneMapping::ALL.map(|t| (t.id(), t.name(), t.summary()));
@@ -43,7 +44,7 @@ pub fn schema(registry: &Registry) -> Json {
     objects(&mut scene["objects"], registry);
     let fields = &mut scene["objects"]["items"]["properties"];
     choose(&mut fields["reflection_model"], models());
-    choose(&mut fields["shading_model"], modes());
+    choose(&mut fields["shading_model"], shadings());
     schema
 }
 
@@ -121,7 +122,7 @@ fn lights(list: &mut Json, registry: &Registry) {
     for p in declarations().flat_map(|d| d.parameters) {
         fields[p.name] = parameter(p);
     }
-    let kinds = registry.lights().iter().map(|l| {
+    let types = registry.lights().iter().map(|l| {
         let (d, has_flux) = (l.declaration, l.has_flux());
         let mut required = Vec::new();
         let mut properties = Map::new();
@@ -151,7 +152,7 @@ fn lights(list: &mut Json, registry: &Registry) {
         })
     });
     let alternatives = keys::LIGHT_ALTERNATIVES.map(|both| json!({ "not": { "required": both } }));
-    light["allOf"] = kinds.chain(alternatives).collect::<Vec<_>>().into();
+    light["allOf"] = types.chain(alternatives).collect::<Vec<_>>().into();
     list["items"]["defaultSnippets"] = json!([{
         "label": "point light",
         "body": { "type": "point", "position": [5, 9, 5], "colour": [255, 255, 255], "intensity": 20 },
@@ -184,7 +185,7 @@ fn objects(list: &mut Json, registry: &Registry) {
     }
     fields["material"]["properties"] = parameters.into();
     fields["material"]["additionalProperties"] = false.into();
-    let kinds = declarations().map(|d| {
+    let types = declarations().map(|d| {
         json!({
             "if": { "properties": { "type": { "const": d.id } }, "required": ["type"] },
             "then": { "properties": { "tessellation": {
@@ -195,7 +196,7 @@ fn objects(list: &mut Json, registry: &Registry) {
             } } },
         })
     });
-    object["allOf"] = kinds.collect::<Vec<_>>().into();
+    object["allOf"] = types.collect::<Vec<_>>().into();
     object["defaultSnippets"] = json!([{
         "label": "sphere",
         "body": { "type": "sphere", "position": [5, 5, 5], "size": 2, "material": { "base_colour": [255, 255, 255] } },

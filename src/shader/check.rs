@@ -13,7 +13,7 @@ use super::{compose::Composed, field, limits, pitfall};
 /// What is wrong with a shader, located in the author's file.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ShaderProblem {
-    /// Path below the folder of the shaders; of own models, `models/` and the name of the file.
+    /// Path below the folder of the shaders; of custom models, `models/` and the name of the file.
     pub file: String,
     /// Line in that file, from 1.
     pub line: usize,

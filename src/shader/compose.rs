@@ -28,7 +28,7 @@ pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
 pub const LIGHTS: Source = wgsl!("lights.wgsl");
 /// The light loop.
 pub const LOOP: Source = wgsl!("loop.wgsl");
-/// What goes into and out of a shading mode.
+/// What goes into and out of a shading model.
 pub const SHADING: Source = wgsl!("shading.wgsl");
 /// The wrapper for the renderer: bindings and entry points.
 pub const WRAPPER: Source = wgsl!("wrapper.wgsl");

@@ -176,11 +176,11 @@ mod tests {
         for model in registry.models() {
             let id = model.declaration.id;
             texts.push((format!("{id}, evaluated"), compose_evaluation(registry.sources(), model)));
-            for mode in registry.modes() {
-                let composed = compose(registry.sources(), model, mode, registry.lights());
-                let faces = mode.declaration.stage == Stage::Polygon;
+            for shading in registry.shading_models() {
+                let composed = compose(registry.sources(), model, shading, registry.lights());
+                let faces = shading.declaration.stage == Stage::Polygon;
                 let text = whole::standing_alone(&composed.text, faces).expect("built in");
-                texts.push((format!("{id}, {}", mode.declaration.id), Composed { text, ..composed }));
+                texts.push((format!("{id}, {}", shading.declaration.id), Composed { text, ..composed }));
             }
         }
         texts

@@ -27,7 +27,7 @@ var<private> view: BevyView;
     ),
 ];
 
-/// Checks a source that draws; `faces` as for modes that calculate per polygon. What uses more of Bevy than the
+/// Checks a source that draws; `faces` as for shading models that calculate per polygon. What uses more of Bevy than the
 /// wrapper that is shipped cannot be judged here and passes.
 ///
 /// # Errors
@@ -89,23 +89,23 @@ mod tests {
         shading::Stage,
     };
 
-    fn problem(path: &str, text: &str, mode: &str) -> Option<String> {
+    fn problem(path: &str, text: &str, shading: &str) -> Option<String> {
         let registry = Registry::builtin();
         let mut sources = Sources::default();
         sources.edit(path, text);
-        let mode = registry.mode(mode).expect("built in");
-        let composed = compose(&sources, &registry.models()[0], mode, registry.lights());
-        let faces = mode.declaration.stage == Stage::Polygon;
+        let shading = registry.shading_model(shading).expect("built in");
+        let composed = compose(&sources, &registry.models()[0], shading, registry.lights());
+        let faces = shading.declaration.stage == Stage::Polygon;
         validate_drawing(&composed, faces).err().map(|p| p.to_string())
     }
 
     #[test]
-    fn every_model_is_valid_in_every_mode() {
+    fn every_model_is_valid_in_every_shading_model() {
         let registry = Registry::builtin();
         for model in registry.models() {
-            for mode in registry.modes() {
-                let composed = compose(&Sources::default(), model, mode, registry.lights());
-                let faces = mode.declaration.stage == Stage::Polygon;
+            for shading in registry.shading_models() {
+                let composed = compose(&Sources::default(), model, shading, registry.lights());
+                let faces = shading.declaration.stage == Stage::Polygon;
                 assert_eq!(validate_drawing(&composed, faces), Ok(()), "{}", model.declaration.id);
             }
         }

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Corner, Declaration, Lighting, ShadingMode, Stage, Varying};
+use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::shader::wgsl;
 
 /// **Derivative shading**: the normal of the triangle from screen-space derivatives of the position,
@@ -12,7 +12,7 @@ use crate::shader::wgsl;
 #[derive(Clone, Copy, Debug)]
 pub struct Derivative;
 
-impl ShadingMode for Derivative {
+impl ShadingModel for Derivative {
     const DECLARATION: Declaration = Declaration {
         id: "derivative",
         name: "Derivative",

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Corner, Declaration, Lighting, ShadingMode, Stage, Varying};
+use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::shader::wgsl;
 
 /// **Flat shading**: one colour per polygon, calculated at its centre with its face normal (DD8).
@@ -10,7 +10,7 @@ use crate::shader::wgsl;
 #[derive(Clone, Copy, Debug)]
 pub struct Flat;
 
-impl ShadingMode for Flat {
+impl ShadingModel for Flat {
     const DECLARATION: Declaration = Declaration {
         id: "flat",
         name: "Flat",

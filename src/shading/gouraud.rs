@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Corner, Declaration, Lighting, ShadingMode, Stage, Varying};
+use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::shader::wgsl;
 
 /// **Gouraud shading**: colour calculated at the vertices, interpolated between them (DD9).
@@ -10,7 +10,7 @@ use crate::shader::wgsl;
 #[derive(Clone, Copy, Debug)]
 pub struct Gouraud;
 
-impl ShadingMode for Gouraud {
+impl ShadingModel for Gouraud {
     const DECLARATION: Declaration = Declaration {
         id: "gouraud",
         name: "Gouraud",

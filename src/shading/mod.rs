@@ -1,4 +1,4 @@
-//! Shading modes: where on a surface the reflection model is evaluated (R7).
+//! Shading models: where on a surface the reflection model is evaluated (R7).
 //!
 //! **To add one**: write `shading/x.rs` and `assets/shaders/shading/x.wgsl`, and add its name to
 //! [`register_builtin`].
@@ -24,10 +24,10 @@ pub use phong::PhongShading;
 /// Takes shading models one after the other.
 pub trait Take {
     /// Takes the next one.
-    fn take<T: ShadingMode>(&mut self);
+    fn take<T: ShadingModel>(&mut self);
 }
 
-/// The built-in modes, in the order in which choosers list them. The one list.
+/// The built-in shading models, in the order in which choosers list them. The one list.
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Flat>();
     to.take::<Gouraud>();
@@ -58,7 +58,7 @@ impl Stage {
     }
 }
 
-/// What a mode is called, where it comes from and what it needs.
+/// What a shading model is called, where it comes from and what it needs.
 #[derive(Debug)]
 pub struct Declaration {
     /// The name in scene files.
@@ -114,12 +114,12 @@ pub struct Varying {
     pub normal: Vec3,
     /// Tangent, neither renormalised nor perpendicular to the normal.
     pub tangent: Vec3,
-    /// Colour calculated at the corner, if the mode does so.
+    /// Colour calculated at the corner, if the shading model does so.
     pub colour: Vec3,
 }
 
-/// A shading mode: where the light loop is asked, with which normal and tangent.
-pub trait ShadingMode: Send + Sync + 'static {
+/// A shading model: where the light loop is asked, with which normal and tangent.
+pub trait ShadingModel: Send + Sync + 'static {
     /// Name, source, stage, shader.
     const DECLARATION: Declaration;
 
@@ -131,27 +131,27 @@ pub trait ShadingMode: Send + Sync + 'static {
     fn pixel(lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3;
 }
 
-/// A registered mode.
+/// A registered shading model.
 #[derive(Clone, Copy)]
-pub struct ModeEntry {
+pub struct ShadingEntry {
     /// Name, source, stage, shader.
     pub declaration: &'static Declaration,
-    /// See [`ShadingMode::vertex`].
+    /// See [`ShadingModel::vertex`].
     pub vertex: fn(&dyn Lighting, &Corner) -> Varying,
-    /// See [`ShadingMode::pixel`].
+    /// See [`ShadingModel::pixel`].
     pub pixel: fn(&dyn Lighting, &Varying, Vec3) -> Vec3,
 }
 
-impl ModeEntry {
-    /// The entry of a mode type.
+impl ShadingEntry {
+    /// The entry of a shading model type.
     #[must_use]
-    pub fn of<S: ShadingMode>() -> Self {
+    pub fn of<S: ShadingModel>() -> Self {
         Self { declaration: const { &S::DECLARATION }, vertex: S::vertex, pixel: S::pixel }
     }
 }
 
-impl fmt::Debug for ModeEntry {
+impl fmt::Debug for ShadingEntry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("ModeEntry").field(&self.declaration.id).finish()
+        f.debug_tuple("ShadingEntry").field(&self.declaration.id).finish()
     }
 }

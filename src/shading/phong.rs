@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Corner, Declaration, Lighting, ShadingMode, Stage, Varying};
+use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::shader::wgsl;
 
 /// **Phong shading**: normals interpolated and renormalised, colour calculated per pixel (DD10).
@@ -10,7 +10,7 @@ use crate::shader::wgsl;
 #[derive(Clone, Copy, Debug)]
 pub struct PhongShading;
 
-impl ShadingMode for PhongShading {
+impl ShadingModel for PhongShading {
     const DECLARATION: Declaration = Declaration {
         id: "phong",
         name: "Phong",

@@ -7,7 +7,7 @@ use crate::shading::normals::{
 };
 
 /// Vertices and convex polygons of three or four corners, with the normals and tangents that the shading
-/// modes need.
+/// shading models need.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PolygonMesh {
     /// The vertices; each place of a surface occurs once.

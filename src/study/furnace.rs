@@ -132,7 +132,7 @@ fn lamps() -> Vec<Light> {
             let (s, c) = (golden * f32::from(i)).sin_cos();
             let r = (1.0 - y * y).sqrt();
             Light {
-                kind: "directional".to_owned(),
+                light_type: "directional".to_owned(),
                 position: None,
                 direction: Some(Vec3::new(r * c, y, r * s)),
                 // Radiance 1/π from 4π sr, by the response's factor π.

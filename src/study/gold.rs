@@ -146,7 +146,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     ];
     let mut sky = case(&shipped, 0);
     sky.lights =
-        vec![Light { kind: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() }];
+        vec![Light { light_type: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() }];
     cases.push(("D", "uniform light from everywhere", sky));
 
     let wanted: Vec<Picture> =

@@ -53,7 +53,7 @@ pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<Path
     None
 }
 
-/// Where own models are: where they are read from, else where they would be looked for.
+/// Where custom models are: where they are read from, else where they would be looked for.
 fn models_folder(lab: &Lab, registry: &Registry) -> Option<PathBuf> {
     let known = lab.shaders.models.clone().or_else(|| registry.custom_folder().map(Path::to_owned));
     known.or_else(|| Folders::find(None, None).ok()?.models)

@@ -29,9 +29,9 @@ pub struct ViewOptions {
     pub exit_after: Option<u32>,
     /// Write the whole window to this file before it closes.
     pub capture: Option<PathBuf>,
-    /// What is known, own models included.
+    /// What is known, custom models included.
     pub registry: Registry,
-    /// Where shaders and own models are read from. The shaders are not read yet.
+    /// Where shaders and custom models are read from. The shaders are not read yet.
     pub folders: Folders,
     /// The program that tries shaders when it is called with
     /// [`COMMAND`](crate::render::trial::process::COMMAND); without it the window itself does.

@@ -1,4 +1,4 @@
-//! The shaders and own models of the window: read when it opens, read again when their files change, and what is
+//! The shaders and custom models of the window: read when it opens, read again when their files change, and what is
 //! wrong with them told.
 
 use std::{
@@ -24,7 +24,7 @@ use crate::{
     shader::report::{annotated, coloured},
 };
 
-/// Reads the shaders of the folders and watches them. Own models are in the registry already; shaders that cannot
+/// Reads the shaders of the folders and watches them. Custom models are in the registry already; shaders that cannot
 /// be drawn with are replaced by the built-in ones and told of.
 pub(super) fn open(world: &mut World, folders: &Folders) {
     let mut registry = world.resource_mut::<Registry>();
@@ -51,7 +51,7 @@ pub(super) fn open(world: &mut World, folders: &Folders) {
     }
 }
 
-/// Reads shaders from another folder from now on, and own models too unless there are some where they were read
+/// Reads shaders from another folder from now on, and custom models too unless there are some where they were read
 /// from.
 pub(super) fn move_to(world: &mut World, folder: &Path) {
     let mut folders = match Folders::find(Some(folder), None) {

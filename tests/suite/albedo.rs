@@ -412,12 +412,12 @@ fn microfacet_lobes_have_the_albedos_of_the_table() {
     assert!(curve < 4e-3 && mean < 1e-3, "the lobe is {curve} off, its average {mean}");
 }
 
-fn ambient_only(model: &str, mode: &str) -> Scene {
+fn ambient_only(model: &str, shading: &str) -> Scene {
     let mut scene = close_up("torus", "ambient");
     scene.lights[0].intensity = 1.0;
     scene.lights[0].colour = [255; 3];
     scene.reflection_model = model.to_owned();
-    scene.shading_model = mode.to_owned();
+    scene.shading_model = shading.to_owned();
     scene
 }
 
@@ -435,8 +435,8 @@ fn light_from_everywhere_gives_the_same_picture_on_both_machines() {
     };
     let background = Encoding::Srgb.decode(BACKGROUND);
     for model in ["patchwork", "brushed"] {
-        for mode in registry.modes() {
-            let mut scene = ambient_only(model, mode.declaration.id);
+        for shading in registry.shading_models() {
+            let mut scene = ambient_only(model, shading.declaration.id);
             scene.objects[0].material.set("alpha_x", Value::Number(0.9));
             scene.objects[0].material.set("alpha_y", Value::Number(0.3));
             let lamps = close_up("torus", "point").lights;
@@ -444,7 +444,10 @@ fn light_from_everywhere_gives_the_same_picture_on_both_machines() {
             draw(&Scene { lights: lamps, ..scene.clone() });
             let gpu = draw(&scene);
             let d = compare(&gpu, &reference::render(&scene, &registry, &settings), background, 1e-3);
-            assert!(d.covered > 500 && d.wrong == 0 && d.edges * 50 <= d.covered, "{model} {mode:?}: {d:?}");
+            assert!(
+                d.covered > 500 && d.wrong == 0 && d.edges * 50 <= d.covered,
+                "{model} {shading:?}: {d:?}"
+            );
             // The wrong twin: another roughness.
             scene.objects[0].material.set("alpha_x", Value::Number(0.85));
             let d = compare(&gpu, &reference::render(&scene, &registry, &settings), background, 1e-3);
@@ -474,16 +477,16 @@ fn every_shape_vanishes_in_a_white_furnace_to_its_silhouette() {
         [("eon", &[("roughness", Value::Number(1.0))][..], 1e-4), ("microfacet", &compensated[..], 4e-3)]
     {
         for shape in registry.shapes() {
-            for mode in registry.modes() {
-                let mut scene = ambient_only(model, mode.declaration.id);
-                scene.objects[0].kind = shape.declaration.id.to_owned();
+            for shading in registry.shading_models() {
+                let mut scene = ambient_only(model, shading.declaration.id);
+                scene.objects[0].object_type = shape.declaration.id.to_owned();
                 scene.objects[0].material.set("base_colour", Value::Colour([255; 3]));
                 for (name, value) in settings {
                     scene.objects[0].material.set(*name, value.clone());
                 }
                 // Interpolated normals turn away from the viewer there, most of all on the cube.
                 let off = furthest(&scene);
-                let case = format!("{model} × {} × {}", shape.declaration.id, mode.declaration.id);
+                let case = format!("{model} × {} × {}", shape.declaration.id, shading.declaration.id);
                 assert!(off < tolerance, "{case}: {off}");
                 scene.objects[0].material.set("multiple_scattering", Value::Choice("none".into()));
                 scene.objects[0].material.set("base_colour", Value::Colour([254; 3]));

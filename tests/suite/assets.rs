@@ -1,4 +1,4 @@
-//! Shader folders and own models on the command line.
+//! Shader folders and custom models on the command line.
 
 use std::{
     fs,
@@ -160,7 +160,7 @@ fn a_model_is_duplicated_to_a_file() {
 }
 
 #[test]
-fn pictures_of_own_models_come_from_both_renderers() {
+fn pictures_of_custom_models_come_from_both_renderers() {
     let folder = workplace();
     put(folder.path(), "half.wgsl", &model("cos_l * 0.5"));
     let scene = root().join("scenes/default.json").display().to_string();

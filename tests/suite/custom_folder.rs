@@ -1,4 +1,4 @@
-//! A folder of many own models, some of them bad: of which files something is read, and who hears of it.
+//! A folder of many custom models, some of them bad: of which files something is read, and who hears of it.
 
 use std::{
     collections::BTreeSet,

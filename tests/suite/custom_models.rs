@@ -322,7 +322,7 @@ fn registering_replaces_in_place_and_removing_forgets() {
     registry.remove_model("first");
     assert!(registry.model("first").is_none() && registry.custom_file("first").is_none());
     assert_eq!(registry.sources().get("models/first.wgsl"), None);
-    // What parameters mean is agreed among own models too.
+    // What parameters mean is agreed among custom models too.
     let clash = custom::read(
         &path("third"),
         &matt("{ \"parameters\": [{ \"name\": \"x\", \"type\": \"colour\" }] }"),
@@ -433,15 +433,15 @@ fn every_built_in_model_as_a_file_has_the_same_knobs_and_the_same_numbers() {
 }
 
 #[test]
-fn a_built_in_model_as_a_file_gives_the_same_picture_in_every_mode() {
+fn a_built_in_model_as_a_file_gives_the_same_picture_in_every_shading_model() {
     for id in ["lambert", "ward", "microfacet", "hapke"] {
         let builtin = Registry::builtin();
         let (registry, copy) = duplicated(builtin.model(id).unwrap());
         let mut gpu = renderer(&registry);
-        for mode in builtin.modes() {
+        for shading in builtin.shading_models() {
             let mut scene = close_up("torus", "point");
             scene.lights.push(close_up("torus", "ambient").lights[0].clone());
-            scene.shading_model = mode.declaration.id.to_owned();
+            scene.shading_model = shading.declaration.id.to_owned();
             scene.reflection_model = id.to_owned();
             scene.objects[0].material.set("base_colour", Value::Colour([200, 120, 60]));
             scene.objects[0].material.set("multiple_scattering", Value::Choice("kulla_conty".into()));
@@ -451,11 +451,11 @@ fn a_built_in_model_as_a_file_gives_the_same_picture_in_every_mode() {
             let error =
                 original.iter().zip(&copied).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
             // Curves of albedo are integrated from the Rust functions here and from the interpreted file there.
-            assert!(error < 1e-3, "{id} {}: {error}", mode.declaration.id);
+            assert!(error < 1e-3, "{id} {}: {error}", shading.declaration.id);
             let lit = original.iter().filter(|p| **p != Encoding::Srgb.decode(BACKGROUND)).count();
-            assert!(lit > 300, "{id} {}: {lit}", mode.declaration.id);
+            assert!(lit > 300, "{id} {}: {lit}", shading.declaration.id);
             let d = compare(&copied, &on_cpu(&registry, &scene), Encoding::Srgb.decode(BACKGROUND), 1e-3);
-            assert!(d.wrong == 0 && d.edges * 20 <= d.covered, "{id} {}: {d:?}", mode.declaration.id);
+            assert!(d.wrong == 0 && d.edges * 20 <= d.covered, "{id} {}: {d:?}", shading.declaration.id);
         }
     }
 }
@@ -629,7 +629,7 @@ fn a_loop_without_end_is_told_and_not_waited_for() {
 }
 
 #[test]
-fn parameters_of_own_models_are_saved_and_kept() {
+fn parameters_of_custom_models_are_saved_and_kept() {
     use lights_camera_models::scene::{
         load::{self, Defaults},
         save,

@@ -155,7 +155,7 @@ fn parameters(registry: &Registry) -> String {
 }
 
 fn shading_models(registry: &Registry) -> String {
-    let rows = registry.modes().iter().map(|m| {
+    let rows = registry.shading_models().iter().map(|m| {
         let d = m.declaration;
         vec![code(d.id), d.name.into(), d.author.into(), d.stage.phrase().into(), d.summary.into()]
     });
@@ -329,7 +329,7 @@ fn the_readme_is_short_and_counts_right() {
     let registry = Registry::builtin();
     for said in [
         format!("{} reflection models", registry.models().len()),
-        format!("{} shading\n  models", registry.modes().len()),
+        format!("{} shading\n  models", registry.shading_models().len()),
         format!("{} types of light", registry.lights().len()),
     ] {
         assert!(readme.contains(&said), "{said}");

@@ -142,11 +142,11 @@ fn register(to: &mut impl Register) {
 
 fn scene() -> Scene {
     let mut scene = close_up("sphere", "point");
-    scene.objects[0].kind = "tetrahedron".to_owned();
+    scene.objects[0].object_type = "tetrahedron".to_owned();
     scene.reflection_model = "toon".to_owned();
     scene.shading_model = "flat".to_owned();
     scene.lights.push(Light {
-        kind: "skylight".to_owned(),
+        light_type: "skylight".to_owned(),
         position: None,
         intensity: 0.5,
         ..Light::default()
@@ -155,7 +155,7 @@ fn scene() -> Scene {
 }
 
 #[test]
-fn an_own_model_light_and_shape_are_drawn_alike_by_both_renderers() {
+fn a_custom_model_light_and_shape_are_drawn_alike_by_both_renderers() {
     let mut registry = Registry::builtin();
     register(&mut registry);
     let mut renderer =

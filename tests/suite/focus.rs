@@ -156,9 +156,9 @@ fn the_menus_open_with_alt_and_with_f10() {
     bench.key(Key::F10, Modifiers::NONE);
     assert!(!bench.says("New default scene"), "and closes it");
     // A letter with Alt is no command of the picture.
-    let mode = bench.lab.document.shading_model.clone();
+    let shading = bench.lab.document.shading_model.clone();
     bench.key(Key::F, Modifiers::ALT);
-    assert_eq!(bench.lab.document.shading_model, mode);
+    assert_eq!(bench.lab.document.shading_model, shading);
 }
 
 #[test]
@@ -216,7 +216,7 @@ fn a_deletion_keeps_the_selection_and_is_said_with_a_way_back() {
     assert_eq!(*bench.lab.document.scene(), before);
     // What would undo something else is not offered.
     bench.apply(Action::Remove(Selection::Object(0)));
-    bench.apply(Action::Edit(bench.lab.edit_mode("flat")));
+    bench.apply(Action::Edit(bench.lab.edit_shading_model("flat")));
     assert!(bench.lab.messages.iter().all(|note| note.offer.is_none()));
 }
 
@@ -297,11 +297,11 @@ fn enter_closes_a_drop_down_list_and_its_button_has_the_focus() {
     bench.apply(Action::Select(Selection::Light(0)));
     let button = bench.tree.iter().find(|s| s.label.starts_with("type: ")).expect("a list of types").rect;
     bench.click_at(button.center(), PointerButton::Primary);
-    let before = bench.lab.document.lights[0].kind.clone();
+    let before = bench.lab.document.lights[0].light_type.clone();
     bench.key(Key::ArrowDown, Modifiers::NONE);
     bench.key(Key::ArrowDown, Modifiers::NONE);
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_ne!(bench.lab.document.lights[0].kind, before);
+    assert_ne!(bench.lab.document.lights[0].light_type, before);
     assert!(!Popup::is_any_open(&bench.ctx));
     assert!(name(&bench).starts_with("type: "), "{}", name(&bench));
 }

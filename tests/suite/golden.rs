@@ -221,16 +221,16 @@ fn shipped_scenes_are_written_as_the_program_writes_them() {
 }
 
 #[test]
-fn the_matrix_shows_every_model_in_every_mode() {
+fn the_matrix_shows_every_model_in_every_shading_model() {
     let (_, scene) = scenes().into_iter().find(|(name, _)| name == "model_matrix").expect("shipped");
     let registry = Registry::builtin();
     for model in registry.models() {
-        for mode in registry.modes() {
-            let (model, mode) = (model.declaration.id, mode.declaration.id);
+        for shading in registry.shading_models() {
+            let (model, shading) = (model.declaration.id, shading.declaration.id);
             let shown = scene.objects.iter().any(|o| {
-                o.reflection_model.as_deref() == Some(model) && o.shading_model.as_deref() == Some(mode)
+                o.reflection_model.as_deref() == Some(model) && o.shading_model.as_deref() == Some(shading)
             });
-            assert!(shown, "scenes/model_matrix.json lacks {model} with {mode} shading");
+            assert!(shown, "scenes/model_matrix.json lacks {model} with {shading} shading");
         }
     }
 }

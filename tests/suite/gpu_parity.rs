@@ -1,4 +1,4 @@
-//! The GPU's picture is the CPU renderer's picture, for every model, mode, light type and shape.
+//! The GPU's picture is the CPU renderer's picture, for every model, shading model, light type and shape.
 
 use bevy::render::{RenderApp, render_resource::TextureFormat, view::ViewTarget};
 use glam::Vec3;
@@ -60,23 +60,23 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
     let registry = Registry::builtin();
     let mut renderer = renderer();
     let mut report = Vec::new();
-    // Every model in every mode meets every light and every shape, in changing company: all triples would
-    // be a thousand pictures. Every light meets every shape with every mode.
+    // Every model in every shading model meets every light and every shape, in changing company: all triples would
+    // be a thousand pictures. Every light meets every shape with every shading model.
     let (lights, shapes) = (registry.lights(), registry.shapes());
     let mut cases = 0;
     for (i, model) in registry.models().iter().enumerate() {
-        for (j, mode) in registry.modes().iter().enumerate() {
+        for (j, shading) in registry.shading_models().iter().enumerate() {
             for (k, light) in lights.iter().enumerate() {
                 let shape = &shapes[(i + j + k) % shapes.len()];
                 let mut scene = close_up(shape.declaration.id, light.declaration.id);
                 scene.reflection_model = model.declaration.id.to_owned();
-                scene.shading_model = mode.declaration.id.to_owned();
+                scene.shading_model = shading.declaration.id.to_owned();
                 let picture = cpu(&scene, TermSelection::All);
                 let shown = gpu(&mut renderer, &scene, TermSelection::All);
                 let d = compare(&shown, &picture, background(), 1e-3);
                 let case = format!(
                     "{} × {} × {} × {}: {d:?}",
-                    model.declaration.id, mode.declaration.id, light.declaration.id, shape.declaration.id
+                    model.declaration.id, shading.declaration.id, light.declaration.id, shape.declaration.id
                 );
                 assert!(d.covered > 500, "hardly anything to compare: {case}");
                 cases += 1;

@@ -24,11 +24,11 @@ fn changes() -> Vec<Action> {
         Action::Edit(Edit::SceneSize(SceneSize { width: 12.0, height: 11.0, depth: 10.0 })),
         Action::Edit(Edit::Display(Display { exposure: 1.5, ..Display::default() })),
         Action::Edit(Edit::Model("phong".to_owned())),
-        Action::Edit(Edit::Mode("flat".to_owned())),
+        Action::Edit(Edit::ShadingModel("flat".to_owned())),
         Action::Edit(Edit::Observer(Observer { position: Vec3::new(1.0, 2.0, 9.0), ..Observer::default() })),
         light(LightField::Name("lamp".to_owned())),
         light(LightField::Enabled(false)),
-        light(LightField::Kind("spot".to_owned())),
+        light(LightField::Type("spot".to_owned())),
         light(LightField::Position(Vec3::new(2.0, 3.0, 4.0))),
         light(LightField::Direction(Vec3::new(0.0, -1.0, 0.5))),
         light(LightField::Colour([200, 100, 50])),
@@ -38,13 +38,13 @@ fn changes() -> Vec<Action> {
         light(LightField::Parameter("cone_angle", Value::Number(20.0))),
         object(ObjectField::Name("ball".to_owned())),
         object(ObjectField::Visible(false)),
-        object(ObjectField::Kind("torus".to_owned())),
+        object(ObjectField::Type("torus".to_owned())),
         object(ObjectField::Position(Vec3::new(4.0, 4.0, 4.0))),
         object(ObjectField::Size(1.25)),
         object(ObjectField::Rotation(Vec3::new(10.0, 20.0, 30.0))),
         object(ObjectField::Tessellation(Some(48))),
         object(ObjectField::Model(Some("ward".to_owned()))),
-        object(ObjectField::Mode(Some("gouraud".to_owned()))),
+        object(ObjectField::ShadingModel(Some("gouraud".to_owned()))),
         object(ObjectField::Material("alpha", Value::Integer(17))),
         object(ObjectField::Preset(vec![("k_s", Value::Number(0.25)), ("k_d", Value::Number(0.625))])),
         Action::AddLight("directional".to_owned()),
@@ -147,7 +147,7 @@ fn parts_keep_their_ids_when_others_come_and_go_and_when_they_come_back() {
     let mut scene = lab.document.scene().clone();
     scene.objects.swap(0, 4);
     scene.objects.remove(2);
-    scene.objects.push(Object { kind: "cube".to_owned(), ..Object::default() });
+    scene.objects.push(Object { object_type: "cube".to_owned(), ..Object::default() });
     lab.document.replace("Reload from disk", Selection::Room, scene);
     assert_eq!(ids(&lab)[..4], [first[4], first[1], first[3], first[0]]);
     lab.apply(Action::Undo, &registry);

@@ -1,4 +1,4 @@
-//! Models and modes are exchanged between two frames, and no frame is without the object.
+//! Models and shading models are exchanged between two frames, and no frame is without the object.
 
 use glam::Vec3;
 use lights_camera_models::{
@@ -29,15 +29,15 @@ fn covered(picture: &[u8]) -> usize {
     picture.chunks_exact(3).filter(|p| *p != BACKGROUND).count()
 }
 
-/// The scene under a model and a mode, scene-wide or on the object.
-fn choose(scene: &Scene, (model, mode): (&str, &str), on_object: bool) -> Scene {
+/// The scene under a model and a shading model, scene-wide or on the object.
+fn choose(scene: &Scene, (model, shading): (&str, &str), on_object: bool) -> Scene {
     let mut scene = scene.clone();
     if on_object {
         scene.objects[0].reflection_model = Some(model.to_owned());
-        scene.objects[0].shading_model = Some(mode.to_owned());
+        scene.objects[0].shading_model = Some(shading.to_owned());
     } else {
         scene.reflection_model = model.to_owned();
-        scene.shading_model = mode.to_owned();
+        scene.shading_model = shading.to_owned();
     }
     scene
 }
@@ -65,8 +65,8 @@ fn a_scene_that_outgrows_its_tables_is_right_in_the_next_frame() {
     assert_ne!(expected_few, expected_many);
     let mut renderer = renderer();
     // Every shader is compiled before the frame that counts.
-    for mode in ["flat", "phong"] {
-        renderer.set_scene(choose(&few, ("lambert", mode), true));
+    for shading in ["flat", "phong"] {
+        renderer.set_scene(choose(&few, ("lambert", shading), true));
         renderer.settle().expect("the GPU draws");
     }
     renderer.set_scene(few.clone());
@@ -83,7 +83,7 @@ fn every_model_and_mode_follows_every_other_model_and_mode_in_one_frame() {
     let states: Vec<_> = registry
         .models()
         .iter()
-        .flat_map(|m| registry.modes().iter().map(|s| (m.declaration.id, s.declaration.id)))
+        .flat_map(|m| registry.shading_models().iter().map(|s| (m.declaration.id, s.declaration.id)))
         .collect();
     let mut scene = close_up("torus", "point");
     scene.objects[0].tessellation = Some(16);
@@ -108,19 +108,23 @@ fn every_model_and_mode_follows_every_other_model_and_mode_in_one_frame() {
             );
         }
     }
-    // Every ordered pair of models, and within a model every ordered pair of modes; the modes of the first
+    // Every ordered pair of models, and within a model every ordered pair of shading models; the shading models of the first
     // rotate, so that all of them come and go.
-    let modes = registry.modes().len();
+    let shadings = registry.shading_models().len();
     let models = registry.models().len();
     let mut pairs = Vec::new();
     for from in 0..models {
         for to in 0..models {
             if from != to {
-                pairs.push((from * modes + (from + to) % modes, to * modes + (from + 2 * to + 1) % modes));
+                pairs.push((
+                    from * shadings + (from + to) % shadings,
+                    to * shadings + (from + 2 * to + 1) % shadings,
+                ));
             }
         }
-        let of = |mode| from * modes + mode;
-        let both = (0..modes).flat_map(|a| (0..modes).filter(move |b| *b != a).map(move |b| (of(a), of(b))));
+        let of = |shading| from * shadings + shading;
+        let both =
+            (0..shadings).flat_map(|a| (0..shadings).filter(move |b| *b != a).map(move |b| (of(a), of(b))));
         pairs.extend(both);
     }
     for on_object in [false, true] {
@@ -166,7 +170,7 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
 
     let world = renderer.app().world_mut();
     let object = world.resource::<SceneEntities>().objects[0];
-    world.get_mut::<LitObject>(object).expect("the object is an entity").0.kind = "cube".to_owned();
+    world.get_mut::<LitObject>(object).expect("the object is an entity").0.object_type = "cube".to_owned();
     let cube = frame(&mut renderer);
     assert!(moved != cube, "the shape shows");
 
@@ -194,7 +198,7 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
     let scene = &renderer.app().world().resource::<lights_camera_models::render::entities::CurrentScene>().0;
     assert_eq!(scene.lights[0].colour, [0, 0, 255]);
     assert_eq!(scene.lights[0].position.map(|p| p.x), Some(3.0));
-    assert_eq!(scene.objects[0].kind, "cube");
+    assert_eq!(scene.objects[0].object_type, "cube");
 }
 
 #[test]
@@ -202,7 +206,7 @@ fn loading_another_scene_respawns_what_differs_and_keeps_the_rest() {
     let mut renderer = renderer();
     let mut scene = close_up("sphere", "point");
     scene.objects.push(Object {
-        kind: "cube".to_owned(),
+        object_type: "cube".to_owned(),
         position: Vec3::new(2.0, 2.0, 2.0),
         ..Object::default()
     });
@@ -212,7 +216,7 @@ fn loading_another_scene_respawns_what_differs_and_keeps_the_rest() {
 
     scene.objects.pop();
     scene.lights.push(Light {
-        kind: "ambient".to_owned(),
+        light_type: "ambient".to_owned(),
         position: None,
         intensity: 0.5,
         ..Light::default()

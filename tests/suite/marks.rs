@@ -36,9 +36,9 @@ fn marked() -> Scene {
     let down = Some(Vec3::new(0.3, -1.0, 0.0));
     scene.lights = vec![
         point([3.0, 6.2, 4.0]),
-        Light { kind: "spot".to_owned(), direction: down, ..point([6.5, 6.2, 4.0]) },
+        Light { light_type: "spot".to_owned(), direction: down, ..point([6.5, 6.2, 4.0]) },
         Light {
-            kind: "directional".to_owned(),
+            light_type: "directional".to_owned(),
             position: None,
             direction: Some(Vec3::new(0.1, -0.1, 1.0)),
             ..Light::default()
@@ -102,10 +102,10 @@ fn each_kind_of_light_in_view_has_its_mark_in_the_room() {
     let lens = Lens::of(&bench.lab, bench.lab.picture_rect);
     for light in &bench.lab.document.lights {
         let at = anchor(light, &bench.lab.document).and_then(|p| lens.project(p)).unwrap();
-        assert!(bench.lab.picture_rect.contains(at), "{}: {at:?}", light.kind);
+        assert!(bench.lab.picture_rect.contains(at), "{}: {at:?}", light.light_type);
         let (x, y) = (at.x as u32, at.y as u32);
         let yellow = |p: [u8; 3]| p[0] > 200 && p[1] > 190 && p[2] < 110;
-        assert!(picture.count(x - 5..x + 5, y - 5..y + 5, yellow) > 20, "{} at {at:?}", light.kind);
+        assert!(picture.count(x - 5..x + 5, y - 5..y + 5, yellow) > 20, "{} at {at:?}", light.light_type);
     }
     assert!(!bench.says("Outside the view"));
 }
@@ -133,7 +133,7 @@ fn a_light_outside_the_view_has_an_arrow_that_selects_it() {
 
 #[test]
 fn light_from_everywhere_has_neither_mark_nor_arrow() {
-    let light = Light { kind: "ambient".to_owned(), position: None, ..Light::default() };
+    let light = Light { light_type: "ambient".to_owned(), position: None, ..Light::default() };
     let bench = bench(Scene { lights: vec![light], ..Scene::default() });
     assert!(!bench.says("Outside the view"));
 }

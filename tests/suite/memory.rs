@@ -151,13 +151,13 @@ fn shaders_that_nothing_is_drawn_with_rest_and_wake() {
     let pairs: Vec<_> = registry
         .models()
         .iter()
-        .flat_map(|model| registry.modes().iter().map(|m| (model.declaration.id, m.declaration.id)))
+        .flat_map(|model| registry.shading_models().iter().map(|m| (model.declaration.id, m.declaration.id)))
         .take(SPARE + 8)
         .collect();
-    let show = |renderer: &mut GpuRenderer, (model, mode): (&str, &str)| {
+    let show = |renderer: &mut GpuRenderer, (model, shading): (&str, &str)| {
         let mut scene = close_up("sphere", "point");
         model.clone_into(&mut scene.reflection_model);
-        mode.clone_into(&mut scene.shading_model);
+        shading.clone_into(&mut scene.shading_model);
         scene.objects[0].tessellation = Some(12);
         renderer.set_scene(scene);
         renderer.step();
@@ -198,14 +198,14 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
     let lights: Vec<_> = registry.lights().iter().map(|l| l.declaration.id.to_owned()).collect();
     // Few models, so that compiling them does not take long; the test above looks at many.
     let models = ["lambert", "phong"].map(str::to_owned);
-    let modes: Vec<_> = registry.modes().iter().map(|m| m.declaration.id.to_owned()).collect();
+    let shadings: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.id.to_owned()).collect();
     let mut renderer = GpuRenderer::new(32, 32, 1, Output::Display).expect("software Vulkan is installed");
     let mut window = Window::default();
     let mut numbers = Numbers(9);
     let mut random = |window: &mut Window, renderer: &mut GpuRenderer, actions: usize| {
         for _ in 0..actions {
             let mut any = |list: &[String]| list[numbers.below(list.len())].clone();
-            let (shape, light, model, mode) = (any(&shapes), any(&lights), any(&models), any(&modes));
+            let (shape, light, model, shading) = (any(&shapes), any(&lights), any(&models), any(&shadings));
             let i = numbers.below(window.document.objects.len());
             let l = numbers.below(window.document.lights.len());
             let number = numbers.below(60);
@@ -216,11 +216,11 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
                 2 | 3 => Action::Remove(Selection::Object(i)),
                 4 => Action::AddLight(light),
                 5 => Action::Remove(Selection::Light(l)),
-                6 => Action::Edit(Edit::Light(l, LightField::Kind(light))),
-                7 => object(ObjectField::Kind(shape)),
+                6 => Action::Edit(Edit::Light(l, LightField::Type(light))),
+                7 => object(ObjectField::Type(shape)),
                 8 => object(ObjectField::Size(0.1 + number as f32 / 20.0)),
                 9 => object(ObjectField::Model(Some(model))),
-                10 => object(ObjectField::Mode(Some(mode))),
+                10 => object(ObjectField::ShadingModel(Some(shading))),
                 _ => object(ObjectField::Tessellation(Some(3 + number as u32))),
             };
             window.apply(action, &registry);
@@ -236,7 +236,7 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
     let most = |objects: usize| 2 * (objects + 17) + 8;
     assert!(after.meshes <= most(window.document.objects.len()), "{before:?} {after:?}");
     assert!(after.tables <= models.len() + 2, "{after:?}");
-    assert!(after.large <= models.len() * modes.len() + 2, "{after:?}");
+    assert!(after.large <= models.len() * shadings.len() + 2, "{after:?}");
     let entities = renderer.app().world().entities().len() as usize;
     assert!(entities < 2000, "{entities}");
 }
@@ -285,7 +285,7 @@ fn both_renderers_agree_on_extreme_directions_and_sizes() {
             [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z].into_iter().enumerate()
         {
             let mut object = scene.objects[0].clone();
-            ["sphere", "torus", "cube", "teapot"][i % 4].clone_into(&mut object.kind);
+            ["sphere", "torus", "cube", "teapot"][i % 4].clone_into(&mut object.object_type);
             object.size = 0.7;
             object.position = centre + 1.1 * side;
             scene.objects.push(object);
@@ -293,16 +293,16 @@ fn both_renderers_agree_on_extreme_directions_and_sizes() {
         agree(&format!("{direction}"), &scene, true);
     }
     for kind in ["sphere", "cube", "torus", "teapot"] {
-        for mode in registry.modes() {
+        for shading in registry.shading_models() {
             for size in [f32::MIN_POSITIVE, 1e-10, 1e5, check::MAX_SIZE] {
                 let mut scene = close_up(kind, "directional");
-                mode.declaration.id.clone_into(&mut scene.shading_model);
+                shading.declaration.id.clone_into(&mut scene.shading_model);
                 scene.objects[0].size = size;
                 scene.objects[0].position = Vec3::new(5.0, 0.01, 5.0);
                 scene.observer.field_of_view = 100.0;
                 // From within a sphere or a cube there is nothing to see.
                 let open = size > 1.0 && matches!(kind, "torus" | "teapot");
-                agree(&format!("{kind} {} {size:e}", mode.declaration.id), &scene, open);
+                agree(&format!("{kind} {} {size:e}", shading.declaration.id), &scene, open);
             }
         }
     }

@@ -36,7 +36,7 @@ fn scene() -> Scene {
         [("cube", 3.9, [40, 90, 220], None), ("torus", 6.3, [60, 200, 90], Some("phong"))]
     {
         let mut object = Object {
-            kind: kind.to_owned(),
+            object_type: kind.to_owned(),
             size: 1.1,
             position: Vec3::new(x, 5.4, 6.4),
             reflection_model: model.map(str::to_owned),
@@ -265,7 +265,8 @@ fn an_object_that_goes_or_comes_touches_no_other_of_ten_thousand() {
     const OBJECTS: usize = 10_000;
     let object = |i: usize| {
         let place = Vec3::new((i % 100) as f32, (i / 100) as f32, 0.0) * 0.09 + Vec3::new(0.5, 0.5, 2.0);
-        let mut object = Object { kind: "cube".to_owned(), size: 0.05, position: place, ..Object::default() };
+        let mut object =
+            Object { object_type: "cube".to_owned(), size: 0.05, position: place, ..Object::default() };
         object.material.set("base_colour", Value::Colour([(i % 251) as u8, (i % 241) as u8, 90]));
         object
     };

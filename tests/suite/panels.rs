@@ -655,7 +655,7 @@ fn a_name_that_is_taken_comes_with_a_button_for_one_that_is_free() {
 fn a_change_shows_the_mark_of_unsaved_changes_and_saving_removes_it() {
     let mut bench = Bench::new(Lab::default());
     assert!(bench.says("has no unsaved changes"));
-    bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
     assert!(bench.says("has unsaved changes"));
     let path = PathBuf::from("a.json");
     let effects = bench.lab.saved(path.clone(), &bench.registry);
@@ -670,7 +670,7 @@ fn a_change_shows_the_mark_of_unsaved_changes_and_saving_removes_it() {
 fn nothing_is_lost_without_a_question() {
     for action in [Action::New, Action::Quit, Action::Open(PathBuf::from("b.json"))] {
         let mut bench = Bench::new(Lab::default());
-        bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+        bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
         bench.effects.clear();
         bench.apply(action.clone());
         assert!(bench.effects.is_empty(), "{action:?}");
@@ -685,7 +685,7 @@ fn nothing_is_lost_without_a_question() {
 #[test]
 fn saving_first_carries_on_with_what_was_asked_for() {
     let mut bench = Bench::new(Lab::default());
-    bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
     bench.lab.path = Some(PathBuf::from("a.json"));
     bench.apply(Action::Quit);
     bench.effects.clear();
@@ -721,7 +721,7 @@ fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
     let ask = || {
         let mut bench = Bench::new(Lab::default());
         bench.lab.path = Some(PathBuf::from("room.json"));
-        bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+        bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
         let scene = Box::new(Scene { shading_model: "phong".to_owned(), ..Scene::default() });
         let version = Stamp::of(b"another content");
         bench.lab.ask(Question::NewerOnDisk { path: PathBuf::from("room.json"), scene, version });
@@ -769,14 +769,17 @@ fn every_registered_kind_can_be_added() {
     for light in registry.lights() {
         bench.apply(Action::AddLight(light.declaration.id.to_owned()));
         let Some(added) = bench.lab.document.lights.last() else { panic!("none") };
-        assert_eq!(added.kind, light.declaration.id);
+        assert_eq!(added.light_type, light.declaration.id);
         assert_eq!(added.position.is_some(), light.declaration.has_position);
         assert_eq!(added.direction.is_some(), light.declaration.has_direction);
         assert!(added.position.is_none_or(|p| bench.lab.document.scene_size.contains(p)));
     }
     for shape in registry.shapes() {
         bench.apply(Action::AddObject(shape.declaration.id.to_owned()));
-        assert_eq!(bench.lab.document.objects.last().map(|o| o.kind.as_str()), Some(shape.declaration.id));
+        assert_eq!(
+            bench.lab.document.objects.last().map(|o| o.object_type.as_str()),
+            Some(shape.declaration.id)
+        );
     }
     let mut places: Vec<_> =
         bench.lab.document.objects.iter().map(|o| o.position.to_array().map(f32::to_bits)).collect();
@@ -838,7 +841,7 @@ fn illegal_edits_are_refused_with_the_reason() {
 fn another_type_of_light_has_what_the_type_needs() {
     let mut bench = Bench::new(Lab::default());
     for light in Registry::builtin().lights() {
-        bench.apply(Action::Edit(Edit::Light(0, LightField::Kind(light.declaration.id.to_owned()))));
+        bench.apply(Action::Edit(Edit::Light(0, LightField::Type(light.declaration.id.to_owned()))));
         let now = &bench.lab.document.lights[0];
         assert_eq!(now.position.is_some(), light.declaration.has_position);
         assert_eq!(now.direction.is_some(), light.declaration.has_direction);
@@ -866,7 +869,7 @@ fn brightness_is_read_and_typed_in_candela_or_lumen() {
     bench.click("cd  candela");
     assert_eq!((light(&bench).luminous_flux, light(&bench).intensity), (None, 63.662));
     // Lights without a flux have no choice.
-    bench.apply(Action::Edit(Edit::Light(0, LightField::Kind("directional".to_owned()))));
+    bench.apply(Action::Edit(Edit::Light(0, LightField::Type("directional".to_owned()))));
     assert!(!bench.says("unit: ") && !bench.says(" lm"));
     let refused = bench.lab.messages.len() + 1;
     bench.apply(Action::Edit(Edit::Light(0, LightField::LuminousFlux(800.0))));
@@ -882,9 +885,9 @@ fn a_lamp_keeps_its_lumen_while_it_is_point_or_spot() {
         (light.luminous_flux, light.intensity)
     };
     assert_eq!(now(LightField::LuminousFlux(800.0)), (Some(800.0), 20.0));
-    assert_eq!(now(LightField::Kind("spot".to_owned())), (Some(800.0), 20.0));
-    assert_eq!(now(LightField::Kind("ambient".to_owned())), (None, 1.0));
-    assert_eq!(now(LightField::Kind("point".to_owned())), (None, 20.0));
+    assert_eq!(now(LightField::Type("spot".to_owned())), (Some(800.0), 20.0));
+    assert_eq!(now(LightField::Type("ambient".to_owned())), (None, 1.0));
+    assert_eq!(now(LightField::Type("point".to_owned())), (None, 20.0));
 }
 
 #[test]
@@ -924,11 +927,11 @@ fn exposure_and_every_tone_mapping_can_be_chosen() {
 #[test]
 fn keys_choose_the_shading_but_not_while_typing() {
     let mut bench = Bench::new(Lab::default());
-    for (key, text, mode) in
+    for (key, text, shading) in
         [(Key::F, "f", "flat"), (Key::P, "p", "phong"), (Key::D, "d", "derivative"), (Key::G, "g", "gouraud")]
     {
         bench.letter(key, text);
-        assert_eq!(bench.lab.document.shading_model, mode);
+        assert_eq!(bench.lab.document.shading_model, shading);
     }
     let at = bench.field("Name").rect.center();
     bench.click_at(at, PointerButton::Primary);
@@ -1014,7 +1017,7 @@ fn many_models_are_listed_by_family_within_the_window() {
 #[test]
 fn nothing_but_the_question_can_be_used_while_it_is_open() {
     let mut bench = Bench::new(Lab::default());
-    bench.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
     bench.apply(Action::New);
     bench.letter(Key::P, "p");
     assert_eq!(bench.lab.document.shading_model, "flat");
@@ -1201,7 +1204,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         ("caption", (1280.0, 720.0), |b| {
             b.apply(Action::View(ViewChange::Scale(150)));
             b.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
-            b.apply(Action::Edit(Edit::Mode("derivative".to_owned())));
+            b.apply(Action::Edit(Edit::ShadingModel("derivative".to_owned())));
             b.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
             let display = Display {
                 tone_mapping: ToneMapping::KhronosPbrNeutral,
@@ -1222,7 +1225,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         ("keys", (1280.0, 720.0), |b| b.key(Key::F1, Modifiers::NONE)),
         ("about", (1280.0, 720.0), |b| b.apply(Action::View(ViewChange::About(true)))),
         ("question", (1280.0, 720.0), |b| {
-            b.apply(Action::Edit(Edit::Mode("flat".to_owned())));
+            b.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
             b.apply(Action::Quit);
         }),
         ("missing", (1280.0, 720.0), |b| {
@@ -1287,7 +1290,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         }),
         ("own", (1280.0, 720.0), |b| {
             b.apply(Action::Edit(Edit::Object(0, ObjectField::Model(Some("phong".to_owned())))));
-            b.apply(Action::Edit(Edit::Object(0, ObjectField::Mode(Some("flat".to_owned())))));
+            b.apply(Action::Edit(Edit::Object(0, ObjectField::ShadingModel(Some("flat".to_owned())))));
         }),
     ];
     fn everything(b: &mut Bench) {
@@ -1313,7 +1316,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         }
         let mut scene = Scene::default();
         scene.lights.push(Light {
-            kind: "ambient".to_owned(),
+            light_type: "ambient".to_owned(),
             name: Some("sky".to_owned()),
             position: None,
             intensity: 0.2,

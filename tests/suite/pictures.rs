@@ -10,7 +10,7 @@ use lights_camera_models::{
 pub fn close_up(shape: &str, light: &str) -> Scene {
     let mut scene = Scene {
         lights: vec![Light {
-            kind: light.to_owned(),
+            light_type: light.to_owned(),
             position: matches!(light, "point" | "spot").then_some(Vec3::new(6.6, 6.9, 8.4)),
             direction: matches!(light, "directional" | "spot").then_some(Vec3::new(-0.5, -0.55, -1.0)),
             colour: [255, 240, 200],
@@ -23,7 +23,7 @@ pub fn close_up(shape: &str, light: &str) -> Scene {
             field_of_view: 40.0,
         },
         objects: vec![Object {
-            kind: shape.to_owned(),
+            object_type: shape.to_owned(),
             size: 2.4,
             rotation: Vec3::new(25.0, 35.0, 5.0),
             ..Object::default()

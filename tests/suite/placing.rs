@@ -19,7 +19,7 @@ use lights_camera_models::{
 
 /// The sphere around an object.
 fn radius(object: &Object, registry: &Registry) -> f32 {
-    let shape = registry.shape(&object.kind).unwrap();
+    let shape = registry.shape(&object.object_type).unwrap();
     let mesh = shape.mesh(*shape.declaration.tessellation.start());
     object.size * mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max)
 }
@@ -34,7 +34,7 @@ fn touches_nothing(what: &str, lab: &Lab, added: usize, registry: &Registry) {
     let r = radius(object, registry);
     for (i, other) in lab.document.objects.iter().enumerate().filter(|(i, _)| *i != added) {
         let apart = object.position.distance(other.position) - r - radius(other, registry);
-        assert!(apart > 0.0, "{what}: {added} ({}) is in {i} by {} m", object.kind, -apart);
+        assert!(apart > 0.0, "{what}: {added} ({}) is in {i} by {} m", object.object_type, -apart);
     }
     for light in lab.document.lights.iter().filter_map(|l| l.position) {
         assert!(object.position.distance(light) > r, "{added} is around a light");

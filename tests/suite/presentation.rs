@@ -84,7 +84,7 @@ fn at_every_scale_the_panels_fill_the_window_and_the_bar_can_be_reached() {
 }
 
 #[test]
-fn a_narrow_bar_has_a_menu_of_the_shading_modes() {
+fn a_narrow_bar_has_a_menu_of_the_shading_models() {
     let mut bench = bench((1280.0, 720.0), "phong");
     bench.apply(Action::View(ViewChange::Scale(200)));
     let shown = called(&bench, "Shading: Gouraud").role;
@@ -197,7 +197,7 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
         for model in Registry::builtin().models() {
             let d = model.declaration;
             let mut scene = Scene { reflection_model: d.id.to_owned(), ..Scene::default() };
-            scene.objects[0].kind = kind.to_owned();
+            scene.objects[0].object_type = kind.to_owned();
             let mut bench = Bench::new(Lab::new(scene));
             bench.size = vec2(1280.0, 720.0);
             bench.apply(Action::View(ViewChange::Scale(scale)));

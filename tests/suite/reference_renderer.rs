@@ -20,15 +20,15 @@ fn render(scene: &Scene, settings: &Settings) -> Picture {
 }
 
 /// The default scene with other models.
-fn scene(model: &str, mode: &str) -> Scene {
-    Scene { reflection_model: model.to_owned(), shading_model: mode.to_owned(), ..Scene::default() }
+fn scene(model: &str, shading: &str) -> Scene {
+    Scene { reflection_model: model.to_owned(), shading_model: shading.to_owned(), ..Scene::default() }
 }
 
 /// The default observer in front of a large cube, whose front face is the plane z = `z`.
-fn wall(model: &str, mode: &str, z: f32) -> Scene {
-    let mut scene = scene(model, mode);
+fn wall(model: &str, shading: &str, z: f32) -> Scene {
+    let mut scene = scene(model, shading);
     scene.objects[0] = Object {
-        kind: "cube".to_owned(),
+        object_type: "cube".to_owned(),
         size: 4.0,
         position: Vec3::new(5.0, 5.0, z - 2.0),
         tessellation: Some(64),
@@ -57,8 +57,8 @@ fn flat_shading_gives_one_colour_per_polygon() {
     // An octahedron from its side: four of its triangles are seen, two of them lit.
     scene.objects[0].tessellation = Some(2);
     scene.objects[0].rotation = Vec3::new(0.0, 30.0, 0.0);
-    let colours = |mode: &str| {
-        let scene = Scene { shading_model: mode.to_owned(), ..scene.clone() };
+    let colours = |shading: &str| {
+        let scene = Scene { shading_model: shading.to_owned(), ..scene.clone() };
         let picture = render(&scene, &SMALL);
         covered(&picture).map(|p| p.to_array().map(f32::to_bits)).collect::<HashSet<_>>().len()
     };
@@ -78,8 +78,8 @@ fn gouraud_shading_misses_a_highlight_between_vertices_and_phong_shading_finds_i
     scene.lights[0].position = Some(middle + Vec3::Z * 4.0);
     scene.objects[0].material.set("alpha", Value::Integer(64));
     let settings = Settings { terms: TermSelection::Specular, ..SMALL };
-    let brightest = |mode: &str| {
-        let scene = Scene { shading_model: mode.to_owned(), ..scene.clone() };
+    let brightest = |shading: &str| {
+        let scene = Scene { shading_model: shading.to_owned(), ..scene.clone() };
         render(&scene, &settings).pixels.iter().map(|p| p.x).fold(0.0, f32::max)
     };
     let (gouraud, phong) = (brightest("gouraud"), brightest("phong"));
@@ -94,7 +94,7 @@ fn interpolation_is_perspective_correct() {
     let mut scene = scene("lambert", "derivative");
     let turn = 60f32.to_radians();
     scene.objects[0] = Object {
-        kind: "cube".to_owned(),
+        object_type: "cube".to_owned(),
         size: 4.0,
         rotation: Vec3::Y * 60.0,
         tessellation: Some(1),
@@ -190,7 +190,7 @@ fn what_is_behind_the_eye_is_cut_away() {
     // The eye above the middle of a large ring that lies flat: before, beside and behind it.
     let mut scene = scene("lambert", "phong");
     scene.objects[0] =
-        Object { kind: "torus".to_owned(), size: 9.0, rotation: Vec3::X * 90.0, ..Object::default() };
+        Object { object_type: "torus".to_owned(), size: 9.0, rotation: Vec3::X * 90.0, ..Object::default() };
     scene.observer.position = Vec3::new(5.0, 6.5, 5.0);
     let inside = render(&scene, &SMALL);
     let seen = covered(&inside).count();
@@ -202,7 +202,7 @@ fn what_is_behind_the_eye_is_cut_away() {
     // A wall that reaches from before the eye to behind it fills the lower half up to the horizon.
     let mut floor = wall("lambert", "phong", 5.0);
     floor.objects[0] = Object {
-        kind: "cube".to_owned(),
+        object_type: "cube".to_owned(),
         size: 100.0,
         position: Vec3::new(5.0, -46.0, 5.0),
         tessellation: Some(1),
@@ -249,7 +249,7 @@ fn a_spotlight_ends_at_its_cone() {
     parameters.set("cone_angle", Value::Number(20.0));
     parameters.set("penumbra", Value::Number(0.0));
     scene.lights[0] = Light {
-        kind: "spot".to_owned(),
+        light_type: "spot".to_owned(),
         position: Some(light),
         direction: Some(Vec3::NEG_Z * 3.0),
         parameters,
@@ -274,11 +274,11 @@ fn a_spotlight_ends_at_its_cone() {
 
 #[test]
 fn ambient_light_is_the_same_everywhere() {
-    for mode in Registry::builtin().modes() {
-        let mut scene = scene("lambert", mode.declaration.id);
+    for shading in Registry::builtin().shading_models() {
+        let mut scene = scene("lambert", shading.declaration.id);
         scene.objects[0].material.set("base_colour", Value::Colour([188, 128, 0]));
         scene.lights[0] =
-            Light { kind: "ambient".to_owned(), position: None, intensity: 0.5, ..Light::default() };
+            Light { light_type: "ambient".to_owned(), position: None, intensity: 0.5, ..Light::default() };
         let base = Encoding::Srgb.decode([188, 128, 0]);
         let picture = render(&scene, &SMALL);
         assert!(covered(&picture).count() > 1000);
@@ -300,7 +300,7 @@ fn gamma_naive_display_neither_encodes_the_picture_nor_decodes_colours() {
     let mut scene = scene("lambert", "flat");
     scene.objects[0].material.set("base_colour", Value::Colour([128, 64, 200]));
     scene.lights[0] =
-        Light { kind: "ambient".to_owned(), position: None, colour: [128; 3], ..Light::default() };
+        Light { light_type: "ambient".to_owned(), position: None, colour: [128; 3], ..Light::default() };
     scene.lights[0].intensity = 1.0;
     // By hand: 255 (128 / 255) (c / 255).
     scene.display.encoding = Encoding::Off;
@@ -315,7 +315,7 @@ fn lumen_and_candela_are_the_same_light() {
     for (kind, solid_angle) in [("point", 12.566_371), ("spot", 0.763_307)] {
         let mut candela = wall("lambert", "phong", 5.0);
         candela.lights[0] = Light {
-            kind: kind.to_owned(),
+            light_type: kind.to_owned(),
             position: Some(Vec3::new(5.0, 5.0, 8.0)),
             direction: (kind == "spot").then_some(Vec3::NEG_Z),
             ..Light::default()
@@ -340,7 +340,7 @@ fn lumen_and_candela_are_the_same_light() {
 fn lights_have_the_colour_of_their_temperature() {
     let mut scene = scene("lambert", "flat");
     scene.lights[0] =
-        Light { kind: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() };
+        Light { light_type: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() };
     for encoding in Encoding::ALL {
         scene.display.encoding = encoding;
         for kelvin in [1900.0, 2700.0, 6500.0, 12_000.0] {
@@ -361,7 +361,7 @@ fn the_terms_add_up_to_the_whole() {
     let registry = Registry::builtin();
     for model in registry.models() {
         let mut scene = scene(model.declaration.id, "phong");
-        scene.lights.push(Light { kind: "ambient".to_owned(), position: None, ..Light::default() });
+        scene.lights.push(Light { light_type: "ambient".to_owned(), position: None, ..Light::default() });
         let [all, parts @ ..] = TermSelection::ALL.map(|terms| render(&scene, &Settings { terms, ..SMALL }));
         for (i, all) in all.pixels.iter().enumerate() {
             let sum: Vec3 = parts.iter().map(|p| p.pixels[i].truncate()).sum();
@@ -378,7 +378,7 @@ fn the_picture_does_not_depend_on_the_number_of_threads() {
         .iter()
         .enumerate()
         .map(|(i, kind)| Object {
-            kind: (*kind).to_owned(),
+            object_type: (*kind).to_owned(),
             position: Vec3::new(3.5 + i as f32, 5.0, 5.0),
             rotation: Vec3::new(20.0, 30.0 * i as f32, 10.0),
             ..Object::default()
@@ -409,10 +409,10 @@ fn bytes_come_out_the_same_with_and_without_the_picture_in_between() {
 fn no_pixel_is_nan_whatever_is_shown() {
     let registry = Registry::builtin();
     for model in registry.models() {
-        for mode in registry.modes() {
+        for shading in registry.shading_models() {
             for shape in registry.shapes() {
-                let mut scene = scene(model.declaration.id, mode.declaration.id);
-                scene.objects[0].kind = shape.declaration.id.to_owned();
+                let mut scene = scene(model.declaration.id, shading.declaration.id);
+                scene.objects[0].object_type = shape.declaration.id.to_owned();
                 scene.objects[0].rotation = Vec3::new(30.0, 40.0, 50.0);
                 // A light in the surface and an eye close to it.
                 scene.lights.push(Light { position: Some(Vec3::new(5.0, 5.0, 6.0)), ..Light::default() });
@@ -427,8 +427,8 @@ fn no_pixel_is_nan_whatever_is_shown() {
 #[test]
 fn things_of_unknown_kinds_are_left_out() {
     let mut scene = scene("lambert", "phong");
-    scene.objects.push(Object { kind: "dodecahedron".to_owned(), ..Object::default() });
-    scene.lights.push(Light { kind: "candle".to_owned(), ..Light::default() });
+    scene.objects.push(Object { object_type: "dodecahedron".to_owned(), ..Object::default() });
+    scene.lights.push(Light { light_type: "candle".to_owned(), ..Light::default() });
     assert_eq!(
         render(&scene, &SMALL),
         render(&Scene { shading_model: "phong".to_owned(), ..Scene::default() }, &SMALL)
@@ -443,11 +443,11 @@ fn things_of_unknown_kinds_are_left_out() {
 fn rims_are_as_little_black_as_lambert_leaves_them() {
     let registry = Registry::builtin();
     for shape in ["sphere", "cube", "teapot"] {
-        for mode in ["gouraud", "phong"] {
+        for shading in ["gouraud", "phong"] {
             let black = |model: &str| {
                 let mut scene = close_up(shape, "directional");
                 scene.reflection_model = model.to_owned();
-                scene.shading_model = mode.to_owned();
+                scene.shading_model = shading.to_owned();
                 let picture = render(&scene, &SMALL);
                 picture.pixels.iter().filter(|p| p.w > 0.0 && p.truncate().max_element() < 1e-6).count()
             };
@@ -458,7 +458,7 @@ fn rims_are_as_little_black_as_lambert_leaves_them() {
                 // The few where the halves of a lobe end differently; without the mirroring there are hundreds.
                 assert!(
                     count <= lambert + lambert / 20,
-                    "{shape} × {mode} × {id}: {count} black pixels, Lambert {lambert}"
+                    "{shape} × {shading} × {id}: {count} black pixels, Lambert {lambert}"
                 );
             }
         }

@@ -37,11 +37,11 @@ pub struct Lab {
     folder: TempDir,
 }
 
-/// A scene under the Phong model in some mode.
-pub fn phong_scene(mode: &str) -> Scene {
+/// A scene under the Phong model in some shading model.
+pub fn phong_scene(shading: &str) -> Scene {
     let mut scene = close_up("sphere", "point");
     scene.reflection_model = "phong".to_owned();
-    scene.shading_model = mode.to_owned();
+    scene.shading_model = shading.to_owned();
     scene.objects[0].tessellation = Some(16);
     scene.objects[0].material.set("base_colour", Value::Colour([200, 120, 60]));
     scene
@@ -337,7 +337,7 @@ pub const BREAKAGES: &[Breakage] = &[
         line: "m.base_color,",
     },
     Breakage {
-        name: "a broken shading mode",
+        name: "a broken shading model",
         file: "shading/phong.wgsl",
         change: |t| replaced(t, "fn shade_pixel", "fn shade_pixels"),
         said: "shade_pixel`; introduced by the change in shading/phong.wgsl",
@@ -572,7 +572,7 @@ fn unchanged_text_recompiles_nothing_and_a_change_recompiles_only_what_depends_o
     assert!(lab.live().is_busy(), "the twin: another text is due");
     lab.settled();
     assert_eq!(lab.status().last.map(|l| l.file), Some("reflection/phong.wgsl".to_owned()));
-    // A mode that is not shown is not part of the shader that is.
+    // A shading model that is not shown is not part of the shader that is.
     lab.save("shading/flat.wgsl", format!("{}\n", original("shading/flat.wgsl")));
     lab.settled();
     assert_eq!(lab.status().last.map(|l| l.file), Some("reflection/phong.wgsl".to_owned()));
@@ -763,8 +763,8 @@ fn random_edits_never_lose_the_picture_or_the_program() {
     assert!(refused > rounds / 3 && accepted > 0, "{refused} refused, {accepted} accepted");
 }
 
-/// An own model; `tint` is its colour, and `knobs` what it declares beside the base colour.
-fn own_model(tint: &str, knobs: &str) -> String {
+/// A custom model; `tint` is its colour, and `knobs` what it declares beside the base colour.
+fn custom_model(tint: &str, knobs: &str) -> String {
     format!(
         "/* lcm
 {{ \"name\": \"Tinted\", \"parameters\": [\"base_colour\"{knobs}] }}
@@ -784,11 +784,11 @@ const HELP: &str = "fn helped(c: vec3<f32>) -> vec3<f32> {\n    return c;\n}\n";
 const GREEN: &str = "vec3(0.0, 1.0, 0.0)";
 const RED: &str = "vec3(1.0, 0.0, 0.0)";
 
-/// A lab whose scene is drawn with an own model.
+/// A lab whose scene is drawn with a custom model.
 fn own_lab() -> Lab {
     let mut lab = Lab::new(phong_scene("phong"));
     lab.save("own/help.wgsl", HELP);
-    lab.save("own/tinted.wgsl", own_model(GREEN, ""));
+    lab.save("own/tinted.wgsl", custom_model(GREEN, ""));
     lab.settled();
     assert_eq!(lab.troubles(), []);
     let mut scene = phong_scene("phong");
@@ -805,19 +805,19 @@ fn is_all(picture: &[u8], channel: usize) -> bool {
 }
 
 #[test]
-fn an_own_model_is_exchanged_with_its_declaration_or_not_at_all() {
+fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
     let mut lab = own_lab();
     let green = lab.settled();
     assert!(is_all(&green, 1));
     // The text alone is on the next picture.
-    lab.save("own/tinted.wgsl", own_model(RED, ""));
+    lab.save("own/tinted.wgsl", custom_model(RED, ""));
     let red = lab.frame();
     assert!(is_all(&red, 0));
     // So is another layout of the parameters, before and behind what was there.
     let knob = r#", { "name": "tint2", "type": "colour", "default": [0, 255, 0] }"#;
-    lab.save("own/tinted.wgsl", own_model("m.tint2", knob));
+    lab.save("own/tinted.wgsl", custom_model("m.tint2", knob));
     assert!(lab.frame() == green);
-    let before = own_model("m.tint3", knob).replace(
+    let before = custom_model("m.tint3", knob).replace(
         "[\"base_colour\"",
         r#"["k_d", { "name": "tint3", "type": "colour", "default": [255, 0, 0] }, "base_colour""#,
     );
@@ -846,14 +846,14 @@ fn an_own_model_is_exchanged_with_its_declaration_or_not_at_all() {
 }
 
 #[test]
-fn an_own_model_follows_the_files_that_it_shares() {
+fn a_custom_model_follows_the_files_that_it_shares() {
     let mut lab = own_lab();
     let green = lab.settled();
     // A broken helper leaves the picture; the model that changes meanwhile is shown as soon as it is mended.
     lab.save("own/help.wgsl", "fn helped(");
     assert!(lab.settled() == green);
     assert!(!lab.troubles().is_empty());
-    lab.save("own/tinted.wgsl", own_model(RED, ""));
+    lab.save("own/tinted.wgsl", custom_model(RED, ""));
     assert!(lab.settled() == green);
     lab.save("own/help.wgsl", HELP);
     let red = lab.settled();
@@ -862,14 +862,14 @@ fn an_own_model_follows_the_files_that_it_shares() {
     // The same where the broken file is one that all models share.
     lab.save("terms.wgsl", format!("{}fn bad(", original("terms.wgsl")));
     assert!(lab.settled() == red);
-    lab.save("own/tinted.wgsl", own_model(GREEN, ""));
+    lab.save("own/tinted.wgsl", custom_model(GREEN, ""));
     lab.settled();
     assert!(lab.troubles().iter().all(|t| t.problem.file == "terms.wgsl"), "{:?}", lab.troubles());
     lab.save("terms.wgsl", original("terms.wgsl"));
     assert!(lab.settled() == green);
     assert_eq!(lab.troubles(), []);
     // A helper that arrives later than the model that asks for it.
-    lab.save("own/tinted.wgsl", own_model(RED, "").replace("help.wgsl", "late.wgsl"));
+    lab.save("own/tinted.wgsl", custom_model(RED, "").replace("help.wgsl", "late.wgsl"));
     assert!(lab.settled() == green);
     assert!(lab.troubles()[0].problem.message.contains("there is no file `models/late.wgsl`"));
     lab.save("own/late.wgsl", HELP);
@@ -882,7 +882,7 @@ fn files_that_are_gone_and_were_nothing_are_not_missed() {
     let mut lab = own_lab();
     let green = lab.settled();
     for name in ["phong.wgsl", "Bad-Name.wgsl", "unused.wgsl"] {
-        lab.save(&format!("own/{name}"), own_model(RED, "").replace("Tinted", "Other"));
+        lab.save(&format!("own/{name}"), custom_model(RED, "").replace("Tinted", "Other"));
         lab.settled();
         assert_eq!(lab.troubles().len(), usize::from(name != "unused.wgsl"), "{name}: {:?}", lab.troubles());
         fs::remove_file(lab.file(&format!("own/{name}"))).expect("removed");
@@ -897,7 +897,7 @@ fn files_that_are_gone_and_were_nothing_are_not_missed() {
     lab.look_at("own/tinted.wgsl");
     assert!(lab.settled() == green);
     assert_eq!(lab.troubles().len(), 1);
-    lab.save("own/tinted.wgsl", own_model(RED, ""));
+    lab.save("own/tinted.wgsl", custom_model(RED, ""));
     assert!(is_all(&lab.settled(), 0));
     assert_eq!(lab.troubles(), []);
 }

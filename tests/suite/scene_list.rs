@@ -27,7 +27,7 @@ use crate::{
 
 fn with_objects(kinds: &[&str]) -> Lab {
     let objects = kinds.iter().enumerate().map(|(i, kind)| Object {
-        kind: (*kind).to_owned(),
+        object_type: (*kind).to_owned(),
         position: glam::Vec3::new(1.0 + i as f32, 5.0, 5.0),
         size: 0.8,
         ..Object::default()
@@ -156,7 +156,7 @@ fn a_part_keeps_its_name_for_life() {
     assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Sphere 3", "Sphere 4"]);
     bench.apply(Action::Duplicate(Selection::Object(1)));
     assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Cube 2", "Sphere 3", "Sphere 4"]);
-    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Kind("cube".to_owned()))));
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Type("cube".to_owned()))));
     assert_eq!(names(&bench)[1..], ["Cube 1", "Cube 2", "Sphere 3", "Sphere 4"]);
     let all = names(&bench);
     assert_eq!(all.iter().collect::<std::collections::BTreeSet<_>>().len(), all.len(), "{all:?}");
@@ -261,9 +261,9 @@ fn saving_says_where_and_offers_to_keep_the_view() {
 #[test]
 fn a_light_that_is_off_is_no_light_from_everywhere() {
     let mut scene = Scene::default();
-    scene.lights.push(Light { kind: "ambient".to_owned(), position: None, ..Light::default() });
+    scene.lights.push(Light { light_type: "ambient".to_owned(), position: None, ..Light::default() });
     scene.lights[0].enabled = false;
-    assert_eq!(scene.shining().map(|l| l.kind.as_str()).collect::<Vec<_>>(), ["ambient"]);
+    assert_eq!(scene.shining().map(|l| l.light_type.as_str()).collect::<Vec<_>>(), ["ambient"]);
     let edit = Edit::Light(1, LightField::Enabled(false));
     let mut bench = Bench::new(Lab::new(scene));
     bench.apply(Action::Edit(edit));
@@ -383,8 +383,8 @@ fn a_shading_model_has_one_name_everywhere() {
     let mut bench = Bench::new(Lab::default());
     bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
     bench.settle();
-    for mode in bench.registry.clone().modes() {
-        let name = format!("Shading: {}", mode.declaration.name);
+    for shading in bench.registry.clone().shading_models() {
+        let name = format!("Shading: {}", shading.declaration.name);
         assert!(bench.find(&name).is_some_and(|s| s.role == Role::RadioButton), "{name}");
     }
 }

@@ -138,7 +138,7 @@ fn light() -> impl Strategy<Value = Light> {
         let parameters = values(d.parameters.iter().collect());
         (name, position(), direction(), colour, (brightness(), flux, any::<bool>()), parameters).prop_map(
             move |(name, p, direction, (colour, kelvin), (intensity, flux, enabled), parameters)| Light {
-                kind: d.id.to_owned(),
+                light_type: d.id.to_owned(),
                 name,
                 enabled,
                 // Apart from where objects and the observer are.
@@ -159,7 +159,7 @@ fn object() -> impl Strategy<Value = Object> {
     let registry = Registry::builtin();
     let shapes = registry.shapes().to_vec();
     let models: Vec<_> = registry.models().iter().map(|m| m.declaration.id.to_owned()).collect();
-    let modes: Vec<_> = registry.modes().iter().map(|m| m.declaration.id.to_owned()).collect();
+    let shadings: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.id.to_owned()).collect();
     let material: Vec<_> = registry.material_parameters().collect();
     prop::sample::select(shapes).prop_flat_map(move |shape| {
         (
@@ -169,7 +169,7 @@ fn object() -> impl Strategy<Value = Object> {
             vector(),
             prop::option::of(shape.declaration.tessellation.clone()),
             prop::option::of(prop::sample::select(models.clone())),
-            prop::option::of(prop::sample::select(modes.clone())),
+            prop::option::of(prop::sample::select(shadings.clone())),
             values(material.clone()),
         )
             .prop_map(
@@ -183,7 +183,7 @@ fn object() -> impl Strategy<Value = Object> {
                     shading_model,
                     material,
                 )| Object {
-                    kind: shape.declaration.id.to_owned(),
+                    object_type: shape.declaration.id.to_owned(),
                     name,
                     visible,
                     position,
@@ -209,7 +209,7 @@ prop_compose! {
         direction in direction(),
         field_of_view in number(1.0, 170.0),
         reflection in prop::sample::select(Registry::builtin().models().to_vec()),
-        shading in prop::sample::select(Registry::builtin().modes().to_vec()),
+        shading in prop::sample::select(Registry::builtin().shading_models().to_vec()),
         tone_mapping in prop::sample::select(&ToneMapping::ALL[..]),
         encoding in prop::sample::select(&Encoding::ALL[..]),
         exposure in number(-16.0, 16.0),

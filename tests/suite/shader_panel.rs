@@ -333,7 +333,7 @@ fn what_was_taken_over_last_is_told_while_all_is_well() {
     assert!(!bench.says("shader error"));
 }
 
-// ── models of one's own ──
+// ── custom models ──
 
 #[test]
 fn a_new_model_is_named_and_written() {
@@ -378,7 +378,7 @@ fn the_shown_model_is_copied() {
 }
 
 #[test]
-fn the_chooser_leads_to_own_models() {
+fn the_chooser_leads_to_custom_models() {
     let mut bench = bench_with(Vec::new());
     bench.key(Key::R, Modifiers::NONE);
     for button in ["New model…", "Duplicate as a file…", "Open in editor"] {

@@ -1,4 +1,4 @@
-//! Tangents reach an anisotropic model alike in both renderers, in every mode on every shape.
+//! Tangents reach an anisotropic model alike in both renderers, in every shading model on every shape.
 
 use glam::{Vec3, Vec4};
 use lights_camera_models::{
@@ -104,15 +104,15 @@ fn both_renderers_give_every_mode_and_shape_the_same_tangents() {
     .expect("software Vulkan is installed");
     let background = Encoding::Srgb.decode(BACKGROUND);
     for shape in registry.shapes() {
-        for mode in registry.modes() {
+        for shading in registry.shading_models() {
             for light in ["point", "ambient"] {
                 let mut scene = close_up(shape.declaration.id, light);
                 scene.reflection_model = "brushed".to_owned();
-                scene.shading_model = mode.declaration.id.to_owned();
+                scene.shading_model = shading.declaration.id.to_owned();
                 renderer.set_scene(scene.clone());
                 renderer.settle().expect("the GPU draws");
                 let gpu = renderer.read_linear().expect("the picture can be read");
-                let case = format!("{} × {} × {light}", shape.declaration.id, mode.declaration.id);
+                let case = format!("{} × {} × {light}", shape.declaration.id, shading.declaration.id);
                 let d = compare(&gpu, &cpu(&scene, "brushed"), background, 1e-3);
                 // The tangent turns round within the pixel over a pole: which way is a matter of the last bit.
                 assert!(d.covered > 500 && d.wrong <= 1 && d.edges * 50 <= d.covered, "{case}: {d:?}");
@@ -132,16 +132,16 @@ fn change(a: &Picture, b: &Picture) -> f32 {
 
 #[test]
 fn a_brushed_sphere_may_turn_about_its_axis_but_not_about_another() {
-    for mode in registry().modes() {
+    for shading in registry().shading_models() {
         let mut scene = close_up("sphere", "point");
-        scene.shading_model = mode.declaration.id.to_owned();
+        scene.shading_model = shading.declaration.id.to_owned();
         let mut turned = |rotation: Vec3, model: &str| {
             scene.objects[0].rotation = rotation;
             cpu(&scene, model)
         };
         // Three of its 64 segments; a quarter turn.
         let (about_y, about_x) = (Vec3::Y * 3.0 * 360.0 / 64.0, Vec3::X * 90.0);
-        let case = mode.declaration.id;
+        let case = shading.declaration.id;
         let upright = turned(Vec3::ZERO, "brushed");
         assert!(change(&upright, &turned(about_y, "brushed")) < 1e-4, "{case}");
         assert!(change(&upright, &turned(about_x, "brushed")) > 0.05, "{case}");

@@ -101,8 +101,8 @@ fn an_open_window_shows_what_is_edited_elsewhere() {
     assert!(!shows(2)(&picture));
 }
 
-/// An own model that shows the light on its surface in one colour.
-fn own_model(colour: &str, more: &str) -> String {
+/// A custom model that shows the light on its surface in one colour.
+fn custom_model(colour: &str, more: &str) -> String {
     format!(
         "/* lcm
 {{
@@ -142,7 +142,7 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
     let assets = folder.path().join("assets");
     export(&assets, &Registry::builtin()).expect("written");
     let model = assets.join("models/tinted.wgsl");
-    fs::write(&model, own_model("vec3(1.0, 0.0, 0.0)", "")).expect("writable");
+    fs::write(&model, custom_model("vec3(1.0, 0.0, 0.0)", "")).expect("writable");
     let room = folder.path().join("room.json");
     fs::write(&room, scene([255, 255, 255]).replace("\"lambert\"", "\"tinted\"")).expect("writable");
     let screen = Screen::new(1280, 720);
@@ -157,20 +157,20 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
     window.until("a red sphere", shows(0));
 
     // The text alone, then a parameter too, which turns the layout of the rows.
-    save_by_renaming(&model, &own_model("vec3(0.0, 1.0, 0.0)", ""));
+    save_by_renaming(&model, &custom_model("vec3(0.0, 1.0, 0.0)", ""));
     window.until("a green sphere", shows(1));
     let knob = r#"{ "name": "tint", "type": "colour", "default": [0, 0, 255] }, "base_colour""#;
-    save_in_place(&model, &own_model("m.tint", knob));
+    save_in_place(&model, &custom_model("m.tint", knob));
     window.until("a blue sphere", shows(2));
     assert_eq!(window.said(), "");
 
     // Five mistakes; each leaves the blue sphere and says where it is.
     for (mistake, line) in [
-        (own_model("m.tint", knob).replace("dot(frame.n, l)", "dot(frame.n l)"), "8:"),
-        (own_model("m.tnt", knob), "8:"),
-        (own_model("m.tint", knob).replace("\"default\": [0, 0, 255]", "\"default\": [0, 0]"), "4:"),
-        (own_model("1u", knob), "7:"),
-        (own_model("m.tint", knob).replace("fn response", "fn answer"), ""),
+        (custom_model("m.tint", knob).replace("dot(frame.n, l)", "dot(frame.n l)"), "8:"),
+        (custom_model("m.tnt", knob), "8:"),
+        (custom_model("m.tint", knob).replace("\"default\": [0, 0, 255]", "\"default\": [0, 0]"), "4:"),
+        (custom_model("1u", knob), "7:"),
+        (custom_model("m.tint", knob).replace("fn response", "fn answer"), ""),
     ] {
         save_by_renaming(&model, &mistake);
         let picture = window.until("a badge", stale);
@@ -178,7 +178,7 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
         let place = format!("{}:{line}", model.display());
         let said = until_said(&window, |news| news.contains(&place) && news.contains('^'));
         assert!(!said.contains("panicked"), "{said}");
-        save_in_place(&model, &own_model("m.tint", knob));
+        save_in_place(&model, &custom_model("m.tint", knob));
         until_said(&window, str::is_empty);
         let picture = window.until("no badge", |p| !stale(p));
         assert!(shows(2)(&picture));
@@ -195,13 +195,13 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
     // A file that is gone is missed, and the picture stays.
     fs::remove_file(&model).expect("removed");
     assert!(shows(0)(&window.until("a badge", stale)));
-    fs::write(&model, own_model("vec3(0.0, 1.0, 0.0)", "")).expect("writable");
+    fs::write(&model, custom_model("vec3(0.0, 1.0, 0.0)", "")).expect("writable");
     window.until("a green sphere", |p| shows(1)(p) && !stale(p));
 }
 
 /// A model whose response does something before it answers.
 fn doing(global: &str, what: &str) -> String {
-    own_model("vec3(0.0, 1.0, 0.0)", "").replace(
+    custom_model("vec3(0.0, 1.0, 0.0)", "").replace(
         "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {",
         &format!(
             "{global}\nfn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{\n    var x = frame.n.x;\n    {what}"
@@ -215,7 +215,7 @@ fn hostile_models_neither_end_nor_freeze_an_open_window() {
     let models = folder.path().join("models");
     fs::create_dir(&models).expect("writable");
     let model = models.join("tinted.wgsl");
-    fs::write(&model, own_model("vec3(1.0, 0.0, 0.0)", "")).expect("writable");
+    fs::write(&model, custom_model("vec3(1.0, 0.0, 0.0)", "")).expect("writable");
     let room = folder.path().join("room.json");
     let text = scene([255, 255, 255]).replace("\"lambert\"", "\"tinted\"");
     fs::write(&room, &text).expect("writable");
@@ -244,7 +244,7 @@ fn hostile_models_neither_end_nor_freeze_an_open_window() {
         save_by_renaming(&room, &text.replace("\"size\": 2,", "\"size\": 2.5,"));
         window.until("a larger sphere", |p| shows(0)(p));
         save_by_renaming(&room, &text);
-        save_by_renaming(&model, &own_model("vec3(1.0, 0.0, 0.0)", ""));
+        save_by_renaming(&model, &custom_model("vec3(1.0, 0.0, 0.0)", ""));
         until_said(&window, str::is_empty);
         window.until("no badge", |p| shows(0)(p) && !stale(p));
     }

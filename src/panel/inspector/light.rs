@@ -23,20 +23,20 @@ pub(super) fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actio
     let Some(light) = lab.document.lights.get(i) else { return };
     let set = |field: LightField| Action::Edit(Edit::Light(i, field));
     header(ui, lab, registry, Selection::Light(i), light.name.as_deref(), actions);
-    let kinds: Vec<_> = registry.lights().iter().map(|l| l.declaration).collect();
-    let names: Vec<_> = kinds.iter().map(|d| d.name).collect();
-    let chosen = registry.light_index(&light.kind).map(|k| k as usize);
+    let types: Vec<_> = registry.lights().iter().map(|l| l.declaration).collect();
+    let names: Vec<_> = types.iter().map(|d| d.name).collect();
+    let chosen = registry.light_index(&light.light_type).map(|k| k as usize);
     section(ui, "Light", true, |ui| {
-        let help = chosen.map_or("", |k| kinds[k].summary);
+        let help = chosen.map_or("", |k| types[k].summary);
         let caption = Caption { label: "type", help, ..Caption::default() };
         if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
-            actions.push(set(LightField::Kind(kinds[k].id.to_owned())));
+            actions.push(set(LightField::Type(types[k].id.to_owned())));
         }
-        let Some(kind) = registry.light(&light.kind) else {
+        let Some(entry) = registry.light(&light.light_type) else {
             ui.label("This type of light is not known here; choose another one.");
             return;
         };
-        let d = kind.declaration;
+        let d = entry.declaration;
         if !d.summary.is_empty() {
             ui.add(egui::Label::new(theme::small(ui, d.summary)).wrap());
         }
@@ -45,7 +45,7 @@ pub(super) fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actio
             "I" => Some("the intensity of the light".to_owned()),
             other => maths::meaning(other).map(str::to_owned),
         });
-        actions.extend(brightness(ui, light, kind).map(set));
+        actions.extend(brightness(ui, light, entry).map(set));
         actions.extend(light_colour(ui, light).map(set));
         for p in d.parameters {
             let unused = usage::unused(d.parameters, p, &light.parameters);
@@ -88,9 +88,9 @@ pub(super) fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actio
 }
 
 /// The brightness of a light: its intensity, or, for types that have one, its luminous flux.
-fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightField> {
-    let d = kind.declaration;
-    let intensity = f64::from(light.intensity_as(kind));
+fn brightness(ui: &mut Ui, light: &Light, entry: &LightEntry) -> Option<LightField> {
+    let d = entry.declaration;
+    let intensity = f64::from(light.intensity_as(entry));
     let caption = Caption {
         symbol: "I",
         label: "intensity",
@@ -100,7 +100,7 @@ fn brightness(ui: &mut Ui, light: &Light, kind: &LightEntry) -> Option<LightFiel
     };
     let default = f64::from(d.default_intensity);
     let limits = limits::intensity(d);
-    let Some(solid_angle) = kind.solid_angle(&light.parameters) else {
+    let Some(solid_angle) = entry.solid_angle(&light.parameters) else {
         let new = knob::number_knob(ui, "intensity", &caption, intensity, Some(default), &limits);
         return new.map(|v| LightField::Intensity(v as f32));
     };

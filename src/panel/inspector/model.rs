@@ -12,7 +12,7 @@ use crate::{
     },
     reflection::ModelEntry,
     registry::Registry,
-    shading::ModeEntry,
+    shading::ShadingEntry,
 };
 
 /// Name, author and year of a model; the whole story is the tooltip.
@@ -115,8 +115,8 @@ pub(super) fn terms(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut V
 }
 
 /// The stage that evaluates the model: a picture and the words.
-pub(super) fn stage(ui: &mut Ui, mode: &ModeEntry) {
-    let d = mode.declaration;
+pub(super) fn stage(ui: &mut Ui, shading: &ShadingEntry) {
+    let d = shading.declaration;
     let palette = Palette::here(ui);
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(48.0, 42.0), Sense::hover());

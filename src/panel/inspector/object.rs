@@ -61,8 +61,8 @@ fn reflection(
         }
         None => missing_model(ui, lab, registry, lab.document.model_of(object), actions),
     }
-    if let Some(mode) = registry.mode(lab.document.mode_of(object)) {
-        stage(ui, mode);
+    if let Some(shading) = registry.shading_model(lab.document.shading_model_of(object)) {
+        stage(ui, shading);
     }
 }
 
@@ -117,13 +117,13 @@ fn geometry(
     set: Set,
     actions: &mut Vec<Action>,
 ) {
-    let kinds: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
-    let names: Vec<_> = kinds.iter().map(|d| d.name).collect();
-    let chosen = kinds.iter().position(|d| d.id == object.kind);
-    let help = chosen.map_or("", |k| kinds[k].summary);
+    let types: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
+    let names: Vec<_> = types.iter().map(|d| d.name).collect();
+    let chosen = types.iter().position(|d| d.id == object.object_type);
+    let help = chosen.map_or("", |k| types[k].summary);
     let caption = Caption { label: "type", help, ..Caption::default() };
     if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
-        actions.push(set(ObjectField::Kind(kinds[k].id.to_owned())));
+        actions.push(set(ObjectField::Type(types[k].id.to_owned())));
     }
     let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
     let size_limits = limits::object_size(lab.document.scene_size);
@@ -158,7 +158,7 @@ fn geometry(
     {
         actions.push(set(ObjectField::Rotation(r)));
     }
-    if let Some(shape) = registry.shape(&object.kind) {
+    if let Some(shape) = registry.shape(&object.object_type) {
         let d = shape.declaration;
         let caption = Caption { label: "tessellation", help: d.tessellation_help, ..Caption::default() };
         let value = f64::from(shape.tessellation(object.tessellation));

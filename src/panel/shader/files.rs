@@ -28,7 +28,7 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
             "How light leaves the surface: `response` answers to one light, `ambient_response` to uniform light. Begin here.",
         ),
         Part::Import => ("imported", "A file of yours that another one of the list asks for with `#import`."),
-        Part::Mode => (
+        Part::ShadingModel => (
             "the shading model",
             "The stage that evaluates the model: per polygon, per vertex or per pixel, and what is interpolated between.",
         ),
@@ -61,13 +61,14 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
 }
 
 pub(super) fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
-    let (Some(model), Some(mode)) = (registry.model(lab.model_shown()), registry.mode(lab.mode_shown()))
+    let (Some(model), Some(shading)) =
+        (registry.model(lab.model_shown()), registry.shading_model(lab.shading_shown()))
     else {
         ui.add(egui::Label::new(missing_model(lab, registry, lab.model_shown())).wrap());
         return;
     };
     ui.horizontal(|ui| {
-        let title = format!("{} · {}", model.declaration.name, mode.declaration.name);
+        let title = format!("{} · {}", model.declaration.name, shading.declaration.name);
         ui.label(theme::strong(ui, title)).on_hover_text("The picture is made of these files.");
         folder(ui, lab, actions);
     });
@@ -76,7 +77,7 @@ pub(super) fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut V
         ui.set_width(ui.available_width() - 8.0);
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = ROW;
-        for file in crate::registry::compose::files(registry.sources(), model, mode, registry.lights()) {
+        for file in crate::registry::compose::files(registry.sources(), model, shading, registry.lights()) {
             self::file(ui, lab, &file, actions);
         }
     });

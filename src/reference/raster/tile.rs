@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec4};
 
 use super::{SUBPIXEL, Screen, Triangle};
-use crate::shading::{Lighting, ModeEntry};
+use crate::shading::{Lighting, ShadingEntry};
 
 /// Edge of a tile in pixels.
 pub(in crate::reference) const TILE: usize = 32;
@@ -40,7 +40,7 @@ impl<const S: usize> Tile<S> {
     pub(in crate::reference) fn draw(
         &mut self,
         triangle: &Triangle,
-        mode: &ModeEntry,
+        shading: &ShadingEntry,
         lighting: &dyn Lighting,
         origin: [usize; 2],
         screen: &Screen,
@@ -121,7 +121,7 @@ impl<const S: usize> Tile<S> {
                 }
                 if visible {
                     let varying = triangle.varying(here.map(|e| (e as f64 * per_area) as f32));
-                    let colour = (mode.pixel)(lighting, &varying, triangle.face_normal);
+                    let colour = (shading.pixel)(lighting, &varying, triangle.face_normal);
                     for (sample, _) in self.colour[pixel].iter_mut().zip(covered).filter(|(_, c)| *c) {
                         *sample = colour;
                     }
@@ -176,8 +176,8 @@ mod tests {
         }
     }
 
-    fn mode() -> ModeEntry {
-        ModeEntry::of::<crate::shading::Flat>()
+    fn shading() -> ShadingEntry {
+        ShadingEntry::of::<crate::shading::Flat>()
     }
 
     /// The number of hits of each sample of the first tiles.
@@ -187,7 +187,7 @@ mod tests {
             for tile in 0..screen.tiles() {
                 let origin = [(tile % screen.tiles_across()) * TILE, (tile / screen.tiles_across()) * TILE];
                 let mut drawn = Tile::<S>::new();
-                drawn.draw(triangle, &mode(), &NoLight, origin, screen);
+                drawn.draw(triangle, &shading(), &NoLight, origin, screen);
                 for (i, near) in drawn.nearness.iter().flatten().enumerate() {
                     counts[tile * TILE * TILE * S + i] += u32::from(*near > 0.0);
                 }

@@ -197,7 +197,7 @@ impl GpuRenderer {
         Self::extended(width, height, samples, output, |_| {})
     }
 
-    /// As [`new`](Self::new), with more models, modes, lights or shapes registered by `extend`.
+    /// As [`new`](Self::new), with more models, shading models, lights or shapes registered by `extend`.
     ///
     /// # Errors
     /// As [`new`](Self::new).

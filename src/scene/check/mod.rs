@@ -221,8 +221,8 @@ impl Check<'_> {
     fn light(&mut self, index: usize) {
         let Some(light) = self.scene.lights.get(index) else { return };
         let path = |key: &'static str| light_path(index).key(key);
-        self.rule(light_type(self.registry, &light.kind), || (path("type"), quoted(&light.kind)));
-        let entry = self.registry.light(&light.kind);
+        self.rule(light_type(self.registry, &light.light_type), || (path("type"), quoted(&light.light_type)));
+        let entry = self.registry.light(&light.light_type);
         if let Some(LightEntry { declaration, .. }) = entry {
             let fields = [
                 ("position", light.position.is_some(), declaration.has_position),
@@ -245,7 +245,7 @@ impl Check<'_> {
             if entry.is_none_or(LightEntry::has_flux) {
                 self.rule(luminous_flux(flux), || (path("luminous_flux"), flux));
             } else {
-                self.about(path("luminous_flux"), presence(&light.kind, "luminous_flux", false));
+                self.about(path("luminous_flux"), presence(&light.light_type, "luminous_flux", false));
             }
         }
         if let Some(kelvin) = light.colour_temperature {
@@ -255,7 +255,7 @@ impl Check<'_> {
             let path = || light_path(index).key(name.clone());
             match entry.map(|e| e.declaration.parameters.iter().find(|p| p.name == name.as_ref())) {
                 Some(Some(declared)) => self.rule(parameter(declared, value), || (path(), written(value))),
-                Some(None) => self.about(path(), presence(&light.kind, name, false)),
+                Some(None) => self.about(path(), presence(&light.light_type, name, false)),
                 // The type is unknown, and that is reported already.
                 None => {}
             }
@@ -276,11 +276,11 @@ impl Check<'_> {
         let Some(object) = self.scene.objects.get(index) else { return };
         let path = |key: &'static str| object_path(index).key(key);
         let registry = self.registry;
-        self.rule(object_type(registry, &object.kind), || (path("type"), quoted(&object.kind)));
+        self.rule(object_type(registry, &object.object_type), || (path("type"), quoted(&object.object_type)));
         self.within(object.position, || object_path(index));
         self.rule(size(object.size), || (path("size"), object.size));
         self.rule(rotation(object.rotation), || (path("rotation"), Written(object.rotation)));
-        if let (Some(shape), Some(count)) = (registry.shape(&object.kind), object.tessellation) {
+        if let (Some(shape), Some(count)) = (registry.shape(&object.object_type), object.tessellation) {
             self.rule(tessellation(shape, count), || (path("tessellation"), count));
         }
         if let Some(id) = &object.reflection_model {
@@ -312,12 +312,12 @@ impl Check<'_> {
 }
 
 /// That a light of a type needs, or has not, a field.
-fn presence(kind: &str, field: &str, needed: bool) -> String {
-    let article = if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+fn presence(type_id: &str, field: &str, needed: bool) -> String {
+    let article = if type_id.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     if needed {
-        format!("is missing; {article} {kind} light needs one")
+        format!("is missing; {article} {type_id} light needs one")
     } else {
-        format!("is given, but {article} {kind} light has no {field}")
+        format!("is given, but {article} {type_id} light has no {field}")
     }
 }
 
@@ -453,9 +453,9 @@ mod tests {
     fn lights_have_what_their_type_has() {
         let mut s = Scene {
             lights: vec![
-                Light { kind: "spot".into(), direction: None, ..Light::default() },
-                Light { kind: "ambient".into(), ..Light::default() },
-                Light { kind: "spott".into(), ..Light::default() },
+                Light { light_type: "spot".into(), direction: None, ..Light::default() },
+                Light { light_type: "ambient".into(), ..Light::default() },
+                Light { light_type: "spott".into(), ..Light::default() },
             ],
             ..Scene::default()
         };

@@ -193,12 +193,12 @@ pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
     let known = registry.models().iter().map(|m| (m.declaration.id, m.declaration.name));
     one_of("the reflection model", id, known).map_err(|rule| match registry.broken_model(id) {
         Some(why) => format!("the file of that custom model has a mistake: {why}"),
-        None => rule + &own_model_missing(registry, id),
+        None => rule + &custom_model_missing(registry, id),
     })
 }
 
-/// That there is no file for an id, where own models are kept: it may have been left behind.
-fn own_model_missing(registry: &Registry, id: &str) -> String {
+/// That there is no file for an id, where custom models are kept: it may have been left behind.
+fn custom_model_missing(registry: &Registry, id: &str) -> String {
     match registry.custom_folder() {
         Some(folder) if folder.is_dir() && custom::is_id(id) => {
             format!(
@@ -210,9 +210,9 @@ fn own_model_missing(registry: &Registry, id: &str) -> String {
     }
 }
 
-/// The id of a shading mode.
+/// The id of a shading model.
 pub fn shading_model(registry: &Registry, id: &str) -> Rule {
-    let known = registry.modes().iter().map(|m| (m.declaration.id, m.declaration.name));
+    let known = registry.shading_models().iter().map(|m| (m.declaration.id, m.declaration.name));
     one_of("the shading model", id, known)
 }
 

@@ -85,9 +85,9 @@ impl Reader<'_> {
         let Some(fields) = self.fields(value, &keys, "a light") else { return light };
         match fields.get("type") {
             None => self.lacking(&fields, "type", &self.id_rule("light type")),
-            Some(value) => light.kind = self.id(value, "light type").unwrap_or_default(),
+            Some(value) => light.light_type = self.id(value, "light type").unwrap_or_default(),
         }
-        let entry = self.registry.light(&light.kind);
+        let entry = self.registry.light(&light.light_type);
         light.name = self.text_field(&fields, "name", "the name must be text");
         light.enabled = self.flag(&fields, "enabled", true, "enabled must be true or false");
         light.position = fields.get("position").map(|value| self.vector(value, "a position"));
@@ -143,7 +143,7 @@ impl Reader<'_> {
         let Some(fields) = self.fields(value, OBJECT_KEYS, "an object") else { return object };
         match fields.get("type") {
             None => self.lacking(&fields, "type", &self.id_rule("object type")),
-            Some(value) => object.kind = self.id(value, "object type").unwrap_or(object.kind),
+            Some(value) => object.object_type = self.id(value, "object type").unwrap_or(object.object_type),
         }
         object.name = self.text_field(&fields, "name", "the name must be text");
         object.visible = self.flag(&fields, "visible", true, "visible must be true or false");
@@ -156,7 +156,7 @@ impl Reader<'_> {
             object.rotation = self.vector(value, "a rotation");
         }
         if let Some(value) = fields.get("tessellation") {
-            let rule = match self.registry.shape(&object.kind) {
+            let rule = match self.registry.shape(&object.object_type) {
                 Some(shape) => check::tessellation_rule(shape),
                 None => "the tessellation must be a whole number".to_owned(),
             };

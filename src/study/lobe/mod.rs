@@ -92,7 +92,7 @@ fn question_and_method(merl: &Merl) -> Markup {
         p .equation { span { "f(l, v) = d/π + s · lobe(l, v; α)." } }
         p {
             "What is minimised is the root mean square of ln f − ln f" sub { "data" } " over all pairs of directions, the log error. For each width, d and s are found by Levenberg’s method; the width by "
-            "search (" code { "study::fit" } "). The lobe is the specular term of the program’s own models: " code { "blinn_phong" } " (its response divided by π cos θ; n from α), " code { "ward" } ", and " code { "microfacet" }
+            "search (" code { "study::fit" } "). The lobe is the specular term of the program’s custom models: " code { "blinn_phong" } " (its response divided by π cos θ; n from α), " code { "ward" } ", and " code { "microfacet" }
             " as Cook–Torrance (Beckmann, V-cavities) and as GGX (Smith’s height-correlated masking)."
         }
         p {
