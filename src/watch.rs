@@ -214,7 +214,7 @@ impl Root {
         }
     }
 
-    /// Whether a file belongs to it.
+    /// True if a file belongs to it.
     fn holds(&self, file: &Path) -> bool {
         match self.kind {
             Kind::Folder => file.starts_with(&self.path),
@@ -243,7 +243,7 @@ struct Worker {
     refusal: Option<String>,
     roots: Vec<Root>,
     watched: BTreeSet<PathBuf>,
-    /// Whether the system refuses to watch a folder.
+    /// True if the system refuses to watch a folder.
     refused: bool,
     /// What changed, the oldest change first.
     waiting: Vec<Change>,

@@ -55,7 +55,7 @@ pub(super) enum Machine {
 }
 
 impl Machine {
-    /// Whether it can run a model, or could when it last tried.
+    /// True if it can run a model, or could when it last tried.
     pub(super) fn can_run(self, model: &ModelEntry) -> Outcome {
         match (self, model.not_on_cpu()) {
             (Self::Cpu, Some(why)) => Err(not_on_cpu(model, &why, "--on gpu")),
@@ -72,7 +72,7 @@ pub(super) enum Started<'a> {
     Gpu(Box<Gpu<'a>>),
 }
 
-/// A graphics card that begins to work when it is first asked.
+/// A GPU that begins to work when it is first asked.
 pub(super) struct Gpu<'a> {
     registry: &'a Registry,
     model: &'a ModelEntry,

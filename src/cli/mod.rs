@@ -53,7 +53,7 @@ struct Cli {
 
 #[cfg(target_os = "linux")]
 impl Cli {
-    /// True for commands that may ask for a graphics card or a window.
+    /// True for commands that may ask for a GPU or a window.
     fn may_draw(&self) -> bool {
         use Command::{Albedo, Evaluate, Models, Render, View};
         matches!(self.command, None | Some(View(_) | Render(_) | Evaluate(_) | Albedo(_) | Models(_)))

@@ -37,7 +37,7 @@ enum Command {
         /// What the copy is to be called; without it, the id with _copy
         name: Option<String>,
     },
-    /// Try to find the laws that a model claims broken, on the graphics card; software Vulkan will do
+    /// Try to find the laws that a model claims broken, on the GPU; software Vulkan will do
     Check {
         /// The id of the model, as `lcm models` lists it
         id: String,

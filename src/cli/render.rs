@@ -38,7 +38,7 @@ use crate::{
     text::quoted,
 };
 
-/// Of so many objects the model is tried on the CPU before the graphics card draws it.
+/// Of so many objects the model is tried on the CPU before the GPU draws it.
 const MOST_TRIED: usize = 64;
 /// Where pictures go when nothing else is said (CA `RENDERS_DIR`).
 const RENDERS_DIR: &str = "renders";
@@ -235,7 +235,7 @@ impl Painter {
         Ok(Self { renderer, gpu, last: None })
     }
 
-    /// Whether the graphics card draws a scene.
+    /// True if the GPU draws a scene.
     fn takes_gpu(&self, scene: &Scene, registry: &Registry) -> bool {
         self.gpu || self.renderer == Renderer::Auto && cpu_can_draw(scene, registry).is_err()
     }
@@ -265,7 +265,7 @@ impl Painter {
             GpuError::Invalid(_) | GpuError::Endless(_) => e.into(),
             e => Failure::NoRenderer(format!("{}: {e}", job.file.display())),
         };
-        // Nothing stops a loop without end on a graphics card.
+        // Nothing stops a loop without end on a GPU.
         for object in job.scene.objects.iter().take(MOST_TRIED) {
             if let Some(model) = registry.model(job.scene.model_of(object)) {
                 check_that_it_ends(model, &object.material, Encoding::Srgb).map_err(|e| failed(e.into()))?;
@@ -313,7 +313,7 @@ fn on_cpu(job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
     cpu_can_draw(job.scene, registry).map(|()| rgb8)
 }
 
-/// Whether the CPU renderer knows all that the models of a scene do, as far as one can tell.
+/// True if the CPU renderer knows all that the models of a scene do, as far as one can tell.
 fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
     for model in scene.objects.iter().filter_map(|o| registry.model(scene.model_of(o))) {
         if let Some(why) = model.not_on_cpu() {

@@ -233,11 +233,11 @@ impl From<GpuError> for Failure {
 pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failure {
     let id = model.declaration.id;
     if model.runs_too_long() {
-        // Nor would the graphics card be asked to run it.
+        // Nor would the GPU be asked to run it.
         return Failure::Invalid(format!("{id} cannot be run: {why}"));
     }
     Failure::NoRenderer(format!(
-        "{id} cannot be run on the CPU, which interprets custom models: {why}; with {instead} the graphics card runs it"
+        "{id} cannot be run on the CPU, which interprets custom models: {why}; with {instead} the GPU runs it"
     ))
 }
 
@@ -246,7 +246,7 @@ fn on_disk(registry: &Registry, file: &str) -> String {
     registry.path_on_disk(file).map_or_else(|| file.to_owned(), |path| path.display().to_string())
 }
 
-/// Whether the shader of a model is valid as the files on disk have it. What is built in is.
+/// True if the shader of a model is valid as the files on disk have it. What is built in is.
 pub(super) fn valid(registry: &Registry, model: &ModelEntry) -> Outcome {
     if registry.sources().edited().next().is_none() {
         return Ok(());
@@ -261,7 +261,7 @@ pub(super) fn invalid(registry: &Registry, problem: &ShaderProblem) -> Failure {
     Failure::Invalid(annotated(problem, &on_disk(registry, &problem.file)))
 }
 
-/// Whether everything that draws a scene is valid as the files on disk have it.
+/// True if everything that draws a scene is valid as the files on disk have it.
 pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
     if registry.sources().edited().next().is_none() {
         return Ok(());
@@ -279,7 +279,7 @@ pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
     Ok(())
 }
 
-/// The edited shaders that a scene is drawn with on the graphics card and not on the CPU. There everything is Rust
+/// The edited shaders that a scene is drawn with on the GPU and not on the CPU. There everything is Rust
 /// but custom models, with what they import and the functions that they share.
 pub(super) fn not_followed_on_cpu(registry: &Registry, scene: &Scene) -> BTreeSet<String> {
     if registry.sources().edited().all(|path| path.starts_with("models/")) {

@@ -17,7 +17,7 @@
 //! }
 //! ```
 //!
-//! The graphics card runs the file as it is, the CPU interprets it. With a second function
+//! The GPU runs the file as it is, the CPU interprets it. With a second function
 //! `fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>` the model answers to light
 //! from everywhere by a formula of its own, without it by its directional albedo.
 
@@ -76,13 +76,13 @@ pub fn id_of(path: &Path) -> Option<&str> {
     path.extension().filter(|e| *e == EXTENSION).and(path.file_stem()).and_then(|stem| stem.to_str())
 }
 
-/// Whether a word can be the id of a model: lower-case letters, digits and underscores, a letter first.
+/// True if a word can be the id of a model: lower-case letters, digits and underscores, a letter first.
 #[must_use]
 pub fn is_id(word: &str) -> bool {
     text::identifier(word).is_ok()
 }
 
-/// Whether a text is that of a model: it declares one, or defines `response`. Other files of the folder hold
+/// True if a text is that of a model: it declares one, or defines `response`. Other files of the folder hold
 /// functions that models share.
 #[must_use]
 pub fn is_model(text: &str) -> bool {
@@ -216,7 +216,7 @@ const STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m:
     return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
 }
 ";
-/// The same for models that answer to light from everywhere by a formula.
+/// The same for models that answer to uniform light by a formula.
 const FORMULA_STAND_IN: &str =
     "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
@@ -226,7 +226,7 @@ fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
 }
 ";
 
-/// Whether the function for light from everywhere takes and gives what the light loop expects.
+/// True if the function for uniform light takes and gives what the light loop expects.
 fn has_ambient_signature(module: &Module) -> bool {
     let vector = |ty| {
         matches!(

@@ -22,13 +22,13 @@ use crate::{
 /// A custom model as the CPU runs it.
 pub struct OnCpu {
     programs: Result<Programs, String>,
-    /// Whether a function did not come to an end.
+    /// True if a function did not come to an end.
     endless: AtomicBool,
 }
 
 struct Programs {
     response: Program,
-    /// Of models that answer to light from everywhere by a formula.
+    /// Of models that answer to uniform light by a formula.
     ambient: Option<Program>,
 }
 
@@ -153,7 +153,7 @@ impl Surface for Grey {
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
-        // As the graphics card has it, which reads the curve where there is one.
+        // As the GPU has it, which reads the curve where there is one.
         self.curve().map_or(Vec3::splat(GREY), |curve| curve.at(v, frame))
     }
 

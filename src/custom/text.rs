@@ -107,7 +107,7 @@ pub(super) fn definition(text: &str, name: &str) -> Option<usize> {
     })
 }
 
-/// Whether an id or the name of a parameter can be used: what is wrong with it if not.
+/// The problem with an id or the name of a parameter, if it cannot be used.
 pub(super) fn identifier(id: &str) -> Result<(), String> {
     let legal = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     let starts = id.starts_with(|c: char| c.is_ascii_lowercase());
@@ -124,7 +124,7 @@ pub(super) fn identifier_rule() -> String {
     )
 }
 
-/// Whether WGSL allows a name: it has many reserved words.
+/// True if WGSL allows a name: it has many reserved words.
 pub(super) fn allowed_in_wgsl(name: &str) -> bool {
     !naga::keywords::wgsl::RESERVED.contains(&name)
 }

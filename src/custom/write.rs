@@ -135,7 +135,7 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), diffuse, specular);
 }
 
-// To light from everywhere the model answers by its directional albedo, which is calculated. A model with a
+// The model answers uniform light by its directional albedo, which is calculated. A model with a
 // formula of its own for that defines it:
 // fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> { … }
 "#;
@@ -203,7 +203,9 @@ pub fn duplicate(
     }
     out.push_str("    ],\n}\n*/\n\n");
     if d.ambient == Ambient::Albedo {
-        out.push_str("// To light from everywhere the model answers by its directional albedo, which is calculated.\n\n");
+        out.push_str(
+            "// The model answers uniform light by its directional albedo, which is calculated.\n\n",
+        );
     }
     out.push_str(body);
     if !out.ends_with('\n') {

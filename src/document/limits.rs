@@ -23,7 +23,7 @@ pub struct Limits {
     pub slider_min: f64,
     /// Where the slider ends.
     pub slider_max: f64,
-    /// Whether only whole numbers are legal.
+    /// True if only whole numbers are legal.
     pub whole: bool,
     /// Why the limits are where they are, when the numbers alone do not say it.
     pub because: Option<String>,
@@ -56,7 +56,7 @@ impl Limits {
         self
     }
 
-    /// Whether a value is legal.
+    /// True if a value is legal.
     #[must_use]
     pub fn allows(&self, value: f64) -> bool {
         // In f32, which the scene holds: 0.1 is legal where the limit is the f32 next to it.
@@ -64,7 +64,7 @@ impl Limits {
         value.is_finite() && within && (!self.whole || value.fract() == 0.0)
     }
 
-    /// Whether zero is excluded though everything above it is legal.
+    /// True if zero is excluded though everything above it is legal.
     #[must_use]
     pub fn is_above_zero(&self) -> bool {
         self.min == f64::from(ABOVE_ZERO)

@@ -54,9 +54,9 @@ pub struct Declaration {
     pub summary: &'static str,
     /// A glyph for lists.
     pub glyph: &'static str,
-    /// Whether it stands somewhere.
+    /// True if it stands somewhere.
     pub has_position: bool,
-    /// Whether it shines in a direction.
+    /// True if it shines in a direction.
     pub has_direction: bool,
     /// The unit of its intensity: `cd` or `lx`. For a type in `cd`, [`LightType::solid_angle`] says what
     /// that is in lumen.
@@ -103,7 +103,7 @@ pub enum Incident {
         intensity: f32,
     },
     /// From everywhere alike.
-    Everywhere {
+    Uniform {
         /// `I(p)`.
         intensity: f32,
     },
@@ -163,7 +163,7 @@ impl LightEntry {
         (self.solid_angle)(&self.numbers(values))
     }
 
-    /// Whether lights of the type have a luminous flux.
+    /// True if lights of the type have a luminous flux.
     #[must_use]
     pub fn has_flux(&self) -> bool {
         self.solid_angle(&Values::default()).is_some()

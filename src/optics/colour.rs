@@ -9,7 +9,7 @@ pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 /// is not light of the scene, so exposure does not change it; tone mapping does.
 pub const BACKGROUND: [u8; 3] = [46, 46, 46];
 
-/// Whether colours are decoded on the way in and encoded on the way out.
+/// True if colours are decoded on the way in and encoded on the way out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Encoding {
     /// Input colours are sRGB-encoded and decoded to linear light; the picture is encoded (IEC

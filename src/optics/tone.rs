@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::{colour::luminance, table::Table};
 use glam::{Mat3, Vec3};
 
-/// The brightest light that tone mapping gets, the largest half float: the renderer for graphics cards
+/// The brightest light that tone mapping gets, the largest half float: the renderer for GPUs
 /// holds the picture in half floats before its pass of tone mapping. What is brighter counts as this.
 pub const BRIGHTEST: f32 = 65_504.0;
 

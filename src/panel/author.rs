@@ -9,7 +9,7 @@ use bevy_egui::egui::{
 
 use super::{
     icon,
-    state::{Action, Effect, Lab, Severity},
+    state::{Action, Effect, Session, Severity},
     theme::{self, Palette},
 };
 use crate::{
@@ -24,7 +24,7 @@ pub const SHADER_TAB: &str = "shader";
 
 /// What can be asked about custom models and shaders.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Ask {
+pub enum ModelCommand {
     /// Begin a new model: ask what it shall be called.
     New,
     /// Begin a copy of the shown model: ask what it shall be called.
@@ -127,7 +127,7 @@ pub fn on_disk(status: &ShaderStatus, path: &str) -> Option<PathBuf> {
     }
 }
 
-impl Lab {
+impl Session {
     /// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that
     /// tells of it, and a model that was asked for is chosen once it is there.
     pub fn notice_shaders(&mut self, registry: &Registry) {
@@ -151,10 +151,12 @@ impl Lab {
     }
 
     /// Carries out what is asked about custom models and shaders.
-    pub(super) fn author(&mut self, ask: Ask, registry: &Registry) -> Vec<Effect> {
+    pub(super) fn author(&mut self, ask: ModelCommand, registry: &Registry) -> Vec<Effect> {
         match ask {
-            Ask::New => self.draft = Some(ModelDraft { of: None, name: free_id("my_model", registry) }),
-            Ask::Duplicate => {
+            ModelCommand::New => {
+                self.draft = Some(ModelDraft { of: None, name: free_id("my_model", registry) })
+            }
+            ModelCommand::Duplicate => {
                 let of = self.model_shown().to_owned();
                 if registry.model(&of).is_none() {
                     self.say(Severity::Warning, format!("The model “{of}” is not there to be copied."));
@@ -163,18 +165,18 @@ impl Lab {
                 let name = free_id(&format!("my_{}", of.trim_start_matches("my_")), registry);
                 self.draft = Some(ModelDraft { of: Some(of), name });
             }
-            Ask::Type(text) => {
+            ModelCommand::Type(text) => {
                 if let Some(draft) = &mut self.draft {
                     draft.name = text;
                 }
             }
-            Ask::Create => return self.create(registry),
-            Ask::Cancel => self.draft = None,
-            Ask::EditShown => return self.edit_shown(registry),
-            Ask::Edit { path, line } => return vec![Effect::OpenInEditor { path, line }],
-            Ask::CheckLaws => return self.check_laws(),
-            Ask::ExportDialog => return vec![Effect::PickShaderFolder],
-            Ask::Export(folder) => return vec![Effect::ExportShaders(folder)],
+            ModelCommand::Create => return self.create(registry),
+            ModelCommand::Cancel => self.draft = None,
+            ModelCommand::EditShown => return self.edit_shown(registry),
+            ModelCommand::Edit { path, line } => return vec![Effect::OpenInEditor { path, line }],
+            ModelCommand::CheckLaws => return self.check_laws(),
+            ModelCommand::ExportDialog => return vec![Effect::PickShaderFolder],
+            ModelCommand::Export(folder) => return vec![Effect::ExportShaders(folder)],
         }
         Vec::new()
     }
@@ -236,39 +238,39 @@ pub const BUILT_IN: &str = "The shaders are built in, so there is no file to ope
      Edit, “Export shaders for editing…”. Or copy the model as a file.";
 
 /// The buttons about custom models, for the chooser and the panel.
-pub fn buttons(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+pub fn buttons(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
-    let shown = registry.model(lab.model_shown()).map(|m| m.declaration);
-    let name = shown.map_or(lab.model_shown(), |d| d.name);
+    let shown = registry.model(session.model_shown()).map(|m| m.declaration);
+    let name = shown.map_or(session.model_shown(), |d| d.name);
     ui.horizontal_wrapped(|ui| {
         let new = ui.button("New model…").on_hover_text(
             "Writes a file with a small model that works, to be changed in an editor while the picture follows.",
         );
         if new.clicked() {
-            actions.push(Action::Author(Ask::New));
+            actions.push(Action::Model(ModelCommand::New));
         }
         let copy = ui
             .add_enabled(shown.is_some(), Button::new("Duplicate as a file…"))
             .on_hover_text(format!("Writes {name} to a file as a custom model, to be changed in an editor."));
         if copy.clicked() {
-            actions.push(Action::Author(Ask::Duplicate));
+            actions.push(Action::Model(ModelCommand::Duplicate));
         }
-        let path = shown.map_or_else(|| source_path(lab.model_shown()), |d| d.wgsl.path.to_owned());
-        let file = on_disk(&lab.shaders, &path);
+        let path = shown.map_or_else(|| source_path(session.model_shown()), |d| d.wgsl.path.to_owned());
+        let file = on_disk(&session.shaders, &path);
         let open = ui
             .add_enabled(file.is_some(), Button::new("Open in editor"))
             .on_disabled_hover_text(BUILT_IN)
             .on_hover_text(file.map_or_else(String::new, |f| f.display().to_string()));
         if open.clicked() {
-            actions.push(Action::Author(Ask::EditShown));
+            actions.push(Action::Model(ModelCommand::EditShown));
         }
     });
     actions
 }
 
 /// Asks what a new model shall be called, while there is a draft. Stands in nobody's way.
-pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> {
-    let Some(draft) = &lab.draft else {
+pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
+    let Some(draft) = &session.draft else {
         ctx.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
         return Vec::new();
     };
@@ -288,20 +290,20 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
         .resizable(false)
         .default_width(440.0)
         .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(lab.picture_rect.center())
+        .default_pos(session.picture_rect.center())
         .show(ctx, |ui| {
             ui.set_width(440.0);
-            actions.extend(ask(ui, lab, registry, draft));
+            actions.extend(ask(ui, session, registry, draft));
         });
     if !open || ctx.input(|i| i.key_pressed(Key::Escape)) {
-        actions.push(Action::Author(Ask::Cancel));
+        actions.push(Action::Model(ModelCommand::Cancel));
     }
     actions
 }
 
 const FOCUSED: &str = "model draft focused";
 
-fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<Action> {
+fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) -> Vec<Action> {
     let mut actions = Vec::new();
     let palette = Palette::here(ui);
     let checked = check_name(&draft.name, registry);
@@ -341,12 +343,12 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
         state.store(ui.ctx(), id);
     }
     if response.changed() {
-        actions.push(Action::Author(Ask::Type(text)));
+        actions.push(Action::Model(ModelCommand::Type(text)));
     }
     ui.add_space(2.0);
     match &checked {
         Ok(id) => {
-            let path = on_disk(&lab.shaders, &source_path(id));
+            let path = on_disk(&session.shaders, &source_path(id));
             let path = path.map_or_else(|| source_path(id), |p| p.display().to_string());
             ui.label(
                 RichText::new(format!("Identifier (also the file name): {id}")).small().color(palette.text),
@@ -363,7 +365,7 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
             if let Some(id) = instead
                 && ui.button(format!("Use “{id}”")).clicked()
             {
-                actions.push(Action::Author(Ask::Type(id.clone())));
+                actions.push(Action::Model(ModelCommand::Type(id.clone())));
             }
         }
     }
@@ -379,10 +381,10 @@ fn ask(ui: &mut Ui, lab: &Lab, registry: &Registry, draft: &ModelDraft) -> Vec<A
             button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
         }
         if ui.add_enabled(checked.is_ok(), button).clicked() || enter {
-            actions.push(Action::Author(Ask::Create));
+            actions.push(Action::Model(ModelCommand::Create));
         }
         if ui.add(Button::new("Cancel").min_size(vec2(80.0, 28.0))).clicked() {
-            actions.push(Action::Author(Ask::Cancel));
+            actions.push(Action::Model(ModelCommand::Cancel));
         }
     });
     if enter && checked.is_err() {

@@ -4,7 +4,7 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use bevy_egui::egui::{Color32, FontId, Galley, Pos2, Ui, Vec2, pos2, vec2};
 
-use super::{maths, state::Lab, theme};
+use super::{maths, state::Session, theme};
 use crate::document::limits::number;
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
@@ -44,21 +44,21 @@ impl Part {
 
 /// The models, the shading and the display of the picture; with one object, its key values.
 #[must_use]
-pub fn caption_text(lab: &Lab, registry: &Registry) -> String {
-    parts(lab, registry).iter().map(Part::words).collect::<Vec<_>>().join(DOT)
+pub fn caption_text(session: &Session, registry: &Registry) -> String {
+    parts(session, registry).iter().map(Part::words).collect::<Vec<_>>().join(DOT)
 }
 
 /// Ids of the models that the picture shows.
 #[must_use]
-pub fn models_shown(lab: &Lab) -> BTreeSet<&str> {
-    lab.document.shown().map(|o| lab.document.model_of(o)).collect()
+pub fn models_shown(session: &Session) -> BTreeSet<&str> {
+    session.document.shown().map(|o| session.document.model_of(o)).collect()
 }
 
 /// The same in parts.
 #[must_use]
-pub fn parts(lab: &Lab, registry: &Registry) -> Vec<Part> {
-    let scene = &lab.document;
-    let models = models_shown(lab);
+pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
+    let scene = &session.document;
+    let models = models_shown(session);
     let shadings: BTreeSet<_> = scene.shown().map(|o| scene.shading_model_of(o)).collect();
     let mut parts = Vec::new();
     match single(&models) {
@@ -82,7 +82,7 @@ pub fn parts(lab: &Lab, registry: &Registry) -> Vec<Part> {
     if let (Some(object), None) = (objects.next(), objects.next()) {
         parts.extend(key_values(object, scene.model_of(object), registry));
     }
-    match lab.view.terms {
+    match session.view.terms {
         TermSelection::All => {}
         other => parts.push(Part::new(1, format!("{} term alone", other.id()))),
     }

@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 
 use super::{
     author,
-    state::{Action, Lab, ViewChange},
+    state::{Action, Session, ViewChange},
     theme::{self, Palette},
 };
 use crate::{
@@ -15,7 +15,7 @@ use crate::{
     registry::Registry,
 };
 
-/// Whether every word of a search occurs in a text, in any order.
+/// True if every word of a search occurs in a text, in any order.
 #[must_use]
 pub fn matches(text: &str, search: &str) -> bool {
     let plain = |s: &str| s.to_lowercase().replace(['–', '-', '_', ',', '&', '(', ')'], " ");
@@ -60,7 +60,7 @@ pub struct Entry<'a> {
     pub number: Option<usize>,
     /// Its colour.
     pub swatch: Option<Color32>,
-    /// Whether it is what is chosen now.
+    /// True if it is what is chosen now.
     pub current: bool,
 }
 
@@ -230,7 +230,7 @@ pub fn models<'a>(
     ui: &mut Ui,
     id: Id,
     height: f32,
-    lab: &Lab,
+    session: &Session,
     registry: &'a Registry,
     current: Option<&str>,
     first: Option<&'a str>,
@@ -248,7 +248,7 @@ pub fn models<'a>(
             heading: d.family.name(),
             name: d.name,
             note: d.author.to_owned(),
-            number: lab.model_slots.iter().position(|m| m == d.id).map(|slot| slot + 1),
+            number: session.model_slots.iter().position(|m| m == d.id).map(|slot| slot + 1),
             swatch: None,
             current: current == Some(d.id),
         }
@@ -284,11 +284,11 @@ pub const WIDTH: f32 = 160.0;
 
 /// The button and, when it is open, the list. They are about the model that the selected object has of its
 /// own, else about that of the scene.
-pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
     let palette = Palette::here(ui);
     let id = Id::new("reflection chooser");
-    let shown = lab.model_shown();
+    let shown = session.model_shown();
     let current = registry.model(shown);
     let name = current.map_or(shown, |m| m.declaration.name);
     let button = Button::new(theme::strong(ui, name))
@@ -299,9 +299,9 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
     response
         .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Reflection model: {name}")));
     if response.clicked() {
-        actions.push(Action::View(ViewChange::Chooser(!lab.view.chooser_open)));
+        actions.push(Action::View(ViewChange::Chooser(!session.view.chooser_open)));
     }
-    if !lab.view.chooser_open {
+    if !session.view.chooser_open {
         forget(ui.ctx(), id);
         if let Some(model) = current {
             response.on_hover_ui(|ui| {
@@ -324,15 +324,15 @@ pub fn show(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .show(|ui| {
             ui.set_width(width);
-            chosen = models(ui, id, height, lab, registry, Some(shown), None).flatten();
+            chosen = models(ui, id, height, session, registry, Some(shown), None).flatten();
             ui.separator();
-            asked = author::buttons(ui, lab, registry);
+            asked = author::buttons(ui, session, registry);
         });
     // What is asked next stands on its own.
     open &= asked.is_empty();
     actions.extend(asked);
     if let Some(model) = chosen {
-        actions.push(Action::Edit(lab.edit_model(model.declaration.id)));
+        actions.push(Action::Edit(session.edit_model(model.declaration.id)));
         open = false;
     }
     if !open {

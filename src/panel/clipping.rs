@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
 
-use super::state::{Badge, Lab, Severity};
+use super::state::{Badge, Session, Severity};
 use crate::document::limits;
 
 /// Fields across and down in which clipped pixels are counted.
@@ -44,10 +44,10 @@ fn percent(share: f64) -> String {
 
 /// The sign in the corner of a picture of so many pixels; for a few of them only while they are shown.
 #[must_use]
-pub fn badge(lab: &Lab, pixels: f64) -> Option<Badge> {
-    let clipping = lab.clipping.as_ref()?;
+pub fn badge(session: &Session, pixels: f64) -> Option<Badge> {
+    let clipping = session.clipping.as_ref()?;
     let share = clipping.pixels() as f64 / pixels.max(1.0);
-    if share < TOLERATED && !lab.view.show_clipping {
+    if share < TOLERATED && !session.view.show_clipping {
         return None;
     }
     let share = percent(share);
@@ -62,8 +62,8 @@ pub fn badge(lab: &Lab, pixels: f64) -> Option<Badge> {
 }
 
 /// Paints where the picture clips.
-pub fn paint(painter: &Painter, rect: Rect, lab: &Lab, pixels_per_point: f32) {
-    let Some(clipping) = lab.clipping.as_ref().filter(|_| lab.view.show_clipping) else { return };
+pub fn paint(painter: &Painter, rect: Rect, session: &Session, pixels_per_point: f32) {
+    let Some(clipping) = session.clipping.as_ref().filter(|_| session.view.show_clipping) else { return };
     let mut mesh = Mesh::default();
     let [across, down] = GRID;
     let edge = |low: f32, extent: f32, k: usize, of: usize| {
@@ -103,12 +103,12 @@ mod tests {
         assert_eq!(Clipping::new(vec![1; 3]), None);
         let mut counts = vec![0; fields];
         (counts[0], counts[fields - 1]) = (2, 3);
-        let mut lab = Lab::default();
-        assert_eq!(badge(&lab, 100.0), None);
-        lab.clipping = Clipping::new(counts);
-        assert_eq!(badge(&lab, 100.0).map(|b| b.text).as_deref(), Some("Clipped: 5 % of the picture"));
-        assert_eq!(badge(&lab, 10_000.0), None, "new lights may clip as much");
-        lab.view.show_clipping = true;
-        assert!(badge(&lab, 10_000.0).is_some(), "where they are shown, that can be ended");
+        let mut session = Session::default();
+        assert_eq!(badge(&session, 100.0), None);
+        session.clipping = Clipping::new(counts);
+        assert_eq!(badge(&session, 100.0).map(|b| b.text).as_deref(), Some("Clipped: 5 % of the picture"));
+        assert_eq!(badge(&session, 10_000.0), None, "new lights may clip as much");
+        session.view.show_clipping = true;
+        assert!(badge(&session, 10_000.0).is_some(), "where they are shown, that can be ended");
     }
 }

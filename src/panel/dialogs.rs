@@ -4,9 +4,9 @@ use bevy_egui::egui::{self, Color32, Context, Label, LayerId, Order, Sense, Shap
 use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
 use super::{
-    author::Ask,
+    author::ModelCommand,
     preview::{self, Preview, Source},
-    state::{Action, Effect, Lab},
+    state::{Action, Effect, Session},
     theme::{self, Palette},
 };
 use crate::registry::Registry;
@@ -53,15 +53,15 @@ impl Default for Dialogs {
 }
 
 impl Dialogs {
-    /// Whether one is open.
+    /// True if one is open.
     #[must_use]
     pub fn is_open(&self) -> bool {
         [&self.open, &self.save, &self.folder].into_iter().any(|d| *d.state() == DialogState::Open)
     }
 
     /// Opens the dialog that is asked for; false if it is none.
-    pub(super) fn start(&mut self, ctx: &Context, effect: &Effect, lab: &Lab) -> bool {
-        let folder = lab.path.as_ref().and_then(|p| p.parent()).filter(|p| p.is_dir());
+    pub(super) fn start(&mut self, ctx: &Context, effect: &Effect, session: &Session) -> bool {
+        let folder = session.path.as_ref().and_then(|p| p.parent()).filter(|p| p.is_dir());
         let (dialog, save) = match effect {
             Effect::PickOpen => {
                 preview::forget_files(ctx);
@@ -79,9 +79,9 @@ impl Dialogs {
         }
         if save {
             let name =
-                lab.path.as_ref().and_then(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned());
+                session.path.as_ref().and_then(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned());
             dialog.config_mut().default_file_name =
-                name.unwrap_or_else(|| format!("{}.json", file_name(&lab.title())));
+                name.unwrap_or_else(|| format!("{}.json", file_name(&session.title())));
             dialog.save_file();
         } else {
             dialog.pick_file();
@@ -90,13 +90,18 @@ impl Dialogs {
     }
 
     /// Shows those that are open. Returns what was chosen.
-    pub(super) fn update(&mut self, ctx: &Context, lab: &mut Lab, registry: &Registry) -> Vec<Action> {
+    pub(super) fn update(
+        &mut self,
+        ctx: &Context,
+        session: &mut Session,
+        registry: &Registry,
+    ) -> Vec<Action> {
         let mut actions = Vec::new();
         if !self.is_open() {
             return actions;
         }
         let plain = ctx.global_style();
-        let palette = Palette::of(&lab.view);
+        let palette = Palette::of(&session.view);
         ctx.global_style_mut(|style| {
             let selection = &mut style.visuals.selection;
             (selection.bg_fill, selection.stroke) = (palette.accent, Stroke::new(1.0, palette.panel));
@@ -118,14 +123,14 @@ impl Dialogs {
             // Whoever got this far was asked about unsaved changes before.
             actions.push(Action::Open(path));
         } else if was_open && *self.open.state() == DialogState::Cancelled {
-            lab.not_opened();
+            session.not_opened();
         }
         let was_open = *self.save.state() == DialogState::Open;
         self.save.update(ctx);
         if let Some(path) = self.save.take_picked() {
             actions.push(Action::SaveAs(path));
         } else if was_open && *self.save.state() == DialogState::Cancelled {
-            lab.not_saved();
+            session.not_saved();
         }
         self.folder.update(ctx);
         for dialog in [&self.open, &self.save, &self.folder] {
@@ -137,7 +142,7 @@ impl Dialogs {
             }
         }
         ctx.set_global_style(plain);
-        actions.extend(self.folder.take_picked().map(|folder| Action::Author(Ask::Export(folder))));
+        actions.extend(self.folder.take_picked().map(|folder| Action::Model(ModelCommand::Export(folder))));
         actions
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{
     reload, settings,
-    state::{Effect, Lab, MissingPart, Question, Severity},
+    state::{Effect, MissingPart, Question, Session, Severity},
 };
 use crate::{
     files::tidy,
@@ -74,49 +74,51 @@ pub enum Saved {
 /// Carries out an effect that needs files. Returns the effects that follow, among them the one given
 /// when it is none of this module's.
 #[must_use]
-pub fn run(lab: &mut Lab, registry: &Registry, effect: Effect, files: &mut dyn Files) -> Vec<Effect> {
+pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &mut dyn Files) -> Vec<Effect> {
     match effect {
         Effect::OpenFile(path) => match files.open(&path, registry) {
-            Opened::Scene(scene) => lab.opened(path, *scene),
+            Opened::Scene(scene) => session.opened(path, *scene),
             Opened::Incomplete { scene, parts } => {
-                lab.ask(Question::MissingParts { path, scene, parts });
+                session.ask(Question::MissingParts { path, scene, parts });
                 Vec::new()
             }
             Opened::Empty => {
-                lab.ask(Question::EmptyFile { path });
+                session.ask(Question::EmptyFile { path });
                 Vec::new()
             }
             Opened::Failed(problems) => {
                 // The latest stands on top: the first problem, and above it what it means.
                 for problem in problems.into_iter().rev() {
-                    lab.say(Severity::Error, problem);
+                    session.say(Severity::Error, problem);
                 }
-                lab.say(
+                session.say(
                     Severity::Error,
-                    format!("{} was not opened; {} is still shown.", path.display(), lab.title()),
+                    format!("{} was not opened; {} is still shown.", path.display(), session.title()),
                 );
                 Vec::new()
             }
         },
-        Effect::SaveFile { path, overwrite } => match files.save(&path, &lab.document, registry, overwrite) {
-            Saved::Done => lab.saved(path, registry),
-            Saved::ChangedOnDisk => {
-                lab.ask(Question::ChangedOnDisk { path });
-                Vec::new()
+        Effect::SaveFile { path, overwrite } => {
+            match files.save(&path, &session.document, registry, overwrite) {
+                Saved::Done => session.saved(path, registry),
+                Saved::ChangedOnDisk => {
+                    session.ask(Question::ChangedOnDisk { path });
+                    Vec::new()
+                }
+                Saved::Failed(why) => {
+                    session.not_saved();
+                    session.say(Severity::Error, why);
+                    Vec::new()
+                }
             }
-            Saved::Failed(why) => {
-                lab.not_saved();
-                lab.say(Severity::Error, why);
-                Vec::new()
-            }
-        },
-        Effect::LookAtFile { discard } => reload::look(lab, registry, discard, files),
+        }
+        Effect::LookAtFile { discard } => reload::look(session, registry, discard, files),
         Effect::ExpectFile { path, version } => {
             files.expect(&path, Some(version));
             Vec::new()
         }
         Effect::SaveSettings => {
-            save_settings(lab);
+            save_settings(session);
             Vec::new()
         }
         other => vec![other],
@@ -124,23 +126,23 @@ pub fn run(lab: &mut Lab, registry: &Registry, effect: Effect, files: &mut dyn F
 }
 
 /// Reads the settings of the last session into the state; says so when they cannot be read.
-pub fn load_settings(lab: &mut Lab) {
+pub fn load_settings(session: &mut Session) {
     if let Some(folder) = settings::folder() {
         // What is unfinished in there is settings, and those are read in a moment.
         let _ = tidy(&folder);
         let (settings, complaint) = settings::load(&folder);
-        lab.adopt(settings);
+        session.adopt(settings);
         if let Some(complaint) = complaint {
-            lab.say(Severity::Warning, complaint);
+            session.say(Severity::Warning, complaint);
         }
     }
 }
 
 /// Writes the settings for the next session; says so when they cannot be written.
-pub fn save_settings(lab: &mut Lab) {
+pub fn save_settings(session: &mut Session) {
     if let Some(folder) = settings::folder()
-        && let Err(complaint) = settings::save(&folder, &lab.settings())
+        && let Err(complaint) = settings::save(&folder, &session.settings())
     {
-        lab.say(Severity::Warning, complaint);
+        session.say(Severity::Warning, complaint);
     }
 }

@@ -1,11 +1,11 @@
 //! Custom models are read again while the window is open: what becomes of the values of the document that
 //! no model takes any more.
 //!
-//! They are put aside, so that the document can be saved, and come back when a model takes them again.
+//! They are stashed, so that the document can be saved, and come back when a model takes them again.
 
 use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 
-use super::state::{Lab, Severity};
+use super::state::{Session, Severity};
 use crate::document::Selection;
 use crate::{
     document::PartId,
@@ -16,7 +16,7 @@ use crate::{
 /// An object, and the name of a parameter.
 type Place = (PartId, Cow<'static, str>);
 
-/// A value that was put aside.
+/// A value that was stashed.
 #[derive(Clone, Debug, PartialEq)]
 struct Kept {
     /// What the user wants.
@@ -27,16 +27,16 @@ struct Kept {
 
 /// The values of the document that no model takes, and that come back when one does.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Aside(BTreeMap<Place, Kept>);
+pub struct StashedValues(BTreeMap<Place, Kept>);
 
-impl Aside {
-    /// How many values are put aside.
+impl StashedValues {
+    /// How many values are stashed.
     #[must_use]
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether nothing is put aside.
+    /// True if nothing is stashed.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -66,25 +66,25 @@ struct Change {
     declared: Option<&'static Parameter>,
 }
 
-/// The models may be others than before: puts aside what none of them takes, replaces numbers that are out of
+/// The models may be others than before: stashes what none of them takes, replaces numbers that are out of
 /// range by the nearest that is not, gives back what is taken again, and says so. What the user changed
-/// meanwhile stays. `lab` is borrowed mutably only when something changes.
-pub fn follow_registry(mut lab: impl DerefMut<Target = Lab>, registry: &Registry) {
-    let (changes, aside) = plan(&lab, registry);
-    if aside != lab.aside {
-        lab.aside = aside;
+/// meanwhile stays. `session` is borrowed mutably only when something changes.
+pub fn follow_registry(mut session: impl DerefMut<Target = Session>, registry: &Registry) {
+    let (changes, stashed) = plan(&session, registry);
+    if stashed != session.stashed {
+        session.stashed = stashed;
     }
     if changes.is_empty() {
         return;
     }
-    let news = told(&lab, registry, &changes);
-    let lab = &mut *lab;
+    let news = told(&session, registry, &changes);
+    let session = &mut *session;
     let changes: Vec<_> = changes
         .into_iter()
-        .filter_map(|change| Some((lab.document.object(change.place.0)?, change.place.1, change.to)))
+        .filter_map(|change| Some((session.document.object(change.place.0)?, change.place.1, change.to)))
         .collect();
     // No step of the user's: undoing it would bring back what no model takes.
-    lab.document.amend(|scene| {
+    session.document.amend(|scene| {
         for (i, name, to) in changes {
             match to {
                 Some(value) => scene.objects[i].material.set(name, value),
@@ -93,22 +93,24 @@ pub fn follow_registry(mut lab: impl DerefMut<Target = Lab>, registry: &Registry
         }
     });
     for text in news {
-        lab.say(Severity::Info, text);
+        session.say(Severity::Info, text);
     }
 }
 
-/// What must change in the document, and what is put aside then.
-fn plan(lab: &Lab, registry: &Registry) -> (Vec<Change>, Aside) {
+/// What must change in the document, and what is stashed then.
+fn plan(session: &Session, registry: &Registry) -> (Vec<Change>, StashedValues) {
     let mut changes = Vec::new();
-    let mut aside = Aside::default();
+    let mut stashed = StashedValues::default();
     let mut gone = BTreeMap::new();
     let mut place_value = |id: PartId, name: &Cow<'static, str>, wanted: &Value, from: Option<&Value>| {
-        let Some(object) = lab.document.object(id).and_then(|i| lab.document.objects.get(i)) else { return };
-        let declarations = declarations(registry, lab.document.model_of(object), name);
+        let Some(object) = session.document.object(id).and_then(|i| session.document.objects.get(i)) else {
+            return;
+        };
+        let declarations = declarations(registry, session.document.model_of(object), name);
         let to = legal(&declarations, wanted);
         if to.as_ref() != Some(wanted) {
             let kept = Kept { wanted: wanted.clone(), instead: to.clone() };
-            aside.0.insert((id, name.clone()), kept);
+            stashed.0.insert((id, name.clone()), kept);
         }
         if to.as_ref() != from {
             let declared = declarations.iter().find(|p| to.as_ref().is_some_and(|v| p.allows(v)));
@@ -116,16 +118,16 @@ fn plan(lab: &Lab, registry: &Registry) -> (Vec<Change>, Aside) {
             changes.push(Change { place: (id, name.clone()), wanted: wanted.clone(), to, declared });
         }
     };
-    for (i, object) in lab.document.objects.iter().enumerate() {
-        let Some(id) = lab.document.object_id(i) else { continue };
+    for (i, object) in session.document.objects.iter().enumerate() {
+        let Some(id) = session.document.object_id(i) else { continue };
         for (name, value) in &object.material.0 {
-            let kept = lab.aside.0.get(&(id, name.clone()));
+            let kept = session.stashed.0.get(&(id, name.clone()));
             let kept = kept.filter(|kept| kept.instead.as_ref() == Some(value));
             place_value(id, name, kept.map_or(value, |kept| &kept.wanted), Some(value));
         }
     }
-    for ((id, name), kept) in &lab.aside.0 {
-        match lab.document.object(*id).and_then(|i| lab.document.objects.get(i)) {
+    for ((id, name), kept) in &session.stashed.0 {
+        match session.document.object(*id).and_then(|i| session.document.objects.get(i)) {
             Some(object) if kept.instead.is_none() && !object.material.0.contains_key(name) => {
                 place_value(*id, name, &kept.wanted, None);
             }
@@ -134,8 +136,8 @@ fn plan(lab: &Lab, registry: &Registry) -> (Vec<Change>, Aside) {
             None => drop(gone.insert((*id, name.clone()), kept.clone())),
         }
     }
-    aside.0.extend(gone);
-    (changes, aside)
+    stashed.0.extend(gone);
+    (changes, stashed)
 }
 
 /// The declarations of a parameter that a value of an object of that model is held against.
@@ -186,13 +188,16 @@ fn distance(a: &Value, b: &Value) -> f64 {
 }
 
 /// The messages: one for each kind of change of a parameter, however many objects it is about.
-fn told(lab: &Lab, registry: &Registry, changes: &[Change]) -> Vec<String> {
+fn told(session: &Session, registry: &Registry, changes: &[Change]) -> Vec<String> {
     let mut groups: BTreeMap<(String, String), (usize, &Change)> = BTreeMap::new();
     for change in changes {
         groups.entry(change.several()).or_insert((0, change)).0 += 1;
     }
     let name = |id| {
-        lab.document.object(id).map_or_else(String::new, |i| lab.name_of(Selection::Object(i), registry))
+        session
+            .document
+            .object(id)
+            .map_or_else(String::new, |i| session.name_of(Selection::Object(i), registry))
     };
     let one = |change: &Change| change.single(&name(change.place.0));
     groups
@@ -215,7 +220,9 @@ impl Change {
             }
             None => {
                 let (why, until) = self.why_gone("when it is allowed again");
-                format!("{name} {why}; its value {wanted} at {object} is put aside and comes back {until}.")
+                format!(
+                    "{name} {why}; its value {wanted} at {object} is kept for later and comes back {until}."
+                )
             }
         }
     }
@@ -231,7 +238,10 @@ impl Change {
             Some(value) => (format!("{name} is {value} at"), format!(", {} now.", self.reason(value))),
             None => {
                 let (why, until) = self.why_gone("when they are allowed again");
-                (format!("{name} {why}; its values at"), format!(" are put aside and come back {until}."))
+                (
+                    format!("{name} {why}; its values at"),
+                    format!(" are kept for later and come back {until}."),
+                )
             }
         }
     }
@@ -297,71 +307,75 @@ mod tests {
     }
 
     /// A document of one sphere of the model with one value.
-    fn begin(declaration: &str, name: &'static str, value: Value) -> (Lab, Registry) {
+    fn begin(declaration: &str, name: &'static str, value: Value) -> (Session, Registry) {
         let mut registry = Registry::builtin();
         put(&mut registry, declaration);
-        let mut lab = Lab::default();
+        let mut session = Session::default();
         let mut scene = Scene { reflection_model: "mine".to_owned(), ..Scene::default() };
         scene.objects[0].material.set(name, value);
         scene.objects[0].material.set("k_s", Value::Number(0.25));
-        lab.document = Document::new(scene);
-        follow(&mut lab, &registry, &[]);
-        assert!(!lab.is_dirty());
-        (lab, registry)
+        session.document = Document::new(scene);
+        follow(&mut session, &registry, &[]);
+        assert!(!session.is_dirty());
+        (session, registry)
     }
 
     /// Follows, compares what is said, and looks whether the document can be saved.
-    fn follow(lab: &mut Lab, registry: &Registry, said: &[&str]) {
-        lab.messages.clear();
-        follow_registry(&mut *lab, registry);
-        let texts: Vec<_> = lab.messages.iter().map(|m| m.text.as_str()).collect();
+    fn follow(session: &mut Session, registry: &Registry, said: &[&str]) {
+        session.messages.clear();
+        follow_registry(&mut *session, registry);
+        let texts: Vec<_> = session.messages.iter().map(|m| m.text.as_str()).collect();
         assert_eq!(texts, said);
-        assert!(check::scene(&lab.document, registry).is_empty());
-        let text = save::to_json(&lab.document, None, registry);
+        assert!(check::scene(&session.document, registry).is_empty());
+        let text = save::to_json(&session.document, None, registry);
         let read = load::from_bytes(text.as_bytes(), "a.json", registry, load::Defaults::Ask)
             .unwrap_or_else(|e| panic!("{e}\n{text}"));
-        assert_eq!(read.scene.objects, lab.document.objects);
-        assert_eq!(lab.document.objects[0].material.0.get("k_s"), Some(&Value::Number(0.25)));
+        assert_eq!(read.scene.objects, session.document.objects);
+        assert_eq!(session.document.objects[0].material.0.get("k_s"), Some(&Value::Number(0.25)));
         // A second look finds nothing to do.
-        let before = (lab.document.scene().clone(), lab.aside.clone(), lab.messages.clone());
-        follow_registry(&mut *lab, registry);
-        assert_eq!(before, (lab.document.scene().clone(), lab.aside.clone(), lab.messages.clone()));
+        let before = (session.document.scene().clone(), session.stashed.clone(), session.messages.clone());
+        follow_registry(&mut *session, registry);
+        assert_eq!(
+            before,
+            (session.document.scene().clone(), session.stashed.clone(), session.messages.clone())
+        );
     }
 
-    fn value<'a>(lab: &'a Lab, name: &str) -> Option<&'a Value> {
-        lab.document.objects[0].material.0.get(name)
+    fn value<'a>(session: &'a Session, name: &str) -> Option<&'a Value> {
+        session.document.objects[0].material.0.get(name)
     }
 
     #[test]
     fn a_value_whose_name_is_gone_comes_back_with_the_name() {
-        let (mut lab, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
+        let (mut session, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
         put(&mut registry, &number("sheen_of_mine", 0.0, 1.0));
         follow(
-            &mut lab,
+            &mut session,
             &registry,
             &[
-                "gloss is no parameter of any model any more; its value 0.75 at Sphere 1 is put aside and comes back \
+                "gloss is no parameter of any model any more; its value 0.75 at Sphere 1 is kept for later and comes back \
                with the name.",
             ],
         );
-        assert_eq!((value(&lab, "gloss"), lab.aside.len()), (None, 1));
+        assert_eq!((value(&session, "gloss"), session.stashed.len()), (None, 1));
         put(&mut registry, &number("gloss", 0.0, 1.0));
-        follow(&mut lab, &registry, &["gloss is 0.75 at Sphere 1 again."]);
-        assert!(lab.aside.is_empty() && !lab.is_dirty());
+        follow(&mut session, &registry, &["gloss is 0.75 at Sphere 1 again."]);
+        assert!(session.stashed.is_empty() && !session.is_dirty());
     }
 
     #[test]
     fn a_number_out_of_range_is_the_nearest_that_is_not_until_it_is_allowed_again() {
-        let (mut lab, mut registry) = begin(&number("polish", 0.0, 200.0), "polish", Value::Number(150.0));
+        let (mut session, mut registry) =
+            begin(&number("polish", 0.0, 200.0), "polish", Value::Number(150.0));
         put(&mut registry, &number("polish", 0.0, 100.0));
         let most = "polish is 100 at Sphere 1 instead of 150, the most that is allowed now.";
-        follow(&mut lab, &registry, &[most]);
+        follow(&mut session, &registry, &[most]);
         put(&mut registry, &number("polish", 160.0, 200.0));
         let least = "polish is 160 at Sphere 1 instead of 150, the least that is allowed now.";
-        follow(&mut lab, &registry, &[least]);
+        follow(&mut session, &registry, &[least]);
         put(&mut registry, &number("polish", 0.0, 200.0));
-        follow(&mut lab, &registry, &["polish is 150 at Sphere 1 again."]);
-        assert!(lab.aside.is_empty() && !lab.is_dirty());
+        follow(&mut session, &registry, &["polish is 150 at Sphere 1 again."]);
+        assert!(session.stashed.is_empty() && !session.is_dirty());
     }
 
     #[test]
@@ -371,29 +385,33 @@ mod tests {
                 "{{ \"name\": \"steps\", \"type\": \"integer\", \"min\": 1, \"max\": {max}, \"default\": 2 }}"
             )
         };
-        let (mut lab, mut registry) = begin(&integer(9), "steps", Value::Integer(7));
+        let (mut session, mut registry) = begin(&integer(9), "steps", Value::Integer(7));
         put(&mut registry, &integer(5));
-        follow(&mut lab, &registry, &["steps is 5 at Sphere 1 instead of 7, the most that is allowed now."]);
+        follow(
+            &mut session,
+            &registry,
+            &["steps is 5 at Sphere 1 instead of 7, the most that is allowed now."],
+        );
         put(&mut registry, "{ \"name\": \"steps\", \"type\": \"colour\", \"default\": [1, 2, 3] }");
         follow(
-            &mut lab,
+            &mut session,
             &registry,
             &[
-                "steps has another type now; its value 7 at Sphere 1 is put aside and comes back with the type.",
+                "steps has another type now; its value 7 at Sphere 1 is kept for later and comes back with the type.",
             ],
         );
         put(&mut registry, &integer(9));
-        follow(&mut lab, &registry, &["steps is 7 at Sphere 1 again."]);
-        assert!(!lab.is_dirty());
+        follow(&mut session, &registry, &["steps is 7 at Sphere 1 again."]);
+        assert!(!session.is_dirty());
         let triple = |max| {
             format!(
                 "{{ \"name\": \"index\", \"type\": \"triple\", \"min\": 0, \"max\": {max}, \"default\": 1 }}"
             )
         };
-        let (mut lab, mut registry) = begin(&triple(4), "index", Value::Triple([1.0, 2.0, 3.0]));
+        let (mut session, mut registry) = begin(&triple(4), "index", Value::Triple([1.0, 2.0, 3.0]));
         put(&mut registry, &triple(2));
         follow(
-            &mut lab,
+            &mut session,
             &registry,
             &["index is 1,2,2 at Sphere 1 instead of 1,2,3, since each must be between 0 and 2 now."],
         );
@@ -401,10 +419,10 @@ mod tests {
 
     #[test]
     fn where_a_number_must_be_greater_than_zero_the_default_stands_in() {
-        let (mut lab, mut registry) = begin(&number("polish", 0.0, 9.0), "polish", Value::Number(0.0));
+        let (mut session, mut registry) = begin(&number("polish", 0.0, 9.0), "polish", Value::Number(0.0));
         put(&mut registry, "{ \"name\": \"polish\", \"above\": 0, \"max\": 9, \"default\": 3 }");
         follow(
-            &mut lab,
+            &mut session,
             &registry,
             &["polish is 3 at Sphere 1 instead of 0, since it must be greater than 0 and at most 9 now."],
         );
@@ -412,36 +430,37 @@ mod tests {
 
     #[test]
     fn what_the_user_changed_meanwhile_stays() {
-        let (mut lab, mut registry) = begin(&number("polish", 0.0, 200.0), "polish", Value::Number(150.0));
+        let (mut session, mut registry) =
+            begin(&number("polish", 0.0, 200.0), "polish", Value::Number(150.0));
         put(&mut registry, &number("polish", 0.0, 100.0));
-        follow_registry(&mut lab, &registry);
-        lab.document.amend(|scene| scene.objects[0].material.set("polish", Value::Number(60.0)));
+        follow_registry(&mut session, &registry);
+        session.document.amend(|scene| scene.objects[0].material.set("polish", Value::Number(60.0)));
         put(&mut registry, &number("polish", 0.0, 200.0));
-        follow(&mut lab, &registry, &[]);
-        assert_eq!(value(&lab, "polish"), Some(&Value::Number(60.0)));
-        assert!(lab.aside.is_empty());
+        follow(&mut session, &registry, &[]);
+        assert_eq!(value(&session, "polish"), Some(&Value::Number(60.0)));
+        assert!(session.stashed.is_empty());
     }
 
     #[test]
     fn a_value_of_another_type_or_a_choice_that_is_gone_waits_until_it_fits_again() {
-        let (mut lab, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
+        let (mut session, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
         put(&mut registry, "{ \"name\": \"gloss\", \"type\": \"choice\", \"choices\": [\"low\", \"high\"] }");
         follow(
-            &mut lab,
+            &mut session,
             &registry,
             &[
-                "gloss has another type now; its value 0.75 at Sphere 1 is put aside and comes back with the type.",
+                "gloss has another type now; its value 0.75 at Sphere 1 is kept for later and comes back with the type.",
             ],
         );
-        assert_eq!(value(&lab, "gloss"), None);
-        // A choice of the user replaces what was put aside.
-        lab.document.amend(|scene| scene.objects[0].material.set("gloss", Value::Choice("high".into())));
+        assert_eq!(value(&session, "gloss"), None);
+        // A choice of the user replaces what was stashed.
+        session.document.amend(|scene| scene.objects[0].material.set("gloss", Value::Choice("high".into())));
         put(&mut registry, "{ \"name\": \"gloss\", \"type\": \"choice\", \"choices\": [\"low\", \"full\"] }");
         follow(
-            &mut lab,
+            &mut session,
             &registry,
             &[
-                "gloss must be one of \"low\", \"full\" now; its value high at Sphere 1 is put aside and comes back \
+                "gloss must be one of \"low\", \"full\" now; its value high at Sphere 1 is kept for later and comes back \
                when it is allowed again.",
             ],
         );
@@ -449,47 +468,47 @@ mod tests {
             &mut registry,
             "{ \"name\": \"gloss\", \"type\": \"choice\", \"choices\": [\"high\", \"full\"] }",
         );
-        follow(&mut lab, &registry, &["gloss is high at Sphere 1 again."]);
+        follow(&mut session, &registry, &["gloss is high at Sphere 1 again."]);
     }
 
     #[test]
     fn several_objects_are_counted_and_keep_what_is_theirs_when_the_list_changes() {
-        let (mut lab, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
+        let (mut session, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
         for v in [0.25, 0.5] {
             let mut object = Object { reflection_model: Some("mine".to_owned()), ..Object::default() };
             object.material.set("gloss", Value::Number(v));
-            lab.document.amend(|scene| scene.objects.push(object));
+            session.document.amend(|scene| scene.objects.push(object));
         }
         put(&mut registry, "");
         follow(
-            &mut lab,
+            &mut session,
             &registry,
             &[
-                "gloss is no parameter of any model any more; its values at 3 objects are put aside and come back \
+                "gloss is no parameter of any model any more; its values at 3 objects are kept for later and come back \
                with the name.",
             ],
         );
         let part = Selection::Object(1);
-        let _ = lab.apply(super::super::state::Action::Duplicate(part), &registry);
-        let _ = lab.apply(super::super::state::Action::Remove(part), &registry);
+        let _ = session.apply(super::super::state::Action::Duplicate(part), &registry);
+        let _ = session.apply(super::super::state::Action::Remove(part), &registry);
         put(&mut registry, &number("gloss", 0.0, 1.0));
-        follow(&mut lab, &registry, &["gloss is as it was again at 3 objects."]);
+        follow(&mut session, &registry, &["gloss is as it was again at 3 objects."]);
         let values: Vec<_> =
-            lab.document.objects.iter().map(|o| o.material.0.get("gloss").cloned()).collect();
+            session.document.objects.iter().map(|o| o.material.0.get("gloss").cloned()).collect();
         assert_eq!(values, [0.75, 0.25, 0.5].map(|v| Some(Value::Number(v))));
     }
 
     #[test]
     fn another_document_gets_nothing_of_what_was_put_aside() {
-        let (mut lab, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
+        let (mut session, mut registry) = begin(&number("gloss", 0.0, 1.0), "gloss", Value::Number(0.75));
         put(&mut registry, "");
-        follow_registry(&mut lab, &registry);
-        let mut other = lab.document.scene().clone();
+        follow_registry(&mut session, &registry);
+        let mut other = session.document.scene().clone();
         other.name = Some("Other".to_owned());
-        let _ = lab.opened("other.json".into(), other);
-        assert!(lab.aside.is_empty());
+        let _ = session.opened("other.json".into(), other);
+        assert!(session.stashed.is_empty());
         put(&mut registry, &number("gloss", 0.0, 1.0));
-        follow(&mut lab, &registry, &[]);
-        assert_eq!(value(&lab, "gloss"), None);
+        follow(&mut session, &registry, &[]);
+        assert_eq!(value(&session, "gloss"), None);
     }
 }

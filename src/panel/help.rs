@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Grid, Id, RichText, ScrollArea, Ui, Window};
 
 use super::{
     keys,
-    state::{Action, Lab, ViewChange},
+    state::{Action, Session, ViewChange},
     theme,
 };
 use crate::registry::Registry;
@@ -13,10 +13,10 @@ use crate::registry::Registry;
 const TWO_COLUMNS: f32 = 820.0;
 
 /// Shows the windows that are open.
-pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> {
+pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
     let screen = ctx.content_rect();
-    let mut open = lab.view.keys_open;
+    let mut open = session.view.keys_open;
     Window::new(RichText::new("Keys and mouse").heading())
         .id(Id::new("keys"))
         .open(&mut open)
@@ -29,12 +29,12 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
             ScrollArea::vertical()
                 .min_scrolled_height(screen.height() - 140.0)
                 .max_height(screen.height() - 140.0)
-                .show(ui, |ui| key_list(ui, lab, registry));
+                .show(ui, |ui| key_list(ui, session, registry));
         });
-    if open != lab.view.keys_open {
+    if open != session.view.keys_open {
         actions.push(Action::View(ViewChange::Keys(open)));
     }
-    let mut open = lab.view.about_open;
+    let mut open = session.view.about_open;
     Window::new(RichText::new("About").heading())
         .id(Id::new("about"))
         .open(&mut open)
@@ -43,14 +43,15 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
         .default_width(440.0)
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(screen.center())
-        .show(ctx, |ui| about(ui, lab, registry));
-    if open != lab.view.about_open {
+        .show(ctx, |ui| about(ui, session, registry));
+    if open != session.view.about_open {
         actions.push(Action::View(ViewChange::About(open)));
     }
     if ctx.input(|i| i.key_pressed(egui::Key::Escape)) {
-        for (open, close) in
-            [(lab.view.keys_open, ViewChange::Keys(false)), (lab.view.about_open, ViewChange::About(false))]
-        {
+        for (open, close) in [
+            (session.view.keys_open, ViewChange::Keys(false)),
+            (session.view.about_open, ViewChange::About(false)),
+        ] {
             if open {
                 actions.push(Action::View(close));
             }
@@ -59,9 +60,9 @@ pub fn show(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> 
     actions
 }
 
-fn key_list(ui: &mut Ui, lab: &Lab, registry: &Registry) {
+fn key_list(ui: &mut Ui, session: &Session, registry: &Registry) {
     let mut rows: Vec<(&str, String, String)> =
-        keys::bindings(lab, registry).into_iter().map(|b| (b.group, b.keys(), b.label)).collect();
+        keys::bindings(session, registry).into_iter().map(|b| (b.group, b.keys(), b.label)).collect();
     rows.extend(
         keys::ELSEWHERE.iter().map(|(group, key, label)| (*group, (*key).to_owned(), (*label).to_owned())),
     );
@@ -106,7 +107,7 @@ fn key_list(ui: &mut Ui, lab: &Lab, registry: &Registry) {
     });
 }
 
-fn about(ui: &mut Ui, lab: &Lab, registry: &Registry) {
+fn about(ui: &mut Ui, session: &Session, registry: &Registry) {
     ui.label(theme::strong(ui, format!("Lights, Camera, Models!  {}", env!("CARGO_PKG_VERSION"))));
     ui.add(egui::Label::new(env!("CARGO_PKG_DESCRIPTION")).wrap());
     ui.add_space(8.0);
@@ -118,10 +119,13 @@ fn about(ui: &mut Ui, lab: &Lab, registry: &Registry) {
         registry.shapes().len()
     );
     ui.add(egui::Label::new(theme::small(ui, line)).wrap());
-    if !lab.status.adapter.is_empty() {
+    if !session.status.adapter.is_empty() {
         ui.add(
-            egui::Label::new(theme::small(ui, format!("{} · {}", lab.status.adapter, lab.status.backend)))
-                .wrap(),
+            egui::Label::new(theme::small(
+                ui,
+                format!("{} · {}", session.status.adapter, session.status.backend),
+            ))
+            .wrap(),
         );
     }
     let licence =

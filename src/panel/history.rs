@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Align, RichText, ScrollArea, Ui};
 
 use super::{
     Panel, Place,
-    state::{Action, Lab},
+    state::{Action, Session},
     theme::Palette,
 };
 use crate::registry::Registry;
@@ -29,11 +29,12 @@ impl Panel for History {
         Place::Bottom
     }
 
-    fn show(&self, ui: &mut Ui, lab: &Lab, _registry: &Registry) -> Vec<Action> {
+    fn show(&self, ui: &mut Ui, session: &Session, _registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
         let palette = Palette::here(ui);
-        let done = lab.document.done();
-        let steps: Vec<_> = std::iter::once("Scene as it was opened").chain(lab.document.steps()).collect();
+        let done = session.document.done();
+        let steps: Vec<_> =
+            std::iter::once("Scene as it was opened").chain(session.document.steps()).collect();
         let height = ui.spacing().interact_size.y;
         // The step that was made last is always in view.
         let shown = ui.id().with("shown step");

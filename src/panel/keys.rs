@@ -3,9 +3,9 @@
 use bevy_egui::egui::{self, Key, Modifiers};
 
 use super::{
-    author::{Ask, SHADER_TAB},
+    author::{ModelCommand, SHADER_TAB},
     focus,
-    state::{Action, Lab, Steer, ViewChange},
+    state::{Action, Session, Steer, ViewChange},
 };
 use crate::registry::Registry;
 
@@ -56,7 +56,7 @@ impl Binding {
         same_key && shift && modifiers.command == self.ctrl && !modifiers.alt
     }
 
-    /// Whether it works while text is being typed.
+    /// True if it works while text is being typed.
     fn while_typing(&self) -> bool {
         (self.ctrl && matches!(self.group, "File" | "Window"))
             || matches!(self.key, Key::F1 | Key::F5 | Key::F11)
@@ -65,7 +65,7 @@ impl Binding {
 
 /// All keys, in the order of the list.
 #[must_use]
-pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
+pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
     let mut all = Vec::new();
     let mut add = |group, ctrl, shift, key, label: &str, action| {
         all.push(Binding { ctrl, shift, key, group, label: label.to_owned(), action });
@@ -78,11 +78,11 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
     add("Edit", true, false, Key::Z, "Undo", Action::Undo);
     add("Edit", true, true, Key::Z, "Redo", Action::Redo);
     add("Edit", true, false, Key::Y, "Redo", Action::Redo);
-    add("Edit", true, false, Key::D, "Duplicate", Action::Duplicate(lab.selection));
-    add("Edit", false, false, Key::Delete, "Delete", Action::Remove(lab.selection));
+    add("Edit", true, false, Key::D, "Duplicate", Action::Duplicate(session.selection));
+    add("Edit", false, false, Key::Delete, "Delete", Action::Remove(session.selection));
     let toggle = "Hide or show the object, switch the light off or on";
-    add("Edit", false, false, Key::V, toggle, Action::Toggle(lab.selection));
-    add("Edit", false, false, Key::F2, "Rename", Action::BeginRename(lab.selection));
+    add("Edit", false, false, Key::V, toggle, Action::Toggle(session.selection));
+    add("Edit", false, false, Key::F2, "Rename", Action::BeginRename(session.selection));
     for shading in registry.shading_models() {
         let d = shading.declaration;
         if let Some(key) = Key::from_name(&d.key.to_string()) {
@@ -93,32 +93,39 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
                 false,
                 key,
                 &label,
-                Action::Edit(lab.edit_shading_model(d.id)),
+                Action::Edit(session.edit_shading_model(d.id)),
             );
         }
     }
-    let chooser = Action::View(ViewChange::Chooser(!lab.view.chooser_open));
+    let chooser = Action::View(ViewChange::Chooser(!session.view.chooser_open));
     add("Reflection and shading", false, false, Key::R, "Choose a reflection model", chooser);
     const DIGITS: [Key; 9] =
         [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
     for (slot, key) in DIGITS.into_iter().enumerate() {
-        let label = match lab.model_slots.get(slot) {
+        let label = match session.model_slots.get(slot) {
             Some(id) => registry.model(id).map_or(id.as_str(), |m| m.declaration.name).to_owned(),
             None => continue,
         };
         add("Reflection and shading", false, false, key, &label, Action::RecentModel(slot));
     }
     add("Reflection and shading", false, false, Key::T, "Next term of the equation alone", Action::NextTerms);
-    add("Custom models", true, true, Key::N, "New reflection model…", Action::Author(Ask::New));
+    add("Custom models", true, true, Key::N, "New reflection model…", Action::Model(ModelCommand::New));
     add(
         "Custom models",
         true,
         true,
         Key::D,
         "Duplicate the model as a file…",
-        Action::Author(Ask::Duplicate),
+        Action::Model(ModelCommand::Duplicate),
     );
-    add("Custom models", true, false, Key::E, "Open the model in an editor", Action::Author(Ask::EditShown));
+    add(
+        "Custom models",
+        true,
+        false,
+        Key::E,
+        "Open the model in an editor",
+        Action::Model(ModelCommand::EditShown),
+    );
     add("Picture", false, false, Key::Tab, "Next object", Action::SelectNext);
     add("Picture", false, true, Key::Tab, "Previous object", Action::SelectPrevious);
     add("Picture", false, false, Key::H, "Home: the observer's view", Action::HomeView);
@@ -147,13 +154,20 @@ pub fn bindings(lab: &Lab, registry: &Registry) -> Vec<Binding> {
     for (key, label, change) in size {
         add("Window", true, false, key, label, Action::View(change));
     }
-    let presenting = Action::View(ViewChange::Presenting(!lab.view.presenting));
+    let presenting = Action::View(ViewChange::Presenting(!session.view.presenting));
     add("Window", false, false, Key::F5, "Presentation; Esc leaves it", presenting);
-    let fullscreen = Action::View(ViewChange::Fullscreen(!lab.view.fullscreen));
+    let fullscreen = Action::View(ViewChange::Fullscreen(!session.view.fullscreen));
     add("Window", false, false, Key::F11, "Full screen", fullscreen);
-    add("Window", false, false, Key::F1, "This list", Action::View(ViewChange::Keys(!lab.view.keys_open)));
-    add("Window", false, false, Key::F8, "Messages", Action::View(lab.strip_change()));
-    let shader = if lab.view.bottom_open && lab.view.bottom_tab == SHADER_TAB {
+    add(
+        "Window",
+        false,
+        false,
+        Key::F1,
+        "This list",
+        Action::View(ViewChange::Keys(!session.view.keys_open)),
+    );
+    add("Window", false, false, Key::F8, "Messages", Action::View(session.strip_change()));
+    let shader = if session.view.bottom_open && session.view.bottom_tab == SHADER_TAB {
         ViewChange::Bottom(false)
     } else {
         ViewChange::BottomTab(SHADER_TAB.to_owned())
@@ -184,22 +198,25 @@ pub fn keys_of(bindings: &[Binding], action: &Action) -> String {
 }
 
 /// True if Escape was pressed and nothing that is open over the picture takes it.
-pub(super) fn escapes(ctx: &egui::Context, lab: &Lab) -> bool {
-    let open = lab.view.chooser_open || lab.view.keys_open || lab.view.about_open || lab.draft.is_some();
-    let free = lab.keyboard_free && !open && !egui::Popup::is_any_open(ctx);
+pub(super) fn escapes(ctx: &egui::Context, session: &Session) -> bool {
+    let open = session.view.chooser_open
+        || session.view.keys_open
+        || session.view.about_open
+        || session.draft.is_some();
+    let free = session.keyboard_free && !open && !egui::Popup::is_any_open(ctx);
     free && ctx.input(|i| i.key_pressed(Key::Escape))
 }
 
 /// Reads the keys that were pressed. Call before the widgets see them.
 #[must_use]
-pub fn pressed(ctx: &egui::Context, lab: &Lab, registry: &Registry) -> Vec<Action> {
-    if lab.question.is_some() {
+pub fn pressed(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
+    if session.question.is_some() {
         return Vec::new();
     }
     let typing = ctx.text_edit_focused();
     let focused = ctx.memory(|m| m.focused());
     let popup = egui::Popup::is_any_open(ctx);
-    let table = bindings(lab, registry);
+    let table = bindings(session, registry);
     let mut actions = Vec::new();
     let mut stop_tab = false;
     let mut panels = None;
@@ -250,7 +267,7 @@ mod tests {
 
     #[test]
     fn no_key_does_two_things() {
-        let table = bindings(&Lab::default(), &Registry::builtin());
+        let table = bindings(&Session::default(), &Registry::builtin());
         for (i, a) in table.iter().enumerate() {
             for b in &table[..i] {
                 assert!(a.keys() != b.keys(), "{} does “{}” and “{}”", a.keys(), a.label, b.label);
@@ -261,7 +278,7 @@ mod tests {
     #[test]
     fn every_shading_mode_has_its_key() {
         let registry = Registry::builtin();
-        let table = bindings(&Lab::default(), &registry);
+        let table = bindings(&Session::default(), &registry);
         for shading in registry.shading_models() {
             let edit = Action::Edit(Edit::ShadingModel(shading.declaration.id.to_owned()));
             assert_eq!(keys_of(&table, &edit), shading.declaration.key.to_string());

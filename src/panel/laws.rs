@@ -3,50 +3,50 @@
 use bevy_egui::egui::{self, RichText, Sense, Ui, vec2};
 
 use super::{
-    author::{Ask, LawCheck},
+    author::{LawCheck, ModelCommand},
     icon,
-    state::{Action, Lab, Severity},
+    state::{Action, Session, Severity},
     theme::{self, Palette},
 };
 use crate::{reflection::law_report::LawReport, registry::Registry};
 
 /// The button, with what there is to say of a check that runs or is out of date; from the right to the left.
-pub fn button(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+pub fn button(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let name = |id: &str| registry.model(id).map(|m| m.declaration.name);
-    let Some(shown) = name(lab.model_shown()) else { return };
-    let running = lab.laws.as_ref().filter(|check| check.outcome.is_none());
+    let Some(shown) = name(session.model_shown()) else { return };
+    let running = session.laws.as_ref().filter(|check| check.outcome.is_none());
     let button = ui
         .add_enabled(running.is_none(), egui::Button::new("Check laws"))
         .on_hover_text(format!(
             "Tries to find the laws broken that {shown} claims to keep: reciprocity, conservation of energy, no negative \
-             values. Random directions and parameters, on the graphics card, in a process of its own."
+             values. Random directions and parameters, on the GPU, in a process of its own."
         ))
         .on_disabled_hover_text("A check is running.");
     if button.clicked() {
-        actions.push(Action::Author(Ask::CheckLaws));
+        actions.push(Action::Model(ModelCommand::CheckLaws));
     }
     if let Some(check) = running {
         let name = name(&check.model).unwrap_or(&check.model);
         ui.label(theme::small(ui, format!("Checking {name}…")));
-    } else if of_shown(lab).is_some_and(|check| check.since != lab.shaders.last) {
+    } else if of_shown(session).is_some_and(|check| check.since != session.shaders.last) {
         ui.label(theme::small(ui, "Findings from before the last change"));
     }
 }
 
 /// The check of the shown model.
-fn of_shown(lab: &Lab) -> Option<&LawCheck> {
-    lab.laws.as_ref().filter(|check| check.model == lab.model_shown())
+fn of_shown(session: &Session) -> Option<&LawCheck> {
+    session.laws.as_ref().filter(|check| check.model == session.model_shown())
 }
 
 /// True if the shown model was found to break a law that it claims, or to give values that are no numbers.
-pub fn are_broken(lab: &Lab) -> bool {
-    let outcome = of_shown(lab).and_then(|check| check.outcome.as_ref());
+pub fn are_broken(session: &Session) -> bool {
+    let outcome = of_shown(session).and_then(|check| check.outcome.as_ref());
     outcome.is_some_and(|found| found.as_ref().is_ok_and(|r| !r.broken().is_empty() || !r.is_finite()))
 }
 
 /// The findings about the shown model, if there are any.
-pub fn findings(ui: &mut Ui, lab: &Lab) {
-    match of_shown(lab).and_then(|check| check.outcome.as_ref()) {
+pub fn findings(ui: &mut Ui, session: &Session) {
+    match of_shown(session).and_then(|check| check.outcome.as_ref()) {
         None => {}
         Some(Err(why)) => {
             line(ui, Some(Severity::Error), &format!("The laws were not checked: {why}"), "", &[])

@@ -11,7 +11,7 @@ use bevy_egui::egui::{
 use glam::{Quat, Vec3};
 
 use super::{
-    state::{Action, Lab},
+    state::{Action, Session},
     theme,
 };
 use crate::document::Selection;
@@ -74,12 +74,12 @@ pub struct Lens {
 impl Lens {
     /// The camera of the window.
     #[must_use]
-    pub fn of(lab: &Lab, rect: Rect) -> Self {
-        let degrees = lab.document.observer.field_of_view;
+    pub fn of(session: &Session, rect: Rect) -> Self {
+        let degrees = session.document.observer.field_of_view;
         let angle = vertical_field_of_view(degrees, rect.width() / rect.height().max(1.0), true);
         Self {
-            eye: lab.eye,
-            to_camera: lab.camera.inverse(),
+            eye: session.eye,
+            to_camera: session.camera.inverse(),
             rect,
             scale: 0.5 * rect.height() / (0.5 * angle).tan(),
         }
@@ -187,7 +187,7 @@ impl Ink {
 }
 
 /// The place of a light's mark: that of the light; for light from a direction, where it enters the room. None for
-/// light from everywhere.
+/// uniform light.
 #[must_use]
 pub fn anchor(light: &Light, scene: &Scene) -> Option<Vec3> {
     let direction = light.direction.and_then(Vec3::try_normalize);
@@ -224,17 +224,17 @@ pub fn place(light: &Light, scene: &Scene, lens: &Lens) -> Option<Vec3> {
 
 /// Paints the marks into the rectangle of the picture. Returns what was asked for, and the places that can be
 /// clicked, which do not belong to the picture.
-pub fn marks(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Vec<Rect>) {
-    if !lab.view.show_gizmos {
+pub fn marks(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> (Vec<Action>, Vec<Rect>) {
+    if !session.view.show_gizmos {
         return (Vec::new(), Vec::new());
     }
-    let scene = &lab.document;
-    let lens = Lens::of(lab, rect);
+    let scene = &session.document;
+    let lens = Lens::of(session, rect);
     let painter = ui.painter_at(rect);
     let mut ink = Ink { lens, below: Vec::new(), above: Vec::new() };
     let mut outside = Vec::new();
     let crowd = scene.lights.len() > CROWD;
-    let chosen = |i: usize| lab.selection == Selection::Light(i);
+    let chosen = |i: usize| session.selection == Selection::Light(i);
     let colour_of = |i: usize| match scene.lights[i].enabled {
         _ if chosen(i) => SELECTED,
         true => LIGHT,
@@ -255,16 +255,16 @@ pub fn marks(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action
         lamp(&mut ink, light, entry, at, scene, colour, crowd && !chosen(i));
     }
     // From within, its own pyramid would frame the picture.
-    if lab.eye.distance(scene.observer.position) > OBSERVER_MARK {
-        observer(&mut ink, &scene.observer, lab.selection == Selection::Observer);
+    if session.eye.distance(scene.observer.position) > OBSERVER_MARK {
+        observer(&mut ink, &scene.observer, session.selection == Selection::Observer);
     }
-    if let Selection::Object(i) = lab.selection
+    if let Selection::Object(i) = session.selection
         && let Some(object) = scene.objects.get(i)
     {
         corners(&mut ink, object, registry);
     }
     ink.paint(&painter);
-    arrows(ui, &painter, rect, &outside, lab, registry)
+    arrows(ui, &painter, rect, &outside, session, registry)
 }
 
 fn lamp(
@@ -364,7 +364,7 @@ fn arrows(
     painter: &Painter,
     rect: Rect,
     outside: &[(usize, Vec2)],
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
 ) -> (Vec<Action>, Vec<Rect>) {
     let mut frame = rect.shrink(INSET);
@@ -385,8 +385,8 @@ fn arrows(
     }
     for (way, at, mut lights) in groups {
         lights.sort_unstable();
-        let chosen = lights.iter().position(|i| lab.selection == Selection::Light(*i));
-        let colour = match lights.iter().any(|i| lab.document.lights[*i].enabled) {
+        let chosen = lights.iter().position(|i| session.selection == Selection::Light(*i));
+        let colour = match lights.iter().any(|i| session.document.lights[*i].enabled) {
             _ if chosen.is_some() => SELECTED,
             true => LIGHT,
             false => OFF,
@@ -407,7 +407,7 @@ fn arrows(
         let place = Rect::from_center_size(at, Vec2::splat(3.0 * ARROW));
         let id = Id::new(("light outside the view", lights[0]));
         let response = ui.interact(place, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
-        let name = |i: usize| lab.name_of(Selection::Light(i), registry);
+        let name = |i: usize| session.name_of(Selection::Light(i), registry);
         let mut names: Vec<_> = lights.iter().take(NAMES).map(|i| name(*i)).collect();
         if lights.len() > NAMES {
             names.push(format!("and {} more", lights.len() - NAMES));
@@ -448,7 +448,7 @@ mod tests {
 
     fn lens(scene: Scene) -> Lens {
         let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(800.0, 450.0));
-        Lens::of(&Lab::new(scene), rect)
+        Lens::of(&Session::new(scene), rect)
     }
 
     #[test]
@@ -495,6 +495,6 @@ mod tests {
         scene.scene_size.width = 40.0;
         let flat = Light { direction: Some(Vec3::new(-3.0, 0.0, 0.0)), ..down.clone() };
         assert!(anchor(&flat, &scene).is_some_and(|p| scene.scene_size.contains(p) && p.x > 38.0));
-        assert_eq!(anchor(&Light { direction: None, ..down }, &scene), None, "light from everywhere");
+        assert_eq!(anchor(&Light { direction: None, ..down }, &scene), None, "uniform light");
     }
 }

@@ -5,7 +5,7 @@ use bevy_egui::egui::{self, Align, Layout, RichText, ScrollArea, Sense, Ui, vec2
 use super::{
     Panel, Place,
     icon::{self, Icon},
-    state::{Action, Lab},
+    state::{Action, Session},
     theme::Palette,
 };
 use crate::registry::Registry;
@@ -27,17 +27,18 @@ impl Panel for Messages {
         Place::Bottom
     }
 
-    fn show(&self, ui: &mut Ui, lab: &Lab, _registry: &Registry) -> Vec<Action> {
+    fn show(&self, ui: &mut Ui, session: &Session, _registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
         let palette = Palette::here(ui);
-        if lab.messages.is_empty() {
+        if session.messages.is_empty() {
             ui.add_space(8.0);
             ui.weak("No messages. Problems with files, values and shaders appear here and stay until you dismiss them.");
             return actions;
         }
         ui.horizontal(|ui| {
             let all = || {
-                lab.messages
+                session
+                    .messages
                     .iter()
                     .map(|m| format!("{}: {}", m.severity.name(), m.text))
                     .collect::<Vec<_>>()
@@ -51,7 +52,7 @@ impl Panel for Messages {
             }
         });
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            for (i, message) in lab.messages.iter().enumerate().rev() {
+            for (i, message) in session.messages.iter().enumerate().rev() {
                 ui.push_id(i, |ui| {
                     ui.horizontal_top(|ui| {
                         ui.spacing_mut().item_spacing.x = 6.0;

@@ -1,7 +1,7 @@
 //! The window: panels around the picture.
 //!
 //! A panel is a function of the state that returns actions ([`Panel`]); [`show`] lays the panels out,
-//! applies their actions to the [`Lab`] and returns the effects that need files, entities or the
+//! applies their actions to the [`Session`] and returns the effects that need files, entities or the
 //! operating system. None of it needs a window.
 //!
 //! **To add one**: write `panel/x.rs` and add its name to [`register_builtin`]; a panel at the bottom
@@ -25,7 +25,7 @@ use bevy_egui::{
 use crate::registry::Registry;
 pub use dialogs::Dialogs;
 use focus::Region;
-use state::{Action, Effect, Lab, LabEffect, Severity, ViewChange};
+use state::{Action, Effect, LabEffect, Session, Severity, ViewChange};
 use theme::Palette;
 
 pub mod author;
@@ -102,11 +102,11 @@ pub trait Panel: Send + Sync + 'static {
     /// Where it is.
     fn place(&self) -> Place;
     /// What its tab says beside the title, such as how many errors it tells of.
-    fn note(&self, _lab: &Lab) -> Option<(Severity, String)> {
+    fn note(&self, _lab: &Session) -> Option<(Severity, String)> {
         None
     }
     /// Shows it. What the user does comes back as actions.
-    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action>;
+    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>;
 }
 
 /// What the menus know of a panel.
@@ -175,54 +175,54 @@ impl PanelApp for App {
 /// Shows the window, applies what the user does, and returns the effects. `ui` covers the window.
 pub fn show(
     ui: &mut Ui,
-    lab: &mut Lab,
+    session: &mut Session,
     registry: &Registry,
     panels: &Panels,
     dialogs: &mut Dialogs,
 ) -> Vec<Effect> {
     let ctx = ui.ctx().clone();
-    if !theme::apply(&ctx, &lab.view) {
+    if !theme::apply(&ctx, &session.view) {
         return Vec::new();
     }
     let style = ctx.global_style();
     ui.set_style(style);
-    lab.panels = panels.list();
-    lab.notice_shaders(registry);
-    let palette = Palette::of(&lab.view);
+    session.panels = panels.list();
+    session.notice_shaders(registry);
+    let palette = Palette::of(&session.view);
     menu::walk(&ctx);
     focus::reveal(&ctx);
     focus::forget_regions(&ctx);
-    lab.zoom = ctx.zoom_factor();
-    let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, lab, registry) };
-    actions.extend(presentation::left(&ctx, lab));
-    actions.extend(welcome::left(&ctx, lab));
-    actions.extend(help::show(&ctx, lab, registry));
-    actions.extend(author::show(&ctx, lab, registry));
+    session.zoom = ctx.zoom_factor();
+    let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, session, registry) };
+    actions.extend(presentation::left(&ctx, session));
+    actions.extend(welcome::left(&ctx, session));
+    actions.extend(help::show(&ctx, session, registry));
+    actions.extend(author::show(&ctx, session, registry));
     let whole = ui.available_rect_before_wrap();
 
     // A presentation shows the bar only for the chooser that hangs on it.
-    let presenting = lab.view.presenting;
-    for panel in panels.at(Place::Top).filter(|_| !presenting || lab.view.chooser_open) {
+    let presenting = session.view.presenting;
+    for panel in panels.at(Place::Top).filter(|_| !presenting || session.view.chooser_open) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 4.0));
         let shown = egui::Panel::top(panel.id())
             .frame(frame)
-            .show(ui, |ui| actions.extend(panel.show(ui, lab, registry)));
+            .show(ui, |ui| actions.extend(panel.show(ui, session, registry)));
         focus::region(&ctx, Region::Panel(Place::Top), shown.response.rect);
     }
     for panel in panels.at(Place::Status).filter(|_| !presenting) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 2.0));
         let shown = egui::Panel::bottom(panel.id())
             .frame(frame)
-            .show(ui, |ui| actions.extend(panel.show(ui, lab, registry)));
+            .show(ui, |ui| actions.extend(panel.show(ui, session, registry)));
         focus::region(&ctx, Region::Panel(Place::Status), shown.response.rect);
     }
     // Each size of everything has widths of its own. It takes effect a frame after it was chosen.
     let zoom = zoom_percent(&ctx);
-    let mut sizes = (lab.view.left_width, lab.view.right_width, lab.view.bottom_height);
-    if lab.view.bottom_open && !presenting {
-        bottom(ui, lab, registry, panels, &palette, whole, &mut sizes.2, &mut actions);
+    let mut sizes = (session.view.left_width, session.view.right_width, session.view.bottom_height);
+    if session.view.bottom_open && !presenting {
+        bottom(ui, session, registry, panels, &palette, whole, &mut sizes.2, &mut actions);
     }
-    if lab.view.left_open && !presenting {
+    if session.view.left_open && !presenting {
         let most = 0.26 * whole.width();
         let panel = egui::Panel::left(Id::new(("left", zoom)))
             .frame(theme::panel_frame(&palette, vec2(0.0, 4.0)))
@@ -230,13 +230,13 @@ pub fn show(
             .size_range(120f32.min(most)..=most);
         let response = panel.show(ui, |ui| {
             for panel in panels.at(Place::Left) {
-                actions.extend(panel.show(ui, lab, registry));
+                actions.extend(panel.show(ui, session, registry));
             }
         });
         focus::region(&ctx, Region::Panel(Place::Left), response.response.rect);
         sizes.0 = response.response.rect.width();
     }
-    if lab.view.right_open && !presenting {
+    if session.view.right_open && !presenting {
         let most = 0.45 * whole.width();
         let panel = egui::Panel::right(Id::new(("right", zoom)))
             .frame(Frame::new().fill(palette.panel).inner_margin(Margin {
@@ -249,37 +249,37 @@ pub fn show(
             .size_range(300f32.min(most)..=most);
         let response = panel.show(ui, |ui| {
             for panel in panels.at(Place::Right) {
-                actions.extend(panel.show(ui, lab, registry));
+                actions.extend(panel.show(ui, session, registry));
             }
         });
         focus::region(&ctx, Region::Panel(Place::Right), response.response.rect);
         sizes.1 = response.response.rect.width();
     }
-    remember_sizes(&ctx, lab, sizes, &mut actions);
+    remember_sizes(&ctx, session, sizes, &mut actions);
 
     if !presenting {
-        actions.extend(welcome::strip(ui, lab, registry));
+        actions.extend(welcome::strip(ui, session, registry));
     }
     let rect = ui.available_rect_before_wrap();
-    let stage = presenting.then(|| presentation::Stage::of(ui, rect, lab, registry));
+    let stage = presenting.then(|| presentation::Stage::of(ui, rect, session, registry));
     let rect = stage.as_ref().map_or(rect, |stage| stage.picture);
     focus::region(&ctx, Region::Picture, rect);
-    lab.picture_rect = rect;
-    let (asked, covered) = picture::overlays(ui, rect, stage.as_ref(), lab, registry);
+    session.picture_rect = rect;
+    let (asked, covered) = picture::overlays(ui, rect, stage.as_ref(), session, registry);
     actions.extend(asked);
-    actions.extend(question::show(&ctx, lab));
-    actions.extend(dialogs.update(&ctx, lab, registry));
-    steering(&ctx, lab, rect, &covered, dialogs.is_open());
+    actions.extend(question::show(&ctx, session));
+    actions.extend(dialogs.update(&ctx, session, registry));
+    steering(&ctx, session, rect, &covered, dialogs.is_open());
     focus::remember_regions(&ctx);
     focus::show(&ctx, &palette, rect);
 
     let mut effects = Vec::new();
     for action in actions {
-        effects.extend(lab.apply(action, registry));
+        effects.extend(session.apply(action, registry));
     }
-    end_gesture(&ctx, lab);
-    effects.extend(lab.wanted_dialog.take());
-    effects.retain(|effect| !dialogs.start(&ctx, effect, lab));
+    end_gesture(&ctx, session);
+    effects.extend(session.wanted_dialog.take());
+    effects.retain(|effect| !dialogs.start(&ctx, effect, session));
     for effect in &effects {
         if let Effect::CopyText(text) = effect {
             ctx.copy_text(text.clone());
@@ -295,14 +295,14 @@ fn zoom_percent(ctx: &egui::Context) -> u32 {
 }
 
 /// A drag is one step of the history, and so is typing in one field.
-fn end_gesture(ctx: &egui::Context, lab: &mut Lab) {
+fn end_gesture(ctx: &egui::Context, session: &mut Session) {
     let focus = ctx.memory(egui::Memory::focused);
     let key = Id::new("focus of the gesture");
     let before = ctx.data(|data| data.get_temp::<Option<Id>>(key)).flatten();
     ctx.data_mut(|data| data.insert_temp(key, focus));
     let typing = focus.is_some() && focus == before;
     if !typing && !ctx.input(|input| input.pointer.any_down()) {
-        lab.document.end_gesture();
+        session.document.end_gesture();
     }
 }
 
@@ -313,7 +313,7 @@ const SHADER_STRIP: f32 = 184.0;
 #[allow(clippy::too_many_arguments)]
 fn bottom(
     ui: &mut Ui,
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
     panels: &Panels,
     palette: &Palette,
@@ -323,7 +323,7 @@ fn bottom(
 ) {
     let most = 0.6 * whole.height();
     // An error with its line of source is seen whole.
-    let shader = lab.view.bottom_tab == author::SHADER_TAB;
+    let shader = session.view.bottom_tab == author::SHADER_TAB;
     let least = if shader { SHADER_STRIP } else { 72.0 };
     let zoom = zoom_percent(ui.ctx());
     let strip = egui::Panel::bottom(Id::new(("bottom", zoom, shader)))
@@ -333,7 +333,7 @@ fn bottom(
         .size_range(least.min(most)..=most);
     let response = strip.show(ui, |ui| {
         let tabs: Vec<_> = panels.at(Place::Bottom).collect();
-        let shown = tabs.iter().find(|p| p.id() == lab.view.bottom_tab).or(tabs.first());
+        let shown = tabs.iter().find(|p| p.id() == session.view.bottom_tab).or(tabs.first());
         ui.horizontal(|ui| {
             for panel in &tabs {
                 let on = shown.is_some_and(|s| s.id() == panel.id());
@@ -344,7 +344,7 @@ fn bottom(
                     continue;
                 }
                 let mut button = Button::selectable(on, text);
-                if let Some((severity, note)) = panel.note(lab) {
+                if let Some((severity, note)) = panel.note(session) {
                     button = button.right_text(theme::strong(ui, note).color(palette.severity(severity)));
                 }
                 if ui.add(button).clicked() {
@@ -358,7 +358,7 @@ fn bottom(
             });
         });
         if let Some(panel) = shown {
-            actions.extend(panel.show(ui, lab, registry));
+            actions.extend(panel.show(ui, session, registry));
         }
         ui.take_available_height();
     });
@@ -369,8 +369,8 @@ fn bottom(
 }
 
 /// Sizes that the user dragged are kept, once the dragging is over.
-fn remember_sizes(ctx: &egui::Context, lab: &Lab, sizes: (f32, f32, f32), actions: &mut Vec<Action>) {
-    let v = &lab.view;
+fn remember_sizes(ctx: &egui::Context, session: &Session, sizes: (f32, f32, f32), actions: &mut Vec<Action>) {
+    let v = &session.view;
     let moved = [(sizes.0, v.left_width), (sizes.1, v.right_width), (sizes.2, v.bottom_height)]
         .iter()
         .any(|(a, b)| (a - b).abs() > 1.0);
@@ -388,19 +388,19 @@ fn remember_sizes(ctx: &egui::Context, lab: &Lab, sizes: (f32, f32, f32), action
 
 /// Writes down whether the pointer and the keys belong to the picture. What is clicked in `covered` is not the
 /// picture.
-fn steering(ctx: &egui::Context, lab: &mut Lab, rect: Rect, covered: &[Rect], dialog: bool) {
+fn steering(ctx: &egui::Context, session: &mut Session, rect: Rect, covered: &[Rect], dialog: bool) {
     let pointer = ctx.input(|i| i.pointer.latest_pos());
-    let busy = lab.question.is_some() || dialog;
+    let busy = session.question.is_some() || dialog;
     // Panels are no layers of their own; menus, popups, windows and dialogs are.
     let over = pointer.is_some_and(|p| {
         rect.contains(p)
             && !covered.iter().any(|c| c.contains(p))
             && ctx.layer_id_at(p).is_none_or(|l| l.order == egui::Order::Background)
     });
-    lab.pointer_in_picture = over && !busy && !ctx.egui_is_using_pointer();
+    session.pointer_in_picture = over && !busy && !ctx.egui_is_using_pointer();
     // The chooser opens and closes by an action, and is not among egui's.
-    lab.popup_open = egui::Popup::is_any_open(ctx) || lab.view.chooser_open;
-    lab.keyboard_free = !busy && ctx.memory(|m| m.focused()).is_none();
+    session.popup_open = egui::Popup::is_any_open(ctx) || session.view.chooser_open;
+    session.keyboard_free = !busy && ctx.memory(|m| m.focused()).is_none();
 }
 
 /// Adds the window to the app: the state, the panels, and the system that shows them. What it does
@@ -410,7 +410,7 @@ pub struct PanelPlugin;
 
 impl Plugin for PanelPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Lab>();
+        app.init_resource::<Session>();
         app.world_mut().get_resource_or_insert_with(Panels::builtin);
         app.add_message::<LabEffect>();
         app.add_systems(EguiPrimaryContextPass, show_panels);
@@ -420,7 +420,7 @@ impl Plugin for PanelPlugin {
 /// Shows the panels in the primary egui context. Does nothing while there is none.
 pub fn show_panels(
     mut contexts: EguiContexts,
-    mut lab: ResMut<Lab>,
+    mut session: ResMut<Session>,
     registry: Res<Registry>,
     panels: Res<Panels>,
     mut dialogs: Local<Dialogs>,
@@ -433,7 +433,7 @@ pub fn show_panels(
         Id::new("lab"),
         UiBuilder::new().layer_id(LayerId::background()).max_rect(ctx.viewport_rect()),
     );
-    for effect in show(&mut ui, &mut lab, &registry, &panels, &mut dialogs) {
+    for effect in show(&mut ui, &mut session, &registry, &panels, &mut dialogs) {
         effects.write(LabEffect(effect));
     }
 }

@@ -4,7 +4,7 @@ use bevy_egui::egui::{Button, Popup, RichText, Ui, WidgetInfo, WidgetType};
 
 use super::{
     chooser, knob,
-    state::Lab,
+    state::Session,
     theme::{self, Palette},
     top::segmented,
 };
@@ -12,7 +12,7 @@ use crate::document::ObjectField;
 use crate::{registry::Registry, scene::Object};
 
 /// The button, and what it opens. Returns the change that was asked for.
-pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> Option<ObjectField> {
+pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Object) -> Option<ObjectField> {
     let palette = Palette::here(ui);
     let model_name =
         |id: &str| registry.model(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned());
@@ -37,8 +37,8 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
     });
 
     let id = ui.make_persistent_id("model override");
-    let scene_model = model_name(&lab.document.reflection_model);
-    let scene_shading = shading_name(&lab.document.shading_model);
+    let scene_model = model_name(&session.document.reflection_model);
+    let scene_shading = shading_name(&session.document.shading_model);
     let out = knob::drop_down(&button, id, |ui, list| {
         let mut out = None;
         ui.label(theme::strong(ui, "Override model and shading"));
@@ -70,7 +70,7 @@ pub fn control(ui: &mut Ui, lab: &Lab, registry: &Registry, object: &Object) -> 
         let own = object.reflection_model.as_deref();
         let height = 0.45 * ui.ctx().content_rect().height();
         let first = format!("Scene default ({scene_model})");
-        if let Some(model) = chooser::models(ui, list, height, lab, registry, own, Some(&first)) {
+        if let Some(model) = chooser::models(ui, list, height, session, registry, own, Some(&first)) {
             out = Some(ObjectField::Model(model.map(|m| m.declaration.id.to_owned())));
             Popup::close_id(ui.ctx(), id);
         }

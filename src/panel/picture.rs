@@ -11,7 +11,7 @@ use super::{
     caption::{self, Lines, caption_text, models_shown},
     clipping, icon, marks,
     presentation::Stage,
-    state::{Action, Badge, Lab, Severity, Shaders, ViewChange},
+    state::{Action, Badge, Session, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
 use crate::{
@@ -31,31 +31,31 @@ pub fn overlays(
     ui: &mut Ui,
     rect: Rect,
     stage: Option<&Stage>,
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
 ) -> (Vec<Action>, Vec<Rect>) {
     if rect.width() < 80.0 || rect.height() < 80.0 {
         return (Vec::new(), Vec::new());
     }
-    clipping::paint(&ui.painter_at(rect), rect, lab, ui.pixels_per_point());
+    clipping::paint(&ui.painter_at(rect), rect, session, ui.pixels_per_point());
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     let (mut actions, mut places) =
-        if stage.is_some() { Default::default() } else { marks::marks(ui, rect, lab, registry) };
+        if stage.is_some() { Default::default() } else { marks::marks(ui, rect, session, registry) };
     ui.scope(|ui| {
         let free = stage.map_or(rect, |stage| stage.paint(ui));
-        let (asked, covered) = stale(ui, free, lab, registry);
+        let (asked, covered) = stale(ui, free, session, registry);
         actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
-        let (asked, clicked) = badges(ui, free, top, lab, registry);
+        let (asked, clicked) = badges(ui, free, top, session, registry);
         actions.extend(asked);
         places.extend(clicked);
         places.push(covered);
-        hint(ui, rect, lab);
+        hint(ui, rect, session);
     });
     if stage.is_none() {
-        caption(ui, rect, lab, registry);
+        caption(ui, rect, session, registry);
         if rect.width() >= AXES {
-            axes(ui, rect, lab);
+            axes(ui, rect, session);
         }
     }
     (actions, places)
@@ -88,9 +88,9 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
 
 /// Says that the picture is not what the shaders say, in a way that is not overlooked on any picture: a frame, and
 /// a filled plate that leads to the panel with the errors.
-fn stale(ui: &mut Ui, rect: Rect, lab: &Lab, registry: &Registry) -> (Vec<Action>, Rect) {
-    let shown = registry.model(lab.model_shown()).map_or("", |m| m.declaration.name);
-    let Some((heading, lines)) = stale_words(&lab.shaders, shown) else {
+fn stale(ui: &mut Ui, rect: Rect, session: &Session, registry: &Registry) -> (Vec<Action>, Rect) {
+    let shown = registry.model(session.model_shown()).map_or("", |m| m.declaration.name);
+    let Some((heading, lines)) = stale_words(&session.shaders, shown) else {
         return (Vec::new(), Rect::NOTHING);
     };
     let palette = Palette::here(ui);
@@ -165,14 +165,14 @@ fn plate(ui: &Ui, rect: Rect, anchor: Align2, at: Pos2, text: &str, font: FontId
 type Sign = (Badge, Option<Action>);
 
 /// Says that terms of the equation are hidden, and shows them all.
-fn hidden_terms(lab: &Lab, registry: &Registry) -> Option<Sign> {
-    let shown = match lab.view.terms {
+fn hidden_terms(session: &Session, registry: &Registry) -> Option<Sign> {
+    let shown = match session.view.terms {
         TermSelection::All => return None,
         other => other.id(),
     };
-    let models = models_shown(lab);
+    let models = models_shown(session);
     let whose = match models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1) {
-        _ if !lab.lacks_term(registry) => String::new(),
+        _ if !session.lacks_term(registry) => String::new(),
         Some(model) => format!(", which is 0 with {}", model.declaration.name),
         None => ", which is 0 in this picture".to_owned(),
     };
@@ -186,15 +186,21 @@ fn hidden_terms(lab: &Lab, registry: &Registry) -> Option<Sign> {
 }
 
 /// The badges. Returns what was asked for there, and the places that can be clicked.
-fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, registry: &Registry) -> (Vec<Action>, Vec<Rect>) {
+fn badges(
+    ui: &mut Ui,
+    rect: Rect,
+    top: f32,
+    session: &Session,
+    registry: &Registry,
+) -> (Vec<Action>, Vec<Rect>) {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
     let per_point = ui.pixels_per_point();
-    let clipped = clipping::badge(lab, f64::from(lab.picture_rect.area() * per_point * per_point));
-    let toggle = Action::View(ViewChange::Clipping(!lab.view.show_clipping));
-    let told = lab.disk.badge.iter().chain(&lab.badges).map(|badge| (badge.clone(), None));
-    let all = hidden_terms(lab, registry).into_iter().chain(told);
+    let clipped = clipping::badge(session, f64::from(session.picture_rect.area() * per_point * per_point));
+    let toggle = Action::View(ViewChange::Clipping(!session.view.show_clipping));
+    let told = session.disk.badge.iter().chain(&session.badges).map(|badge| (badge.clone(), None));
+    let all = hidden_terms(session, registry).into_iter().chain(told);
     let (mut actions, mut places) = (Vec::new(), Vec::new());
     let mut at = pos2(rect.left() + 8.0, top);
     for (i, (badge, action)) in all.chain(clipped.map(|badge| (badge, Some(toggle)))).enumerate() {
@@ -227,9 +233,9 @@ fn badges(ui: &mut Ui, rect: Rect, top: f32, lab: &Lab, registry: &Registry) -> 
     (actions, places)
 }
 
-fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) {
+fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) {
     let palette = Palette::here(ui);
-    let term = match lab.view.terms {
+    let term = match session.view.terms {
         TermSelection::All => None,
         TermSelection::Ambient => Some(Term::Ambient),
         TermSelection::Diffuse => Some(Term::Diffuse),
@@ -241,13 +247,13 @@ fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) {
     let corner = if rect.width() >= AXES { 100.0 } else { 0.0 };
     let room = (rect.width() - 16.0 - corner - 2.0 * padding.x - left).max(64.0);
     let size = TextStyle::Small.resolve(ui.style()).size;
-    let lines = Lines::of(ui, caption::parts(lab, registry), size, palette.text, room);
+    let lines = Lines::of(ui, caption::parts(session, registry), size, palette.text, room);
     let size = lines.size + 2.0 * padding + vec2(left, 0.0);
     let place = Align2::LEFT_BOTTOM.anchor_size(rect.left_bottom() + vec2(8.0, -8.0), size);
     ui.painter().rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
     if lines.cut {
         let whole = ui.interact(place, ui.id().with("caption"), Sense::hover());
-        whole.on_hover_text(caption_text(lab, registry));
+        whole.on_hover_text(caption_text(session, registry));
     }
     lines.paint(ui, place.min + padding + vec2(left, 0.0), palette.text);
     if let Some(term) = term {
@@ -258,13 +264,13 @@ fn caption(ui: &Ui, rect: Rect, lab: &Lab, registry: &Registry) {
 }
 
 /// The directions of the room as the camera sees them; the letters tell them apart.
-fn axes(ui: &Ui, rect: Rect, lab: &Lab) {
+fn axes(ui: &Ui, rect: Rect, session: &Session) {
     let palette = Palette::here(ui);
     let painter = ui.painter_at(rect);
     let radius = 34.0;
     let centre = rect.right_bottom() - vec2(radius + 8.0, radius + 8.0);
     painter.circle_filled(centre, radius, palette.panel.gamma_multiply(0.72));
-    let inverse = lab.camera.inverse();
+    let inverse = session.camera.inverse();
     let mut ends: Vec<(Vec3, &str)> =
         [(Vec3::X, "x"), (Vec3::Y, "y"), (Vec3::Z, "z")].into_iter().map(|(a, n)| (inverse * a, n)).collect();
     // What points away from the eye is painted first.
@@ -282,12 +288,12 @@ fn axes(ui: &Ui, rect: Rect, lab: &Lab) {
 }
 
 /// What to do, or what is going on, where there is no picture.
-fn hint(ui: &Ui, rect: Rect, lab: &Lab) {
-    let text = if lab.document.objects.is_empty() {
+fn hint(ui: &Ui, rect: Rect, session: &Session) {
+    let text = if session.document.objects.is_empty() {
         "There is nothing to light. Add an object: + beside “Objects”."
-    } else if lab.document.lights.is_empty() {
+    } else if session.document.lights.is_empty() {
         "It is dark. Add a light: + beside “Lights”."
-    } else if lab.status.shaders == Shaders::Compiling && lab.status.frame_ms == 0.0 {
+    } else if session.status.shaders == Shaders::Compiling && session.status.frame_ms == 0.0 {
         "Compiling shaders…"
     } else {
         return;

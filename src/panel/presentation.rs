@@ -17,7 +17,7 @@ use super::{
     keys,
     marks::Lens,
     maths::{self, Sizes},
-    state::{Action, Lab, ViewChange},
+    state::{Action, Session, ViewChange},
     theme::{self, Palette},
 };
 use crate::{reflection::Term, registry::Registry};
@@ -37,8 +37,8 @@ const HIDDEN: f32 = 0.005;
 const REMINDER: f64 = 5.0;
 
 /// Escape leaves, unless it is another's.
-pub fn left(ctx: &Context, lab: &Lab) -> Option<Action> {
-    let left = lab.view.presenting && keys::escapes(ctx, lab);
+pub fn left(ctx: &Context, session: &Session) -> Option<Action> {
+    let left = session.view.presenting && keys::escapes(ctx, session);
     left.then_some(Action::View(ViewChange::Presenting(false)))
 }
 
@@ -72,21 +72,21 @@ pub struct Stage {
 impl Stage {
     /// What is said in this rectangle.
     #[must_use]
-    pub fn of(ui: &mut Ui, whole: Rect, lab: &Lab, registry: &Registry) -> Self {
-        let models = models_shown(lab);
+    pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
+        let models = models_shown(session);
         // Among several models, an equation would say of all what is true of one.
         let model = models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1);
         let equation = model.map_or_else(Vec::new, |m| maths::definitions(m.declaration.equation));
-        let parts = caption::parts(lab, registry);
+        let parts = caption::parts(session, registry);
         // The camera that turns moves nothing: its place at the beginning counts.
         let mut hasher = DefaultHasher::new();
-        let objects: Vec<_> = lab.document.shown().map(|o| (o.position, o.size)).collect();
+        let objects: Vec<_> = session.document.shown().map(|o| (o.position, o.size)).collect();
         format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui).0).hash(&mut hasher);
         let (id, key) = (Id::new("stage of the presentation"), hasher.finish());
         if let Some((_, stage)) = ui.data(|d| d.get_temp::<(u64, Self)>(id)).filter(|(of, _)| *of == key) {
             return stage;
         }
-        let stage = Self::laid_out(ui, whole, lab, equation, parts);
+        let stage = Self::laid_out(ui, whole, session, equation, parts);
         ui.data_mut(|d| d.insert_temp(id, (key, stage.clone())));
         stage
     }
@@ -94,7 +94,7 @@ impl Stage {
     fn laid_out(
         ui: &mut Ui,
         whole: Rect,
-        lab: &Lab,
+        session: &Session,
         equation: Vec<Definition>,
         parts: Vec<caption::Part>,
     ) -> Self {
@@ -111,7 +111,7 @@ impl Stage {
         if wide.iter().all(|b| b.size.y > MOST * whole.height()) {
             wide.extend([block(2, most, true), block(3, most, true)]);
         }
-        let discs = discs(lab, whole);
+        let discs = discs(session, whole);
         let hidden = |plate: Rect| {
             let share =
                 |d: &(Pos2, f32)| if covers(plate, *d) || covers(caption, *d) { d.1 * d.1 } else { 0.0 };
@@ -246,16 +246,16 @@ fn measured(ui: &mut Ui, parts: &[Definition], width: f32, sizes: Sizes) -> f32 
 }
 
 /// The objects as the camera sees them: discs, without what is far outside the picture.
-fn discs(lab: &Lab, rect: Rect) -> Vec<(Pos2, f32)> {
-    let lens = Lens::of(lab, rect);
-    let right = lab.camera * glam::Vec3::X;
+fn discs(session: &Session, rect: Rect) -> Vec<(Pos2, f32)> {
+    let lens = Lens::of(session, rect);
+    let right = session.camera * glam::Vec3::X;
     let disc = |o: &crate::scene::Object| {
         // Half the size, and what corners reach beyond it.
         let radius = 0.6 * o.size;
         let at = lens.project(o.position)?;
         Some((at, lens.project(o.position + radius * right)?.distance(at)))
     };
-    lab.document.shown().filter_map(disc).filter(|(at, r)| rect.expand(*r).contains(*at)).collect()
+    session.document.shown().filter_map(disc).filter(|(at, r)| rect.expand(*r).contains(*at)).collect()
 }
 
 /// True if a rectangle hides part of a disc.

@@ -3,14 +3,14 @@
 use bevy_egui::egui::{self, Align, Button, Id, Key, Layout, Modal, RichText, Ui, vec2};
 
 use super::{
-    state::{Action, Answer, Lab, Question},
+    state::{Action, Answer, Question, Session},
     theme::{self, Palette},
 };
 
 /// Shows the open question. Enter gives the first answer, which loses nothing; Escape the last.
-pub fn show(ctx: &egui::Context, lab: &Lab) -> Vec<Action> {
-    let Some(question) = &lab.question else { return Vec::new() };
-    let (title, text, details, answers) = words(lab, question);
+pub fn show(ctx: &egui::Context, session: &Session) -> Vec<Action> {
+    let Some(question) = &session.question else { return Vec::new() };
+    let (title, text, details, answers) = words(session, question);
     let mut out = None;
     Modal::new(Id::new("question")).show(ctx, |ui: &mut Ui| {
         let palette = Palette::here(ui);
@@ -56,12 +56,12 @@ pub fn show(ctx: &egui::Context, lab: &Lab) -> Vec<Action> {
 /// Title, text, lines of details (what, more), answers.
 pub(super) type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, Answer)>);
 
-fn words(lab: &Lab, question: &Question) -> Words {
+fn words(session: &Session, question: &Question) -> Words {
     match question {
-        Question::Recover(offer) => offer.words(lab),
+        Question::Recover(offer) => offer.words(session),
         Question::Unsaved { .. } => (
             "Save the changes?",
-            format!("“{}” has unsaved changes.", lab.title()),
+            format!("“{}” has unsaved changes.", session.title()),
             Vec::new(),
             vec![("Save", Answer::Save), ("Don't save", Answer::Discard), ("Cancel", Answer::Cancel)],
         ),

@@ -4,7 +4,7 @@ use std::path::{self, PathBuf};
 
 use super::{
     question::Words,
-    state::{Answer, Effect, Lab},
+    state::{Answer, Effect, Session},
 };
 use crate::scene::Scene;
 
@@ -38,7 +38,7 @@ pub enum Choice {
 
 impl Offer {
     /// The question about it.
-    pub(super) fn words(&self, lab: &Lab) -> Words {
+    pub(super) fn words(&self, session: &Session) -> Words {
         let Self { title, path: at, file, when, scene } = self;
         let mut text = format!("“{title}” had unsaved changes when its window closed unexpectedly {when}.");
         let mut details = Vec::new();
@@ -52,9 +52,9 @@ impl Offer {
             let answers = vec![("Keep the copy", Answer::Cancel), ("Delete it", Answer::Discard)];
             return ("Keep the recovery copy?", text, details, answers);
         }
-        let shown = lab.path.as_ref().and_then(|shown| path::absolute(shown).ok());
+        let shown = session.path.as_ref().and_then(|shown| path::absolute(shown).ok());
         if shown.is_some() && shown != *at {
-            text += &format!(" Recovering them closes “{}”.", lab.title());
+            text += &format!(" Recovering them closes “{}”.", session.title());
         }
         let place = at.as_ref().map_or_else(|| "never saved".to_owned(), |at| at.display().to_string());
         details.push(("File".to_owned(), place));
@@ -64,7 +64,7 @@ impl Offer {
     }
 }
 
-impl Lab {
+impl Session {
     /// Carries out the answer to the question about a copy.
     pub(super) fn answer_offer(&mut self, offer: Offer, answer: Answer) -> Vec<Effect> {
         match (answer, offer.scene) {
@@ -97,10 +97,10 @@ mod tests {
         }
     }
 
-    fn answered(lab: &mut Lab, offer: Offer, answer: Answer) -> Vec<Effect> {
-        lab.ask(Question::Recover(Box::new(offer)));
-        let effects = lab.apply(Action::Answer(answer), &Registry::builtin());
-        assert_eq!(lab.question, None);
+    fn answered(session: &mut Session, offer: Offer, answer: Answer) -> Vec<Effect> {
+        session.ask(Question::Recover(Box::new(offer)));
+        let effects = session.apply(Action::Answer(answer), &Registry::builtin());
+        assert_eq!(session.question, None);
         effects
     }
 
@@ -109,17 +109,17 @@ mod tests {
         let registry = Registry::builtin();
         // Even if it were what the window shows anyway.
         for scene in [Scene { name: Some("Mine".to_owned()), ..Scene::default() }, Scene::default()] {
-            let mut lab = Lab::default();
-            assert!(!lab.is_dirty());
-            let effects = answered(&mut lab, offer(Ok(scene.clone())), Answer::Recover);
+            let mut session = Session::default();
+            assert!(!session.is_dirty());
+            let effects = answered(&mut session, offer(Ok(scene.clone())), Answer::Recover);
             assert_eq!(effects, [Effect::DocumentChanged, Effect::Recovery(Choice::Recovered)]);
-            assert!(lab.is_dirty());
-            assert_eq!(lab.document, scene);
+            assert!(session.is_dirty());
+            assert_eq!(session.document, scene);
             let path = PathBuf::from("/scenes/room.json");
-            let save = lab.apply(Action::Save, &registry);
+            let save = session.apply(Action::Save, &registry);
             assert_eq!(save, [Effect::SaveFile { path: path.clone(), overwrite: false }]);
-            let _ = lab.saved(path, &registry);
-            assert!(!lab.is_dirty());
+            let _ = session.saved(path, &registry);
+            assert!(!session.is_dirty());
         }
     }
 
@@ -131,17 +131,17 @@ mod tests {
             (Err("line 3".to_owned()), Answer::Cancel, Choice::Next),
             (Err("line 3".to_owned()), Answer::Discard, Choice::Discarded),
         ] {
-            let mut lab = Lab::default();
-            assert_eq!(answered(&mut lab, offer(scene), answer), [Effect::Recovery(choice)]);
-            assert!(!lab.is_dirty() && lab.path.is_none());
+            let mut session = Session::default();
+            assert_eq!(answered(&mut session, offer(scene), answer), [Effect::Recovery(choice)]);
+            assert!(!session.is_dirty() && session.path.is_none());
         }
     }
 
     #[test]
     fn the_question_names_the_scene_its_file_and_what_is_wrong() {
-        let lab = Lab::default();
+        let session = Session::default();
         let all = |offer: Offer| {
-            let (title, text, details, answers) = offer.words(&lab);
+            let (title, text, details, answers) = offer.words(&session);
             let details: Vec<_> = details.into_iter().map(|(what, more)| format!("{what}: {more}")).collect();
             (format!("{title}\n{text}\n{}", details.join("\n")), answers)
         };
@@ -165,17 +165,17 @@ mod tests {
     #[test]
     fn a_window_that_is_asked_to_close_knows_that_it_is() {
         let registry = Registry::builtin();
-        let mut lab = Lab::default();
-        answered(&mut lab, offer(Ok(Scene::default())), Answer::Recover);
-        assert!(!lab.is_quitting());
-        assert_eq!(lab.apply(Action::Quit, &registry), []);
-        assert!(lab.is_quitting());
-        lab.apply(Action::Answer(Answer::Cancel), &registry);
-        assert!(!lab.is_quitting());
-        lab.apply(Action::Quit, &registry);
-        lab.apply(Action::Answer(Answer::Save), &registry);
-        assert!(lab.is_quitting(), "it closes once it is saved");
-        lab.not_saved();
-        assert!(!lab.is_quitting());
+        let mut session = Session::default();
+        answered(&mut session, offer(Ok(Scene::default())), Answer::Recover);
+        assert!(!session.is_quitting());
+        assert_eq!(session.apply(Action::Quit, &registry), []);
+        assert!(session.is_quitting());
+        session.apply(Action::Answer(Answer::Cancel), &registry);
+        assert!(!session.is_quitting());
+        session.apply(Action::Quit, &registry);
+        session.apply(Action::Answer(Answer::Save), &registry);
+        assert!(session.is_quitting(), "it closes once it is saved");
+        session.not_saved();
+        assert!(!session.is_quitting());
     }
 }

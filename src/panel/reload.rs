@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::{
     files::{Files, Looked, Opened},
-    state::{Badge, Effect, Lab, MissingPart, Note, Question, Severity},
+    state::{Badge, Effect, MissingPart, Note, Question, Session, Severity},
 };
 use crate::document::Selection;
 use crate::{
@@ -26,7 +26,7 @@ pub struct OnDisk {
     pub badge: Option<Badge>,
     /// The document may take the defaults of any part that its file lacks.
     pub use_defaults: bool,
-    /// Whether the file was deleted, so that only the window has the document.
+    /// True if the file was deleted, so that only the window has the document.
     pub(super) gone: bool,
     /// News came while a question was open.
     pub(super) deferred: bool,
@@ -46,49 +46,49 @@ pub struct OnDisk {
 /// A file that cannot be used is looked at again after a moment before anything is said: many editors
 /// write in steps.
 #[must_use]
-pub fn look(lab: &mut Lab, registry: &Registry, discard: bool, files: &mut dyn Files) -> Vec<Effect> {
-    let Some(path) = lab.path.clone() else { return Vec::new() };
-    if lab.question.is_some() {
+pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &mut dyn Files) -> Vec<Effect> {
+    let Some(path) = session.path.clone() else { return Vec::new() };
+    if session.question.is_some() {
         // One question after the other.
-        lab.disk.deferred = true;
+        session.disk.deferred = true;
         return Vec::new();
     }
     let name = path.display();
     match files.look(&path, registry) {
         Looked::Same => {
-            lab.disk.suspect = None;
+            session.disk.suspect = None;
             // A message that it was read again stays until it is dismissed.
-            if lab.disk.badge.is_some() {
-                lab.disk_settled();
+            if session.disk.badge.is_some() {
+                session.disk_settled();
             }
             Vec::new()
         }
-        Looked::Gone => doubt(lab, files, path, None, Vec::new()),
+        Looked::Gone => doubt(session, files, path, None, Vec::new()),
         Looked::Changed { version, content } => match content {
-            Opened::Scene(scene) => take(lab, files, path, version, (*scene, Vec::new()), discard),
-            Opened::Incomplete { scene, parts } if lab.may_default(&parts) => {
+            Opened::Scene(scene) => take(session, files, path, version, (*scene, Vec::new()), discard),
+            Opened::Incomplete { scene, parts } if session.may_default(&parts) => {
                 let names = parts.into_iter().map(|p| p.name).collect();
-                take(lab, files, path, version, (*scene, names), discard)
+                take(session, files, path, version, (*scene, names), discard)
             }
             Opened::Incomplete { parts, .. } => {
                 let lacks = |p: MissingPart| {
                     format!("{name}: {} is missing (the default would be {})", p.name, p.default)
                 };
                 let problems = parts.into_iter().map(lacks).collect();
-                doubt(lab, files, path, Some(version), problems)
+                doubt(session, files, path, Some(version), problems)
             }
             Opened::Empty => {
                 let problems = vec![format!("{name} is empty.")];
-                doubt(lab, files, path, Some(version), problems)
+                doubt(session, files, path, Some(version), problems)
             }
-            Opened::Failed(problems) => doubt(lab, files, path, Some(version), problems),
+            Opened::Failed(problems) => doubt(session, files, path, Some(version), problems),
         },
     }
 }
 
 /// There is another legal scene in the file, with defaults for the parts that are named.
 fn take(
-    lab: &mut Lab,
+    session: &mut Session,
     files: &mut dyn Files,
     path: PathBuf,
     version: Stamp,
@@ -96,69 +96,70 @@ fn take(
     discard: bool,
 ) -> Vec<Effect> {
     // What a recovered document began with is not known.
-    let edited = (lab.recovered || lab.document.differs()) && lab.document != scene;
-    if edited && !discard && (lab.recovered || scene != *lab.document.saved()) {
-        if lab.disk.asked != Some(Some(version)) {
-            lab.disk_settled();
-            lab.disk.asked = Some(Some(version));
-            lab.ask(Question::NewerOnDisk { path, scene: Box::new(scene), version });
+    let edited = (session.recovered || session.document.differs()) && session.document != scene;
+    if edited && !discard && (session.recovered || scene != *session.document.saved()) {
+        if session.disk.asked != Some(Some(version)) {
+            session.disk_settled();
+            session.disk.asked = Some(Some(version));
+            session.ask(Question::NewerOnDisk { path, scene: Box::new(scene), version });
         }
         return Vec::new();
     }
     files.expect(&path, Some(version));
-    lab.disk_settled();
+    session.disk_settled();
     if edited && !discard {
         // Only the layout of the file is another: what is in it is what the changes began with.
         return Vec::new();
     }
-    let news = lab.document != scene;
-    lab.reloaded(scene, defaulted);
+    let news = session.document != scene;
+    session.reloaded(scene, defaulted);
     if news {
-        lab.say_of_disk(Severity::Info, format!("{} was read again: it changed on disk.", path.display()));
+        session
+            .say_of_disk(Severity::Info, format!("{} was read again: it changed on disk.", path.display()));
     }
     Vec::new()
 }
 
 /// The file cannot be used: after a moment of grace, says so.
 fn doubt(
-    lab: &mut Lab,
+    session: &mut Session,
     files: &mut dyn Files,
     path: PathBuf,
     version: Version,
     problems: Vec<String>,
 ) -> Vec<Effect> {
-    if lab.disk.told == Some(version) {
-        lab.disk.suspect = None;
+    if session.disk.told == Some(version) {
+        session.disk.suspect = None;
         return Vec::new();
     }
-    if lab.disk.suspect != Some(version) {
-        lab.disk.suspect = Some(version);
+    if session.disk.suspect != Some(version) {
+        session.disk.suspect = Some(version);
         return vec![Effect::LookAgain(path)];
     }
-    lab.disk_settled();
-    lab.disk.told = Some(version);
+    session.disk_settled();
+    session.disk.told = Some(version);
     if version.is_none() {
         // Saving writes the file anew, if there is still none.
         files.expect(&path, None);
-        lab.disk.gone = true;
+        session.disk.gone = true;
         let text =
             format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.display());
-        lab.disk.badge = badge(
+        session.disk.badge = badge(
             Severity::Warning,
             &format!("{} was deleted: showing its last version", file_name(&path)),
             &text,
         );
-        lab.say_of_disk(Severity::Warning, text);
+        session.say_of_disk(Severity::Warning, text);
         return Vec::new();
     }
-    lab.disk.badge = badge(
+    session.disk.badge = badge(
         Severity::Error,
         &format!("{} has errors: showing the last good version", file_name(&path)),
         &problems.join("\n"),
     );
     // The latest stands on top: the first problem.
     for problem in problems.iter().rev() {
-        lab.say_of_disk(Severity::Error, problem.clone());
+        session.say_of_disk(Severity::Error, problem.clone());
     }
     vec![Effect::Complain(problems.join("\n"))]
 }
@@ -172,7 +173,7 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-impl Lab {
+impl Session {
     /// The document's file is as it should be, or is the user's concern: what was said of it is over.
     pub(super) fn disk_settled(&mut self) {
         let notes = std::mem::take(&mut self.disk.notes);
@@ -203,7 +204,7 @@ impl Lab {
         self.say(severity, text);
     }
 
-    /// Whether the user agreed to the defaults of all these parts.
+    /// True if the user agreed to the defaults of all these parts.
     fn may_default(&self, parts: &[MissingPart]) -> bool {
         self.disk.use_defaults || parts.iter().all(|p| self.defaulted.contains(&p.name))
     }

@@ -1,8 +1,8 @@
 //! The state of the window: the document, what is selected, what is shown; and the actions that
 //! change it.
 //!
-//! [`Lab`] is a Bevy resource, and knows nothing of Bevy otherwise: panels read it and return
-//! [`Action`]s, [`Lab::apply`] carries them out and returns the [`Effect`]s that need files, entities
+//! [`Session`] is a Bevy resource, and knows nothing of Bevy otherwise: panels read it and return
+//! [`Action`]s, [`Session::apply`] carries them out and returns the [`Effect`]s that need files, entities
 //! or the operating system. All of it can be driven without a window.
 
 use std::path::{Path, PathBuf};
@@ -13,9 +13,9 @@ use glam::{Quat, Vec3};
 
 use super::{
     PanelInfo,
-    author::{Ask, LawCheck, ModelDraft},
+    author::{LawCheck, ModelCommand, ModelDraft},
     clipping::Clipping,
-    follow::Aside,
+    follow::StashedValues,
     placing::Stand,
     recovery::{Choice, Offer},
     reload::OnDisk,
@@ -47,7 +47,7 @@ const MODEL: &str = "reflection model";
 
 /// The state of the window.
 #[derive(Clone, Debug, Resource)]
-pub struct Lab {
+pub struct Session {
     /// The document: the scene and the way to it.
     pub document: Document,
     /// The file that the document came from or was last saved to.
@@ -88,13 +88,13 @@ pub struct Lab {
     pub picture_rect: egui::Rect,
     /// How many points of the window are a point of the panels; written by them.
     pub zoom: f32,
-    /// Whether the pointer is over the picture with no panel, menu or dialog between; written by the
+    /// True if the pointer is over the picture with no panel, menu or dialog between; written by the
     /// panels. What turns the camera must ask here first.
     pub pointer_in_picture: bool,
     /// True if a menu or a list is open, which the next click elsewhere closes and does nothing else; written by the
     /// panels.
     pub popup_open: bool,
-    /// Whether keys may steer the picture: no field has the focus and no question is open; written by
+    /// True if keys may steer the picture: no field has the focus and no question is open; written by
     /// the panels.
     pub keyboard_free: bool,
     /// The panels that there are, for the menus; written when they are shown.
@@ -108,7 +108,7 @@ pub struct Lab {
     /// A dialog that something other than the panels wants opened: what waited for the document to be
     /// saved.
     pub wanted_dialog: Option<Effect>,
-    /// Whether the next file that is opened may replace unsaved changes: the user was asked.
+    /// True if the next file that is opened may replace unsaved changes: the user was asked.
     may_discard: bool,
     /// The names of the parts that the file lacks and that the document got as defaults.
     pub(super) defaulted: Vec<String>,
@@ -117,7 +117,7 @@ pub struct Lab {
     /// The problems of the shaders in the frame before, by file and message.
     pub(super) seen_troubles: Vec<(String, String)>,
     /// What the document had and no model takes at present.
-    pub(super) aside: Aside,
+    pub(super) stashed: StashedValues,
     known_terms: KnownTerms,
     /// The step that a message offers to undo: how many were done with it, and its name.
     undo_offered: Option<(usize, Option<String>)>,
@@ -185,21 +185,21 @@ pub struct View {
     pub fullscreen: bool,
     /// The same before the presentation began.
     pub fullscreen_before: bool,
-    /// Whether lights have gizmos in the picture.
+    /// True if lights have gizmos in the picture.
     pub show_gizmos: bool,
-    /// Whether the outline of the room is drawn.
+    /// True if the outline of the room is drawn.
     pub show_room: bool,
     /// True if clipped pixels are marked.
     pub show_clipping: bool,
     /// Which terms of the equation the picture shows.
     pub terms: TermSelection,
-    /// Whether the strip at the bottom is unfolded.
+    /// True if the strip at the bottom is unfolded.
     pub bottom_open: bool,
     /// Id of the panel that the strip at the bottom shows.
     pub bottom_tab: String,
-    /// Whether the tree at the left is shown.
+    /// True if the tree at the left is shown.
     pub left_open: bool,
-    /// Whether the inspector at the right is shown.
+    /// True if the inspector at the right is shown.
     pub right_open: bool,
     /// Width of the tree, points.
     pub left_width: f32,
@@ -207,11 +207,11 @@ pub struct View {
     pub right_width: f32,
     /// Height of the strip at the bottom, points.
     pub bottom_height: f32,
-    /// Whether the list of keys is open.
+    /// True if the list of keys is open.
     pub keys_open: bool,
-    /// Whether "about" is open.
+    /// True if "about" is open.
     pub about_open: bool,
-    /// Whether the chooser of reflection models is open.
+    /// True if the chooser of reflection models is open.
     pub chooser_open: bool,
 }
 
@@ -247,9 +247,9 @@ impl Default for View {
 pub struct Status {
     /// Mean time per frame, milliseconds; 0 when not yet known.
     pub frame_ms: f32,
-    /// The interface to the graphics card: "Vulkan", "Metal", …
+    /// The interface to the GPU: "Vulkan", "Metal", …
     pub backend: String,
-    /// The graphics card.
+    /// The GPU.
     pub adapter: String,
     /// How the shaders are.
     pub shaders: Shaders,
@@ -430,7 +430,7 @@ pub enum Action {
     /// Put text on the clipboard.
     Copy(String),
     /// Something about custom models and shaders.
-    Author(Ask),
+    Model(ModelCommand),
     /// Say something.
     Say(Severity, String),
     /// Remove a message.
@@ -475,7 +475,7 @@ pub enum ViewChange {
     Clipping(bool),
     /// See [`View::terms`].
     Terms(TermSelection),
-    /// Whether the strip at the bottom is unfolded.
+    /// True if the strip at the bottom is unfolded.
     Bottom(bool),
     /// Which panel the strip at the bottom shows; unfolds it.
     BottomTab(String),
@@ -513,14 +513,14 @@ pub enum Effect {
     SaveFile {
         /// Where to.
         path: PathBuf,
-        /// Whether to replace a file that changed on disk since it was read, or that was never read.
+        /// True to replace a file that changed on disk since it was read, or that was never read.
         overwrite: bool,
     },
     /// The document is another one: forget what belonged to the one before.
     DocumentChanged,
     /// Look whether the document's file changed on disk; see [`reload::look`](super::reload::look).
     LookAtFile {
-        /// Whether to lose unsaved changes for it: the user was asked.
+        /// True to lose unsaved changes for it: the user was asked.
         discard: bool,
     },
     /// The same after a moment, since a file may be in the middle of being written.
@@ -585,17 +585,17 @@ pub enum Effect {
 #[derive(Clone, Debug, PartialEq, Message)]
 pub struct LabEffect(pub Effect);
 
-impl Default for Lab {
+impl Default for Session {
     fn default() -> Self {
         Self::new(Scene::default())
     }
 }
 
-impl Lab {
+impl Session {
     /// A window on a scene that is in no file.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
-        let mut lab = Self {
+        let mut session = Self {
             selection: Selection::Room,
             path: None,
             messages: Vec::new(),
@@ -627,18 +627,18 @@ impl Lab {
             defaulted: Vec::new(),
             slot_use: Vec::new(),
             seen_troubles: Vec::new(),
-            aside: Aside::default(),
+            stashed: StashedValues::default(),
             known_terms: KnownTerms::default(),
             undo_offered: None,
             camera_left: false,
             document: Document::new(scene),
         };
-        lab.select_first();
-        lab.use_slot(&lab.document.reflection_model.clone());
-        lab
+        session.select_first();
+        session.use_slot(&session.document.reflection_model.clone());
+        session
     }
 
-    /// Whether the document differs from its file.
+    /// True if the document differs from its file.
     #[must_use]
     pub fn is_dirty(&self) -> bool {
         self.recovered || !self.defaulted.is_empty() || self.disk.gone || self.document.differs()
@@ -859,7 +859,7 @@ impl Lab {
 
     fn carry_out(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
         match action {
-            Action::New => return self.unless_unsaved(Action::New, |lab| lab.start_new()),
+            Action::New => return self.unless_unsaved(Action::New, |session| session.start_new()),
             Action::Quit => return self.unless_unsaved(Action::Quit, |_| vec![Effect::Quit]),
             Action::OpenDialog => return self.unless_unsaved(Action::OpenDialog, |_| vec![Effect::PickOpen]),
             Action::Open(path) if std::mem::take(&mut self.may_discard) => {
@@ -870,7 +870,8 @@ impl Lab {
                 return self.unless_unsaved(again, |_| vec![Effect::OpenFile(path)]);
             }
             Action::OpenExample(i) => {
-                return self.unless_unsaved(Action::OpenExample(i), |lab| lab.open_example(i, registry));
+                return self
+                    .unless_unsaved(Action::OpenExample(i), |session| session.open_example(i, registry));
             }
             Action::Reload => {
                 return match self.path.clone() {
@@ -974,7 +975,7 @@ impl Lab {
             Action::ObserverFromView => return vec![Effect::ObserverFromView],
             Action::Steer(steer) => return vec![Effect::Steer(steer)],
             Action::Copy(text) => return vec![Effect::CopyText(text)],
-            Action::Author(ask) => return self.author(ask, registry),
+            Action::Model(ask) => return self.author(ask, registry),
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => {
                 if index < self.messages.len() {
@@ -1077,7 +1078,7 @@ impl Lab {
     fn replace_document(&mut self, path: Option<PathBuf>, scene: Scene) {
         self.document = Document::new(scene);
         self.path = path;
-        self.aside.clear();
+        self.stashed.clear();
         self.renaming = None;
         self.after_save = None;
         self.may_discard = false;
@@ -1265,7 +1266,7 @@ impl Lab {
                 let from = self.document.object_id(i);
                 self.document.insert_object(i + 1, copy, "Duplicate", self.selection, registry);
                 if let Some((from, to)) = from.zip(self.document.object_id(i + 1)) {
-                    self.aside.copied(from, to);
+                    self.stashed.copied(from, to);
                 }
                 self.select_new(Selection::Object(i + 1));
             }

@@ -8,7 +8,7 @@ use super::{
     Panel, Place,
     author::SHADER_TAB,
     icon::{self, Icon},
-    state::{Action, Lab, Severity, Shaders, ViewChange},
+    state::{Action, Session, Severity, Shaders, ViewChange},
     theme::{self, Palette},
 };
 use crate::{registry::Registry, text::plural};
@@ -30,42 +30,42 @@ impl Panel for StatusLine {
         Place::Status
     }
 
-    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
         let palette = Palette::here(ui);
         ui.horizontal(|ui| {
             ui.set_min_height(20.0);
-            let count = lab.messages.len();
+            let count = session.messages.len();
             let text = theme::small(
                 ui,
                 if count == 0 { "No messages".to_owned() } else { plural(count, "message") },
             );
             let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
-            match lab.worst() {
+            match session.worst() {
                 Some(worst) => icon::severity(ui.painter(), rect.center(), 5.5, worst, &palette),
                 None => icon::paint(
                     ui.painter(),
                     rect.shrink(3.0),
-                    if lab.view.bottom_open { Icon::Down } else { Icon::Up },
+                    if session.view.bottom_open { Icon::Down } else { Icon::Up },
                     palette.weak,
                 ),
             }
-            let says = if lab.view.bottom_open { "Fold the strip away (F8)" } else { "Show messages (F8)" };
+            let says =
+                if session.view.bottom_open { "Fold the strip away (F8)" } else { "Show messages (F8)" };
             let button = ui.add(Button::new(text).frame_when_inactive(false).small());
             button
                 .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("Messages: {count}")));
             if button.on_hover_text(says).clicked() {
-                actions.push(Action::View(lab.strip_change()));
+                actions.push(Action::View(session.strip_change()));
             }
-            shader_errors(ui, lab, &mut actions);
-            latest(ui, lab, &mut actions);
-            let (words, help) = match lab.status.shaders {
+            shader_errors(ui, session, &mut actions);
+            latest(ui, session, &mut actions);
+            let (words, help) = match session.status.shaders {
                 Shaders::Ready => ("", ""),
-                Shaders::Compiling => (
-                    "Compiling shaders…",
-                    "The graphics card’s programs are being made; the picture follows.",
-                ),
-                Shaders::Stale if lab.shaders.troubles.is_empty() => (
+                Shaders::Compiling => {
+                    ("Compiling shaders…", "The GPU’s programs are being made; the picture follows.")
+                }
+                Shaders::Stale if session.shaders.troubles.is_empty() => (
                     "Shader has an error: the picture shows the last good one",
                     "The message says where the error is.",
                 ),
@@ -74,12 +74,12 @@ impl Panel for StatusLine {
             if !words.is_empty() {
                 ui.label(theme::small(ui, words)).on_hover_text(help);
             }
-            if let Some((what, how_far)) = &lab.status.progress {
+            if let Some((what, how_far)) = &session.status.progress {
                 ui.label(theme::small(ui, what));
                 ui.add(ProgressBar::new(*how_far).desired_width(120.0).desired_height(6.0));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let name = lab.name_of(lab.selection, registry);
+                let name = session.name_of(session.selection, registry);
                 ui.add(egui::Label::new(theme::small(ui, format!("{name} selected · F1 keys"))).truncate());
             });
         });
@@ -88,11 +88,11 @@ impl Panel for StatusLine {
 }
 
 /// The last message, if it is good news and still true.
-fn latest(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
-    let Some(message) = lab.messages.last().filter(|m| m.severity == Severity::Info) else { return };
+fn latest(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let Some(message) = session.messages.last().filter(|m| m.severity == Severity::Info) else { return };
     // An undo is offered as long as it undoes what the message is about.
     let undo = message.offer.as_ref().is_some_and(|(_, action)| **action == Action::Undo);
-    if lab.view.bottom_open || (lab.is_dirty() && !undo) {
+    if session.view.bottom_open || (session.is_dirty() && !undo) {
         return;
     }
     let room = (ui.available_width() - 360.0).max(80.0);
@@ -108,13 +108,13 @@ fn latest(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
 }
 
 /// How many errors the shaders have, and whether the picture suffers from them; leads to the panel that says more.
-fn shader_errors(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
-    let count = lab.shaders.troubles.len();
+fn shader_errors(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let count = session.shaders.troubles.len();
     if count == 0 {
         return;
     }
     let palette = Palette::here(ui);
-    let stale = if lab.shaders.stale().is_empty() {
+    let stale = if session.shaders.stale().is_empty() {
         "nothing on the picture depends on it"
     } else {
         "the picture shows the last good version"

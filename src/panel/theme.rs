@@ -36,7 +36,7 @@ pub fn maths_italic() -> FontFamily {
 /// The colours of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
-    /// Whether it is the dark one.
+    /// True if it is the dark one.
     pub dark: bool,
     /// Behind everything in a panel.
     pub panel: Color32,

@@ -4,12 +4,12 @@ use bevy_egui::egui::{self, Align, Button, Key, Layout, RichText, Ui, WidgetInfo
 
 use super::{
     Panel, Place,
-    author::{Ask, SHADER_TAB},
+    author::{ModelCommand, SHADER_TAB},
     chooser,
     history::HISTORY_TAB,
     keys::{self, Binding},
     menu,
-    state::{Action, Lab, ThemeChoice, ViewChange},
+    state::{Action, Session, ThemeChoice, ViewChange},
     theme::{self, Palette},
     welcome,
 };
@@ -33,15 +33,15 @@ impl Panel for TopBar {
         Place::Top
     }
 
-    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
-        let table = keys::bindings(lab, registry);
+        let table = keys::bindings(session, registry);
         ui.horizontal(|ui| {
             ui.set_min_height(28.0);
             ui.spacing_mut().item_spacing.x = 4.0;
-            document(ui, lab, &mut actions);
+            document(ui, session, &mut actions);
             divider(ui);
-            menus(ui, lab, registry, &table, &mut actions);
+            menus(ui, session, registry, &table, &mut actions);
             divider(ui);
             // Where there is little room, the captions go first, then the choices of shading fold up.
             let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
@@ -52,14 +52,14 @@ impl Panel for TopBar {
             if captioned {
                 caption(ui, CAPTIONS[0]);
             }
-            actions.extend(chooser::show(ui, lab, registry));
+            actions.extend(chooser::show(ui, session, registry));
             ui.add_space(8.0);
             if captioned {
                 caption(ui, CAPTIONS[1]);
             }
-            shading(ui, lab, registry, &names, apart, &mut actions);
-            whose(ui, lab, registry);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, lab));
+            shading(ui, session, registry, &names, apart, &mut actions);
+            whose(ui, session, registry);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, session));
         });
         actions
     }
@@ -80,7 +80,7 @@ fn caption(ui: &mut Ui, text: &str) {
 const CAPTIONS: [&str; 2] = ["Reflection", "Shading"];
 
 /// The scene's name in a place whose size depends on the window alone, so that the menus stand still.
-fn document(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
+fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let width = (0.16 * ui.max_rect().width()).clamp(88.0, 208.0);
     let (place, response) = ui.allocate_exact_size(vec2(width, 24.0), egui::Sense::click());
@@ -90,26 +90,27 @@ fn document(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
         ui.painter().rect(place, 4.0, palette.hovered, stroke, egui::StrokeKind::Inside);
     }
     let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let galley = theme::elided(ui, &lab.title(), font, palette.text, width - 8.0);
+    let galley = theme::elided(ui, &session.title(), font, palette.text, width - 8.0);
     let at = egui::Align2::LEFT_CENTER.anchor_size(place.left_center() + vec2(4.0, 0.0), galley.size());
     ui.painter().galley(at.min, galley, palette.text);
-    let state = if lab.is_dirty() { "has unsaved changes" } else { "has no unsaved changes" };
-    response
-        .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("{} {state}", lab.title())));
+    let state = if session.is_dirty() { "has unsaved changes" } else { "has no unsaved changes" };
+    response.widget_info(|| {
+        WidgetInfo::labeled(WidgetType::Button, true, format!("{} {state}", session.title()))
+    });
     if response.clicked() {
         actions.push(Action::Select(Selection::Room));
     }
     response.on_hover_ui(|ui| {
-        ui.label(theme::strong(ui, lab.title()));
-        if let Some(description) = &lab.document.description {
+        ui.label(theme::strong(ui, session.title()));
+        if let Some(description) = &session.document.description {
             ui.label(description);
         }
-        let file = lab.path.as_ref().map_or("in no file yet".to_owned(), |p| p.display().to_string());
+        let file = session.path.as_ref().map_or("in no file yet".to_owned(), |p| p.display().to_string());
         ui.label(theme::small(ui, format!("{file}; {state}")));
     });
     // The place of the dot is kept, so that nothing moves when it comes and goes.
     let (rect, dot) = ui.allocate_exact_size(vec2(10.0, 18.0), egui::Sense::hover());
-    if lab.is_dirty() {
+    if session.is_dirty() {
         ui.painter().circle_filled(rect.center(), 3.5, palette.accent);
         dot.on_hover_text("Unsaved changes");
     }
@@ -118,7 +119,7 @@ fn document(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
 /// Room for the longest entry and its key, points.
 const MENU_WIDTH: f32 = 232.0;
 
-fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions: &mut Vec<Action>) {
+fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding], actions: &mut Vec<Action>) {
     let item = |ui: &mut Ui, text: &str, action: Action, actions: &mut Vec<Action>| {
         let keys = RichText::new(keys::keys_of(table, &action)).color(Palette::here(ui).weak);
         if ui.add(Button::new(text).shortcut_text(keys)).clicked() {
@@ -144,11 +145,11 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             item(ui, "New default scene", Action::New, actions);
             item(ui, "Open…", Action::OpenDialog, actions);
             menu::submenu(ui, "Open recent", |ui| {
-                if lab.recent_files.is_empty() {
+                if session.recent_files.is_empty() {
                     ui.weak("Files that you open or save appear here.");
                     return;
                 }
-                for path in &lab.recent_files {
+                for path in &session.recent_files {
                     let name = path
                         .file_name()
                         .map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
@@ -164,17 +165,20 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             ui.separator();
             item(ui, "Save", Action::Save, actions);
             item(ui, "Save as…", Action::SaveAsDialog, actions);
-            ui.add_enabled_ui(lab.path.is_some(), |ui| item(ui, "Reload from disk", Action::Reload, actions));
+            ui.add_enabled_ui(session.path.is_some(), |ui| {
+                item(ui, "Reload from disk", Action::Reload, actions)
+            });
             ui.separator();
             item(ui, "Quit", Action::Quit, actions);
         });
         let edit = ui.menu_button("Edit", |ui| {
             ui.set_width(1.3 * MENU_WIDTH);
-            let (done, steps) = (lab.document.done(), lab.document.steps().len());
-            let step = |verb: &str, at: Option<usize>| match at.and_then(|at| lab.document.steps().nth(at)) {
-                Some(name) => format!("{verb}: {name}"),
-                None => verb.to_owned(),
-            };
+            let (done, steps) = (session.document.done(), session.document.steps().len());
+            let step =
+                |verb: &str, at: Option<usize>| match at.and_then(|at| session.document.steps().nth(at)) {
+                    Some(name) => format!("{verb}: {name}"),
+                    None => verb.to_owned(),
+                };
             let undo = done.checked_sub(1);
             ui.add_enabled_ui(undo.is_some(), |ui| item(ui, &step("Undo", undo), Action::Undo, actions));
             let redo = Some(done).filter(|done| *done < steps);
@@ -201,18 +205,18 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                 }
             });
             ui.separator();
-            let part = matches!(lab.selection, Selection::Light(_) | Selection::Object(_));
+            let part = matches!(session.selection, Selection::Light(_) | Selection::Object(_));
             ui.add_enabled_ui(part, |ui| {
-                item(ui, "Rename", Action::BeginRename(lab.selection), actions);
-                item(ui, "Duplicate", Action::Duplicate(lab.selection), actions);
-                item(ui, "Hide or switch off", Action::Toggle(lab.selection), actions);
-                item(ui, "Delete", Action::Remove(lab.selection), actions);
+                item(ui, "Rename", Action::BeginRename(session.selection), actions);
+                item(ui, "Duplicate", Action::Duplicate(session.selection), actions);
+                item(ui, "Hide or switch off", Action::Toggle(session.selection), actions);
+                item(ui, "Delete", Action::Remove(session.selection), actions);
             });
             ui.separator();
-            item(ui, "New reflection model…", Action::Author(Ask::New), actions);
-            item(ui, "Duplicate the model as a file…", Action::Author(Ask::Duplicate), actions);
-            item(ui, "Open the model in an editor", Action::Author(Ask::EditShown), actions);
-            item(ui, "Export shaders for editing…", Action::Author(Ask::ExportDialog), actions);
+            item(ui, "New reflection model…", Action::Model(ModelCommand::New), actions);
+            item(ui, "Duplicate the model as a file…", Action::Model(ModelCommand::Duplicate), actions);
+            item(ui, "Open the model in an editor", Action::Model(ModelCommand::EditShown), actions);
+            item(ui, "Export shaders for editing…", Action::Model(ModelCommand::ExportDialog), actions);
         });
         let view_menu = ui.menu_button("View", |ui| {
             ui.set_width(MENU_WIDTH);
@@ -220,25 +224,25 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
             egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
                 item(ui, "Home: the observer’s view", Action::HomeView, actions);
                 item(ui, "Focus selection", Action::FocusSelection, actions);
-                let problem = lab.observer_problem();
+                let problem = session.observer_problem();
                 let place =
                     |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView, actions);
                 let place = ui.add_enabled_ui(problem.is_none(), place).response;
                 problem.map(|why| place.on_hover_text(why));
                 ui.separator();
                 menu::submenu(ui, "Terms of the equation", |ui| {
-                    for terms in lab.offered_terms(registry) {
+                    for terms in session.offered_terms(registry) {
                         let name = match terms {
                             TermSelection::All => "All terms".to_owned(),
                             other => format!("The {} term alone", other.id()),
                         };
-                        if ui.radio(lab.view.terms == terms, name).clicked() {
+                        if ui.radio(session.view.terms == terms, name).clicked() {
                             actions.push(Action::View(ViewChange::Terms(terms)));
                         }
                     }
                 });
                 ui.separator();
-                let v = &lab.view;
+                let v = &session.view;
                 let view = |c: ViewChange| Action::View(c);
                 check(
                     ui,
@@ -269,7 +273,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
                     view(ViewChange::Examples(!v.examples_open)),
                     actions,
                 );
-                for panel in lab.panels.iter().filter(|p| p.place == Place::Bottom) {
+                for panel in session.panels.iter().filter(|p| p.place == Place::Bottom) {
                     let shown = v.bottom_open && v.bottom_tab == panel.id;
                     let change = if shown {
                         ViewChange::Bottom(false)
@@ -309,7 +313,7 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
         });
         let help = ui.menu_button("Help", |ui| {
             ui.set_width(MENU_WIDTH);
-            item(ui, "Keys and mouse", Action::View(ViewChange::Keys(!lab.view.keys_open)), actions);
+            item(ui, "Keys and mouse", Action::View(ViewChange::Keys(!session.view.keys_open)), actions);
             item(ui, "About", Action::View(ViewChange::About(true)), actions);
         });
         let bar = [(Key::F, file), (Key::E, edit), (Key::V, view_menu), (Key::H, help)];
@@ -320,13 +324,13 @@ fn menus(ui: &mut Ui, lab: &Lab, registry: &Registry, table: &[Binding], actions
 /// One button for each shading model, as one control.
 fn shading(
     ui: &mut Ui,
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
     names: &[&str],
     apart: bool,
     actions: &mut Vec<Action>,
 ) {
-    let chosen = registry.shading_models().iter().position(|m| m.declaration.id == lab.shading_shown());
+    let chosen = registry.shading_models().iter().position(|m| m.declaration.id == session.shading_shown());
     let tip = |ui: &mut Ui, i: usize| {
         let d = registry.shading_models()[i].declaration;
         ui.set_max_width(300.0);
@@ -359,13 +363,13 @@ fn shading(
         menu.inner.flatten()
     };
     if let Some(i) = picked {
-        actions.push(Action::Edit(lab.edit_shading_model(registry.shading_models()[i].declaration.id)));
+        actions.push(Action::Edit(session.edit_shading_model(registry.shading_models()[i].declaration.id)));
     }
 }
 
 /// Says that the choices at the top are about the selected object alone, where it has its own.
-fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
-    let what = match (lab.model_override().is_some(), lab.shading_override().is_some()) {
+fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
+    let what = match (session.model_override().is_some(), session.shading_override().is_some()) {
         (true, true) => "reflection and shading",
         (true, false) => "reflection",
         (false, true) => "shading",
@@ -373,7 +377,7 @@ fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
     };
     let palette = Palette::here(ui);
     ui.add_space(6.0);
-    let name = lab.name_of(lab.selection, registry);
+    let name = session.name_of(session.selection, registry);
     let text = format!("“{name}” overrides {what}");
     // The frame rate keeps its place.
     let room = ui.available_width() - 96.0;
@@ -390,9 +394,9 @@ fn whose(ui: &mut Ui, lab: &Lab, registry: &Registry) {
             "{name} has its own {what}, so the choice here changes that of {name} alone. At the end of the \
              panel at the right it can be made to follow the scene again."
         ));
-        let model = registry.model(&lab.document.reflection_model).map_or("–", |m| m.declaration.name);
+        let model = registry.model(&session.document.reflection_model).map_or("–", |m| m.declaration.name);
         let shading =
-            registry.shading_model(&lab.document.shading_model).map_or("–", |m| m.declaration.name);
+            registry.shading_model(&session.document.shading_model).map_or("–", |m| m.declaration.name);
         ui.label(theme::small(ui, format!("The scene: {model}, {shading} shading")));
     });
 }
@@ -468,8 +472,8 @@ fn prepare_digits(ui: &Ui) {
     });
 }
 
-fn renderer(ui: &mut Ui, lab: &Lab) {
-    let status = &lab.status;
+fn renderer(ui: &mut Ui, session: &Session) {
+    let status = &session.status;
     let mut parts = Vec::new();
     if status.fps() > 0.0 {
         parts.push(format!("{:.0} fps", status.fps()));

@@ -8,7 +8,7 @@ use bevy_egui::egui::{
 use super::{
     Panel, Place,
     icon::{self, Icon},
-    state::{Action, Lab},
+    state::{Action, Session},
     theme::{self, Palette},
 };
 use crate::document::{Edit, LightField, ObjectField, Selection};
@@ -42,9 +42,9 @@ impl Panel for Tree {
         Place::Left
     }
 
-    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
-        let (lights, objects) = (lab.document.lights.len(), lab.document.objects.len());
+        let (lights, objects) = (session.document.lights.len(), session.document.objects.len());
         // Rows are addressed by number, so that ten thousand objects cost no more than those on screen.
         let row = |i: usize| match i {
             0 => Row::Part(Selection::Room),
@@ -54,7 +54,7 @@ impl Panel for Tree {
             i if i == 3 + lights => Row::Objects,
             i => Row::Part(Selection::Object(i - 4 - lights)),
         };
-        actions.extend(step(ui, lab).map(Action::Select));
+        actions.extend(step(ui, session).map(Action::Select));
         let height = 26.0;
         ui.spacing_mut().item_spacing.y = 0.0;
         let total = 4 + lights + objects;
@@ -62,9 +62,9 @@ impl Panel for Tree {
         // A selection from elsewhere comes into view.
         let memory = ui.id().with("shown selection");
         let shown: Option<Selection> = ui.data(|d| d.get_temp(memory));
-        if shown != Some(lab.selection) {
-            ui.data_mut(|d| d.insert_temp(memory, lab.selection));
-            let index = match lab.selection {
+        if shown != Some(session.selection) {
+            ui.data_mut(|d| d.insert_temp(memory, session.selection));
+            let index = match session.selection {
                 Selection::Room => 0,
                 Selection::Observer => 1,
                 Selection::Light(i) => 3 + i,
@@ -79,7 +79,7 @@ impl Panel for Tree {
         let output = area.show_rows(ui, height, total, |ui, range| {
             for i in range {
                 match row(i) {
-                    Row::Part(part) => part_row(ui, lab, registry, part, height, &mut actions),
+                    Row::Part(part) => part_row(ui, session, registry, part, height, &mut actions),
                     Row::Lights => {
                         heading(ui, "Lights", lights, height, |ui| {
                             for light in registry.lights() {
@@ -123,15 +123,15 @@ fn row_id(part: Selection) -> Id {
 }
 
 /// The part that an arrow key leads to, from the row that has the focus; it gets the focus.
-fn step(ui: &Ui, lab: &Lab) -> Option<Selection> {
+fn step(ui: &Ui, session: &Session) -> Option<Selection> {
     let focus = ui.memory(egui::Memory::focused)?;
     let keys = [Key::ArrowUp, Key::ArrowDown];
     let way = keys.map(|key| ui.input(|i| i.num_presses(key)));
     if way == [0, 0] || ui.input(|i| i.modifiers.any()) || egui::Popup::is_any_open(ui.ctx()) {
         return None;
     }
-    let lights = (0..lab.document.lights.len()).map(Selection::Light);
-    let objects = (0..lab.document.objects.len()).map(Selection::Object);
+    let lights = (0..session.document.lights.len()).map(Selection::Light);
+    let objects = (0..session.document.objects.len()).map(Selection::Object);
     let parts: Vec<_> =
         [Selection::Room, Selection::Observer].into_iter().chain(lights).chain(objects).collect();
     let at = parts.iter().position(|part| row_id(*part) == focus)?;
@@ -180,15 +180,15 @@ fn heading(ui: &mut Ui, name: &str, count: usize, height: f32, menu: impl FnOnce
 
 fn part_row(
     ui: &mut Ui,
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
     part: Selection,
     height: f32,
     actions: &mut Vec<Action>,
 ) {
     let palette = Palette::here(ui);
-    let selected = lab.selection == part;
-    let name = lab.name_of(part, registry);
+    let selected = session.selection == part;
+    let name = session.name_of(part, registry);
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let response = ui.interact(rect, row_id(part), Sense::click());
     response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, &name));
@@ -220,28 +220,28 @@ fn part_row(
         Selection::Room => icon::paint(&painter, square, Icon::Room, palette.text),
         Selection::Observer => icon::paint(&painter, square, Icon::Eye, palette.text),
         Selection::Light(i) => {
-            let light = &lab.document.lights[i];
+            let light = &session.document.lights[i];
             glyph(registry.light(&light.light_type).map_or("?", |e| e.declaration.glyph));
             dot = Some(light.rgb8());
         }
         Selection::Object(i) => {
-            let object = &lab.document.objects[i];
+            let object = &session.document.objects[i];
             glyph(registry.shape(&object.object_type).map_or("?", |e| e.declaration.glyph));
             let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
             dot = Some([colour.x as u8, colour.y as u8, colour.z as u8]);
         }
     }
     let text_left = x + 14.0;
-    if lab.renaming == Some(part) {
+    if session.renaming == Some(part) {
         let place = Rect::from_min_max(
             pos2(text_left - 4.0, rect.top() + 2.0),
             pos2(ground.right() - 4.0, rect.bottom() - 2.0),
         );
-        rename(ui, lab, part, &name, place, actions);
+        rename(ui, session, part, &name, place, actions);
         return;
     }
     let right = ground.right() - if nested { 48.0 } else { 8.0 };
-    let there = is_there(lab, part);
+    let there = is_there(session, part);
     let colour = if there { palette.text } else { palette.weak };
     let galley = theme::elided(ui, &name, body, colour, (right - text_left).max(8.0));
     let cut = galley.elided;
@@ -271,14 +271,14 @@ fn part_row(
         if nested {
             item(ui, "Rename", Action::BeginRename(part));
             item(ui, "Duplicate", Action::Duplicate(part));
-            item(ui, toggle_words(part, is_there(lab, part)), Action::Toggle(part));
+            item(ui, toggle_words(part, is_there(session, part)), Action::Toggle(part));
             ui.separator();
             item(ui, "Delete", Action::Remove(part));
         } else {
             item(ui, "Show properties", Action::Select(part));
         }
         if part == Selection::Observer {
-            let problem = lab.observer_problem();
+            let problem = session.observer_problem();
             let place = |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView);
             let place = ui.add_enabled_ui(problem.is_none(), place).response;
             problem.map(|why| place.on_hover_text(why));
@@ -290,10 +290,10 @@ fn part_row(
 }
 
 /// True unless it is hidden or switched off.
-fn is_there(lab: &Lab, part: Selection) -> bool {
+fn is_there(session: &Session, part: Selection) -> bool {
     match part {
-        Selection::Light(i) => lab.document.lights.get(i).is_none_or(|light| light.enabled),
-        Selection::Object(i) => lab.document.objects.get(i).is_none_or(|object| object.visible),
+        Selection::Light(i) => session.document.lights.get(i).is_none_or(|light| light.enabled),
+        Selection::Object(i) => session.document.objects.get(i).is_none_or(|object| object.visible),
         Selection::Room | Selection::Observer => true,
     }
 }
@@ -376,11 +376,18 @@ fn colour_dot(
     response.on_hover_text(format!("Colour of {name}"));
 }
 
-fn rename(ui: &mut Ui, lab: &Lab, part: Selection, name: &str, place: Rect, actions: &mut Vec<Action>) {
+fn rename(
+    ui: &mut Ui,
+    session: &Session,
+    part: Selection,
+    name: &str,
+    place: Rect,
+    actions: &mut Vec<Action>,
+) {
     let id = ui.id().with(("rename", part));
     let own = match part {
-        Selection::Light(i) => lab.document.lights[i].name.clone(),
-        Selection::Object(i) => lab.document.objects[i].name.clone(),
+        Selection::Light(i) => session.document.lights[i].name.clone(),
+        Selection::Object(i) => session.document.objects[i].name.clone(),
         _ => None,
     };
     let first = ui.data(|d| d.get_temp::<String>(id)).is_none();

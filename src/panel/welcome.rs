@@ -10,7 +10,7 @@ use super::{
     icon::{self, Icon},
     keys,
     preview::{self, Source},
-    state::{Action, Lab, ViewChange},
+    state::{Action, Session, ViewChange},
     theme::{self, Palette},
 };
 use crate::{registry::Registry, scene::examples::EXAMPLES};
@@ -25,10 +25,10 @@ const LEAST: f32 = 320.0;
 const MENU: f32 = 440.0;
 
 /// The strip below the picture.
-pub fn strip(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
     // The picture comes first; the menu has the examples too.
-    if !lab.view.examples_open || ui.available_height() < LEAST {
+    if !session.view.examples_open || ui.available_height() < LEAST {
         return actions;
     }
     let palette = Palette::here(ui);
@@ -74,8 +74,8 @@ pub fn strip(ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
 }
 
 /// Escape closes the strip, unless it is another's.
-pub fn left(ctx: &Context, lab: &Lab) -> Option<Action> {
-    let left = lab.view.examples_open && !lab.view.presenting && keys::escapes(ctx, lab);
+pub fn left(ctx: &Context, session: &Session) -> Option<Action> {
+    let left = session.view.examples_open && !session.view.presenting && keys::escapes(ctx, session);
     left.then_some(Action::View(ViewChange::Examples(false)))
 }
 

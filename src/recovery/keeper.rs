@@ -11,7 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{About, Document, Session, Store};
+use super::{About, Document, Journal, Store};
 use crate::scene::save;
 
 /// A copy is written this long after the first change that is not in it.
@@ -34,7 +34,7 @@ struct State {
     /// The document that should be on disk; none without unsaved changes.
     wanted: Option<Arc<Document>>,
     /// A copy that another window left, to be continued.
-    adopted: Option<Session>,
+    adopted: Option<Journal>,
     /// Counts the changes of what is wanted, and up to which it is on disk.
     change: u64,
     settled: u64,
@@ -94,7 +94,7 @@ impl Keeper {
     pub fn start(store: Option<Store>, trouble: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared { state: Mutex::default(), work: Condvar::new(), done: Condvar::new() });
         let keeper = Self(shared.clone());
-        let writer = Writer { store, session: None };
+        let writer = Writer { store, journal: None };
         if let Err(error) =
             thread::Builder::new().name("recovery".to_owned()).spawn(move || shared.run(writer, &trouble))
         {
@@ -114,8 +114,8 @@ impl Keeper {
     }
 
     /// The copy that another window left is the document now.
-    pub fn adopt(&self, session: Session, document: Document) {
-        self.0.want(Some(document), Some(session));
+    pub fn adopt(&self, journal: Journal, document: Document) {
+        self.0.want(Some(document), Some(journal));
     }
 
     /// True if this is what is kept already, or will be soon.
@@ -177,7 +177,7 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn want(&self, document: Option<Document>, adopted: Option<Session>) {
+    fn want(&self, document: Option<Document>, adopted: Option<Journal>) {
         let mut state = self.lock();
         if document.is_none() && state.wanted.is_none() {
             return;
@@ -220,7 +220,7 @@ impl Shared {
     }
 
     /// Waits until there is something to do, and somebody waits or enough time has passed.
-    fn next(&self) -> (u64, Option<Arc<Document>>, Option<Session>) {
+    fn next(&self) -> (u64, Option<Arc<Document>>, Option<Journal>) {
         let mut state = self.lock();
         loop {
             let waits = state.since.map(|since| DELAY.saturating_sub(since.elapsed()));
@@ -246,7 +246,7 @@ impl Shared {
 /// The state that only the thread uses.
 struct Writer {
     store: Option<Store>,
-    session: Option<Session>,
+    journal: Option<Journal>,
 }
 
 impl Writer {
@@ -254,25 +254,25 @@ impl Writer {
     fn bring_up_to_date(
         &mut self,
         wanted: Option<&Document>,
-        adopted: Option<Session>,
+        adopted: Option<Journal>,
     ) -> io::Result<Option<PathBuf>> {
         // One window has one copy. That of its own is of what the user gave up for the other.
-        let own = adopted.and_then(|adopted| self.session.replace(adopted));
+        let own = adopted.and_then(|adopted| self.journal.replace(adopted));
         let Some(Document { about, scene, registry }) = wanted else {
-            own.into_iter().chain(self.session.take()).for_each(Session::remove);
+            own.into_iter().chain(self.journal.take()).for_each(Journal::remove);
             return Ok(None);
         };
-        let session = match &mut self.session {
-            Some(session) => session,
+        let journal = match &mut self.journal {
+            Some(journal) => journal,
             none => {
                 let store = self.store.as_ref().ok_or_else(no_folder)?;
                 none.insert(store.begin()?)
             }
         };
         let about = About { process: std::process::id(), ..about.clone() };
-        session.write(&about, &save::to_json(scene, None, registry))?;
-        own.into_iter().for_each(Session::remove);
-        Ok(Some(session.file()))
+        journal.write(&about, &save::to_json(scene, None, registry))?;
+        own.into_iter().for_each(Journal::remove);
+        Ok(Some(journal.file()))
     }
 }
 
@@ -326,7 +326,7 @@ mod tests {
     /// The number of copies on disk, of windows that run or not.
     fn copies(folder: &tempfile::TempDir) -> usize {
         let sessions = fs::read_dir(folder.path().join("copies")).into_iter().flatten().flatten();
-        sessions.filter(|session| session.path().join("scene.json").exists()).count()
+        sessions.filter(|journal| journal.path().join("scene.json").exists()).count()
     }
 
     #[test]
@@ -395,17 +395,17 @@ mod tests {
     #[test]
     fn a_copy_that_was_left_is_gone_on_with() {
         let (store, folder) = store();
-        let mut session = store.begin().expect("made");
-        session.write(&document("left").about, "{}").expect("written");
-        let file = session.file();
-        drop(session);
+        let mut journal = store.begin().expect("made");
+        journal.write(&document("left").about, "{}").expect("written");
+        let file = journal.file();
+        drop(journal);
 
         let left = store.left().pop().expect("offered");
         let keeper = Keeper::start(Some(store.clone()), || {});
         // A copy of its own gives way.
         keeper.keep(document("own"));
         assert_ne!(kept(&keeper), file);
-        keeper.adopt(left.session, document("left"));
+        keeper.adopt(left.journal, document("left"));
         assert_eq!(kept(&keeper), file);
         assert_eq!(copies(&folder), 1);
         assert!(fs::read_to_string(&file).expect("there").contains("\"name\": \"left\""));

@@ -1,7 +1,7 @@
 //! Recovery copies: unsaved work that outlives the window, however that ends.
 //!
 //! While the document has unsaved changes, [`Keeper`] keeps a copy of it in a folder of the window's own
-//! ([`Session`]), written by a thread of its own about a second after an edit. Saving and closing remove it;
+//! ([`Journal`]), written by a thread of its own about a second after an edit. Saving and closing remove it;
 //! nothing else does. So whatever takes the window down, a signal, a crash, a lost display, at most that second is
 //! lost, and [`Store::left`] finds the copy at the next start.
 //!
@@ -20,7 +20,7 @@ mod keeper;
 mod store;
 
 pub use keeper::{Keeper, Settled};
-pub use store::{Left, MAX_COPIES, Session, Store};
+pub use store::{Journal, Left, MAX_COPIES, Store};
 
 /// The document behind a copy.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -22,7 +22,7 @@ use crate::{
 pub const MAX_COPIES: usize = 20;
 /// The folder of the copies within the user's data.
 const FOLDER: &str = "recovery";
-/// The names of the files of a session.
+/// The names of the files of a journal.
 const SCENE: &str = "scene.json";
 const ABOUT: &str = "about.json";
 const LOCK: &str = "lock";
@@ -41,7 +41,7 @@ pub struct Store {
 
 /// The copy of one window. As long as this value lives, no other process offers the copy.
 #[derive(Debug)]
-pub struct Session {
+pub struct Journal {
     folder: PathBuf,
     /// The content of the file beside the copy.
     about: Option<About>,
@@ -53,7 +53,7 @@ pub struct Session {
 #[derive(Debug)]
 pub struct Left {
     /// Its folder, held: no other window offers it meanwhile.
-    pub session: Session,
+    pub journal: Journal,
     /// The document that it is of.
     pub about: About,
     /// The time of its last change.
@@ -77,11 +77,11 @@ impl Store {
     ///
     /// # Errors
     /// When the folder cannot be made.
-    pub fn begin(&self) -> io::Result<Session> {
+    pub fn begin(&self) -> io::Result<Journal> {
         make_folder(&self.folder, true)?;
         if fs::read_dir(&self.folder)?.take(MAX_COPIES).count() == MAX_COPIES {
             for left in self.left().into_iter().skip(MAX_COPIES - 1) {
-                left.session.remove();
+                left.journal.remove();
             }
         }
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
@@ -97,7 +97,7 @@ impl Store {
             }
         };
         let lock = first_lock(&folder).ok();
-        Ok(Session { folder, about: None, _lock: lock })
+        Ok(Journal { folder, about: None, _lock: lock })
     }
 
     /// The copies of windows that run no longer, the latest first. Clears away what such windows left without a
@@ -114,7 +114,7 @@ impl Store {
     }
 }
 
-/// The copy in the folder of a session, unless that runs.
+/// The copy in the folder of a journal, unless that runs.
 fn look(folder: PathBuf) -> Option<Left> {
     let scene = fs::metadata(folder.join(SCENE)).ok();
     // Without a copy, what is locked was started already: a folder that has no lock yet is not touched.
@@ -138,11 +138,11 @@ fn look(folder: PathBuf) -> Option<Left> {
         "Untitled scene".clone_into(&mut about.title);
     }
     let when = scene.modified().unwrap_or(UNIX_EPOCH);
-    let session = Session { folder, about: Some(about.clone()), _lock: lock.ok().flatten() };
-    Some(Left { session, about, when })
+    let journal = Journal { folder, about: Some(about.clone()), _lock: lock.ok().flatten() };
+    Some(Left { journal, about, when })
 }
 
-/// Takes the lock of a session: `None` while another process has it.
+/// Takes the lock of a journal: `None` while another process has it.
 fn lock(folder: &Path, create: bool) -> io::Result<Option<File>> {
     let file =
         OpenOptions::new().read(true).write(true).create(create).truncate(false).open(folder.join(LOCK))?;
@@ -153,7 +153,7 @@ fn lock(folder: &Path, create: bool) -> io::Result<Option<File>> {
     }
 }
 
-/// Makes the lock of a new session. It is held before it gets its name: nobody else can have it first.
+/// Makes the lock of a new journal. It is held before it gets its name: nobody else can have it first.
 fn first_lock(folder: &Path) -> io::Result<File> {
     let hidden = folder.join(format!(".{LOCK}"));
     let file = OpenOptions::new().read(true).write(true).create_new(true).open(&hidden)?;
@@ -162,7 +162,7 @@ fn first_lock(folder: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-impl Session {
+impl Journal {
     /// The file of the copy.
     #[must_use]
     pub fn file(&self) -> PathBuf {
@@ -202,7 +202,7 @@ impl Left {
     /// # Errors
     /// Every problem, one sentence each, with the name of the file.
     pub fn scene(&self, registry: &Registry) -> Result<Scene, Vec<String>> {
-        let file = self.session.file();
+        let file = self.journal.file();
         let name = file.display().to_string();
         let bytes = files::read(&file, MAX_FILE_BYTES).map_err(|e| vec![format!("{name}: {e}")])?;
         load::from_bytes(&bytes, &name, registry, Defaults::Use)
@@ -254,12 +254,12 @@ mod tests {
         let (store, _folder) = store();
         let registry = Registry::builtin();
         assert!(store.left().is_empty());
-        let mut session = store.begin().expect("made");
+        let mut journal = store.begin().expect("made");
         let scene = Scene { name: Some("Mine".to_owned()), ..Scene::default() };
-        session.write(&about("one"), &to_json(&Scene::default(), None, &registry)).expect("written");
-        session.write(&about("two"), &to_json(&scene, None, &registry)).expect("written");
+        journal.write(&about("one"), &to_json(&Scene::default(), None, &registry)).expect("written");
+        journal.write(&about("two"), &to_json(&scene, None, &registry)).expect("written");
         assert!(store.left().is_empty(), "its window runs");
-        drop(session);
+        drop(journal);
 
         let left = store.left();
         assert_eq!(left.len(), 1);
@@ -269,7 +269,7 @@ mod tests {
         drop(left);
         // Nothing but the user's word removes it.
         for left in store.left() {
-            left.session.remove();
+            left.journal.remove();
         }
         assert!(store.left().is_empty());
         assert_eq!(fs::read_dir(&store.folder).expect("there").count(), 0);
@@ -283,14 +283,14 @@ mod tests {
         for broken in
             [text.replace("lambert", "lost_model"), text[..text.len() / 2].to_owned(), String::new()]
         {
-            let mut session = store.begin().expect("made");
-            session.write(&about("room"), &broken).expect("written");
-            drop(session);
+            let mut journal = store.begin().expect("made");
+            journal.write(&about("room"), &broken).expect("written");
+            drop(journal);
             let left = store.left().pop().expect("offered");
             let problems = left.scene(&registry).expect_err("broken");
-            assert!(problems[0].contains(&left.session.file().display().to_string()), "{problems:?}");
-            assert_eq!(fs::read_to_string(left.session.file()).expect("there"), broken);
-            left.session.remove();
+            assert!(problems[0].contains(&left.journal.file().display().to_string()), "{problems:?}");
+            assert_eq!(fs::read_to_string(left.journal.file()).expect("there"), broken);
+            left.journal.remove();
         }
     }
 
@@ -298,10 +298,10 @@ mod tests {
     fn a_copy_without_its_description_is_a_copy() {
         let (store, _folder) = store();
         let registry = Registry::builtin();
-        let mut session = store.begin().expect("made");
-        session.write(&about("room"), &to_json(&Scene::default(), None, &registry)).expect("written");
-        fs::write(session.folder.join(ABOUT), "{").expect("writable");
-        drop(session);
+        let mut journal = store.begin().expect("made");
+        journal.write(&about("room"), &to_json(&Scene::default(), None, &registry)).expect("written");
+        fs::write(journal.folder.join(ABOUT), "{").expect("writable");
+        drop(journal);
         let left = store.left().pop().expect("offered");
         let about = About { title: "Untitled scene".to_owned(), ..About::default() };
         assert_eq!((left.about.clone(), left.scene(&registry)), (about, Ok(Scene::default())));
@@ -310,17 +310,17 @@ mod tests {
     #[test]
     fn the_copy_of_one_document_never_passes_for_that_of_another() {
         let (store, _folder) = store();
-        let mut session = store.begin().expect("made");
-        session.write(&about("room"), "text").expect("written");
+        let mut journal = store.begin().expect("made");
+        journal.write(&about("room"), "text").expect("written");
         let other = About { path: Some("/hall.json".into()), ..about("hall") };
-        let scene = session.file();
+        let scene = journal.file();
         let too_large = " ".repeat(MAX_FILE_BYTES as usize + 1);
-        assert!(session.write(&other, &too_large).is_err());
+        assert!(journal.write(&other, &too_large).is_err());
         assert_eq!(fs::read_to_string(&scene).expect("there"), "text", "nothing was begun");
         // The second step fails, as if the process ended between the two.
-        fs::remove_file(session.folder.join(ABOUT)).expect("removed");
-        fs::create_dir_all(session.folder.join(ABOUT).join("in the way")).expect("made");
-        assert!(session.write(&other, "other").is_err());
+        fs::remove_file(journal.folder.join(ABOUT)).expect("removed");
+        fs::create_dir_all(journal.folder.join(ABOUT).join("in the way")).expect("made");
+        assert!(journal.write(&other, "other").is_err());
         assert!(!scene.exists());
     }
 
@@ -342,10 +342,10 @@ mod tests {
     fn the_number_of_copies_is_bounded_and_the_oldest_give_way() {
         let (store, _folder) = store();
         for i in 0..MAX_COPIES + 3 {
-            let mut session = store.begin().expect("made");
-            session.write(&about(&i.to_string()), "{}").expect("written");
+            let mut journal = store.begin().expect("made");
+            journal.write(&about(&i.to_string()), "{}").expect("written");
             let time = UNIX_EPOCH + Duration::from_secs(1000 * i as u64);
-            File::options().write(true).open(session.file()).expect("there").set_modified(time).expect("set");
+            File::options().write(true).open(journal.file()).expect("there").set_modified(time).expect("set");
         }
         let expected: Vec<_> = (3..MAX_COPIES + 3).rev().map(|i| i.to_string()).collect();
         assert_eq!(titles(&store), expected);
@@ -360,9 +360,9 @@ mod tests {
         fs::create_dir(&outside).expect("made");
         std::os::unix::fs::symlink(&outside, store.folder.join("link")).expect("made");
         fs::write(outside.join(SCENE), "{}").expect("writable");
-        let session = store.begin().expect("made");
-        std::os::unix::fs::symlink("/dev/zero", session.file()).expect("made");
-        drop(session);
+        let journal = store.begin().expect("made");
+        std::os::unix::fs::symlink("/dev/zero", journal.file()).expect("made");
+        drop(journal);
         let left = store.left();
         assert_eq!(left.len(), 1);
         let problems = left[0].scene(&Registry::builtin()).expect_err("no end");

@@ -64,7 +64,7 @@ impl Lighting for LightsOn<'_> {
                         sum += response * intensity * light.colour;
                     }
                 }
-                Incident::Everywhere { intensity } => {
+                Incident::Uniform { intensity } => {
                     if matches!(terms, TermSelection::All | TermSelection::Ambient) {
                         sum += self.surface.ambient_response(v, &frame) * intensity * light.colour;
                     }

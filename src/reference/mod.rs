@@ -1,7 +1,7 @@
 //! The CPU renderer: the picture of a scene from the Rust functions alone.
 //!
 //! It shares no code with the shaders, so that the two are witnesses of each other, and needs neither
-//! a window nor a graphics card. It follows the rules of graphics hardware (corners snapped to 1/256
+//! a window nor a GPU. It follows the rules of graphics hardware (corners snapped to 1/256
 //! pixel, top-left rule, perspective-correct interpolation, the standard four samples, colour once per
 //! pixel and triangle), so that the two give the same picture up to rounding.
 //!
@@ -168,7 +168,7 @@ struct Draw<'a> {
     shape: &'a Prepared,
     shading: &'a ShadingEntry,
     surface: Arc<dyn Surface>,
-    /// Whether the model needs tangents.
+    /// True if the model needs tangents.
     anisotropic: bool,
 }
 

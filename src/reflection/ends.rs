@@ -20,7 +20,7 @@ pub struct Endless(pub &'static str);
 /// So many pairs of a batch are asked on the CPU first.
 const SAMPLE: usize = 32;
 
-/// Whether a model with these values comes to an end, as far as a few directions tell: nothing can stop a GPU, but
+/// True if a model with these values comes to an end, as far as a few directions tell: nothing can stop a GPU, but
 /// the interpreter stops itself. Models that are not interpreted do.
 ///
 /// # Errors

@@ -1,6 +1,6 @@
 //! Trying to find the laws of a model broken: over random directions and legal parameters, the same ones in
 //! every run, and at the ends of all ranges. Tests judge the built-in models by it on the CPU, `lcm models check`
-//! any model on the graphics card.
+//! any model on the GPU.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -159,7 +159,7 @@ pub fn smallest(terms: &Terms) -> f32 {
     terms.ambient.min_element().min(terms.diffuse.min_element()).min(terms.specular.min_element())
 }
 
-/// Whether a response has neither NaN nor infinity in it.
+/// True if a response has neither NaN nor infinity in it.
 #[must_use]
 pub fn is_finite(terms: &Terms) -> bool {
     terms.ambient.is_finite() && terms.diffuse.is_finite() && terms.specular.is_finite()

@@ -21,7 +21,7 @@ pub struct Measured {
     pub id: &'static str,
     /// The name that people read.
     pub name: &'static str,
-    /// Whether it is a metal: opaque, its colour is that of its reflection.
+    /// True if it is a metal: opaque, its colour is that of its reflection.
     pub metal: bool,
     /// Refractive index n at 630, 532 and 465 nm.
     pub n: [f32; 3],

@@ -65,7 +65,7 @@ fn push_model(c: &mut Composer, model: &ModelEntry) {
     }
 }
 
-/// How models answer to light from everywhere that declare to do so by their albedo.
+/// How models answer to uniform light that declare to do so by their albedo.
 const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
     return directional_albedo(v, frame);
 }
@@ -131,7 +131,7 @@ pub struct File {
     pub part: Part,
     /// Its path, as messages name it.
     pub path: String,
-    /// Whether its text differs from the built-in one. Custom models have none to differ from.
+    /// True if its text differs from the built-in one. Custom models have none to differ from.
     pub edited: bool,
 }
 

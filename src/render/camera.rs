@@ -27,9 +27,9 @@ pub const GIZMO_LAYER: usize = 1;
 /// The camera that draws the picture.
 #[derive(Component, Debug, Clone, Copy)]
 pub struct PictureCamera {
-    /// Whether it stands at the scene's observer; free once a user has moved it.
+    /// True if it stands at the scene's observer; free once a user has moved it.
     pub follows_observer: bool,
-    /// Whether a picture that is narrower than [`WIDE`](crate::scene::observer::WIDE) shows more above and below, so that what a
+    /// True if a picture that is narrower than [`WIDE`](crate::scene::observer::WIDE) shows more above and below, so that what a
     /// wide picture shows at the sides is not cut off: for windows, whose panels take width.
     pub fits_width: bool,
 }

@@ -152,13 +152,13 @@ pub struct LiveShaders {
     /// What is wrong with those.
     unused_problems: BTreeMap<String, (Box<ShaderProblem>, Instant)>,
     folders: Folders,
-    /// Whether there are texts to begin with.
+    /// True if there are texts to begin with.
     started: bool,
     /// The file that changed last, and when that became known.
     change: Option<(String, Instant)>,
     last: Option<Reloaded>,
     status: ShaderStatus,
-    /// Whether the status has to be made anew.
+    /// True if the status has to be made anew.
     stale_status: bool,
 }
 
@@ -184,13 +184,13 @@ impl LiveShaders {
         &self.current
     }
 
-    /// Whether something is still to be tried or told, so that frames must go on.
+    /// True if something is still to be tried or told, so that frames must go on.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         self.stale_status || self.is_trying()
     }
 
-    /// Whether something is still to be tried, so that the next picture may be another one.
+    /// True if something is still to be tried, so that the next picture may be another one.
     #[must_use]
     pub fn is_trying(&self) -> bool {
         self.awaited
@@ -212,7 +212,7 @@ impl LiveShaders {
         self.shaders.len()
     }
 
-    /// Whether what is drawn with is what the files say, all of it.
+    /// True if what is drawn with is what the files say, all of it.
     #[must_use]
     pub fn is_up_to_date(&self) -> bool {
         !self.is_trying()
@@ -515,7 +515,7 @@ impl LiveShaders {
     }
 
     /// Reads the custom models again that a change of another file may mend or change. Those that only share its
-    /// functions need it if the CPU calculates their answer to light from everywhere, and they were drawn.
+    /// functions need it if the CPU calculates their answer to uniform light, and they were drawn.
     fn read_again(&mut self, path: &str, registry: &mut Registry) {
         let concerned = |own_path: &str| {
             let Some(model) = registry.models().iter().find(|m| m.declaration.wgsl.path == own_path) else {
@@ -669,7 +669,7 @@ impl LiveShaders {
         Some(compose(&Sources::default(), model, shading, registry.lights()))
     }
 
-    /// Whether a composed source holds nothing but what was built in, which tests have tried.
+    /// True if a composed source holds nothing but what was built in, which tests have tried.
     fn is_built_in(&self, composed: &Composed) -> bool {
         let edited = |path: &str| self.current.get(path).is_some() || self.good.get(path).is_some();
         !composed.map.files().any(edited) && composed.problem.is_none()

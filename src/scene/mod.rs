@@ -90,7 +90,7 @@ impl SceneSize {
         Vec3::new(self.width, self.height, self.depth)
     }
 
-    /// Whether a point is in the room: 0 < coordinate ≤ size in each direction.
+    /// True if a point is in the room: 0 < coordinate ≤ size in each direction.
     #[must_use]
     pub fn contains(self, p: Vec3) -> bool {
         p.cmpgt(Vec3::ZERO).all() && p.cmple(self.corner()).all()
@@ -171,7 +171,7 @@ pub struct Display {
     pub tone_mapping: ToneMapping,
     /// Exposure in EV: the picture is multiplied by `2^EV`.
     pub exposure: f32,
-    /// Whether colours are decoded and encoded.
+    /// True if colours are decoded and encoded.
     pub encoding: Encoding,
 }
 
@@ -341,13 +341,13 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
     }
 }
 
-/// Whether some light of a scene shines from everywhere alike, so that albedos are asked for.
+/// True if some light of a scene shines from everywhere alike, so that albedos are asked for.
 #[must_use]
 pub fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
     scene.shining().any(|light| {
         registry.light(&light.light_type).is_some_and(|entry| {
             let record = record(light, registry, scene.display.encoding);
-            matches!((entry.incident)(&record, Vec3::ZERO), Incident::Everywhere { .. })
+            matches!((entry.incident)(&record, Vec3::ZERO), Incident::Uniform { .. })
         })
     })
 }

@@ -101,7 +101,7 @@ impl LineMap {
         self.pieces.iter().map(|(_, path)| path.as_str())
     }
 
-    /// Whether a file is part of the composed text.
+    /// True if a file is part of the composed text.
     #[must_use]
     pub fn has(&self, path: &str) -> bool {
         self.files().any(|file| file == path)
@@ -122,7 +122,7 @@ pub struct Composed {
 }
 
 impl Composed {
-    /// Whether this may change when a file changes.
+    /// True if this may change when a file changes.
     #[must_use]
     pub fn depends_on(&self, path: &str) -> bool {
         self.map.has(path) || self.imports.contains(path)

@@ -33,10 +33,10 @@ struct Exits {
 /// What a place in a loop depends on.
 #[derive(Clone, Copy)]
 struct Path {
-    /// Whether some condition on the way to it may be another one in the next round, or there is none.
+    /// True if some condition on the way to it may be another one in the next round, or there is none.
     changing: bool,
     conditional: bool,
-    /// Whether `break` here leaves the loop, and not a `switch` in it.
+    /// True if `break` here leaves the loop, and not a `switch` in it.
     breaks: bool,
 }
 
@@ -59,7 +59,7 @@ impl Search<'_> {
         })
     }
 
-    /// Whether an expression is zero, or a vector with a zero, whatever the parameters are.
+    /// True if an expression is zero, or a vector with a zero, whatever the parameters are.
     fn is_zero(&self, handle: Handle<Expression>) -> bool {
         is_zero(&self.function.expressions, handle, self.module)
     }
@@ -165,7 +165,7 @@ impl Search<'_> {
         }
     }
 
-    /// Whether an expression may have another value in the next round of a loop that writes to these variables.
+    /// True if an expression may have another value in the next round of a loop that writes to these variables.
     /// Values that are used twice are looked at once: a chain of sums of a value with itself would double the work
     /// with each.
     fn may_change(&self, handle: Handle<Expression>, written: &Written) -> bool {

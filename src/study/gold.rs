@@ -147,7 +147,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let mut sky = case(&shipped, 0);
     sky.lights =
         vec![Light { light_type: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() }];
-    cases.push(("D", "uniform light from everywhere", sky));
+    cases.push(("D", "uniform light", sky));
 
     let wanted: Vec<Picture> =
         cases.iter().map(|(_, _, scene)| lab.render(scene, "microfacet", TermSelection::All, size)).collect();
@@ -163,7 +163,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         lab.render(&scene, "blinn_phong", TermSelection::All, size)
     };
     let kept: Vec<Picture> = cases.iter().map(|(_, _, scene)| with(lab, scene, &tuned[0])).collect();
-    // What a picture under a lamp leaves open: the answer to light from everywhere.
+    // What a picture under a lamp leaves open: the answer to uniform light.
     let open = {
         let mut scene = cases[3].2.clone();
         scene.objects.iter_mut().for_each(|o| {
@@ -332,7 +332,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 }
             }
             p {
-                "Light from everywhere (D) reaches Blinn–Phong through the coefficient " (words("k_a")) " alone, about which a picture under a lamp says nothing. Its answer is undetermined: with the diffuse colour found under A, "
+                "Uniform light (D) reaches Blinn–Phong through the coefficient " (words("k_a")) " alone, about which a picture under a lamp says nothing. Its answer is undetermined: with the diffuse colour found under A, "
                 (words("k_a")) " from 0 to 1 gives " (fixed(100.0 * distances[3].1, 0)) "\u{a0}% to " (fixed(100.0 * open.1, 0)) "\u{a0}% of the brightness of gold, which answers by its albedo. "
                 @if open.1 < 1.0 - 0.01 { "No legal " (words("k_a")) " reaches it." } @else { "The right " (words("k_a")) " has to be known from elsewhere." }
             }

@@ -53,7 +53,7 @@ const GLOSSARY: &[(&str, &str)] = &[
     ),
     (
         "Directional albedo",
-        "E(v) = ∫ f(l, v) cos θ dl: the fraction of uniform light from everywhere that is sent towards v. For a reciprocal BRDF it is also the fraction of a beam from v that is reflected at all. A passive surface has E ≤ 1.",
+        "E(v) = ∫ f(l, v) cos θ dl: the fraction of uniform light that is sent towards v. For a reciprocal BRDF it is also the fraction of a beam from v that is reflected at all. A passive surface has E ≤ 1.",
     ),
     (
         "Fresnel reflectance",
@@ -74,7 +74,7 @@ const GLOSSARY: &[(&str, &str)] = &[
     ),
     (
         "White furnace",
-        "a test: in uniform light from everywhere, a surface that absorbs nothing cannot be told from its surroundings.",
+        "a test: in uniform light, a surface that absorbs nothing cannot be told from its surroundings.",
     ),
     (
         "MERL",
@@ -189,7 +189,7 @@ fn summary(chapters: &[Chapter], shown: usize) -> Markup {
             }
             p {
                 "Pictures are calculated by the program’s CPU renderer with four samples per pixel and shading per pixel. "
-                "It shares no code with the shaders of the graphics card, and tests hold the two to the same picture. "
+                "It shares no code with the shaders of the GPU, and tests hold the two to the same picture. "
                 "Numbers taken from pictures are linear light, before the display’s encoding. There are no shadows and no light "
                 "from one object to another: what is compared is the reflection at a surface alone. Raw numbers lie beside "
                 "this page as CSV files."
@@ -235,7 +235,7 @@ fn discussion(chapters: &[Chapter], shown: usize) -> Markup {
             }
             h3 { "Limits" }
             ul {
-                li { "Local reflection only: no shadows, no interreflection, no environment with detail. Light from everywhere is uniform." }
+                li { "Local reflection only: no shadows, no interreflection, no environment with detail. Uniform light is uniform." }
                 li { "Three wavelengths stand for the spectrum. Optical constants are those of clean, smooth samples; real gold objects are alloys." }
                 li { "Phenomenon 3 takes the physically based picture as reference, not a photograph. Its last part repeats the question with measured paints, for which neither model is the reference." }
                 li { "The 100 MERL materials enter as published fits of another model (SGD), not as measurements. A model that resembles SGD has an advantage. The three Cornell paints are measurements, but only three." }

@@ -130,7 +130,7 @@ fn walk(shown: &Path, found: &mut Found, seen: &mut HashSet<PathBuf>, depth: usi
     }
 }
 
-/// Whether a name looks like what editors and tools leave for a moment or as a backup, or is hidden.
+/// True if a name looks like what editors and tools leave for a moment or as a backup, or is hidden.
 pub(super) fn is_temporary(name: &OsStr) -> bool {
     let name = name.to_string_lossy();
     let extension = Path::new(&*name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());

@@ -7,7 +7,7 @@ use notify::{
     event::{AccessKind, AccessMode},
 };
 
-/// Whether news are only about reading.
+/// True if news are only about reading.
 pub(super) fn is_reading(kind: EventKind) -> bool {
     matches!(kind, EventKind::Access(access) if access != AccessKind::Close(AccessMode::Write))
 }
@@ -28,7 +28,7 @@ pub(super) fn reason(error: &notify::Error) -> String {
     }
 }
 
-/// Whether a folder could not be watched because it is no longer there.
+/// True if a folder could not be watched because it is no longer there.
 pub(super) fn is_absent(error: &notify::Error) -> bool {
     match &error.kind {
         ErrorKind::PathNotFound => true,

@@ -11,42 +11,45 @@ use crate::{
     library::assets::{self, Exported, Folders},
     panel::{
         author::ModelDraft,
-        state::{Effect, Lab, Severity},
+        state::{Effect, Session, Severity},
     },
     registry::Registry,
 };
 
 /// Carries out an effect that writes a file of one's own: says what became of it, and wishes for a new model to be
 /// chosen. Returns the folder whose shaders are to be read from now on, if there is a new one.
-pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<PathBuf> {
+pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Option<PathBuf> {
     match effect {
-        Effect::NewModel { id, name } => new_file(lab, registry, id, name, None, &custom::template(id, name)),
+        Effect::NewModel { id, name } => {
+            new_file(session, registry, id, name, None, &custom::template(id, name))
+        }
         Effect::DuplicateModel { model, id, name } => {
             let Some(entry) = registry.model(model) else {
-                lab.say(Severity::Error, format!("There is no reflection model “{model}” to copy."));
+                session.say(Severity::Error, format!("There is no reflection model “{model}” to copy."));
                 return None;
             };
             let sources = match custom::folder::sources_with(model, registry) {
                 Ok(sources) => sources,
                 Err(why) => {
                     let copied = entry.declaration.name;
-                    lab.say(Severity::Error, format!("{copied} was not copied: {}.", why.message));
+                    session.say(Severity::Error, format!("{copied} was not copied: {}.", why.message));
                     return None;
                 }
             };
             match custom::duplicate(entry, &sources, id, name) {
-                Ok(text) => new_file(lab, registry, id, name, Some(model), &text),
+                Ok(text) => new_file(session, registry, id, name, Some(model), &text),
                 Err(why) => {
-                    lab.say(Severity::Error, format!("{} was not copied: {why}.", entry.declaration.name));
+                    session
+                        .say(Severity::Error, format!("{} was not copied: {why}.", entry.declaration.name));
                 }
             }
         }
         Effect::ExportShaders(folder) => match assets::export(folder, registry) {
             Ok(exported) => {
-                lab.say(Severity::Info, told(&exported, folder));
+                session.say(Severity::Info, told(&exported, folder));
                 return Some(folder.clone());
             }
-            Err(why) => lab.say(Severity::Error, format!("The shaders were not written out: {why}.")),
+            Err(why) => session.say(Severity::Error, format!("The shaders were not written out: {why}.")),
         },
         _ => {}
     }
@@ -54,21 +57,21 @@ pub fn write(effect: &Effect, lab: &mut Lab, registry: &Registry) -> Option<Path
 }
 
 /// Where custom models are: where they are read from, else where they would be looked for.
-fn models_folder(lab: &Lab, registry: &Registry) -> Option<PathBuf> {
-    let known = lab.shaders.models.clone().or_else(|| registry.custom_folder().map(Path::to_owned));
+fn models_folder(session: &Session, registry: &Registry) -> Option<PathBuf> {
+    let known = session.shaders.models.clone().or_else(|| registry.custom_folder().map(Path::to_owned));
     known.or_else(|| Folders::find(None, None).ok()?.models)
 }
 
-fn new_file(lab: &mut Lab, registry: &Registry, id: &str, name: &str, of: Option<&str>, text: &str) {
-    let Some(folder) = models_folder(lab, registry) else {
+fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of: Option<&str>, text: &str) {
+    let Some(folder) = models_folder(session, registry) else {
         let why = "There is no folder for custom models: name one with `lcm --models FOLDER`.";
-        return lab.say(Severity::Error, why);
+        return session.say(Severity::Error, why);
     };
     let path = folder.join(format!("{id}.{}", custom::EXTENSION));
     match write_new(&path, text) {
         Ok(()) => {
-            lab.wanted_model = Some(id.to_owned());
-            lab.say(
+            session.wanted_model = Some(id.to_owned());
+            session.say(
                 Severity::Info,
                 format!(
                     "{} was written. Open it in an editor (Ctrl+E), change it and save it: the picture follows.",
@@ -78,13 +81,13 @@ fn new_file(lab: &mut Lab, registry: &Registry, id: &str, name: &str, of: Option
         }
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
             // Asked again, with what was typed.
-            lab.draft = Some(ModelDraft { of: of.map(str::to_owned), name: name.to_owned() });
-            lab.say(
+            session.draft = Some(ModelDraft { of: of.map(str::to_owned), name: name.to_owned() });
+            session.say(
                 Severity::Error,
                 format!("{} exists already and was left as it is; choose another name.", path.display()),
             );
         }
-        Err(e) => lab.say(Severity::Error, format!("{} could not be written: {e}.", path.display())),
+        Err(e) => session.say(Severity::Error, format!("{} could not be written: {e}.", path.display())),
     }
 }
 

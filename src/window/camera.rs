@@ -17,7 +17,7 @@ use glam::{Quat, Vec3};
 use super::WindowView;
 use crate::{
     document::{Edit, Selection},
-    panel::state::{Action, Lab, Severity, Steer},
+    panel::state::{Action, Session, Severity, Steer},
     registry::Registry,
     render::{camera::PictureCamera, entities::CurrentScene},
     scene::{Observer, Scene, check, observer::rotation},
@@ -80,7 +80,7 @@ fn put_at(camera: &mut PanOrbitCamera, transform: &mut Transform, place: Transfo
 /// The picture gets the mouse only where nothing else wants it; and a camera that is moved no longer
 /// stands at the observer.
 pub(super) fn gate(
-    lab: Res<Lab>,
+    session: Res<Session>,
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
     mut wheel: MessageReader<MouseWheel>,
@@ -89,15 +89,15 @@ pub(super) fn gate(
     mut cameras: Query<(&mut PanOrbitCamera, &mut PictureCamera), With<WindowView>>,
 ) {
     let pressed = [MouseButton::Left, MouseButton::Right];
-    if lab.pointer_in_picture && buttons.any_just_pressed(pressed) {
+    if session.pointer_in_picture && buttons.any_just_pressed(pressed) {
         *dragging = true;
     } else if !buttons.any_pressed(pressed) {
         *dragging = false;
     }
     let moved = motion.read().count() > 0;
-    let wheeled = wheel.read().count() > 0 && lab.pointer_in_picture;
+    let wheeled = wheel.read().count() > 0 && session.pointer_in_picture;
     // A drag that began in the picture goes on outside; one that began outside never gets in.
-    let enabled = *dragging || (lab.pointer_in_picture && !buttons.any_pressed(pressed));
+    let enabled = *dragging || (session.pointer_in_picture && !buttons.any_pressed(pressed));
     let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
     for (mut orbit, mut picture) in &mut cameras {
         if orbit.enabled != enabled {
@@ -138,13 +138,13 @@ fn keep_at_observer(
     }
 }
 
-fn tell_lab(mut lab: ResMut<Lab>, cameras: Query<(&Transform, &PictureCamera), With<WindowView>>) {
+fn tell_lab(mut session: ResMut<Session>, cameras: Query<(&Transform, &PictureCamera), With<WindowView>>) {
     if let Some((transform, picture)) = cameras.iter().next()
-        && ((lab.camera, lab.eye) != (transform.rotation, transform.translation)
-            || lab.camera_left == picture.follows_observer)
+        && ((session.camera, session.eye) != (transform.rotation, transform.translation)
+            || session.camera_left == picture.follows_observer)
     {
-        (lab.camera, lab.eye) = (transform.rotation, transform.translation);
-        lab.camera_left = !picture.follows_observer;
+        (session.camera, session.eye) = (transform.rotation, transform.translation);
+        session.camera_left = !picture.follows_observer;
     }
 }
 
@@ -194,9 +194,9 @@ impl CameraControl<'_, '_> {
     }
 
     /// Turns to what is selected, from the side where the camera is now.
-    pub(super) fn focus(&mut self, lab: &Lab) {
+    pub(super) fn focus(&mut self, session: &Session) {
         let scene = &self.scene.0;
-        let (target, size) = match lab.selection {
+        let (target, size) = match session.selection {
             Selection::Object(i) => match scene.objects.get(i) {
                 Some(object) => (object.position, object.size),
                 None => return,
@@ -227,21 +227,21 @@ impl CameraControl<'_, '_> {
     }
 
     /// Makes the camera's place the observer's, if the rules of scenes allow it.
-    pub(super) fn place_observer(&mut self, lab: &mut Lab, registry: &Registry) {
+    pub(super) fn place_observer(&mut self, session: &mut Session, registry: &Registry) {
         let Some((_, transform, _)) = self.cameras.iter().next() else { return };
         let observer = Observer {
             position: transform.translation,
             direction: transform.rotation * Vec3::NEG_Z,
-            field_of_view: lab.document.observer.field_of_view,
+            field_of_view: session.document.observer.field_of_view,
         };
-        let mut wanted = lab.document.scene().clone();
+        let mut wanted = session.document.scene().clone();
         wanted.observer = observer;
         match check::scene(&wanted, registry).first() {
             Some(problem) => {
-                lab.apply(Action::Say(Severity::Warning, problem.message()), registry);
+                session.apply(Action::Say(Severity::Warning, problem.message()), registry);
             }
             None => {
-                lab.apply(Action::Edit(Edit::Observer(observer)), registry);
+                session.apply(Action::Edit(Edit::Observer(observer)), registry);
                 self.home();
             }
         }

@@ -1,4 +1,4 @@
-//! Counts where the picture clips: on the graphics card, in the picture that is on screen, once it has come to rest.
+//! Counts where the picture clips: on the GPU, in the picture that is on screen, once it has come to rest.
 //!
 //! A compute pass after tone mapping reads the texture of the picture, which holds what the display is asked for, also
 //! beyond what it can show. A few kilobytes come back, a frame or two later.
@@ -34,7 +34,7 @@ use crate::{
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
         clipping::{Clipping, GRID},
-        state::Lab,
+        state::Session,
     },
     render::{
         entities::CurrentScene,
@@ -79,7 +79,7 @@ impl Plugin for ClippingPlugin {
     }
 }
 
-/// What the graphics card is asked.
+/// What the GPU is asked.
 #[derive(Clone, Resource)]
 struct Question {
     /// Counts the questions.
@@ -143,7 +143,7 @@ fn ask(
 fn answered(
     answer: On<ReadbackComplete>,
     mut question: ResMut<Question>,
-    mut lab: ResMut<Lab>,
+    mut session: ResMut<Session>,
     mut settling: ResMut<Settling>,
 ) {
     let mut numbers = answer.data.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
@@ -152,8 +152,8 @@ fn answered(
     }
     question.open = false;
     let clipping = Clipping::new(numbers.collect());
-    if lab.clipping != clipping {
-        lab.clipping = clipping;
+    if session.clipping != clipping {
+        session.clipping = clipping;
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }
 }

@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use super::{Settling, watching::complain};
-use crate::{panel::state::Lab, render::view::Drawing};
+use crate::{panel::state::Session, render::view::Drawing};
 
 /// As many frames of either kind are remembered.
 const REMEMBERED: usize = 1000;
@@ -49,7 +49,7 @@ pub(super) fn measure(
     settings: Res<WinitSettings>,
     views: Query<&Drawing>,
     mut exit: MessageReader<AppExit>,
-    mut lab: ResMut<Lab>,
+    mut session: ResMut<Session>,
 ) {
     let now = Instant::now();
     let clock = &mut *clock;
@@ -64,7 +64,7 @@ pub(super) fn measure(
         if drew {
             let ms = time.as_secs_f32() * 1e3;
             clock.mean = if clock.mean == 0.0 { ms } else { 0.8 * clock.mean + 0.2 * ms };
-            lab.bypass_change_detection().status.frame_ms = clock.mean;
+            session.bypass_change_detection().status.frame_ms = clock.mean;
         }
     }
     let draws = views.iter().any(Drawing::draws);

@@ -17,7 +17,7 @@ use bevy::{
 use glam::Vec3;
 
 use crate::{
-    panel::state::{Lab, ThemeChoice},
+    panel::state::{Session, ThemeChoice},
     render::{
         camera::GIZMO_LAYER,
         entities::CurrentScene,
@@ -49,11 +49,11 @@ const fn outline(theme: ThemeChoice) -> u8 {
     }
 }
 
-fn draw(lab: Res<Lab>, scene: Res<CurrentScene>, mut room: Gizmos<InRoom>) {
-    if !lab.view.show_room {
+fn draw(session: Res<Session>, scene: Res<CurrentScene>, mut room: Gizmos<InRoom>) {
+    if !session.view.show_room {
         return;
     }
-    let grey = outline(lab.view.theme);
+    let grey = outline(session.view.theme);
     let colour = Color::srgb_u8(grey, grey, grey);
     let corner = scene.0.scene_size.corner();
     room.primitive_3d(&Cuboid::from_size(corner), Isometry3d::from_translation(corner * 0.5), colour);

@@ -52,7 +52,7 @@ use crate::{
     panel::{
         PanelPlugin,
         files::{load_settings, run as run_files},
-        state::{Action, Badge, Effect, Lab, LabEffect, Note, Severity},
+        state::{Action, Badge, Effect, LabEffect, Note, Session, Severity},
         theme::Palette,
     },
     recovery::Store,
@@ -154,16 +154,16 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     app.insert_resource(options.registry.clone());
     app.insert_resource(laws::LawChecks::by(options.trial_program.clone()));
     app.world_mut().resource_mut::<frames::FrameClock>().tells = options.verbose;
-    let mut lab = Lab::new(options.scene.clone());
-    lab.path.clone_from(&options.file);
-    lab.disk.use_defaults = options.use_defaults;
-    lab.view.examples_open = options.examples;
-    load_settings(&mut lab);
-    options.warnings.iter().for_each(|warning| lab.say(Severity::Warning, warning.as_str()));
+    let mut session = Session::new(options.scene.clone());
+    session.path.clone_from(&options.file);
+    session.disk.use_defaults = options.use_defaults;
+    session.view.examples_open = options.examples;
+    load_settings(&mut session);
+    options.warnings.iter().for_each(|warning| session.say(Severity::Warning, warning.as_str()));
     if let Some(registry) = app.world().get_resource::<Registry>() {
-        lab.fill_model_slots(registry);
+        session.fill_model_slots(registry);
     }
-    app.insert_resource(CurrentScene(options.scene.clone())).insert_resource(lab);
+    app.insert_resource(CurrentScene(options.scene.clone())).insert_resource(session);
     app.insert_resource(files::DiskFiles::new(options.file.clone(), options.stamp));
     if let Some(program) = options.trial_program {
         let wake = watching::waker(app.world());
@@ -358,17 +358,17 @@ fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>
     ));
 }
 
-fn adapter_facts(adapter: Option<Res<RenderAdapterInfo>>, mut lab: ResMut<Lab>) {
+fn adapter_facts(adapter: Option<Res<RenderAdapterInfo>>, mut session: ResMut<Session>) {
     if let Some(adapter) = adapter {
-        lab.status.backend = format!("{:?}", adapter.backend);
-        lab.status.adapter.clone_from(&adapter.name);
+        session.status.backend = format!("{:?}", adapter.backend);
+        session.status.adapter.clone_from(&adapter.name);
     }
 }
 
 /// Carries out what the panels asked for.
 fn carry_out(
     mut effects: MessageReader<LabEffect>,
-    mut lab: ResMut<Lab>,
+    mut session: ResMut<Session>,
     registry: Res<Registry>,
     mut files: ResMut<files::DiskFiles>,
     mut camera: camera::CameraControl,
@@ -381,37 +381,37 @@ fn carry_out(
     mut commands: Commands,
 ) {
     for complaint in editors.take() {
-        lab.say(Severity::Error, complaint);
+        session.say(Severity::Error, complaint);
     }
     if let Some((model, outcome)) = laws.take() {
-        lab.laws_checked(&model, outcome);
+        session.laws_checked(&model, outcome);
     }
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
     pending.reverse();
     while let Some(effect) = pending.pop() {
         match effect {
             Effect::HomeView => camera.home(),
-            Effect::FocusSelection => camera.focus(&lab),
+            Effect::FocusSelection => camera.focus(&session),
             Effect::Steer(steer) => camera.steer(steer),
-            Effect::ObserverFromView => camera.place_observer(&mut lab, &registry),
+            Effect::ObserverFromView => camera.place_observer(&mut session, &registry),
             Effect::DocumentChanged => {
-                files.document_changed(lab.path.as_deref());
+                files.document_changed(session.path.as_deref());
                 camera.home();
             }
             Effect::Quit => {
                 recovery.farewell.close();
                 exit.write(AppExit::Success);
             }
-            Effect::Recovery(choice) => recovery.answer(choice, &mut lab, &mut files, &registry),
+            Effect::Recovery(choice) => recovery.answer(choice, &mut session, &mut files, &registry),
             Effect::LookAgain(path) => watch.0.report_later(&path, watching::GRACE),
             Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
             dialog @ (Effect::PickOpen | Effect::PickSave | Effect::PickShaderFolder) => {
-                lab.wanted_dialog = Some(dialog);
+                session.wanted_dialog = Some(dialog);
             }
             Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {
-                if let Some(folder) = authoring::write(&effect, &mut lab, &registry) {
+                if let Some(folder) = authoring::write(&effect, &mut session, &registry) {
                     commands.queue(move |world: &mut World| shaders::move_to(world, &folder));
                 }
             }
@@ -425,14 +425,16 @@ fn carry_out(
             }
             Effect::CheckLaws(model) => {
                 let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
-                let folders =
-                    Folders { shaders: lab.shaders.shaders.clone(), models: lab.shaders.models.clone() };
+                let folders = Folders {
+                    shaders: session.shaders.shaders.clone(),
+                    models: session.shaders.models.clone(),
+                };
                 laws.begin(&model, &folders, move || {
                     proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
                 });
             }
             other => {
-                let more = run_files(&mut lab, &registry, other.clone(), &mut *files);
+                let more = run_files(&mut session, &registry, other.clone(), &mut *files);
                 // What comes back unchanged is nobody's.
                 pending.extend(more.into_iter().rev().filter(|e| *e != other));
             }
@@ -441,36 +443,36 @@ fn carry_out(
 }
 
 /// The document goes into the scene that is shown.
-fn lab_to_scene(lab: Res<Lab>, mut scene: ResMut<CurrentScene>, mut terms: ResMut<ShownTerms>) {
-    if !lab.is_changed() {
+fn lab_to_scene(session: Res<Session>, mut scene: ResMut<CurrentScene>, mut terms: ResMut<ShownTerms>) {
+    if !session.is_changed() {
         return;
     }
-    if lab.document != scene.0 {
-        scene.0 = lab.document.scene().clone();
+    if session.document != scene.0 {
+        scene.0 = session.document.scene().clone();
     }
-    terms.set_if_neq(ShownTerms(lab.view.terms));
+    terms.set_if_neq(ShownTerms(session.view.terms));
 }
 
 /// What others changed in the entities is submitted to the document; what it refuses goes back.
-fn scene_to_lab(mut scene: ResMut<CurrentScene>, registry: Res<Registry>, mut lab: ResMut<Lab>) {
-    if scene.is_changed() && lab.document != scene.0 {
-        if let Err(why) = lab.submit(scene.0.clone(), &registry) {
-            lab.say(Severity::Warning, why);
+fn scene_to_lab(mut scene: ResMut<CurrentScene>, registry: Res<Registry>, mut session: ResMut<Session>) {
+    if scene.is_changed() && session.document != scene.0 {
+        if let Err(why) = session.submit(scene.0.clone(), &registry) {
+            session.say(Severity::Warning, why);
         }
-        if lab.document != scene.0 {
-            scene.0 = lab.document.scene().clone();
+        if session.document != scene.0 {
+            scene.0 = session.document.scene().clone();
         }
     }
 }
 
 fn close_requested(
     mut requests: MessageReader<WindowCloseRequested>,
-    mut lab: ResMut<Lab>,
+    mut session: ResMut<Session>,
     registry: Res<Registry>,
     mut effects: MessageWriter<LabEffect>,
 ) {
     if requests.read().count() > 0 {
-        for effect in lab.apply(Action::Quit, &registry) {
+        for effect in session.apply(Action::Quit, &registry) {
             effects.write(LabEffect(effect));
         }
     }
@@ -478,25 +480,25 @@ fn close_requested(
 
 /// The picture has the size of the room that the panels leave, and is shown there.
 fn fit_picture(
-    lab: Res<Lab>,
+    session: Res<Session>,
     window: Single<&Window, With<PrimaryWindow>>,
     mut views: Query<(Entity, &mut View, &mut Drawing, &mut Camera), With<WindowView>>,
     mut controls: ResMut<ActiveCameraData>,
     mut room: Local<Option<bool>>,
 ) {
     let Ok((entity, mut view, mut drawing, mut camera)) = views.single_mut() else { return };
-    let place = PicturePlace::of(&lab, &window);
+    let place = PicturePlace::of(&session, &window);
     if place.size.min_element() == 0 {
         return;
     }
     view.set_if_neq(View::for_display(place.size));
     // In the light theme the surround is light.
-    let grey = Palette::of(&lab.view).surround;
+    let grey = Palette::of(&session.view).surround;
     let surround = bevy::color::Color::srgb_u8(grey.r(), grey.g(), grey.b());
     if !matches!(camera.clear_color, ClearColorConfig::Custom(known) if known == surround) {
         camera.clear_color = ClearColorConfig::Custom(surround);
     }
-    if room.replace(lab.view.show_room) != Some(lab.view.show_room) {
+    if room.replace(session.view.show_room) != Some(session.view.show_room) {
         drawing.redraw();
     }
     controls.set_if_neq(ActiveCameraData {
@@ -509,12 +511,12 @@ fn fit_picture(
 
 /// Shows the picture's texture in its place.
 fn show_picture(
-    lab: Res<Lab>,
+    session: Res<Session>,
     window: Single<&Window, With<PrimaryWindow>>,
     views: Query<&RenderTarget, With<WindowView>>,
     mut shows: Single<&mut Shows, With<PrimaryEguiContext>>,
 ) {
-    let at = PicturePlace::of(&lab, &window).at;
+    let at = PicturePlace::of(&session, &window).at;
     let pictures = views.iter().filter_map(texture_of).map(|texture| (texture.clone(), at)).collect();
     shows.set_if_neq(Shows(pictures));
 }
@@ -527,13 +529,13 @@ struct PicturePlace {
 }
 
 impl PicturePlace {
-    fn of(lab: &Lab, window: &Window) -> Self {
-        let rect = lab.picture_rect;
+    fn of(session: &Session, window: &Window) -> Self {
+        let rect = session.picture_rect;
         let limit = window.physical_size();
         if !rect.is_finite() || !rect.is_positive() || limit.min_element() == 0 {
             return Self { at: UVec2::ZERO, size: UVec2::ZERO };
         }
-        let pixels = |points: f32| (points * lab.zoom * window.scale_factor()).round().max(0.0) as u32;
+        let pixels = |points: f32| (points * session.zoom * window.scale_factor()).round().max(0.0) as u32;
         let at = UVec2::new(pixels(rect.min.x), pixels(rect.min.y)).min(limit.saturating_sub(UVec2::ONE));
         let end = UVec2::new(pixels(rect.max.x), pixels(rect.max.y)).min(limit);
         Self { at, size: end.saturating_sub(at).max(UVec2::ONE) }
@@ -545,17 +547,17 @@ impl PicturePlace {
     }
 }
 
-fn window_title(lab: Res<Lab>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
-    let mark = if lab.is_dirty() { " •" } else { "" };
-    let title = format!("{}{mark} – Lights, Camera, Models!", lab.window_title());
+fn window_title(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
+    let mark = if session.is_dirty() { " •" } else { "" };
+    let title = format!("{}{mark} – Lights, Camera, Models!", session.window_title());
     if window.title != title {
         window.title = title;
     }
 }
 
 /// The window fills the screen where the state says so.
-fn fullscreen(lab: Res<Lab>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
-    let mode = if lab.view.fullscreen {
+fn fullscreen(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
+    let mode = if session.view.fullscreen {
         WindowMode::BorderlessFullscreen(MonitorSelection::Current)
     } else {
         WindowMode::Windowed
@@ -592,7 +594,7 @@ struct Snapshot {
 
 /// Asks for another frame while something changes, and for none when nothing does.
 fn redraw(
-    lab: Res<Lab>,
+    session: Res<Session>,
     scene: Res<CurrentScene>,
     terms: Res<ShownTerms>,
     live: Res<LiveShaders>,
@@ -607,18 +609,18 @@ fn redraw(
         // New letters reach the GPU one frame after they are asked for.
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }
-    let rect = lab.picture_rect;
+    let rect = session.picture_rect;
     let now = Snapshot {
         rect: [rect.min.x, rect.min.y, rect.max.x, rect.max.y],
         camera: cameras.iter().next().copied(),
         terms: *terms,
-        messages: lab.messages.clone(),
-        badges: lab.disk.badge.iter().chain(&lab.badges).cloned().collect(),
-        question: lab.question.is_some(),
-        shaders: lab.shaders.clone(),
+        messages: session.messages.clone(),
+        badges: session.disk.badge.iter().chain(&session.badges).cloned().collect(),
+        question: session.question.is_some(),
+        shaders: session.shaders.clone(),
     };
     // An edit of the panels reaches the scene in the next frame.
-    if scene.is_changed() || lab.document != scene.0 || settling.last.as_deref() != Some(&now) {
+    if scene.is_changed() || session.document != scene.0 || settling.last.as_deref() != Some(&now) {
         settling.last = Some(Box::new(now));
         settling.frames = settling.frames.max(SETTLING_FRAMES);
     }

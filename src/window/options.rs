@@ -21,7 +21,7 @@ pub struct ViewOptions {
     pub open: Option<PathBuf>,
     /// True if the window shows the examples: it begins without a scene of the user's.
     pub examples: bool,
-    /// Whether the defaults are used when the file comes to lack parts.
+    /// True if the defaults are used when the file comes to lack parts.
     pub use_defaults: bool,
     /// The size of the window in pixels; else 1280×720 points.
     pub size: Option<[u32; 2]>,

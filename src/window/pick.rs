@@ -16,7 +16,7 @@ use crate::{
     document::Selection,
     panel::{
         marks::{self, Lens},
-        state::{Action, Lab},
+        state::{Action, Session},
     },
     registry::Registry,
     render::entities::{CurrentScene, LitObject, SceneEntities},
@@ -36,26 +36,29 @@ pub(super) fn pick(
     entities: Res<SceneEntities>,
     objects: Query<(), With<LitObject>>,
     registry: Res<Registry>,
-    mut lab: ResMut<Lab>,
+    mut session: ResMut<Session>,
     mut ray_cast: MeshRayCast,
     mut pressed_at: Local<Option<Vec2>>,
 ) {
     let pointer = window.cursor_position();
     if buttons.just_pressed(MouseButton::Left) {
-        *pressed_at = pointer.filter(|_| lab.pointer_in_picture && !lab.popup_open);
+        *pressed_at = pointer.filter(|_| session.pointer_in_picture && !session.popup_open);
     }
     if !buttons.just_released(MouseButton::Left) {
         return;
     }
     let (Some(start), Some(end)) = (pressed_at.take(), pointer) else { return };
     let Ok((camera, place)) = cameras.single() else { return };
-    if start.distance(end) > CLICK_SLACK * lab.zoom {
+    if start.distance(end) > CLICK_SLACK * session.zoom {
         return;
     }
-    let end = PicturePlace::of(&lab, &window).within(&window, end);
-    let reach = LIGHT_REACH * lab.zoom * window.scale_factor();
-    let light =
-        lab.view.show_gizmos.then(|| nearest_light(&scene, &lab, camera, place, end, reach)).flatten();
+    let end = PicturePlace::of(&session, &window).within(&window, end);
+    let reach = LIGHT_REACH * session.zoom * window.scale_factor();
+    let light = session
+        .view
+        .show_gizmos
+        .then(|| nearest_light(&scene, &session, camera, place, end, reach))
+        .flatten();
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
         let filter = |e: Entity| objects.contains(e);
@@ -66,21 +69,21 @@ pub(super) fn pick(
         entities.objects.iter().position(|e| e == hit).map(Selection::Object)
     });
     if let Some(selection) = selection
-        && selection != lab.selection
+        && selection != session.selection
     {
-        lab.apply(Action::Select(selection), &registry);
+        session.apply(Action::Select(selection), &registry);
     }
 }
 
 fn nearest_light(
     scene: &CurrentScene,
-    lab: &Lab,
+    session: &Session,
     camera: &Camera,
     place: &GlobalTransform,
     pointer: Vec2,
     reach: f32,
 ) -> Option<usize> {
-    let lens = Lens::of(lab, lab.picture_rect);
+    let lens = Lens::of(session, session.picture_rect);
     scene
         .0
         .lights
@@ -119,10 +122,10 @@ mod tests {
     fn a_click_selects_a_light_however_many_cameras_there_are() {
         for others in 0..3 {
             let scene = Scene::default();
-            let mut lab = Lab::new(scene.clone());
-            lab.selection = Selection::Observer;
-            lab.picture_rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
-            (lab.zoom, lab.pointer_in_picture) = (1.0, true);
+            let mut session = Session::new(scene.clone());
+            session.selection = Selection::Observer;
+            session.picture_rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
+            (session.zoom, session.pointer_in_picture) = (1.0, true);
             let mut camera = Camera::default();
             camera.computed.target_info = Some(RenderTargetInfo { physical_size: SIZE, scale_factor: 1.0 });
             let lens =
@@ -137,7 +140,7 @@ mod tests {
             window.set_cursor_position(Some(at));
 
             let mut world = World::new();
-            world.insert_resource(lab);
+            world.insert_resource(session);
             world.insert_resource(CurrentScene(scene));
             world.insert_resource(Registry::builtin());
             world.init_resource::<SceneEntities>();
@@ -157,7 +160,7 @@ mod tests {
             buttons.clear();
             buttons.release(MouseButton::Left);
             schedule.run(&mut world);
-            assert_eq!(world.resource::<Lab>().selection, Selection::Light(0), "{others} more");
+            assert_eq!(world.resource::<Session>().selection, Selection::Light(0), "{others} more");
         }
     }
 }

@@ -21,7 +21,7 @@ use crate::{
     panel::{
         files::Files as _,
         recovery::{Choice, Offer},
-        state::{Action, Lab, LabEffect, Question, Severity},
+        state::{Action, LabEffect, Question, Session, Severity},
     },
     recovery::{About, Document, Keeper, Left, Store, ago},
     registry::Registry,
@@ -113,7 +113,7 @@ impl Recovery {
             complain(&format!(
                 "unsaved changes of “{}” are kept in {}; a window without --exit-after offers them",
                 left.about.title,
-                left.session.file().display()
+                left.journal.file().display()
             ));
         }
     }
@@ -122,7 +122,7 @@ impl Recovery {
     pub(super) fn answer(
         &mut self,
         choice: Choice,
-        lab: &mut Lab,
+        session: &mut Session,
         files: &mut DiskFiles,
         registry: &Registry,
     ) {
@@ -132,16 +132,18 @@ impl Recovery {
                 if let Some(path) = &left.about.path {
                     files.expect(path, left.about.stamp);
                 }
-                self.farewell.keeper.adopt(left.session, document(lab, files, Arc::new(registry.clone())));
+                self.farewell
+                    .keeper
+                    .adopt(left.journal, document(session, files, Arc::new(registry.clone())));
                 let more = self.left.len();
                 self.left.clear();
                 if more > 0 {
                     let copies = if more == 1 { "One more copy is" } else { "More copies are" };
                     let text = format!("{copies} kept: the window offers them at its next start.");
-                    lab.say(Severity::Info, text);
+                    session.say(Severity::Info, text);
                 }
             }
-            Choice::Discarded => left.session.remove(),
+            Choice::Discarded => left.journal.remove(),
             Choice::Next => {}
             Choice::Later => self.left.clear(),
         }
@@ -149,16 +151,16 @@ impl Recovery {
 }
 
 /// The document with its unsaved changes.
-fn document(lab: &Lab, files: &DiskFiles, registry: Arc<Registry>) -> Document {
-    Document { about: about(lab, files), scene: lab.document.scene().clone(), registry }
+fn document(session: &Session, files: &DiskFiles, registry: Arc<Registry>) -> Document {
+    Document { about: about(session, files), scene: session.document.scene().clone(), registry }
 }
 
-fn about(lab: &Lab, files: &DiskFiles) -> About {
+fn about(session: &Session, files: &DiskFiles) -> About {
     About {
-        title: lab.title(),
+        title: session.title(),
         // The next window may be started somewhere else.
-        path: lab.path.as_ref().map(|path| path::absolute(path).unwrap_or_else(|_| path.clone())),
-        stamp: lab.path.as_deref().and_then(|path| files.known(path)),
+        path: session.path.as_ref().map(|path| path::absolute(path).unwrap_or_else(|_| path.clone())),
+        stamp: session.path.as_deref().and_then(|path| files.known(path)),
         process: 0,
     }
 }
@@ -166,26 +168,26 @@ fn about(lab: &Lab, files: &DiskFiles) -> About {
 /// Ctrl+C in the terminal is Ctrl+Q in the window.
 pub(super) fn interrupted(
     recovery: Res<Recovery>,
-    mut lab: ResMut<Lab>,
+    mut session: ResMut<Session>,
     registry: Res<Registry>,
     mut effects: MessageWriter<LabEffect>,
 ) {
     if recovery.farewell.interrupt.take() {
-        effects.write_batch(lab.apply(Action::Quit, &registry).into_iter().map(LabEffect));
+        effects.write_batch(session.apply(Action::Quit, &registry).into_iter().map(LabEffect));
     }
 }
 
 /// After Ctrl+C the user may decide to stay. Runs right after the effects are carried out: what closes the window is
 /// none on its way then.
-pub(super) fn stayed(recovery: Res<Recovery>, lab: Res<Lab>) {
-    if !recovery.farewell.closing.load(Ordering::SeqCst) && !lab.is_quitting() {
+pub(super) fn stayed(recovery: Res<Recovery>, session: Res<Session>) {
+    if !recovery.farewell.closing.load(Ordering::SeqCst) && !session.is_quitting() {
         recovery.farewell.interrupt.stay();
     }
 }
 
 /// Asks about the next copy, as soon as nothing else is asked.
-pub(super) fn offer(mut recovery: ResMut<Recovery>, mut lab: ResMut<Lab>, registry: Res<Registry>) {
-    if recovery.left.is_empty() || lab.question.is_some() {
+pub(super) fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry: Res<Registry>) {
+    if recovery.left.is_empty() || session.question.is_some() {
         return;
     }
     let Some(left) = recovery.left.pop_front() else { return };
@@ -193,15 +195,15 @@ pub(super) fn offer(mut recovery: ResMut<Recovery>, mut lab: ResMut<Lab>, regist
     if let Err(problems) = &scene {
         // The latest stands on top: the first problem.
         for problem in problems.iter().rev() {
-            lab.say(Severity::Warning, problem.clone());
+            session.say(Severity::Warning, problem.clone());
         }
         complain(&problems.join("\n"));
     }
     let age = SystemTime::now().duration_since(left.when).unwrap_or(Duration::ZERO);
-    lab.ask(Question::Recover(Box::new(Offer {
+    session.ask(Question::Recover(Box::new(Offer {
         title: left.about.title.clone(),
         path: left.about.path.clone(),
-        file: left.session.file(),
+        file: left.journal.file(),
         when: ago(age),
         scene: scene.map_err(|problems| problems.into_iter().next().unwrap_or_default()),
     })));
@@ -211,7 +213,7 @@ pub(super) fn offer(mut recovery: ResMut<Recovery>, mut lab: ResMut<Lab>, regist
 /// Hands unsaved changes to the keeper; runs after all that changes the document in a frame.
 pub(super) fn keep(
     mut recovery: ResMut<Recovery>,
-    mut lab: ResMut<Lab>,
+    mut session: ResMut<Session>,
     files: Res<DiskFiles>,
     registry: Res<Registry>,
 ) {
@@ -220,21 +222,21 @@ pub(super) fn keep(
         recovery.registry = None;
     }
     if let Some(why) = recovery.farewell.keeper.problem() {
-        lab.say(Severity::Warning, format!("There is no recovery copy of the unsaved changes: {why}."));
+        session.say(Severity::Warning, format!("There is no recovery copy of the unsaved changes: {why}."));
     }
-    if !lab.is_changed() {
+    if !session.is_changed() {
         return;
     }
-    if !lab.is_dirty() {
+    if !session.is_dirty() {
         recovery.farewell.keeper.forget();
         return;
     }
-    let now = about(&lab, &files);
-    if !recovery.farewell.keeper.keeps(|kept| kept.about == now && lab.document == kept.scene) {
+    let now = about(&session, &files);
+    if !recovery.farewell.keeper.keeps(|kept| kept.about == now && session.document == kept.scene) {
         let registry = recovery.registry.get_or_insert_with(|| Arc::new(registry.clone()));
         recovery.farewell.keeper.keep(Document {
             about: now,
-            scene: lab.document.scene().clone(),
+            scene: session.document.scene().clone(),
             registry: registry.clone(),
         });
     }

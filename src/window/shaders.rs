@@ -17,7 +17,7 @@ use crate::{
     },
     panel::{
         follow::follow_registry,
-        state::{Lab, Severity},
+        state::{Session, Severity},
     },
     registry::Registry,
     render::live::LiveShaders,
@@ -56,7 +56,7 @@ pub(super) fn open(world: &mut World, folders: &Folders) {
 pub(super) fn move_to(world: &mut World, folder: &Path) {
     let mut folders = match Folders::find(Some(folder), None) {
         Ok(folders) => folders,
-        Err(why) => return world.resource_mut::<Lab>().say(Severity::Error, why.to_string()),
+        Err(why) => return world.resource_mut::<Session>().say(Severity::Error, why.to_string()),
     };
     let mut registry = world.resource_mut::<Registry>();
     match registry.custom_folder().filter(|folder| folder.is_dir()) {
@@ -81,9 +81,9 @@ pub(super) fn follow(world: &mut World, mut last: Local<bevy::ecs::message::Mess
 }
 
 /// The models are others: what none of them takes leaves the document until one does.
-pub(super) fn follow_parameters(registry: Res<Registry>, lab: ResMut<Lab>) {
+pub(super) fn follow_parameters(registry: Res<Registry>, session: ResMut<Session>) {
     if registry.is_changed() {
-        follow_registry(lab, &registry);
+        follow_registry(session, &registry);
     }
 }
 
@@ -99,7 +99,7 @@ fn look_at(world: &mut World, files: &[PathBuf]) {
 }
 
 /// Tells the panels and standard error of the state of the shaders.
-pub(super) fn tell(live: Res<LiveShaders>, mut lab: ResMut<Lab>, mut troubled: Local<bool>) {
+pub(super) fn tell(live: Res<LiveShaders>, mut session: ResMut<Session>, mut troubled: Local<bool>) {
     let status = live.status();
     // A problem may have given way to one that is too young to be told.
     if *troubled && status.troubles.is_empty() && live.is_up_to_date() {
@@ -107,12 +107,12 @@ pub(super) fn tell(live: Res<LiveShaders>, mut lab: ResMut<Lab>, mut troubled: L
         complain("All shaders are up to date again.");
     }
     *troubled |= !status.troubles.is_empty();
-    if lab.shaders == *status {
+    if session.shaders == *status {
         return;
     }
     let known =
         |troubles: &[Trouble], trouble: &Trouble| troubles.iter().any(|t| t.problem == trouble.problem);
-    for trouble in status.troubles.iter().filter(|t| !known(&lab.shaders.troubles, t)) {
+    for trouble in status.troubles.iter().filter(|t| !known(&session.shaders.troubles, t)) {
         let file =
             trouble.path.as_ref().map_or_else(|| trouble.problem.file.clone(), |p| p.display().to_string());
         if io::stderr().is_terminal() {
@@ -124,5 +124,5 @@ pub(super) fn tell(live: Res<LiveShaders>, mut lab: ResMut<Lab>, mut troubled: L
             complain(&format!("The picture shows the last good version of {}.", trouble.stale.join(", ")));
         }
     }
-    lab.shaders = status.clone();
+    session.shaders = status.clone();
 }

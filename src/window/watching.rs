@@ -14,7 +14,7 @@ use bevy::{
 
 use crate::{
     files,
-    panel::state::{Effect, Lab, LabEffect, Severity},
+    panel::state::{Effect, LabEffect, Session, Severity},
     watch::Watcher,
 };
 
@@ -54,7 +54,7 @@ pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + use<> {
 pub(super) fn collect(
     watch: Res<FileWatch>,
     mut changed: MessageWriter<FilesChanged>,
-    mut lab: ResMut<Lab>,
+    mut session: ResMut<Session>,
     mut complaint: Local<Option<String>>,
 ) {
     let files = watch.0.changed();
@@ -64,7 +64,7 @@ pub(super) fn collect(
     let now = watch.0.complaint();
     if *complaint != now {
         if let Some(text) = &now {
-            lab.say(Severity::Warning, text.clone());
+            session.say(Severity::Warning, text.clone());
         }
         *complaint = now;
     }
@@ -73,16 +73,16 @@ pub(super) fn collect(
 /// Watches the file of the document, whichever that is.
 pub(super) fn watch_document(
     mut watch: ResMut<FileWatch>,
-    lab: Res<Lab>,
+    session: Res<Session>,
     mut watched: Local<Option<PathBuf>>,
 ) {
-    if *watched == lab.path {
+    if *watched == session.path {
         return;
     }
     if let Some(old) = watched.take() {
         watch.0.forget(&old);
     }
-    watched.clone_from(&lab.path);
+    watched.clone_from(&session.path);
     if let Some(path) = watched.as_deref().filter(|path| !files::is_stream(path)) {
         watch.0.watch_file(path);
         // It may have changed between being read and being watched.
@@ -93,10 +93,10 @@ pub(super) fn watch_document(
 /// When the document's file changed, it is looked at.
 pub(super) fn follow_document(
     mut changed: MessageReader<FilesChanged>,
-    lab: Res<Lab>,
+    session: Res<Session>,
     mut effects: MessageWriter<LabEffect>,
 ) {
-    let concerned = |files: &FilesChanged| lab.path.as_ref().is_some_and(|path| files.0.contains(path));
+    let concerned = |files: &FilesChanged| session.path.as_ref().is_some_and(|path| files.0.contains(path));
     if changed.read().filter(|files| concerned(files)).count() > 0 {
         effects.write(LabEffect(Effect::LookAtFile { discard: false }));
     }

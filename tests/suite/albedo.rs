@@ -236,7 +236,7 @@ fn rows_lie_where_rust_puts_them() {
         assert_eq!(at(mean - 16), nodes[harmonics - 1][15].x);
         let lobe = surface.lobe().unwrap_or_default();
         assert_eq!((at(curve + 12), at(mean)), (lobe.nodes[0], lobe.average()));
-        // Without light from everywhere the colours are left out, the lobe stays.
+        // Without uniform light the colours are left out, the lobe stays.
         let dark = model.row(&Values::default(), Encoding::Srgb, false);
         assert_eq!(dark.len(), row.len());
         assert_eq!(dark[curve..curve + 12], [0; 12]);

@@ -3,24 +3,24 @@
 use bevy_egui::egui::{Color32, PointerButton};
 use lights_camera_models::panel::{
     clipping::{Clipping, GRID},
-    state::{Action, Lab, ViewChange},
+    state::{Action, Session, ViewChange},
 };
 
 use crate::{panels::Bench, screen::Picture};
 
 #[test]
 fn the_sign_tells_the_share_and_the_view_shows_where() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
     bench.settle();
     assert!(!bench.says("Clipped"));
     // The fields of a quarter of the picture, at its upper left.
-    let rect = bench.lab.picture_rect;
+    let rect = bench.session.picture_rect;
     let [across, down] = GRID;
     let field = (rect.area() / (across * down) as f32) as u32;
     let corner = |i: usize| i % across < across / 2 && i / across < down / 2;
     let counts = (0..across * down).map(|i| if corner(i) { field } else { 0 }).collect();
-    bench.lab.clipping = Clipping::new(counts);
+    bench.session.clipping = Clipping::new(counts);
     bench.settle();
     let folder = tempfile::tempdir().unwrap();
     let shown = |bench: &mut Bench| {
@@ -33,14 +33,14 @@ fn the_sign_tells_the_share_and_the_view_shows_where() {
     };
     assert_eq!(shown(&mut bench), [0, 0], "not before it is asked for");
     bench.apply(Action::View(ViewChange::Clipping(true)));
-    let selected = bench.lab.selection;
+    let selected = bench.session.selection;
     let [there, elsewhere] = shown(&mut bench);
     // The sign itself switches them on and off.
     let sign = bench.tree.iter().find(|s| s.label.starts_with("Clipped")).map(|s| s.rect.center()).unwrap();
     bench.click_at(sign, PointerButton::Primary);
-    assert!(!bench.lab.view.show_clipping);
+    assert!(!bench.session.view.show_clipping);
     bench.click_at(sign, PointerButton::Primary);
-    assert!(bench.lab.view.show_clipping && bench.lab.selection == selected);
+    assert!(bench.session.view.show_clipping && bench.session.selection == selected);
     // A chequered pattern, less what the object's marks cover.
     assert!((3200..4900).contains(&there) && elsewhere == 0, "{there} and {elsewhere} of 8100");
 }

@@ -302,7 +302,7 @@ fn equal_declarations_are_the_same_one() {
     let other = read(&text.replace("Same", "Other"));
     assert!(!std::ptr::eq(a.entry.declaration, other.entry.declaration));
     assert!(std::ptr::eq(a.entry.parameters, other.entry.parameters));
-    // A formula for light from everywhere is part of what is declared.
+    // A formula for uniform light is part of what is declared.
     let formula = format!(
         "{text}fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {{ return m.base_colour; }}"
     );
@@ -348,7 +348,7 @@ fn a_model_without_a_good_version_is_drawn_as_a_stand_in() {
     assert!(d.covered > 300 && d.wrong == 0, "{d:?}");
 }
 
-/// A renderer on the graphics card that knows what a registry knows.
+/// A renderer on the GPU that knows what a registry knows.
 fn renderer(registry: &Registry) -> GpuRenderer {
     let registry = registry.clone();
     GpuRenderer::extended(64, 64, 1, Output::Linear, |app| {
@@ -357,7 +357,7 @@ fn renderer(registry: &Registry) -> GpuRenderer {
     .expect("software Vulkan is installed")
 }
 
-/// A picture from the graphics card, linear.
+/// A picture from the GPU, linear.
 fn draw(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<Vec3> {
     renderer.set_scene(scene.clone());
     renderer.settle().expect("the GPU draws");
@@ -460,7 +460,7 @@ fn a_built_in_model_as_a_file_gives_the_same_picture_in_every_shading_model() {
     }
 }
 
-/// What the graphics card is found to do with a model.
+/// What the GPU is found to do with a model.
 fn examined(registry: &Registry, id: &str) -> Findings {
     let model = registry.model(id).unwrap();
     let mut evaluator = Evaluator::new(registry.sources(), model).expect("software Vulkan is installed");

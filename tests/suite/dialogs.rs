@@ -6,7 +6,7 @@ use bevy_egui::egui::{Color32, Event, Id, Key, Modifiers, Order, Shape, vec2};
 use lights_camera_models::{
     optics::colour::srgb_decode,
     panel::{
-        state::{Action, Lab, ThemeChoice, ViewChange},
+        state::{Action, Session, ThemeChoice, ViewChange},
         theme::Palette,
     },
 };
@@ -29,9 +29,9 @@ fn open(theme: ThemeChoice, percent: u16) -> (Bench, tempfile::TempDir) {
     fs::copy(root().join("scenes/shapes_and_lights.json"), folder.path().join("shapes.json"))
         .expect("copied");
     fs::write(folder.path().join("broken.json"), r#"{ "lights": 5 }"#).expect("written");
-    let mut lab = Lab::default();
-    lab.path = Some(folder.path().join("shapes.json"));
-    let mut bench = Bench::new(lab);
+    let mut session = Session::default();
+    session.path = Some(folder.path().join("shapes.json"));
+    let mut bench = Bench::new(session);
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::Theme(theme)));
     bench.apply(Action::View(ViewChange::Scale(percent)));
@@ -64,7 +64,7 @@ fn the_dialog_takes_seventy_per_cent_of_the_window() {
 fn what_is_typed_and_what_is_selected_can_be_seen_in_both_themes() {
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
         let (mut bench, _folder) = open(theme, 100);
-        let palette = Palette::of(&bench.lab.view);
+        let palette = Palette::of(&bench.session.view);
         select(&mut bench, "shapes.json");
         let selected =
             bench.shapes().into_iter().any(|s| matches!(s, Shape::Rect(r) if r.fill == palette.accent));

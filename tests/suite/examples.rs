@@ -7,7 +7,7 @@ use lights_camera_models::{
     document::Edit,
     panel::{
         preview::{self, Preview, Source},
-        state::{Action, Answer, Effect, Lab, Question, ViewChange},
+        state::{Action, Answer, Effect, Question, Session, ViewChange},
     },
     reference::{self, Settings},
     registry::Registry,
@@ -29,7 +29,7 @@ pub fn until(bench: &mut Bench, what: &str, mut is: impl FnMut(&mut Bench) -> bo
 
 #[test]
 fn an_example_is_opened_from_the_menu_as_a_document_in_no_file() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.click("File");
     bench.click("Examples ⏵");
     for example in EXAMPLES.iter() {
@@ -40,11 +40,11 @@ fn an_example_is_opened_from_the_menu_as_a_document_in_no_file() {
         );
     }
     bench.click("Example: Portrait");
-    assert_eq!((bench.lab.title().as_str(), bench.lab.path.clone()), ("Portrait", None));
-    assert!(!bench.lab.is_dirty() && bench.find("Example: Portrait").is_none());
+    assert_eq!((bench.session.title().as_str(), bench.session.path.clone()), ("Portrait", None));
+    assert!(!bench.session.is_dirty() && bench.find("Example: Portrait").is_none());
     assert!(bench.effects.contains(&Effect::DocumentChanged));
     // Saving asks where.
-    let effects = bench.lab.apply(Action::Save, &bench.registry);
+    let effects = bench.session.apply(Action::Save, &bench.registry);
     assert_eq!(effects, [Effect::PickSave]);
 }
 
@@ -52,40 +52,40 @@ fn an_example_is_opened_from_the_menu_as_a_document_in_no_file() {
 fn unsaved_changes_are_asked_about_before_an_example_is_opened() {
     let registry = Registry::builtin();
     for (answer, title) in [(Answer::Cancel, "Mine"), (Answer::Discard, "Portrait")] {
-        let mut lab = Lab::default();
-        lab.apply(Action::Edit(Edit::SceneName("Mine".to_owned())), &registry);
+        let mut session = Session::default();
+        session.apply(Action::Edit(Edit::SceneName("Mine".to_owned())), &registry);
         let portrait = EXAMPLES.iter().position(|e| e.name == "Portrait").expect("shipped");
-        lab.apply(Action::OpenExample(portrait), &registry);
-        assert!(matches!(lab.question, Some(Question::Unsaved { .. })));
-        assert_eq!(lab.title(), "Mine");
-        lab.apply(Action::Answer(answer), &registry);
-        assert_eq!(lab.title(), title);
+        session.apply(Action::OpenExample(portrait), &registry);
+        assert!(matches!(session.question, Some(Question::Unsaved { .. })));
+        assert_eq!(session.title(), "Mine");
+        session.apply(Action::Answer(answer), &registry);
+        assert_eq!(session.title(), title);
     }
 }
 
 #[test]
 fn the_strip_stands_below_the_picture_and_escape_closes_it() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.size = vec2(1280.0, 720.0);
     bench.settle();
     assert!(bench.find("Example: Portrait").is_none());
-    let whole = bench.lab.picture_rect;
+    let whole = bench.session.picture_rect;
     bench.apply(Action::View(ViewChange::Examples(true)));
     let card = bench.find("Example: Shapes and lights").expect("a card").rect;
-    let picture = bench.lab.picture_rect;
+    let picture = bench.session.picture_rect;
     assert!(picture.bottom() <= card.top() && whole.contains_rect(card), "{picture:?} {card:?}");
     assert!(picture.height() > 0.75 * whole.height(), "the picture keeps its room: {picture:?}");
     bench.click("Example: Shapes and lights");
-    assert_eq!(bench.lab.title(), "Shapes and lights");
-    assert!(bench.lab.view.examples_open, "one looks at several");
+    assert_eq!(bench.session.title(), "Shapes and lights");
+    assert!(bench.session.view.examples_open, "one looks at several");
     bench.key(Key::Escape, Modifiers::NONE);
-    assert!(!bench.lab.view.examples_open);
-    assert_eq!(bench.lab.picture_rect, whole);
+    assert!(!bench.session.view.examples_open);
+    assert_eq!(bench.session.picture_rect, whole);
 }
 
 #[test]
 fn every_example_gets_its_small_picture() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     let registry = bench.registry.clone();
     until(&mut bench, "all pictures", |bench| {
         let ready = |i| match preview::of(&bench.ctx, &Source::Example(i), &registry) {

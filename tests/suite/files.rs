@@ -25,7 +25,7 @@ use lights_camera_models::{
     panel::{
         files::{Files as _, Looked, Opened, Saved},
         settings::{self, Settings},
-        state::{Lab, Severity},
+        state::{Session, Severity},
     },
     registry::Registry,
     scene::{
@@ -825,11 +825,11 @@ fn what_a_terminal_obeys_does_not_reach_it() {
 
 #[test]
 fn messages_of_the_window_show_what_a_terminal_would_obey() {
-    let mut lab = Lab::new(Scene { name: None, ..Scene::default() });
-    lab.say(Severity::Error, format!("{ODD}.json was not opened"));
-    assert_eq!(lab.messages[0].text, format!("{SHOWN}.json was not opened"));
-    lab.path = Some(PathBuf::from(format!("/x/{ODD}.json")));
-    assert_eq!(lab.title(), SHOWN);
+    let mut session = Session::new(Scene { name: None, ..Scene::default() });
+    session.say(Severity::Error, format!("{ODD}.json was not opened"));
+    assert_eq!(session.messages[0].text, format!("{SHOWN}.json was not opened"));
+    session.path = Some(PathBuf::from(format!("/x/{ODD}.json")));
+    assert_eq!(session.title(), SHOWN);
     assert_eq!(printable(ODD), SHOWN);
 }
 

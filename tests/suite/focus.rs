@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Key, Modifiers, PointerButton, Popup, Rect, vec2};
 use lights_camera_models::{
     document::Selection,
     panel::{
-        state::{Action, Badge, Effect, Lab, Severity, Steer, ViewChange},
+        state::{Action, Badge, Effect, Session, Severity, Steer, ViewChange},
         theme::DARK,
     },
     scene::{Object, Scene},
@@ -50,7 +50,7 @@ fn rings(bench: &mut Bench) -> Vec<Rect> {
 
 #[test]
 fn f6_goes_from_panel_to_panel_and_back_to_the_picture() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     let mut places = Vec::new();
     for _ in 0..4 {
         bench.key(Key::F6, Modifiers::NONE);
@@ -93,7 +93,7 @@ fn every_focus_is_seen() {
 
 #[test]
 fn menus_opened_by_mouse_listen_to_the_arrows_and_enter() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.click("Edit");
     bench.key(Key::ArrowDown, Modifiers::NONE);
     let first = focused(&bench).expect("the first entry");
@@ -131,18 +131,18 @@ fn keys_steer_the_camera_unless_a_panel_has_them() {
 
 #[test]
 fn a_new_name_takes_the_place_of_the_old_one() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Select(Selection::Object(0)));
     bench.key(Key::F2, Modifiers::NONE);
     bench.frame(vec![egui::Event::Text("ball".to_owned())]);
     bench.settle();
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.document.objects[0].name.as_deref(), Some("ball"));
+    assert_eq!(bench.session.document.objects[0].name.as_deref(), Some("ball"));
 }
 
 #[test]
 fn the_menus_open_with_alt_and_with_f10() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.key(Key::E, Modifiers::ALT);
     assert!(bench.says("New reflection model…"), "Alt+E opens Edit");
     let first = focused(&bench).expect("its first entry");
@@ -156,9 +156,9 @@ fn the_menus_open_with_alt_and_with_f10() {
     bench.key(Key::F10, Modifiers::NONE);
     assert!(!bench.says("New default scene"), "and closes it");
     // A letter with Alt is no command of the picture.
-    let shading = bench.lab.document.shading_model.clone();
+    let shading = bench.session.document.shading_model.clone();
     bench.key(Key::F, Modifiers::ALT);
-    assert_eq!(bench.lab.document.shading_model, shading);
+    assert_eq!(bench.session.document.shading_model, shading);
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn what_gets_the_focus_comes_into_sight() {
 #[test]
 fn arrows_in_the_scene_list_select_the_row_they_lead_to() {
     let scene = Scene { objects: vec![Object::default(); 60], ..Scene::default() };
-    let mut bench = Bench::new(Lab::new(scene));
+    let mut bench = Bench::new(Session::new(scene));
     bench.size = vec2(1280.0, 480.0);
     bench.settle();
     (0..2).for_each(|_| bench.key(Key::F6, Modifiers::NONE));
@@ -187,42 +187,42 @@ fn arrows_in_the_scene_list_select_the_row_they_lead_to() {
         assert!(in_sight(&bench), "{i}");
     }
     // Room, observer, one light.
-    assert_eq!(bench.lab.selection, Selection::Object(40 - 3));
+    assert_eq!(bench.session.selection, Selection::Object(40 - 3));
     (0..39).for_each(|_| bench.key(Key::ArrowUp, Modifiers::NONE));
-    assert_eq!(bench.lab.selection, Selection::Observer);
+    assert_eq!(bench.session.selection, Selection::Observer);
     assert!(in_sight(&bench) && name(&bench) == "Observer");
 }
 
 #[test]
 fn the_menu_of_a_row_is_about_what_is_selected() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Duplicate(Selection::Object(0)));
     bench.apply(Action::Select(Selection::Room));
     let row = bench.find("Observer").expect("listed").rect.center();
     bench.click_at(row, PointerButton::Secondary);
-    assert_eq!(bench.lab.selection, Selection::Observer);
+    assert_eq!(bench.session.selection, Selection::Observer);
 }
 
 #[test]
 fn a_deletion_keeps_the_selection_and_is_said_with_a_way_back() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     (0..2).for_each(|_| bench.apply(Action::Duplicate(Selection::Object(0))));
     bench.apply(Action::Select(Selection::Object(2)));
-    let before = bench.lab.document.scene().clone();
+    let before = bench.session.document.scene().clone();
     bench.apply(Action::Remove(Selection::Object(0)));
-    assert_eq!(bench.lab.selection, Selection::Object(1), "the same object");
-    assert!(bench.says("Deleted “"), "{:?}", bench.lab.messages);
+    assert_eq!(bench.session.selection, Selection::Object(1), "the same object");
+    assert!(bench.says("Deleted “"), "{:?}", bench.session.messages);
     bench.click("Undo");
-    assert_eq!(*bench.lab.document.scene(), before);
+    assert_eq!(*bench.session.document.scene(), before);
     // What would undo something else is not offered.
     bench.apply(Action::Remove(Selection::Object(0)));
-    bench.apply(Action::Edit(bench.lab.edit_shading_model("flat")));
-    assert!(bench.lab.messages.iter().all(|note| note.offer.is_none()));
+    bench.apply(Action::Edit(bench.session.edit_shading_model("flat")));
+    assert!(bench.session.messages.iter().all(|note| note.offer.is_none()));
 }
 
 #[test]
 fn after_the_name_come_the_buttons_and_the_bin_last() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Select(Selection::Object(0)));
     let at = bench.field("Name").rect.center();
     bench.click_at(at, PointerButton::Primary);
@@ -234,7 +234,7 @@ fn after_the_name_come_the_buttons_and_the_bin_last() {
 
 #[test]
 fn menus_open_with_the_focus_on_their_first_entry_and_arrows_change_them() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     for (key, modifiers) in [(Key::F, Modifiers::ALT), (Key::F10, Modifiers::NONE)] {
         bench.key(key, modifiers);
         assert!(name(&bench).starts_with("New default scene"), "{}", name(&bench));
@@ -251,7 +251,7 @@ fn menus_open_with_the_focus_on_their_first_entry_and_arrows_change_them() {
 
 #[test]
 fn right_goes_into_a_menu_within_a_menu_and_left_comes_back() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     let to = |bench: &mut Bench, entry: &str| {
         for _ in 0..20 {
             if name(bench).starts_with(entry) {
@@ -276,13 +276,13 @@ fn right_goes_into_a_menu_within_a_menu_and_left_comes_back() {
     }
     bench.key(Key::ArrowRight, Modifiers::NONE);
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.document.lights.len(), 2);
+    assert_eq!(bench.session.document.lights.len(), 2);
     assert!(!Popup::is_any_open(&bench.ctx));
 }
 
 #[test]
 fn entries_scrolled_out_of_a_long_menu_are_reached() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.size = vec2(1280.0, 360.0);
     bench.settle();
     bench.key(Key::V, Modifiers::ALT);
@@ -293,31 +293,35 @@ fn entries_scrolled_out_of_a_long_menu_are_reached() {
 
 #[test]
 fn enter_closes_a_drop_down_list_and_its_button_has_the_focus() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Select(Selection::Light(0)));
     let button = bench.tree.iter().find(|s| s.label.starts_with("type: ")).expect("a list of types").rect;
     bench.click_at(button.center(), PointerButton::Primary);
-    let before = bench.lab.document.lights[0].light_type.clone();
+    let before = bench.session.document.lights[0].light_type.clone();
     bench.key(Key::ArrowDown, Modifiers::NONE);
     bench.key(Key::ArrowDown, Modifiers::NONE);
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_ne!(bench.lab.document.lights[0].light_type, before);
+    assert_ne!(bench.session.document.lights[0].light_type, before);
     assert!(!Popup::is_any_open(&bench.ctx));
     assert!(name(&bench).starts_with("type: "), "{}", name(&bench));
 }
 
 #[test]
 fn f6_reaches_the_examples_and_the_badges_and_shows_that_the_picture_has_the_keys() {
-    let mut bench = Bench::new(Lab::default());
-    bench.lab.badges = vec![Badge {
+    let mut bench = Bench::new(Session::default());
+    bench.session.badges = vec![Badge {
         severity: Severity::Info,
         text: "Not what it seems".to_owned(),
         help: "The whole story.".to_owned(),
     }];
     bench.apply(Action::View(ViewChange::Examples(true)));
     (0..5).for_each(|_| bench.key(Key::F6, Modifiers::NONE));
-    assert!(focused(&bench).is_some_and(|r| r.top() > bench.lab.picture_rect.bottom()), "{}", name(&bench));
-    let picture = bench.lab.picture_rect;
+    assert!(
+        focused(&bench).is_some_and(|r| r.top() > bench.session.picture_rect.bottom()),
+        "{}",
+        name(&bench)
+    );
+    let picture = bench.session.picture_rect;
     let around = |bench: &mut Bench| {
         rings(bench).into_iter().any(|r| picture.contains_rect(r) && r.width() > picture.width() - 8.0)
     };

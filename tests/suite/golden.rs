@@ -179,7 +179,7 @@ fn the_comparison_notices_one_light_changed() {
                 light.position.iter_mut().for_each(|p| p.y += 2.0);
                 light.direction.iter_mut().for_each(|d| *d += Vec3::new(0.1, -0.1, 0.0));
             }
-            // Light from everywhere cannot be moved.
+            // Uniform light cannot be moved.
             None => scene.lights.iter_mut().for_each(|l| l.intensity *= 0.95),
         }
         let wrong = on_cpu(&scene);

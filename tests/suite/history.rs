@@ -6,7 +6,7 @@ use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     document::{Document, Edit, Extent, LightField, ObjectField, Selection},
-    panel::state::{Action, Lab},
+    panel::state::{Action, Session},
     parameter::Value,
     registry::Registry,
     scene::{Display, Object, Observer, Scene, SceneSize, check},
@@ -61,151 +61,157 @@ fn changes() -> Vec<Action> {
 #[test]
 fn every_change_is_a_step_that_is_undone_and_redone_exactly() {
     let registry = Registry::builtin();
-    let mut lab = Lab::default();
-    let mut states = vec![(lab.document.scene().clone(), lab.selection)];
+    let mut session = Session::default();
+    let mut states = vec![(session.document.scene().clone(), session.selection)];
     for action in changes() {
-        let before = lab.document.steps().len();
-        let known = |lab: &Lab, i: usize| lab.document.objects.get(i).is_some();
-        assert!(known(&lab, 0));
-        lab.apply(action.clone(), &registry);
-        lab.document.end_gesture();
-        assert!(*lab.document.scene() != states[states.len() - 1].0, "{action:?}: {:?}", lab.messages);
-        assert_eq!(lab.document.steps().len(), before + 1, "{action:?}");
-        assert!(check::scene(&lab.document, &registry).is_empty(), "{action:?}");
-        states.push((lab.document.scene().clone(), lab.selection));
+        let before = session.document.steps().len();
+        let known = |session: &Session, i: usize| session.document.objects.get(i).is_some();
+        assert!(known(&session, 0));
+        session.apply(action.clone(), &registry);
+        session.document.end_gesture();
+        assert!(
+            *session.document.scene() != states[states.len() - 1].0,
+            "{action:?}: {:?}",
+            session.messages
+        );
+        assert_eq!(session.document.steps().len(), before + 1, "{action:?}");
+        assert!(check::scene(&session.document, &registry).is_empty(), "{action:?}");
+        states.push((session.document.scene().clone(), session.selection));
     }
-    let names: Vec<_> = lab.document.steps().map(str::to_owned).collect();
+    let names: Vec<_> = session.document.steps().map(str::to_owned).collect();
     assert!(names.iter().all(|name| !name.is_empty()), "{names:?}");
     assert!(names.contains(&"Intensity of lamp".to_owned()), "{names:?}");
     assert!(names.contains(&"Add Cube 1".to_owned()), "{names:?}");
     for (scene, _) in states.iter().rev().skip(1) {
-        lab.apply(Action::Undo, &registry);
-        assert!(*scene == *lab.document.scene(), "undoing {}", names[lab.document.done()]);
-        assert!(check::scene(&lab.document, &registry).is_empty());
+        session.apply(Action::Undo, &registry);
+        assert!(*scene == *session.document.scene(), "undoing {}", names[session.document.done()]);
+        assert!(check::scene(&session.document, &registry).is_empty());
     }
-    assert!(!lab.is_dirty(), "as it was opened");
-    lab.apply(Action::Undo, &registry);
-    assert!(lab.messages.iter().any(|m| m.text == "There is nothing to undo."));
+    assert!(!session.is_dirty(), "as it was opened");
+    session.apply(Action::Undo, &registry);
+    assert!(session.messages.iter().any(|m| m.text == "There is nothing to undo."));
     for (scene, selection) in &states[1..] {
-        lab.apply(Action::Redo, &registry);
-        assert!(*scene == *lab.document.scene(), "redoing {}", names[lab.document.done() - 1]);
-        assert_eq!(*selection, lab.selection);
+        session.apply(Action::Redo, &registry);
+        assert!(*scene == *session.document.scene(), "redoing {}", names[session.document.done() - 1]);
+        assert_eq!(*selection, session.selection);
     }
-    lab.apply(Action::Redo, &registry);
-    assert!(lab.messages.iter().any(|m| m.text == "There is nothing to redo."));
+    session.apply(Action::Redo, &registry);
+    assert!(session.messages.iter().any(|m| m.text == "There is nothing to redo."));
     // Anywhere in one jump.
     for at in [0, 7, states.len() - 1, 20] {
-        lab.apply(Action::GoToStep(at), &registry);
-        assert!(states[at].0 == *lab.document.scene(), "{at}");
+        session.apply(Action::GoToStep(at), &registry);
+        assert!(states[at].0 == *session.document.scene(), "{at}");
     }
     // Another change takes the place of what was undone.
-    lab.apply(Action::Expose(0.25), &registry);
-    assert_eq!((lab.document.done(), lab.document.steps().len()), (21, 21));
+    session.apply(Action::Expose(0.25), &registry);
+    assert_eq!((session.document.done(), session.document.steps().len()), (21, 21));
 }
 
 #[test]
 fn what_was_selected_comes_back() {
     let registry = Registry::builtin();
-    let mut lab = Lab::default();
-    lab.apply(Action::AddObject("cube".to_owned()), &registry);
-    lab.apply(Action::Select(Selection::Light(0)), &registry);
-    lab.apply(Action::Edit(Edit::Light(0, LightField::Intensity(5.0))), &registry);
-    lab.apply(Action::Select(Selection::Room), &registry);
-    lab.apply(Action::Undo, &registry);
-    assert_eq!(lab.selection, Selection::Light(0));
-    lab.apply(Action::Undo, &registry);
-    assert_eq!(lab.selection, Selection::Object(0));
-    lab.apply(Action::Redo, &registry);
-    assert_eq!(lab.selection, Selection::Object(1), "the cube");
-    lab.apply(Action::Remove(Selection::Object(1)), &registry);
-    lab.apply(Action::Undo, &registry);
-    assert_eq!(lab.selection, Selection::Object(1));
+    let mut session = Session::default();
+    session.apply(Action::AddObject("cube".to_owned()), &registry);
+    session.apply(Action::Select(Selection::Light(0)), &registry);
+    session.apply(Action::Edit(Edit::Light(0, LightField::Intensity(5.0))), &registry);
+    session.apply(Action::Select(Selection::Room), &registry);
+    session.apply(Action::Undo, &registry);
+    assert_eq!(session.selection, Selection::Light(0));
+    session.apply(Action::Undo, &registry);
+    assert_eq!(session.selection, Selection::Object(0));
+    session.apply(Action::Redo, &registry);
+    assert_eq!(session.selection, Selection::Object(1), "the cube");
+    session.apply(Action::Remove(Selection::Object(1)), &registry);
+    session.apply(Action::Undo, &registry);
+    assert_eq!(session.selection, Selection::Object(1));
 }
 
 #[test]
 fn parts_keep_their_ids_when_others_come_and_go_and_when_they_come_back() {
     let registry = Registry::builtin();
-    let mut lab = Lab::new(Scene {
+    let mut session = Session::new(Scene {
         objects: (0..5).map(|i| Object { size: 0.5 + 0.1 * i as f32, ..Object::default() }).collect(),
         ..Scene::default()
     });
-    let ids =
-        |lab: &Lab| (0..lab.document.objects.len()).map(|i| lab.document.object_id(i)).collect::<Vec<_>>();
-    let first = ids(&lab);
-    lab.apply(Action::Remove(Selection::Object(1)), &registry);
-    assert_eq!(ids(&lab), [first[0], first[2], first[3], first[4]]);
-    lab.apply(Action::Duplicate(Selection::Object(0)), &registry);
-    let copied = ids(&lab);
+    let ids = |session: &Session| {
+        (0..session.document.objects.len()).map(|i| session.document.object_id(i)).collect::<Vec<_>>()
+    };
+    let first = ids(&session);
+    session.apply(Action::Remove(Selection::Object(1)), &registry);
+    assert_eq!(ids(&session), [first[0], first[2], first[3], first[4]]);
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    let copied = ids(&session);
     assert_eq!(copied.len(), 5);
     assert!(!first.contains(&copied[1]), "a new part has a new id");
-    lab.apply(Action::GoToStep(0), &registry);
-    assert_eq!(ids(&lab), first);
-    lab.apply(Action::GoToStep(2), &registry);
-    assert_eq!(ids(&lab), copied);
+    session.apply(Action::GoToStep(0), &registry);
+    assert_eq!(ids(&session), first);
+    session.apply(Action::GoToStep(2), &registry);
+    assert_eq!(ids(&session), copied);
     // Another version of the file: the objects in another order, one gone, one changed, one new.
-    lab.apply(Action::GoToStep(0), &registry);
-    let mut scene = lab.document.scene().clone();
+    session.apply(Action::GoToStep(0), &registry);
+    let mut scene = session.document.scene().clone();
     scene.objects.swap(0, 4);
     scene.objects.remove(2);
     scene.objects.push(Object { object_type: "cube".to_owned(), ..Object::default() });
-    lab.document.replace("Reload from disk", Selection::Room, scene);
-    assert_eq!(ids(&lab)[..4], [first[4], first[1], first[3], first[0]]);
-    lab.apply(Action::Undo, &registry);
-    assert_eq!(ids(&lab), first);
+    session.document.replace("Reload from disk", Selection::Room, scene);
+    assert_eq!(ids(&session)[..4], [first[4], first[1], first[3], first[0]]);
+    session.apply(Action::Undo, &registry);
+    assert_eq!(ids(&session), first);
 }
 
 #[test]
 fn a_gesture_is_one_step_and_one_that_leads_nowhere_is_none() {
     let registry = Registry::builtin();
-    let mut lab = Lab::default();
-    let size =
-        |lab: &mut Lab, v: f32| lab.apply(Action::Edit(Edit::Object(0, ObjectField::Size(v))), &registry);
+    let mut session = Session::default();
+    let size = |session: &mut Session, v: f32| {
+        session.apply(Action::Edit(Edit::Object(0, ObjectField::Size(v))), &registry)
+    };
     for i in 1..10 {
-        size(&mut lab, 2.0 - 0.1 * i as f32);
+        size(&mut session, 2.0 - 0.1 * i as f32);
     }
-    assert_eq!(lab.document.steps().collect::<Vec<_>>(), ["Size of Sphere 1"]);
-    lab.apply(Action::Undo, &registry);
-    assert_eq!(lab.document.objects[0].size, 2.0);
-    lab.apply(Action::Redo, &registry);
-    assert!((lab.document.objects[0].size - 1.1).abs() < 1e-6);
+    assert_eq!(session.document.steps().collect::<Vec<_>>(), ["Size of Sphere 1"]);
+    session.apply(Action::Undo, &registry);
+    assert_eq!(session.document.objects[0].size, 2.0);
+    session.apply(Action::Redo, &registry);
+    assert!((session.document.objects[0].size - 1.1).abs() < 1e-6);
     // Another gesture, another step; there and back again, none.
-    size(&mut lab, 1.5);
-    lab.document.end_gesture();
-    assert_eq!(lab.document.steps().len(), 2);
-    size(&mut lab, 1.75);
-    size(&mut lab, 1.5);
-    assert_eq!(lab.document.steps().len(), 2);
+    size(&mut session, 1.5);
+    session.document.end_gesture();
+    assert_eq!(session.document.steps().len(), 2);
+    size(&mut session, 1.75);
+    size(&mut session, 1.5);
+    assert_eq!(session.document.steps().len(), 2);
     // The same value again is no change.
-    lab.document.end_gesture();
-    size(&mut lab, 1.5);
-    assert_eq!(lab.document.steps().len(), 2);
+    session.document.end_gesture();
+    size(&mut session, 1.5);
+    assert_eq!(session.document.steps().len(), 2);
 }
 
 #[test]
 fn history_outlives_saving_and_reading_the_file_again_but_not_another_document() {
     let registry = Registry::builtin();
-    let mut lab = Lab::default();
+    let mut session = Session::default();
     let path = PathBuf::from("room.json");
-    let _ = lab.opened(path.clone(), Scene::default());
-    lab.apply(Action::Expose(1.0), &registry);
-    lab.document.end_gesture();
-    let _ = lab.saved(path, &registry);
-    assert!(!lab.is_dirty());
-    lab.apply(Action::Undo, &registry);
-    assert!(lab.is_dirty() && lab.document.display.exposure == 0.0);
-    lab.apply(Action::Redo, &registry);
-    assert!(!lab.is_dirty(), "as it was saved");
-    let mut edited = lab.document.scene().clone();
+    let _ = session.opened(path.clone(), Scene::default());
+    session.apply(Action::Expose(1.0), &registry);
+    session.document.end_gesture();
+    let _ = session.saved(path, &registry);
+    assert!(!session.is_dirty());
+    session.apply(Action::Undo, &registry);
+    assert!(session.is_dirty() && session.document.display.exposure == 0.0);
+    session.apply(Action::Redo, &registry);
+    assert!(!session.is_dirty(), "as it was saved");
+    let mut edited = session.document.scene().clone();
     edited.reflection_model = "phong".to_owned();
-    lab.document.set_saved(edited.clone());
-    lab.document.replace("Reload from disk", lab.selection, edited);
-    lab.apply(Action::Undo, &registry);
-    assert_eq!(lab.document.reflection_model, "lambert");
-    lab.apply(Action::Undo, &registry);
-    assert_eq!(lab.document.display.exposure, 0.0);
-    lab.apply(Action::New, &registry);
-    lab.apply(Action::Answer(lights_camera_models::panel::state::Answer::Discard), &registry);
-    assert_eq!(lab.document.steps().len(), 0);
+    session.document.set_saved(edited.clone());
+    session.document.replace("Reload from disk", session.selection, edited);
+    session.apply(Action::Undo, &registry);
+    assert_eq!(session.document.reflection_model, "lambert");
+    session.apply(Action::Undo, &registry);
+    assert_eq!(session.document.display.exposure, 0.0);
+    session.apply(Action::New, &registry);
+    session.apply(Action::Answer(lights_camera_models::panel::state::Answer::Discard), &registry);
+    assert_eq!(session.document.steps().len(), 0);
 }
 
 #[test]
@@ -235,30 +241,35 @@ fn history_is_bounded() {
 #[test]
 fn a_component_that_a_system_changes_is_checked_and_a_step() {
     let registry = Registry::builtin();
-    let mut lab = Lab::default();
+    let mut session = Session::default();
     for i in 0..50 {
-        let mut scene = lab.document.scene().clone();
+        let mut scene = session.document.scene().clone();
         scene.lights[0].intensity = 10.0 + i as f32;
-        assert_eq!(lab.submit(scene, &registry), Ok(()));
+        assert_eq!(session.submit(scene, &registry), Ok(()));
     }
-    assert_eq!(lab.document.steps().collect::<Vec<_>>(), ["Change by a system"], "an animation is one step");
-    let good = lab.document.scene().clone();
+    assert_eq!(
+        session.document.steps().collect::<Vec<_>>(),
+        ["Change by a system"],
+        "an animation is one step"
+    );
+    let good = session.document.scene().clone();
     let mut scene = good.clone();
     scene.objects[0].size = -1.0;
-    let why = lab.submit(scene, &registry).expect_err("a size is above 0");
+    let why = session.submit(scene, &registry).expect_err("a size is above 0");
     assert!(why.contains("size"), "{why}");
-    assert!(*lab.document.scene() == good);
-    lab.apply(Action::Undo, &registry);
-    assert!(*lab.document.scene() == Scene::default());
+    assert!(*session.document.scene() == good);
+    session.apply(Action::Undo, &registry);
+    assert!(*session.document.scene() == Scene::default());
 }
 
 #[test]
 fn keys_menu_and_list_take_steps_back_and_forth() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.frame(Vec::new());
     bench.apply(Action::AddObject("cube".to_owned()));
     bench.apply(Action::Expose(1.0));
-    let objects = |bench: &Bench| (bench.lab.document.objects.len(), bench.lab.document.display.exposure);
+    let objects =
+        |bench: &Bench| (bench.session.document.objects.len(), bench.session.document.display.exposure);
     assert_eq!(objects(&bench), (2, 1.0));
     bench.key(Key::Z, Modifiers::COMMAND);
     assert_eq!(objects(&bench), (2, 0.0));
@@ -299,7 +310,7 @@ fn a_drag_of_a_knob_is_one_step() {
         .iter()
         .find(|s| s.role == bevy_egui::egui::accesskit::Role::Slider && s.label == "shininess");
     let at = slider.expect("there is a slider").rect.left_center() + vec2(20.0, 0.0);
-    let exponent = |bench: &Bench| bench.lab.document.objects[0].material.0.get("alpha").cloned();
+    let exponent = |bench: &Bench| bench.session.document.objects[0].material.0.get("alpha").cloned();
     let before = exponent(&bench);
     bench.hover(at);
     bench.frame(vec![Event::PointerButton {
@@ -319,7 +330,7 @@ fn a_drag_of_a_knob_is_one_step() {
     }]);
     bench.settle();
     assert!(exponent(&bench) != before, "the drag changes it");
-    assert_eq!(bench.lab.document.steps().collect::<Vec<_>>(), ["Shininess of Sphere 1"]);
+    assert_eq!(bench.session.document.steps().collect::<Vec<_>>(), ["Shininess of Sphere 1"]);
     bench.key(Key::Z, Modifiers::COMMAND);
     assert_eq!(exponent(&bench), before);
 }

@@ -31,7 +31,7 @@ fn every_knob_of_phong_is_seen_at_1280_by_720_without_scrolling() {
             let mut bench = laptop(model);
             bench.apply(Action::View(ViewChange::Theme(theme)));
             // The panel reaches from the bar at the top to the line at the bottom, as the picture does.
-            let seen = bench.lab.picture_rect.y_range();
+            let seen = bench.session.picture_rect.y_range();
             let labels = ["ambient coefficient", "diffuse coefficient", "specular coefficient", "shininess"];
             for label in labels {
                 let field = bench.field(label).rect;
@@ -115,19 +115,19 @@ fn model_and_shading_of_one_object_are_overridden_beside_the_name_of_the_model()
     assert!(at.bottom() < terms.top() && at.height() < 30.0);
     bench.click(control);
     bench.click("Shading of this object: Flat");
-    assert_eq!(bench.lab.document.objects[0].shading_model.as_deref(), Some("flat"));
+    assert_eq!(bench.session.document.objects[0].shading_model.as_deref(), Some("flat"));
     assert!(bench.says("Override model and shading: Flat shading"));
     bench.click("Lambert");
-    assert_eq!(bench.lab.document.objects[0].reflection_model.as_deref(), Some("lambert"));
-    assert_eq!(bench.lab.document.reflection_model, "phong");
+    assert_eq!(bench.session.document.objects[0].reflection_model.as_deref(), Some("lambert"));
+    assert_eq!(bench.session.document.reflection_model, "phong");
     assert!(bench.find("Shading of this object: Flat").is_none(), "choosing a model closes the list");
     bench.click("Override model and shading: Lambert, Flat shading");
     bench.click("Shading of this object: Scene default");
     bench.click("Scene default (Phong)");
-    let object = &bench.lab.document.objects[0];
+    let object = &bench.session.document.objects[0];
     assert_eq!((&object.reflection_model, &object.shading_model), (&None, &None));
     bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
-    bench.click_at(bench.lab.picture_rect.center(), PointerButton::Primary);
+    bench.click_at(bench.session.picture_rect.center(), PointerButton::Primary);
     assert!(bench.find(control).is_some());
 }
 

@@ -5,8 +5,8 @@ use std::{path::PathBuf, sync::mpsc, time::Duration};
 use lights_camera_models::{
     library::{assets::Folders, status::Reloaded},
     panel::{
-        author::Ask,
-        state::{Action, Effect, Lab, ViewChange},
+        author::ModelCommand,
+        state::{Action, Effect, Session, ViewChange},
     },
     reflection::law_report::LawReport,
     window::laws::LawChecks,
@@ -36,35 +36,35 @@ fn program() -> Option<PathBuf> {
 
 #[test]
 fn laws_are_checked_in_another_process_and_shown() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     bench.click("Check laws");
     assert_eq!(bench.effects, [Effect::CheckLaws("lambert".to_owned())]);
     bench.settle();
     assert!(bench.find("Check laws").expect("there").disabled && bench.says("Checking Lambert…"));
-    bench.apply(Action::Author(Ask::CheckLaws));
+    bench.apply(Action::Model(ModelCommand::CheckLaws));
     assert_eq!(bench.effects.len(), 1, "one at a time");
 
     let found = outcome("lambert", &Folders::default(), program());
     assert_eq!(found.as_ref().map(|r| r.laws.len()), Ok(3), "{found:?}");
-    bench.lab.laws_checked("phong", found.clone());
-    assert!(bench.lab.laws.as_ref().is_some_and(|check| check.outcome.is_none()), "another model");
+    bench.session.laws_checked("phong", found.clone());
+    assert!(bench.session.laws.as_ref().is_some_and(|check| check.outcome.is_none()), "another model");
     let mut broken = found.clone().expect("was checked");
     broken.laws[1].kept = false;
-    bench.lab.laws_checked("lambert", Ok(broken));
+    bench.session.laws_checked("lambert", Ok(broken));
     bench.settle();
     assert!(bench.says("Energy conserving: claimed and broken") && bench.says("No errors, but broken laws"));
-    bench.lab.laws_checked("lambert", found);
+    bench.session.laws_checked("lambert", found);
     bench.settle();
     assert!(!bench.says("broken laws"));
     for law in ["Reciprocal", "Energy conserving", "Non-negative"] {
         assert!(bench.says(&format!("{law}: claimed and kept")), "{law}");
     }
     assert!(!bench.find("Check laws").expect("there").disabled);
-    bench.lab.shaders.last = Some(Reloaded { file: "terms.wgsl".to_owned(), milliseconds: 1.0 });
+    bench.session.shaders.last = Some(Reloaded { file: "terms.wgsl".to_owned(), milliseconds: 1.0 });
     bench.settle();
     assert!(bench.says("Findings from before the last change"));
-    bench.lab.laws_checked("lambert", Err("the check took longer than 120 s".to_owned()));
+    bench.session.laws_checked("lambert", Err("the check took longer than 120 s".to_owned()));
     bench.settle();
     assert!(bench.says("The laws were not checked: the check took longer"));
 }

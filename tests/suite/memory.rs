@@ -18,7 +18,7 @@ use lights_camera_models::{
         TermSelection,
         colour::{BACKGROUND, srgb_decode},
     },
-    panel::state::{Action, Lab as Window, MAX_MESSAGES, Severity},
+    panel::state::{Action, MAX_MESSAGES, Session as Window, Severity},
     reference,
     registry::Registry,
     render::{

@@ -18,9 +18,9 @@ use lights_camera_models::{
     optics::{Frame, TermSelection, Terms, colour::Encoding, fresnel, tone::ToneMapping},
     panel::{
         self, Dialogs, Panels,
-        author::Ask,
+        author::ModelCommand,
         state::{
-            Action, Answer, Badge, Effect, Lab, MissingPart, Question, Severity, Shaders, ThemeChoice,
+            Action, Answer, Badge, Effect, MissingPart, Question, Session, Severity, Shaders, ThemeChoice,
             ViewChange,
         },
     },
@@ -161,7 +161,7 @@ fn crowd() -> Registry {
 /// A window that exists in memory only.
 pub struct Bench {
     pub ctx: egui::Context,
-    pub lab: Lab,
+    pub session: Session,
     pub registry: Registry,
     pub panels: Panels,
     pub dialogs: Dialogs,
@@ -185,22 +185,22 @@ pub struct Seen {
 }
 
 impl Bench {
-    pub fn new(lab: Lab) -> Self {
-        Self::with_registry(lab, Registry::builtin())
+    pub fn new(session: Session) -> Self {
+        Self::with_registry(session, Registry::builtin())
     }
 
     /// A window on a sphere under the model [`Everything`], among many models.
     pub fn with_everything() -> Self {
         let scene = Scene { reflection_model: "everything".to_owned(), ..Scene::default() };
-        Self::with_registry(Lab::new(scene), crowd())
+        Self::with_registry(Session::new(scene), crowd())
     }
 
-    pub fn with_registry(lab: Lab, registry: Registry) -> Self {
+    pub fn with_registry(session: Session, registry: Registry) -> Self {
         let ctx = egui::Context::default();
         ctx.enable_accesskit();
         let mut bench = Self {
             ctx,
-            lab,
+            session,
             registry,
             panels: Panels::builtin(),
             dialogs: Dialogs::default(),
@@ -217,7 +217,7 @@ impl Bench {
     }
 
     pub fn with_model(model: &str) -> Self {
-        Self::new(Lab::new(Scene { reflection_model: model.to_owned(), ..Scene::default() }))
+        Self::new(Session::new(Scene { reflection_model: model.to_owned(), ..Scene::default() }))
     }
 
     /// Runs one frame with the given events.
@@ -232,10 +232,10 @@ impl Bench {
             ..RawInput::default()
         };
         let mut effects = Vec::new();
-        let (lab, registry, panels, dialogs) =
-            (&mut self.lab, &self.registry, &self.panels, &mut self.dialogs);
+        let (session, registry, panels, dialogs) =
+            (&mut self.session, &self.registry, &self.panels, &mut self.dialogs);
         let mut output =
-            self.ctx.run_ui(input, |ui| effects.extend(panel::show(ui, lab, registry, panels, dialogs)));
+            self.ctx.run_ui(input, |ui| effects.extend(panel::show(ui, session, registry, panels, dialogs)));
         self.effects.extend(effects);
         if let Some(update) = output.platform_output.accesskit_update.take() {
             self.tree = update
@@ -337,7 +337,7 @@ impl Bench {
     }
 
     pub fn apply(&mut self, action: Action) {
-        let effects = self.lab.apply(action, &self.registry);
+        let effects = self.session.apply(action, &self.registry);
         self.effects.extend(effects);
         self.settle();
     }
@@ -404,23 +404,23 @@ fn every_parameter_of_every_model_has_a_knob() {
 fn parameters_that_the_model_does_not_use_are_disabled_and_kept() {
     let mut scene = Scene::default();
     scene.objects[0].material.set("alpha", Value::Integer(64));
-    let mut bench = Bench::new(Lab::new(scene));
+    let mut bench = Bench::new(Session::new(scene));
     assert!(bench.field("shininess").disabled);
     assert!(bench.says("Not used by Lambert"));
     bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
     assert!(!bench.field("shininess").disabled);
-    assert_eq!(bench.lab.document.objects[0].material.0.get("alpha"), Some(&Value::Integer(64)));
+    assert_eq!(bench.session.document.objects[0].material.0.get("alpha"), Some(&Value::Integer(64)));
 }
 
 #[test]
 fn typing_a_legal_value_changes_the_scene_at_once() {
     let mut bench = Bench::with_model("phong");
     bench.type_into("diffuse coefficient", "0,65");
-    assert_eq!(bench.lab.document.objects[0].material.0.get("k_d"), Some(&Value::Number(0.65)));
-    assert!(bench.lab.is_dirty());
+    assert_eq!(bench.session.document.objects[0].material.0.get("k_d"), Some(&Value::Number(0.65)));
+    assert!(bench.session.is_dirty());
     bench.key(Key::Escape, Modifiers::NONE);
     assert_eq!(
-        bench.lab.document.objects[0].material.0.get("k_d"),
+        bench.session.document.objects[0].material.0.get("k_d"),
         Some(&Value::Number(0.8)),
         "Escape goes back"
     );
@@ -430,9 +430,9 @@ fn typing_a_legal_value_changes_the_scene_at_once() {
 fn typing_an_illegal_value_shows_the_rule_and_leaves_the_scene_alone() {
     for text in ["0.2", "7", "abc", ""] {
         let mut bench = Bench::with_model("phong");
-        let before = bench.lab.document.scene().clone();
+        let before = bench.session.document.scene().clone();
         bench.type_into("diffuse coefficient", text);
-        assert_eq!(*bench.lab.document, before, "{text:?}");
+        assert_eq!(*bench.session.document, before, "{text:?}");
         assert!(bench.says("between 0.5 and 1"), "{text:?}: the rule is not shown");
         assert!(bench.says("the picture keeps 0.8"), "{text:?}");
     }
@@ -440,13 +440,13 @@ fn typing_an_illegal_value_shows_the_rule_and_leaves_the_scene_alone() {
 
 #[test]
 fn positions_stay_in_the_room() {
-    let mut bench = Bench::new(Lab::default());
-    let before = bench.lab.document.scene().clone();
+    let mut bench = Bench::new(Session::default());
+    let before = bench.session.document.scene().clone();
     bench.type_into("position x", "11");
-    assert_eq!(*bench.lab.document, before);
+    assert_eq!(*bench.session.document, before);
     assert!(bench.says("greater than 0 and at most 10"));
     bench.type_into("position x", "3.5");
-    assert_eq!(bench.lab.document.objects[0].position.x, 3.5);
+    assert_eq!(bench.session.document.objects[0].position.x, 3.5);
 }
 
 #[test]
@@ -455,7 +455,7 @@ fn arrow_keys_turn_the_value_of_a_field() {
     let at = bench.field("shininess").rect.center();
     bench.click_at(at, PointerButton::Primary);
     bench.key(Key::ArrowUp, Modifiers::NONE);
-    assert_eq!(bench.lab.document.objects[0].material.0.get("alpha"), Some(&Value::Integer(33)));
+    assert_eq!(bench.session.document.objects[0].material.0.get("alpha"), Some(&Value::Integer(33)));
 }
 
 #[test]
@@ -470,7 +470,7 @@ fn sliders_are_dragged_and_a_double_click_sets_the_default() {
     let Some(seen) = slider(&bench) else { panic!("no slider") };
     let at = pos2(seen.rect.left() + 0.9 * seen.rect.width(), seen.rect.center().y);
     bench.click_at(at, PointerButton::Primary);
-    let value = |b: &Bench| match b.lab.document.objects[0].material.0.get("k_s") {
+    let value = |b: &Bench| match b.session.document.objects[0].material.0.get("k_s") {
         Some(Value::Number(v)) => *v,
         other => panic!("{other:?}"),
     };
@@ -520,7 +520,7 @@ fn a_slider_that_ends_before_the_range_does_says_that_more_can_be_typed() {
 #[test]
 fn three_numbers_are_typed_one_by_one_or_at_once() {
     let mut bench = Bench::with_everything();
-    let value = |b: &Bench| b.lab.document.objects[0].material.get(&IOR);
+    let value = |b: &Bench| b.session.document.objects[0].material.get(&IOR);
     bench.type_into("refractive index: all three", "1.33");
     assert_eq!(value(&bench), Value::Triple([1.33; 3]));
     bench.type_into("refractive index G", "2");
@@ -545,7 +545,7 @@ fn a_measured_material_sets_what_was_measured_in_one_edit() {
     bench.frame(vec![Event::Text("johnson gold".to_owned())]);
     bench.settle();
     bench.key(Key::Enter, Modifiers::NONE);
-    let material = bench.lab.document.objects[0].material.clone();
+    let material = bench.session.document.objects[0].material.clone();
     let gold = preset::by_id("gold").unwrap();
     assert_eq!(material.get(&IOR), Value::Triple(gold.n));
     assert_eq!(material.get(&EXTINCTION), Value::Triple(gold.k));
@@ -555,10 +555,10 @@ fn a_measured_material_sets_what_was_measured_in_one_edit() {
     bench.type_into("extinction coefficient R", "3");
     assert!(bench.says("measured material: none"));
     // Nothing illegal gets in this way, not even in part.
-    let before = bench.lab.document.scene().clone();
+    let before = bench.session.document.scene().clone();
     let bad = vec![("ior", Value::Triple([2.0; 3])), ("extinction", Value::Triple([99.0; 3]))];
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Preset(bad))));
-    assert_eq!(*bench.lab.document, before);
+    assert_eq!(*bench.session.document, before);
     // A model that cannot be a measured material has no such knob.
     bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
     assert!(!bench.says("measured material"));
@@ -592,7 +592,7 @@ fn presets_of_every_model_are_legal_and_recognised() {
 
 #[test]
 fn what_the_top_shows_is_what_the_selected_object_has() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::AddObject("cube".to_owned()));
     bench.apply(Action::Edit(Edit::Object(1, ObjectField::Model(Some("phong".to_owned())))));
     assert!(bench.says("Reflection model: Phong") && bench.says("“Cube 1” overrides reflection"));
@@ -600,51 +600,51 @@ fn what_the_top_shows_is_what_the_selected_object_has() {
     bench.frame(vec![Event::Text("1977".to_owned())]);
     bench.settle();
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.document.objects[1].reflection_model.as_deref(), Some("blinn_phong"));
-    assert_eq!(bench.lab.document.reflection_model, "lambert", "the scene keeps its own");
+    assert_eq!(bench.session.document.objects[1].reflection_model.as_deref(), Some("blinn_phong"));
+    assert_eq!(bench.session.document.reflection_model, "lambert", "the scene keeps its own");
     bench.key(Key::F, Modifiers::NONE);
-    assert_eq!(bench.lab.document.shading_model, "flat", "the shading of the cube is that of the scene");
+    assert_eq!(bench.session.document.shading_model, "flat", "the shading of the cube is that of the scene");
     bench.apply(Action::Select(Selection::Object(0)));
     assert!(bench.says("Reflection model: Lambert") && !bench.says("overrides reflection"));
 }
 
 #[test]
 fn panels_have_the_widths_of_before_when_everything_is_as_large_as_before() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.size = vec2(1280.0, 720.0);
     bench.settle();
-    let before = bench.lab.picture_rect;
+    let before = bench.session.picture_rect;
     bench.apply(Action::View(ViewChange::Scale(200)));
-    assert_ne!(bench.lab.picture_rect, before);
+    assert_ne!(bench.session.picture_rect, before);
     bench.apply(Action::View(ViewChange::Scale(100)));
-    assert_eq!(bench.lab.picture_rect, before);
+    assert_eq!(bench.session.picture_rect, before);
 }
 
 #[test]
 fn a_click_that_closes_a_menu_does_nothing_else() {
-    let mut bench = Bench::new(Lab::default());
-    assert!(!bench.lab.popup_open);
+    let mut bench = Bench::new(Session::default());
+    assert!(!bench.session.popup_open);
     bench.click("Edit");
-    assert!(bench.lab.popup_open, "the picture is told so");
-    let at = bench.lab.picture_rect.center();
+    assert!(bench.session.popup_open, "the picture is told so");
+    let at = bench.session.picture_rect.center();
     bench.click_at(at, PointerButton::Primary);
-    assert!(!bench.lab.popup_open && !bench.says("New reflection model…"));
+    assert!(!bench.session.popup_open && !bench.says("New reflection model…"));
     bench.apply(Action::View(ViewChange::Chooser(true)));
-    assert!(bench.lab.popup_open);
+    assert!(bench.session.popup_open);
 }
 
 #[test]
 fn a_name_that_is_taken_comes_with_a_button_for_one_that_is_free() {
-    let mut bench = Bench::new(Lab::default());
-    bench.apply(Action::Author(Ask::New));
+    let mut bench = Bench::new(Session::default());
+    bench.apply(Action::Model(ModelCommand::New));
     for (typed, said, free) in [
         ("Lambert", "There is already a model “lambert”; “lambert_2” is free.", "lambert_2"),
         ("Größe 2", "“groesse_2” would do", "groesse_2"),
     ] {
-        bench.apply(Action::Author(Ask::Type(typed.to_owned())));
+        bench.apply(Action::Model(ModelCommand::Type(typed.to_owned())));
         assert!(bench.says(said), "{typed}");
         bench.click(&format!("Use “{free}”"));
-        assert_eq!(bench.lab.draft.as_ref().map(|draft| draft.name.as_str()), Some(free));
+        assert_eq!(bench.session.draft.as_ref().map(|draft| draft.name.as_str()), Some(free));
         assert!(bench.says(&format!("Identifier (also the file name): {free}")));
     }
 }
@@ -653,45 +653,45 @@ fn a_name_that_is_taken_comes_with_a_button_for_one_that_is_free() {
 
 #[test]
 fn a_change_shows_the_mark_of_unsaved_changes_and_saving_removes_it() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     assert!(bench.says("has no unsaved changes"));
     bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
     assert!(bench.says("has unsaved changes"));
     let path = PathBuf::from("a.json");
-    let effects = bench.lab.saved(path.clone(), &bench.registry);
+    let effects = bench.session.saved(path.clone(), &bench.registry);
     assert_eq!(effects, [Effect::SaveSettings]);
     bench.settle();
     assert!(bench.says("has no unsaved changes"));
     let path = std::path::absolute(path).expect("there is a current folder");
-    assert_eq!(bench.lab.recent_files, [path], "the next start may be in another folder");
+    assert_eq!(bench.session.recent_files, [path], "the next start may be in another folder");
 }
 
 #[test]
 fn nothing_is_lost_without_a_question() {
     for action in [Action::New, Action::Quit, Action::Open(PathBuf::from("b.json"))] {
-        let mut bench = Bench::new(Lab::default());
+        let mut bench = Bench::new(Session::default());
         bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
         bench.effects.clear();
         bench.apply(action.clone());
         assert!(bench.effects.is_empty(), "{action:?}");
         assert!(bench.says("Save the changes?"), "{action:?}");
         bench.key(Key::Escape, Modifiers::NONE);
-        assert_eq!(bench.lab.question, None);
-        assert_eq!(bench.lab.document.shading_model, "flat", "cancelling keeps everything");
+        assert_eq!(bench.session.question, None);
+        assert_eq!(bench.session.document.shading_model, "flat", "cancelling keeps everything");
         assert!(bench.effects.is_empty(), "{action:?}");
     }
 }
 
 #[test]
 fn saving_first_carries_on_with_what_was_asked_for() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
-    bench.lab.path = Some(PathBuf::from("a.json"));
+    bench.session.path = Some(PathBuf::from("a.json"));
     bench.apply(Action::Quit);
     bench.effects.clear();
     bench.click("Save");
     assert_eq!(bench.effects, [Effect::SaveFile { path: PathBuf::from("a.json"), overwrite: false }]);
-    let effects = bench.lab.saved(PathBuf::from("a.json"), &bench.registry);
+    let effects = bench.session.saved(PathBuf::from("a.json"), &bench.registry);
     assert!(effects.contains(&Effect::Quit));
 }
 
@@ -701,30 +701,30 @@ fn missing_parts_are_named_and_defaults_used_on_yes_only() {
         let scene = Box::new(Scene { shading_model: "phong".to_owned(), ..Scene::default() });
         let parts =
             vec![MissingPart { name: "the scene size".to_owned(), default: "10 × 10 × 10 m".to_owned() }];
-        bench.lab.ask(Question::MissingParts { path: PathBuf::from("c.json"), scene, parts });
+        bench.session.ask(Question::MissingParts { path: PathBuf::from("c.json"), scene, parts });
         bench.settle();
     };
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     ask(&mut bench);
     assert!(bench.says("the scene size") && bench.says("10 × 10 × 10 m"));
     bench.click("Do not open");
-    assert_eq!(bench.lab.document.shading_model, "gouraud");
-    assert!(bench.lab.messages.iter().any(|m| m.text.contains("the scene size")));
+    assert_eq!(bench.session.document.shading_model, "gouraud");
+    assert!(bench.session.messages.iter().any(|m| m.text.contains("the scene size")));
     ask(&mut bench);
     bench.click("Use the defaults");
-    assert_eq!(bench.lab.document.shading_model, "phong");
-    assert_eq!(bench.lab.path, Some(PathBuf::from("c.json")));
+    assert_eq!(bench.session.document.shading_model, "phong");
+    assert_eq!(bench.session.path, Some(PathBuf::from("c.json")));
 }
 
 #[test]
 fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
     let ask = || {
-        let mut bench = Bench::new(Lab::default());
-        bench.lab.path = Some(PathBuf::from("room.json"));
+        let mut bench = Bench::new(Session::default());
+        bench.session.path = Some(PathBuf::from("room.json"));
         bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
         let scene = Box::new(Scene { shading_model: "phong".to_owned(), ..Scene::default() });
         let version = Stamp::of(b"another content");
-        bench.lab.ask(Question::NewerOnDisk { path: PathBuf::from("room.json"), scene, version });
+        bench.session.ask(Question::NewerOnDisk { path: PathBuf::from("room.json"), scene, version });
         bench.settle();
         bench.effects.clear();
         assert!(bench.says("room.json was changed by another program"));
@@ -744,81 +744,81 @@ fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
     // To leave the question is to decide later, and the picture says that there is something to decide.
     let (mut bench, _) = ask();
     bench.key(Key::Escape, Modifiers::NONE);
-    assert!(bench.effects.is_empty() && bench.lab.question.is_none());
-    assert_eq!(bench.lab.document.shading_model, "flat");
-    assert!(bench.lab.disk.badge.as_ref().is_some_and(|b| b.text.contains("room.json changed on disk")));
+    assert!(bench.effects.is_empty() && bench.session.question.is_none());
+    assert_eq!(bench.session.document.shading_model, "flat");
+    assert!(bench.session.disk.badge.as_ref().is_some_and(|b| b.text.contains("room.json changed on disk")));
 }
 
 #[test]
 fn messages_stay_until_dismissed() {
-    let mut bench = Bench::new(Lab::default());
-    bench.lab.say(Severity::Error, "room.json:14:20: k_d is 0.2");
+    let mut bench = Bench::new(Session::default());
+    bench.session.say(Severity::Error, "room.json:14:20: k_d is 0.2");
     bench.settle();
-    assert!(bench.lab.view.bottom_open, "an error unfolds the strip");
+    assert!(bench.session.view.bottom_open, "an error unfolds the strip");
     assert!(bench.says("room.json:14:20"));
     bench.click("Dismiss the message");
-    assert!(bench.lab.messages.is_empty());
+    assert!(bench.session.messages.is_empty());
 }
 
 // ── lights and objects ──
 
 #[test]
 fn every_registered_kind_can_be_added() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     let registry = Registry::builtin();
     for light in registry.lights() {
         bench.apply(Action::AddLight(light.declaration.id.to_owned()));
-        let Some(added) = bench.lab.document.lights.last() else { panic!("none") };
+        let Some(added) = bench.session.document.lights.last() else { panic!("none") };
         assert_eq!(added.light_type, light.declaration.id);
         assert_eq!(added.position.is_some(), light.declaration.has_position);
         assert_eq!(added.direction.is_some(), light.declaration.has_direction);
-        assert!(added.position.is_none_or(|p| bench.lab.document.scene_size.contains(p)));
+        assert!(added.position.is_none_or(|p| bench.session.document.scene_size.contains(p)));
     }
     for shape in registry.shapes() {
         bench.apply(Action::AddObject(shape.declaration.id.to_owned()));
         assert_eq!(
-            bench.lab.document.objects.last().map(|o| o.object_type.as_str()),
+            bench.session.document.objects.last().map(|o| o.object_type.as_str()),
             Some(shape.declaration.id)
         );
     }
     let mut places: Vec<_> =
-        bench.lab.document.objects.iter().map(|o| o.position.to_array().map(f32::to_bits)).collect();
+        bench.session.document.objects.iter().map(|o| o.position.to_array().map(f32::to_bits)).collect();
     places.sort_unstable();
     places.dedup();
-    assert_eq!(places.len(), bench.lab.document.objects.len(), "each stands in a place of its own");
+    assert_eq!(places.len(), bench.session.document.objects.len(), "each stands in a place of its own");
 }
 
 #[test]
 fn the_last_light_and_the_last_object_stay_and_say_why() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     for (part, words) in [
         (Selection::Light(0), "last light"),
         (Selection::Object(0), "last object"),
         (Selection::Observer, "exactly one"),
     ] {
         bench.apply(Action::Remove(part));
-        assert!(bench.lab.messages.iter().any(|m| m.text.contains(words)));
+        assert!(bench.session.messages.iter().any(|m| m.text.contains(words)));
     }
-    assert_eq!((bench.lab.document.lights.len(), bench.lab.document.objects.len()), (1, 1));
+    assert_eq!((bench.session.document.lights.len(), bench.session.document.objects.len()), (1, 1));
 }
 
 #[test]
 fn removing_and_duplicating_keep_the_selection_on_something_that_exists() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Duplicate(Selection::Object(0)));
-    assert_eq!(bench.lab.selection, Selection::Object(1));
+    assert_eq!(bench.session.selection, Selection::Object(1));
     bench.apply(Action::Remove(Selection::Object(1)));
-    assert_eq!(bench.lab.selection, Selection::Object(0));
+    assert_eq!(bench.session.selection, Selection::Object(0));
     bench.apply(Action::Duplicate(Selection::Light(0)));
     bench.apply(Action::Remove(Selection::Light(0)));
-    assert_eq!(bench.lab.selection, Selection::Light(0));
+    assert_eq!(bench.session.selection, Selection::Light(0));
 }
 
 #[test]
 fn illegal_edits_are_refused_with_the_reason() {
-    let mut bench = Bench::new(Lab::default());
-    let before = bench.lab.document.scene().clone();
-    let observer = bench.lab.document.observer.position;
+    let mut bench = Bench::new(Session::default());
+    let before = bench.session.document.scene().clone();
+    let observer = bench.session.document.observer.position;
     for edit in [
         Edit::Model("nonsense".to_owned()),
         Edit::Light(0, LightField::Position(observer)),
@@ -830,19 +830,19 @@ fn illegal_edits_are_refused_with_the_reason() {
         Edit::Object(0, ObjectField::Material("k_d", Value::Number(0.1))),
         Edit::Object(7, ObjectField::Size(1.0)),
     ] {
-        let messages = bench.lab.messages.len();
+        let messages = bench.session.messages.len();
         bench.apply(Action::Edit(edit.clone()));
-        assert_eq!(*bench.lab.document, before, "{edit:?}");
-        assert_eq!(bench.lab.messages.len(), messages + 1, "{edit:?}");
+        assert_eq!(*bench.session.document, before, "{edit:?}");
+        assert_eq!(bench.session.messages.len(), messages + 1, "{edit:?}");
     }
 }
 
 #[test]
 fn another_type_of_light_has_what_the_type_needs() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     for light in Registry::builtin().lights() {
         bench.apply(Action::Edit(Edit::Light(0, LightField::Type(light.declaration.id.to_owned()))));
-        let now = &bench.lab.document.lights[0];
+        let now = &bench.session.document.lights[0];
         assert_eq!(now.position.is_some(), light.declaration.has_position);
         assert_eq!(now.direction.is_some(), light.declaration.has_direction);
         assert_eq!(now.intensity, light.declaration.default_intensity);
@@ -851,37 +851,37 @@ fn another_type_of_light_has_what_the_type_needs() {
 
 #[test]
 fn brightness_is_read_and_typed_in_candela_or_lumen() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Select(Selection::Light(0)));
     assert!(bench.says("= 251.3 lm"), "20 cd are 80π lm");
     bench.click("unit: candela");
     bench.click("lm  lumen");
-    let light = |b: &Bench| b.lab.document.lights[0].clone();
+    let light = |b: &Bench| b.session.document.lights[0].clone();
     assert_eq!(light(&bench).luminous_flux, Some(251.327));
     bench.type_into("luminous flux", "800");
     assert_eq!(light(&bench).luminous_flux, Some(800.0));
     assert!(bench.says("= 63.66 cd"));
     // What is saved is what was typed, and reading it gives the same light.
-    let text = crate::support::written(&bench.lab.document);
+    let text = crate::support::written(&bench.session.document);
     assert!(text.contains("\"luminous_flux\": 800") && !text.contains("intensity"), "{text}");
-    assert_eq!(crate::support::read(&text), *bench.lab.document);
+    assert_eq!(crate::support::read(&text), *bench.session.document);
     bench.click("unit: lumen");
     bench.click("cd  candela");
     assert_eq!((light(&bench).luminous_flux, light(&bench).intensity), (None, 63.662));
     // Lights without a flux have no choice.
     bench.apply(Action::Edit(Edit::Light(0, LightField::Type("directional".to_owned()))));
     assert!(!bench.says("unit: ") && !bench.says(" lm"));
-    let refused = bench.lab.messages.len() + 1;
+    let refused = bench.session.messages.len() + 1;
     bench.apply(Action::Edit(Edit::Light(0, LightField::LuminousFlux(800.0))));
-    assert_eq!(bench.lab.messages.len(), refused);
+    assert_eq!(bench.session.messages.len(), refused);
 }
 
 #[test]
 fn a_lamp_keeps_its_lumen_while_it_is_point_or_spot() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     let mut now = |field: LightField| {
         bench.apply(Action::Edit(Edit::Light(0, field)));
-        let light = bench.lab.document.lights[0].clone();
+        let light = bench.session.document.lights[0].clone();
         (light.luminous_flux, light.intensity)
     };
     assert_eq!(now(LightField::LuminousFlux(800.0)), (Some(800.0), 20.0));
@@ -892,10 +892,10 @@ fn a_lamp_keeps_its_lumen_while_it_is_point_or_spot() {
 
 #[test]
 fn a_light_is_coloured_by_temperature_and_back() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Select(Selection::Light(0)));
     bench.click("Colour by: temperature");
-    let light = |b: &Bench| b.lab.document.lights[0].clone();
+    let light = |b: &Bench| b.session.document.lights[0].clone();
     let kelvin = light(&bench).colour_temperature;
     assert!(kelvin.is_some_and(|k| (6200.0..=6800.0).contains(&k)), "white is about 6500 K: {kelvin:?}");
     bench.type_into("colour temperature", "2700");
@@ -909,15 +909,15 @@ fn a_light_is_coloured_by_temperature_and_back() {
 
 #[test]
 fn exposure_and_every_tone_mapping_can_be_chosen() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Select(Selection::Room));
     bench.type_into("exposure", "1.5");
-    assert_eq!(bench.lab.document.display.exposure, 1.5);
+    assert_eq!(bench.session.document.display.exposure, 1.5);
     let mut shown = ToneMapping::None;
     for tone in ToneMapping::ALL.into_iter().skip(1) {
         bench.click(&format!("tone mapping: {}", shown.name()));
         bench.click(tone.name());
-        assert_eq!(bench.lab.document.display.tone_mapping, tone);
+        assert_eq!(bench.session.document.display.tone_mapping, tone);
         shown = tone;
     }
 }
@@ -926,20 +926,20 @@ fn exposure_and_every_tone_mapping_can_be_chosen() {
 
 #[test]
 fn keys_choose_the_shading_but_not_while_typing() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     for (key, text, shading) in
         [(Key::F, "f", "flat"), (Key::P, "p", "phong"), (Key::D, "d", "derivative"), (Key::G, "g", "gouraud")]
     {
         bench.letter(key, text);
-        assert_eq!(bench.lab.document.shading_model, shading);
+        assert_eq!(bench.session.document.shading_model, shading);
     }
     let at = bench.field("Name").rect.center();
     bench.click_at(at, PointerButton::Primary);
     bench.letter(Key::F, "f");
     bench.key(Key::Delete, Modifiers::NONE);
-    assert_eq!(bench.lab.document.shading_model, "gouraud");
+    assert_eq!(bench.session.document.shading_model, "gouraud");
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.document.objects[0].name.as_deref(), Some("f"));
+    assert_eq!(bench.session.document.objects[0].name.as_deref(), Some("f"));
 }
 
 #[test]
@@ -949,21 +949,21 @@ fn delete_removes_the_selection_but_not_from_within_a_knob() {
     let slider = bench.tree.iter().find(|s| s.role == accesskit::Role::Slider).map(|s| s.rect.center());
     bench.click_at(slider.unwrap_or_default(), PointerButton::Primary);
     bench.key(Key::Delete, Modifiers::NONE);
-    assert_eq!(bench.lab.document.objects.len(), 2);
+    assert_eq!(bench.session.document.objects.len(), 2);
     bench.key(Key::Escape, Modifiers::NONE);
     bench.key(Key::Delete, Modifiers::NONE);
-    assert_eq!(bench.lab.document.objects.len(), 1);
+    assert_eq!(bench.session.document.objects.len(), 1);
 }
 
 #[test]
 fn tab_goes_through_the_objects_and_takes_no_focus() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::AddObject("cube".to_owned()));
     bench.apply(Action::AddObject("torus".to_owned()));
     bench.key(Key::Tab, Modifiers::NONE);
-    assert_eq!(bench.lab.selection, Selection::Object(0));
+    assert_eq!(bench.session.selection, Selection::Object(0));
     bench.key(Key::Tab, Modifiers::SHIFT);
-    assert_eq!(bench.lab.selection, Selection::Object(2));
+    assert_eq!(bench.session.selection, Selection::Object(2));
     assert_eq!(bench.ctx.memory(|m| m.focused()), None);
     bench.key(Key::F6, Modifiers::NONE);
     assert!(bench.ctx.memory(|m| m.focused()).is_some(), "F6 goes into the panels");
@@ -971,32 +971,32 @@ fn tab_goes_through_the_objects_and_takes_no_focus() {
 
 #[test]
 fn numbers_choose_recent_models_and_keep_their_places() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Edit(Edit::Model("phong".to_owned())));
     bench.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));
     for (key, model) in
         [(Key::Num2, "phong"), (Key::Num1, "lambert"), (Key::Num3, "blinn_phong"), (Key::Num2, "phong")]
     {
         bench.key(key, Modifiers::NONE);
-        assert_eq!(bench.lab.document.reflection_model, model);
+        assert_eq!(bench.session.document.reflection_model, model);
     }
 }
 
 #[test]
 fn the_chooser_finds_by_typing_and_chooses_with_enter() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.key(Key::R, Modifiers::NONE);
-    assert!(bench.lab.view.chooser_open);
+    assert!(bench.session.view.chooser_open);
     bench.frame(vec![Event::Text("1977".to_owned())]);
     bench.settle();
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.document.reflection_model, "blinn_phong");
-    assert!(!bench.lab.view.chooser_open);
+    assert_eq!(bench.session.document.reflection_model, "blinn_phong");
+    assert!(!bench.session.view.chooser_open);
 }
 
 #[test]
 fn many_models_are_listed_by_family_within_the_window() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::Edit(Edit::Model("disney".to_owned())));
     bench.key(Key::R, Modifiers::NONE);
@@ -1011,27 +1011,27 @@ fn many_models_are_listed_by_family_within_the_window() {
     (0..20).for_each(|_| bench.key(Key::ArrowUp, Modifiers::NONE));
     assert!(inside(&bench, "Lambert"));
     bench.key(Key::Enter, Modifiers::NONE);
-    assert_eq!(bench.lab.document.reflection_model, "lambert");
+    assert_eq!(bench.session.document.reflection_model, "lambert");
 }
 
 #[test]
 fn nothing_but_the_question_can_be_used_while_it_is_open() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
     bench.apply(Action::New);
     bench.letter(Key::P, "p");
-    assert_eq!(bench.lab.document.shading_model, "flat");
-    assert!(!bench.lab.pointer_in_picture);
+    assert_eq!(bench.session.document.shading_model, "flat");
+    assert!(!bench.session.pointer_in_picture);
     bench.apply(Action::Answer(Answer::Discard));
-    assert_eq!(*bench.lab.document, Scene::default());
+    assert_eq!(*bench.session.document, Scene::default());
 }
 
 // ── the window ──
 
 #[test]
 fn the_pointer_belongs_to_the_picture_only_over_the_picture() {
-    let mut bench = Bench::new(Lab::default());
-    let rect = bench.lab.picture_rect;
+    let mut bench = Bench::new(Session::default());
+    let rect = bench.session.picture_rect;
     assert!(rect.width() > 500.0 && rect.height() > 500.0);
     for (at, expected) in [
         (rect.center(), true),
@@ -1041,21 +1041,21 @@ fn the_pointer_belongs_to_the_picture_only_over_the_picture() {
     ] {
         bench.frame(vec![Event::PointerMoved(at)]);
         bench.frame(Vec::new());
-        assert_eq!(bench.lab.pointer_in_picture, expected, "{at:?}");
+        assert_eq!(bench.session.pointer_in_picture, expected, "{at:?}");
     }
     bench.apply(Action::View(ViewChange::Chooser(true)));
     let Some(search) = bench.find("Search reflection models") else { panic!("not open") };
     let inside = search.rect.center() + vec2(0.0, 60.0);
     bench.frame(vec![Event::PointerMoved(inside)]);
     bench.frame(Vec::new());
-    assert!(!bench.lab.pointer_in_picture, "a popup over the picture is not the picture");
+    assert!(!bench.session.pointer_in_picture, "a popup over the picture is not the picture");
 }
 
 #[test]
 fn everything_that_can_be_operated_has_a_name() {
     use accesskit::Role;
     let mut bench = Bench::with_model("phong");
-    bench.lab.say(Severity::Error, "an error");
+    bench.session.say(Severity::Error, "an error");
     for selection in [Selection::Room, Selection::Observer, Selection::Light(0), Selection::Object(0)] {
         bench.apply(Action::Select(selection));
         for seen in &bench.tree {
@@ -1082,7 +1082,7 @@ fn ten_thousand_objects_are_listed_without_drawing_them_all() {
         object.position.x = 0.1 + f32::from(i) * 9e-4;
         scene.objects.push(object);
     }
-    let mut bench = Bench::new(Lab::new(scene));
+    let mut bench = Bench::new(Session::new(scene));
     assert!(bench.tree.len() < 400);
     bench.apply(Action::SelectPrevious);
     assert!(bench.says("Sphere 10000"), "the selection comes into view");
@@ -1101,12 +1101,12 @@ fn a_panel_from_outside_gets_a_tab() {
         fn place(&self) -> panel::Place {
             panel::Place::Bottom
         }
-        fn show(&self, ui: &mut egui::Ui, _lab: &Lab, _registry: &Registry) -> Vec<Action> {
+        fn show(&self, ui: &mut egui::Ui, _lab: &Session, _registry: &Registry) -> Vec<Action> {
             ui.label("from outside");
             Vec::new()
         }
     }
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.panels.add(Extra);
     bench.apply(Action::View(ViewChange::BottomTab("extra".to_owned())));
     assert!(bench.says("from outside"));
@@ -1119,7 +1119,7 @@ fn a_panel_from_outside_gets_a_tab() {
 /// A spotlight as printed on its box.
 fn lamp(bench: &mut Bench) {
     bench.apply(Action::AddLight("spot".to_owned()));
-    let light = bench.lab.document.lights.len() - 1;
+    let light = bench.session.document.lights.len() - 1;
     for field in [LightField::LuminousFlux(800.0), LightField::ColourTemperature(2700.0)] {
         bench.apply(Action::Edit(Edit::Light(light, field)));
     }
@@ -1161,18 +1161,19 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
             b.apply(Action::Edit(Edit::Model("phong".to_owned())));
             b.apply(Action::Edit(Edit::Object(0, ObjectField::Material("alpha", Value::Integer(64)))));
             b.apply(Action::Edit(Edit::Model("mod_lambert".to_owned())));
-            b.lab.say(Severity::Info, "The last light stays: a scene needs at least one to show anything.");
-            b.lab.say(
+            b.session
+                .say(Severity::Info, "The last light stays: a scene needs at least one to show anything.");
+            b.session.say(
                 Severity::Warning,
                 "The settings cannot be written to /home/x/.config: no space left on device.",
             );
-            b.lab.say(Severity::Error, "scenes/room.json:14:20: objects[0].material.k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1. This one is long, so that it has to be broken into two lines at the least, and must not push the buttons out of the window.");
-            b.lab.badges.push(Badge {
+            b.session.say(Severity::Error, "scenes/room.json:14:20: objects[0].material.k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1. This one is long, so that it has to be broken into two lines at the least, and must not push the buttons out of the window.");
+            b.session.badges.push(Badge {
                 severity: Severity::Error,
                 text: "stale shader".to_owned(),
                 help: String::new(),
             });
-            b.lab.status.shaders = Shaders::Stale;
+            b.session.status.shaders = Shaders::Stale;
             b.type_into("position x", "12");
         }),
         ("knob-error", (1280.0, 900.0), |b| {
@@ -1234,7 +1235,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
                 default: default.to_owned(),
             };
             let parts = vec![part("the scene size", "10 × 10 × 10 m"), part("the shading model", "Gouraud")];
-            b.lab.ask(Question::MissingParts {
+            b.session.ask(Question::MissingParts {
                 path: PathBuf::from("scenes/room.json"),
                 scene: Box::default(),
                 parts,
@@ -1295,7 +1296,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
     ];
     fn everything(b: &mut Bench) {
         b.registry = crowd();
-        b.lab.fill_model_slots(&b.registry);
+        b.session.fill_model_slots(&b.registry);
         b.apply(Action::Edit(Edit::Model("everything".to_owned())));
     }
     fn scroll(b: &mut Bench, by: f32) {
@@ -1323,16 +1324,16 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
             ..Light::default()
         });
         scene.objects[0].material.set("base_colour", Value::Colour([204, 96, 64]));
-        let mut lab = Lab::new(scene);
-        lab.status.frame_ms = 16.6;
-        lab.status.backend = "Vulkan".to_owned();
-        lab.status.adapter = "llvmpipe (LLVM 15.0.6, 256 bits)".to_owned();
-        lab.camera = glam::Quat::from_euler(glam::EulerRot::YXZ, 0.5, -0.4, 0.0);
-        let mut bench = Bench::new(lab);
+        let mut session = Session::new(scene);
+        session.status.frame_ms = 16.6;
+        session.status.backend = "Vulkan".to_owned();
+        session.status.adapter = "llvmpipe (LLVM 15.0.6, 256 bits)".to_owned();
+        session.camera = glam::Quat::from_euler(glam::EulerRot::YXZ, 0.5, -0.4, 0.0);
+        let mut bench = Bench::new(session);
         bench.size = vec2(*width, *height);
         bench.settle();
         setup(&mut bench);
-        let surround = panel::theme::Palette::of(&bench.lab.view).surround;
+        let surround = panel::theme::Palette::of(&bench.session.view).surround;
         bench.picture(&folder.join(format!("{name}.png")), surround)?;
     }
     Ok(())

@@ -10,7 +10,7 @@ use lights_camera_models::{
     },
     panel::{
         marks::{Lens, anchor},
-        state::{Action, Lab},
+        state::{Action, Session},
     },
     reference,
     registry::Registry,
@@ -24,27 +24,27 @@ fn radius(object: &Object, registry: &Registry) -> f32 {
     object.size * mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max)
 }
 
-fn sees(lab: &Lab, p: Vec3) -> bool {
+fn sees(session: &Session, p: Vec3) -> bool {
     let rect = Rect::from_min_size(Pos2::ZERO, vec2(1600.0, 900.0));
-    Lens::of(lab, rect).project(p).is_some_and(|at| rect.contains(at))
+    Lens::of(session, rect).project(p).is_some_and(|at| rect.contains(at))
 }
 
-fn touches_nothing(what: &str, lab: &Lab, added: usize, registry: &Registry) {
-    let object = &lab.document.objects[added];
+fn touches_nothing(what: &str, session: &Session, added: usize, registry: &Registry) {
+    let object = &session.document.objects[added];
     let r = radius(object, registry);
-    for (i, other) in lab.document.objects.iter().enumerate().filter(|(i, _)| *i != added) {
+    for (i, other) in session.document.objects.iter().enumerate().filter(|(i, _)| *i != added) {
         let apart = object.position.distance(other.position) - r - radius(other, registry);
         assert!(apart > 0.0, "{what}: {added} ({}) is in {i} by {} m", object.object_type, -apart);
     }
-    for light in lab.document.lights.iter().filter_map(|l| l.position) {
+    for light in session.document.lights.iter().filter_map(|l| l.position) {
         assert!(object.position.distance(light) > r, "{added} is around a light");
     }
-    assert!(object.position.distance(lab.eye) > r);
-    assert!(lab.document.scene_size.contains(object.position));
+    assert!(object.position.distance(session.eye) > r);
+    assert!(session.document.scene_size.contains(object.position));
 }
 
 /// Rooms and cameras of several kinds.
-fn labs() -> Vec<Lab> {
+fn labs() -> Vec<Session> {
     let mut low = Scene::default();
     low.objects[0].position = Vec3::new(2.0, 1.0, 3.0);
     let mut small =
@@ -52,23 +52,23 @@ fn labs() -> Vec<Lab> {
     small.objects[0] = Object { position: Vec3::new(0.7, 0.5, 0.3), size: 0.3, ..Object::default() };
     small.lights[0].position = Some(Vec3::new(0.9, 0.9, 0.9));
     small.observer.position = Vec3::new(0.75, 0.5, 0.95);
-    let mut turned = Lab::default();
+    let mut turned = Session::default();
     // From the right, above.
     turned.eye = Vec3::new(9.5, 7.5, 5.0);
     turned.camera = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2) * Quat::from_rotation_x(-0.5);
-    vec![Lab::default(), Lab::new(low), Lab::new(small), turned]
+    vec![Session::default(), Session::new(low), Session::new(small), turned]
 }
 
 #[test]
 fn new_objects_stand_free_and_in_view() {
     let registry = Registry::builtin();
-    for (which, mut lab) in labs().into_iter().enumerate() {
+    for (which, mut session) in labs().into_iter().enumerate() {
         for i in 0..9 {
             let kind = registry.shapes()[i % registry.shapes().len()].declaration.id;
-            lab.apply(Action::AddObject(kind.to_owned()), &registry);
-            let added = lab.document.objects.len() - 1;
-            touches_nothing(&format!("{which}"), &lab, added, &registry);
-            assert!(sees(&lab, lab.document.objects[added].position), "{which}: {kind} {i}");
+            session.apply(Action::AddObject(kind.to_owned()), &registry);
+            let added = session.document.objects.len() - 1;
+            touches_nothing(&format!("{which}"), &session, added, &registry);
+            assert!(sees(&session, session.document.objects[added].position), "{which}: {kind} {i}");
         }
     }
 }
@@ -76,54 +76,54 @@ fn new_objects_stand_free_and_in_view() {
 #[test]
 fn a_new_object_hides_nothing_where_there_is_room() {
     let registry = Registry::builtin();
-    let mut lab = Lab::default();
-    lab.apply(Action::AddObject("cube".to_owned()), &registry);
-    let [old, new] = [0, 1].map(|i| &lab.document.objects[i]);
+    let mut session = Session::default();
+    session.apply(Action::AddObject("cube".to_owned()), &registry);
+    let [old, new] = [0, 1].map(|i| &session.document.objects[i]);
     let rect = Rect::from_min_size(Pos2::ZERO, vec2(1600.0, 900.0));
-    let [a, b] = [old, new].map(|o| Lens::of(&lab, rect).project(o.position).unwrap());
+    let [a, b] = [old, new].map(|o| Lens::of(&session, rect).project(o.position).unwrap());
     assert!(a.distance(b) > 300.0, "{a:?} and {b:?}");
 }
 
 #[test]
 fn copies_stand_free_too() {
     let registry = Registry::builtin();
-    let mut lab = Lab::default();
+    let mut session = Session::default();
     for i in 0..4 {
-        lab.apply(Action::Duplicate(Selection::Object(0)), &registry);
-        touches_nothing("copy", &lab, 1, &registry);
-        assert!(sees(&lab, lab.document.objects[1].position), "copy {i}");
-        assert_eq!(lab.document.objects[1].size, lab.document.objects[0].size);
+        session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+        touches_nothing("copy", &session, 1, &registry);
+        assert!(sees(&session, session.document.objects[1].position), "copy {i}");
+        assert_eq!(session.document.objects[1].size, session.document.objects[0].size);
     }
-    lab.apply(Action::Duplicate(Selection::Light(0)), &registry);
-    let [a, b] = [0, 1].map(|i| lab.document.lights[i].position.unwrap());
+    session.apply(Action::Duplicate(Selection::Light(0)), &registry);
+    let [a, b] = [0, 1].map(|i| session.document.lights[i].position.unwrap());
     assert!(a.distance(b) > 0.2);
 }
 
 #[test]
 fn new_lights_stand_free_and_in_view() {
     let registry = Registry::builtin();
-    for (which, mut lab) in labs().into_iter().enumerate() {
+    for (which, mut session) in labs().into_iter().enumerate() {
         for kind in ["point", "spot", "point", "directional", "spot"] {
-            lab.apply(Action::AddLight(kind.to_owned()), &registry);
-            let Some(light) = lab.document.lights.last() else { panic!("none") };
+            session.apply(Action::AddLight(kind.to_owned()), &registry);
+            let Some(light) = session.document.lights.last() else { panic!("none") };
             let Some(at) = light.position else { continue };
-            assert!(sees(&lab, at), "{which}: a {kind} at {at}");
-            assert_eq!(anchor(light, &lab.document), Some(at));
-            for object in &lab.document.objects {
+            assert!(sees(&session, at), "{which}: a {kind} at {at}");
+            assert_eq!(anchor(light, &session.document), Some(at));
+            for object in &session.document.objects {
                 let apart = at.distance(object.position) - radius(object, &registry);
                 assert!(apart > 0.0, "{which}: a {kind} stands in an object");
             }
-            let others = &lab.document.lights[..lab.document.lights.len() - 1];
+            let others = &session.document.lights[..session.document.lights.len() - 1];
             assert!(others.iter().filter_map(|l| l.position).all(|p| p.distance(at) > 0.02), "{which}");
         }
     }
 }
 
 /// The brightest channel of each pixel that shows an object, as a factor of what the display can show.
-fn brightness(lab: &Lab, registry: &Registry) -> Vec<f32> {
+fn brightness(session: &Session, registry: &Registry) -> Vec<f32> {
     let settings = reference::Settings { width: 320, height: 180, samples: 1, ..Default::default() };
-    let picture = reference::render(&lab.document, registry, &settings);
-    let exposure = exposure_factor(lab.document.display.exposure);
+    let picture = reference::render(&session.document, registry, &settings);
+    let exposure = exposure_factor(session.document.display.exposure);
     let lit = picture.pixels.iter().filter(|p| p.w > 0.0);
     lit.map(|p| exposure * p.truncate().max_element()).collect()
 }
@@ -154,17 +154,17 @@ fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
     ] {
         for kind in registry.lights() {
             let kind = kind.declaration.id;
-            let mut lab = Lab::new(scene.clone());
-            let before = brightness(&lab, &registry);
+            let mut session = Session::new(scene.clone());
+            let before = brightness(&session, &registry);
             for nth in 0..3 {
-                lab.apply(Action::AddLight(kind.to_owned()), &registry);
-                let after = brightness(&lab, &registry);
+                session.apply(Action::AddLight(kind.to_owned()), &registry);
+                let after = brightness(&session, &registry);
                 let clipped =
                     |all: &[f32]| all.iter().filter(|b| **b > 1.0).count() as f32 / all.len() as f32;
                 let more = clipped(&after) - clipped(&before);
                 assert!(more < 0.02, "{what}, {kind} {nth}: {more} of the objects clip");
             }
-            let after = brightness(&lab, &registry);
+            let after = brightness(&session, &registry);
             let gain = after.iter().zip(&before).map(|(a, b)| a - b).fold(0.0, f32::max);
             assert!(gain > 0.04, "{what}, {kind}: the brightest gain is {gain}");
         }
@@ -174,42 +174,42 @@ fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
 #[test]
 fn a_curve_of_tone_mapping_leaves_a_new_light_more_room() {
     let registry = Registry::builtin();
-    let mut lab = Lab::default();
-    lab.apply(Action::AddLight("point".to_owned()), &registry);
+    let mut session = Session::default();
+    session.apply(Action::AddLight("point".to_owned()), &registry);
     let mut mapped = Scene::default();
     mapped.display.tone_mapping = ToneMapping::Reinhard;
-    let mut lab2 = Lab::new(mapped);
+    let mut lab2 = Session::new(mapped);
     lab2.apply(Action::AddLight("point".to_owned()), &registry);
-    let of = |lab: &Lab| lab.document.lights.last().map_or(0.0, |l: &Light| l.intensity);
-    assert!(of(&lab2) > 2.0 * of(&lab), "{} and {}", of(&lab2), of(&lab));
+    let of = |session: &Session| session.document.lights.last().map_or(0.0, |l: &Light| l.intensity);
+    assert!(of(&lab2) > 2.0 * of(&session), "{} and {}", of(&lab2), of(&session));
 }
 
 /// A scene with six more objects.
-fn crowded(registry: &Registry) -> Lab {
-    let mut lab = Lab::default();
+fn crowded(registry: &Registry) -> Session {
+    let mut session = Session::default();
     for i in 0..6 {
         let kind = registry.shapes()[i % registry.shapes().len()].declaration.id;
-        lab.apply(Action::AddObject(kind.to_owned()), registry);
+        session.apply(Action::AddObject(kind.to_owned()), registry);
     }
-    lab
+    session
 }
 
 #[test]
 fn each_of_many_new_lights_can_be_seen() {
     let registry = Registry::builtin();
     for kind in ["point", "ambient", "directional", "spot"] {
-        let mut lab = crowded(&registry);
+        let mut session = crowded(&registry);
         for nth in 0..5 {
             let kind = if nth < 4 { "point" } else { kind };
-            let before = brightness(&lab, &registry);
-            lab.apply(Action::AddLight(kind.to_owned()), &registry);
-            let after = brightness(&lab, &registry);
+            let before = brightness(&session, &registry);
+            session.apply(Action::AddLight(kind.to_owned()), &registry);
+            let after = brightness(&session, &registry);
             let shown = |b: f32| srgb_encode(b.min(1.0));
             let mut gains: Vec<_> = after.iter().zip(&before).map(|(a, b)| shown(*a) - shown(*b)).collect();
             gains.sort_by(f32::total_cmp);
             // Spots reach little of the scene.
             let gain = gains[gains.len() * if kind == "spot" { 995 } else { 970 } / 1000];
-            let cd = lab.document.lights.last().map_or(0.0, |l| l.intensity);
+            let cd = session.document.lights.last().map_or(0.0, |l| l.intensity);
             assert!(gain > 0.035, "{kind} {nth} of {cd}: a gain of {gain}");
         }
     }
@@ -218,28 +218,28 @@ fn each_of_many_new_lights_can_be_seen() {
 #[test]
 fn a_new_light_says_if_the_picture_clips_with_it() {
     let registry = Registry::builtin();
-    let mut lab = crowded(&registry);
-    lab.apply(Action::AddLight("point".to_owned()), &registry);
-    assert!(lab.messages.is_empty(), "{:?}", lab.messages);
+    let mut session = crowded(&registry);
+    session.apply(Action::AddLight("point".to_owned()), &registry);
+    assert!(session.messages.is_empty(), "{:?}", session.messages);
     for _ in 0..15 {
-        lab.apply(Action::AddLight("point".to_owned()), &registry);
+        session.apply(Action::AddLight("point".to_owned()), &registry);
     }
-    assert!(lab.messages.iter().any(|m| m.text.contains("the picture clips")));
+    assert!(session.messages.iter().any(|m| m.text.contains("the picture clips")));
 }
 
 #[test]
 fn new_positions_are_short_numbers() {
     let registry = Registry::builtin();
-    let mut lab = crowded(&registry);
+    let mut session = crowded(&registry);
     for kind in ["point", "spot", "directional", "point"] {
-        lab.apply(Action::AddLight(kind.to_owned()), &registry);
+        session.apply(Action::AddLight(kind.to_owned()), &registry);
     }
     let decimals = |v: f32| v.to_string().split_once('.').map_or(0, |(_, d)| d.len());
     let all = |v: Vec3| v.to_array().map(decimals).into_iter().max().unwrap_or(0);
-    for object in &lab.document.objects {
+    for object in &session.document.objects {
         assert!(all(object.position) <= 1, "{}", object.position);
     }
-    for light in &lab.document.lights[1..] {
+    for light in &session.document.lights[1..] {
         assert!(light.position.is_none_or(|p| all(p) <= 1), "{:?}", light.position);
         assert!(light.direction.is_none_or(|d| all(d) <= 2), "{:?}", light.direction);
     }

@@ -11,7 +11,7 @@ use lights_camera_models::{
         marks::Lens,
         maths::definitions,
         settings::SCALES,
-        state::{Action, Effect, Lab, ViewChange},
+        state::{Action, Effect, Session, ViewChange},
     },
     registry::Registry,
     scene::{Scene, examples::EXAMPLES},
@@ -37,14 +37,14 @@ fn ctrl_plus_minus_and_0_scale_the_window_by_our_steps() {
     let mut bench = bench((1280.0, 720.0), "phong");
     for percent in SCALES.into_iter().skip(1).chain([200]) {
         bench.key(Key::Plus, CTRL);
-        assert_eq!(bench.lab.view.scale, percent);
+        assert_eq!(bench.session.view.scale, percent);
         assert_eq!(bench.ctx.zoom_factor(), f32::from(percent) / 100.0, "nobody else zooms");
     }
     bench.key(Key::Minus, CTRL);
-    assert_eq!(bench.lab.view.scale, 175);
+    assert_eq!(bench.session.view.scale, 175);
     assert!(bench.effects.contains(&Effect::SaveSettings), "it survives a restart");
     bench.key(Key::Num0, CTRL);
-    assert_eq!((bench.lab.view.scale, bench.ctx.zoom_factor()), (100, 1.0));
+    assert_eq!((bench.session.view.scale, bench.ctx.zoom_factor()), (100, 1.0));
 }
 
 #[test]
@@ -54,10 +54,10 @@ fn at_every_scale_the_panels_fill_the_window_and_the_bar_can_be_reached() {
         for percent in SCALES {
             bench.apply(Action::View(ViewChange::Scale(percent)));
             let zoom = f32::from(percent) / 100.0;
-            let (lab, whole) = (&bench.lab, bench.size / zoom);
-            assert_eq!(lab.zoom, zoom);
+            let (session, whole) = (&bench.session, bench.size / zoom);
+            assert_eq!(session.zoom, zoom);
             assert!(
-                lab.picture_rect.width() > 100.0 && lab.picture_rect.bottom() > whole.y - 60.0,
+                session.picture_rect.width() > 100.0 && session.picture_rect.bottom() > whole.y - 60.0,
                 "{percent}"
             );
             let bar: Vec<_> = bench
@@ -91,7 +91,7 @@ fn a_narrow_bar_has_a_menu_of_the_shading_models() {
     assert_eq!(shown, Role::ComboBox);
     bench.click("Shading: Gouraud");
     bench.click("Flat");
-    assert_eq!(bench.lab.document.shading_model, "flat");
+    assert_eq!(bench.session.document.shading_model, "flat");
 }
 
 #[test]
@@ -100,37 +100,37 @@ fn a_presentation_is_the_picture_alone_and_the_keys_go_on() {
     assert!(bench.says("Point 1"), "in the list, and at the edge of the picture");
     bench.key(Key::F5, Modifiers::NONE);
     assert!(!bench.says("Point 1"), "no marks over the picture");
-    assert!(bench.lab.view.presenting && bench.lab.view.fullscreen);
-    assert_eq!(bench.lab.picture_rect.size(), vec2(1280.0, 720.0));
+    assert!(bench.session.view.presenting && bench.session.view.fullscreen);
+    assert_eq!(bench.session.picture_rect.size(), vec2(1280.0, 720.0));
     for gone in ["File", "Observer", "diffuse coefficient"] {
         assert!(bench.find(gone).is_none(), "{gone} is still there");
     }
     bench.letter(Key::F, "f");
-    assert_eq!(bench.lab.document.shading_model, "flat");
+    assert_eq!(bench.session.document.shading_model, "flat");
     bench.letter(Key::T, "t");
-    assert_ne!(bench.lab.view.terms, TermSelection::All);
+    assert_ne!(bench.session.view.terms, TermSelection::All);
     bench.letter(Key::H, "h");
     assert!(bench.effects.contains(&Effect::HomeView));
-    bench.lab.fill_model_slots(&bench.registry.clone());
-    let model = bench.lab.model_slots[1].clone();
+    bench.session.fill_model_slots(&bench.registry.clone());
+    let model = bench.session.model_slots[1].clone();
     bench.letter(Key::Num2, "2");
-    assert_eq!(bench.lab.document.reflection_model, model);
+    assert_eq!(bench.session.document.reflection_model, model);
     // The list of keys closes before the presentation does.
     bench.key(Key::F1, Modifiers::NONE);
     bench.key(Key::Escape, Modifiers::NONE);
-    assert!(!bench.lab.view.keys_open && bench.lab.view.presenting);
+    assert!(!bench.session.view.keys_open && bench.session.view.presenting);
     bench.key(Key::Escape, Modifiers::NONE);
-    assert!(!bench.lab.view.presenting && !bench.lab.view.fullscreen);
+    assert!(!bench.session.view.presenting && !bench.session.view.fullscreen);
     assert!(bench.find("File").is_some());
     for on in [true, false] {
         bench.key(Key::F11, Modifiers::NONE);
-        assert_eq!((bench.lab.view.fullscreen, bench.lab.view.presenting), (on, false));
+        assert_eq!((bench.session.view.fullscreen, bench.session.view.presenting), (on, false));
     }
     // Who presents on a full screen is back on one afterwards.
     for key in [Key::F11, Key::F5, Key::F5] {
         bench.key(key, Modifiers::NONE);
     }
-    assert!(bench.lab.view.fullscreen && !bench.lab.view.presenting);
+    assert!(bench.session.view.fullscreen && !bench.session.view.presenting);
 }
 
 /// The heights of the capitals on screen, points, with the text that they are in.
@@ -154,7 +154,7 @@ fn a_presentation_can_be_read_from_the_last_row() {
             let mut bench = bench(size, model);
             bench.apply(Action::View(ViewChange::Scale(scale)));
             bench.apply(Action::View(ViewChange::Presenting(true)));
-            let height = bench.lab.picture_rect.height();
+            let height = bench.session.picture_rect.height();
             let capitals = capitals(&mut bench);
             assert!(capitals.iter().any(|(_, text)| text.contains("shading")), "no caption");
             assert!(capitals.iter().any(|(_, text)| text == "I" || text == "L"), "no equation: {capitals:?}");
@@ -198,7 +198,7 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
             let d = model.declaration;
             let mut scene = Scene { reflection_model: d.id.to_owned(), ..Scene::default() };
             scene.objects[0].object_type = kind.to_owned();
-            let mut bench = Bench::new(Lab::new(scene));
+            let mut bench = Bench::new(Session::new(scene));
             bench.size = vec2(1280.0, 720.0);
             bench.apply(Action::View(ViewChange::Scale(scale)));
             bench.apply(Action::View(ViewChange::Presenting(true)));
@@ -206,20 +206,20 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
             for (_, text) in definitions(d.equation) {
                 assert!(shown.iter().any(|s| s == text), "{}: {text} is not among {shown:?}", d.id);
             }
-            let height = 720.0 / bench.lab.zoom;
+            let height = 720.0 / bench.session.zoom;
             for (high, text) in capitals(&mut bench) {
                 // Indices may be smaller: those of P_L and F_V are capitals.
                 let least = if text.chars().count() == 1 { 0.017 } else { 0.025 };
                 assert!(high >= least * height, "{}, {scale} %: {text}: {high} of {height}", d.id);
             }
-            let picture = bench.lab.picture_rect;
+            let picture = bench.session.picture_rect;
             assert!(
-                picture.width() * picture.height() > 0.2 * 1280.0 * 720.0 / bench.lab.zoom.powi(2),
+                picture.width() * picture.height() > 0.2 * 1280.0 * 720.0 / bench.session.zoom.powi(2),
                 "{}: {picture:?}",
                 d.id
             );
-            let lens = Lens::of(&bench.lab, picture);
-            let object = &bench.lab.document.objects[0];
+            let lens = Lens::of(&bench.session, picture);
+            let object = &bench.session.document.objects[0];
             let at = lens.project(object.position).unwrap();
             let edge = lens.project(object.position + 0.5 * object.size * glam::Vec3::X).unwrap();
             for shape in bench.shapes() {
@@ -244,7 +244,7 @@ fn lines_of_a_presentation_have_the_same_size_at_every_scale() {
             let mut bench = bench((1280.0, 720.0), "blinn_phong");
             bench.apply(Action::View(ViewChange::Scale(scale)));
             bench.apply(Action::View(ViewChange::Presenting(true)));
-            let zoom = bench.lab.zoom;
+            let zoom = bench.session.zoom;
             let terms = capitals(&mut bench).into_iter().filter(|(_, text)| text == "I");
             terms.map(|(high, _)| (high * zoom).round() as i32).collect::<Vec<_>>()
         })
@@ -258,7 +258,7 @@ fn lines_of_a_presentation_have_the_same_size_at_every_scale() {
 fn a_presentation_of_many_models_shows_the_equation_of_none() {
     let registry = Registry::builtin();
     let example = EXAMPLES.iter().find(|e| e.file == "model_matrix.json").unwrap();
-    let mut bench = Bench::new(Lab::new(example.scene(&registry).unwrap()));
+    let mut bench = Bench::new(Session::new(example.scene(&registry).unwrap()));
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::Presenting(true)));
     assert_eq!(definitions_shown(&bench), [""; 0]);
@@ -268,7 +268,7 @@ fn a_presentation_of_many_models_shows_the_equation_of_none() {
 fn badges_of_a_presentation_are_as_large_as_the_rest() {
     let mut bench = bench((1280.0, 720.0), "phong");
     let all = GRID[0] * GRID[1];
-    bench.lab.clipping = Clipping::new(vec![50; all]);
+    bench.session.clipping = Clipping::new(vec![50; all]);
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
     bench.apply(Action::View(ViewChange::Presenting(true)));
     let capitals = capitals(&mut bench);
@@ -293,7 +293,7 @@ fn pictures_of_presentations() -> Result<(), Box<dyn std::error::Error>> {
         ("blinn_phong", (1280.0, 720.0), 200),
     ] {
         let mut bench = bench(size, model);
-        bench.lab.clipping = Clipping::new(vec![50; GRID[0] * GRID[1]]);
+        bench.session.clipping = Clipping::new(vec![50; GRID[0] * GRID[1]]);
         bench.apply(Action::View(ViewChange::Scale(scale)));
         bench.apply(Action::View(ViewChange::Presenting(true)));
         bench.picture(&folder.join(format!("presentation-{model}.png")), egui::Color32::from_gray(46))?;
@@ -303,8 +303,8 @@ fn pictures_of_presentations() -> Result<(), Box<dyn std::error::Error>> {
 
 // ── what stands still ──
 
-fn scene_called(name: &str) -> Lab {
-    Lab::new(Scene { name: Some(name.to_owned()), ..Scene::default() })
+fn scene_called(name: &str) -> Session {
+    Session::new(Scene { name: Some(name.to_owned()), ..Scene::default() })
 }
 
 #[test]
@@ -345,7 +345,8 @@ fn nothing_moves_under_the_pointer_in_the_bar() {
             .to_vec()
     };
     let before = still(&bench);
-    let title = bench.tree.iter().find(|s| s.label.starts_with(&bench.lab.title())).expect("the title").rect;
+    let title =
+        bench.tree.iter().find(|s| s.label.starts_with(&bench.session.title())).expect("the title").rect;
     for at in before.iter().copied().chain([title]) {
         bench.frame(vec![egui::Event::PointerMoved(at.center())]);
         bench.settle();

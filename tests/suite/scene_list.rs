@@ -8,7 +8,7 @@ use lights_camera_models::{
     optics::TermSelection,
     panel::{
         caption::caption_text,
-        state::{Action, Effect, Lab, ViewChange},
+        state::{Action, Effect, Session, ViewChange},
     },
     parameter::{BASE_COLOUR, Value},
     reference,
@@ -25,18 +25,18 @@ use crate::{
     support::{changed, read, said, written},
 };
 
-fn with_objects(kinds: &[&str]) -> Lab {
+fn with_objects(kinds: &[&str]) -> Session {
     let objects = kinds.iter().enumerate().map(|(i, kind)| Object {
         object_type: (*kind).to_owned(),
         position: glam::Vec3::new(1.0 + i as f32, 5.0, 5.0),
         size: 0.8,
         ..Object::default()
     });
-    Lab::new(Scene { objects: objects.collect(), ..Scene::default() })
+    Session::new(Scene { objects: objects.collect(), ..Scene::default() })
 }
 
 fn names(bench: &Bench) -> Vec<String> {
-    let scene = &bench.lab.document;
+    let scene = &bench.session.document;
     (0..scene.objects.len()).map(|i| name_of(scene, Selection::Object(i), &bench.registry)).collect()
 }
 
@@ -53,7 +53,7 @@ fn a_click_in_a_row_never_deletes() {
     for x in (row.left() as i32..row.right() as i32).step_by(6) {
         bench.click_at(bevy_egui::egui::pos2(x as f32, row.center().y), PointerButton::Primary);
         bench.key(Key::Escape, Modifiers::NONE);
-        assert_eq!(bench.lab.document.objects.len(), 2, "a click at {x}");
+        assert_eq!(bench.session.document.objects.len(), 2, "a click at {x}");
     }
 }
 
@@ -61,38 +61,38 @@ fn a_click_in_a_row_never_deletes() {
 fn the_dot_changes_the_colour() {
     let mut bench = Bench::new(with_objects(&["sphere"]));
     for (dot, colour) in [("Colour of Sphere 1", "object"), ("Colour of Point 1", "light")] {
-        let before = bench.lab.document.scene().clone();
+        let before = bench.session.document.scene().clone();
         bench.click(dot);
         // The field of saturation and value is the largest slider of the picker, below the dot.
         let place = bench.find(dot).expect("there").rect.center();
         bench.click_at(place + bevy_egui::egui::vec2(60.0, 150.0), PointerButton::Primary);
-        assert_ne!(*bench.lab.document, before, "the colour of the {colour} did not change");
+        assert_ne!(*bench.session.document, before, "the colour of the {colour} did not change");
         bench.key(Key::Escape, Modifiers::NONE);
         bench.click_at(bevy_egui::egui::pos2(640.0, 800.0), PointerButton::Primary);
     }
-    let material = &bench.lab.document.objects[0].material;
+    let material = &bench.session.document.objects[0].material;
     assert!(matches!(material.get(&BASE_COLOUR), Value::Colour(rgb) if rgb != [255; 3]));
-    assert_ne!(bench.lab.document.lights[0].colour, [255; 3]);
+    assert_ne!(bench.session.document.lights[0].colour, [255; 3]);
 }
 
 #[test]
 fn objects_are_hidden_and_lights_switched_off_by_click_key_and_menu() {
     let mut bench = Bench::new(with_objects(&["sphere", "cube"]));
     bench.click("Hide Cube 1");
-    assert!(bench.lab.document.objects[0].visible && !bench.lab.document.objects[1].visible);
+    assert!(bench.session.document.objects[0].visible && !bench.session.document.objects[1].visible);
     bench.click("Show Cube 1");
-    assert!(bench.lab.document.objects[1].visible);
+    assert!(bench.session.document.objects[1].visible);
     bench.click("Switch off Point 1");
-    assert!(!bench.lab.document.lights[0].enabled);
+    assert!(!bench.session.document.lights[0].enabled);
     bench.click("Switch on Point 1");
-    assert!(bench.lab.document.lights[0].enabled);
+    assert!(bench.session.document.lights[0].enabled);
     bench.apply(Action::Select(Selection::Object(0)));
     bench.key(Key::V, Modifiers::NONE);
-    assert!(!bench.lab.document.objects[0].visible && bench.lab.is_dirty());
+    assert!(!bench.session.document.objects[0].visible && bench.session.is_dirty());
     let row = bench.find("Sphere 1").expect("there").rect.center();
     bench.click_at(row, PointerButton::Secondary);
     bench.click("Show");
-    assert!(bench.lab.document.objects[0].visible);
+    assert!(bench.session.document.objects[0].visible);
     bench.click_at(row, PointerButton::Secondary);
     bench.click("Delete");
     assert_eq!(names(&bench), ["Cube 1"]);
@@ -161,55 +161,55 @@ fn a_part_keeps_its_name_for_life() {
     let all = names(&bench);
     assert_eq!(all.iter().collect::<std::collections::BTreeSet<_>>().len(), all.len(), "{all:?}");
     // The file has them too.
-    let again = Bench::new(Lab::new(read(&written(&bench.lab.document))));
+    let again = Bench::new(Session::new(read(&written(&bench.session.document))));
     assert_eq!(names(&again), all);
     // Lights as well.
     bench.apply(Action::AddLight("point".to_owned()));
     bench.apply(Action::AddLight("spot".to_owned()));
     bench.apply(Action::Remove(Selection::Light(0)));
     let lights: Vec<_> =
-        (0..2).map(|i| name_of(&bench.lab.document, Selection::Light(i), &bench.registry)).collect();
+        (0..2).map(|i| name_of(&bench.session.document, Selection::Light(i), &bench.registry)).collect();
     assert_eq!(lights, ["Point 2", "Spot 1"]);
 }
 
 #[test]
 fn the_caption_says_what_the_picture_shows() {
     let registry = Registry::builtin();
-    let mut lab = Lab::new(Scene {
+    let mut session = Session::new(Scene {
         reflection_model: "phong".to_owned(),
         shading_model: "phong".to_owned(),
         ..Scene::default()
     });
     assert_eq!(
-        caption_text(&lab, &registry),
+        caption_text(&session, &registry),
         "Phong · Phong shading · computed per pixel · k_a 0.1 · k_d 0.8 · k_s 0.5 · α 32"
     );
     // The scene's shading reaches no object that has its own.
-    lab.document.amend(|scene| scene.objects[0].shading_model = Some("gouraud".to_owned()));
-    lab.document.amend(|scene| scene.shading_model = "flat".to_owned());
-    lab.selection = Selection::Room;
-    assert!(caption_text(&lab, &registry).contains("Gouraud shading · computed per vertex"));
-    let mut lab = with_objects(&["sphere", "sphere", "sphere"]);
-    lab.document.amend(|scene| scene.objects[1].reflection_model = Some("phong".to_owned()));
-    lab.document.amend(|scene| scene.objects[2].shading_model = Some("flat".to_owned()));
-    assert_eq!(caption_text(&lab, &registry), "2 models · 2 shading models");
-    lab.document.amend(|scene| scene.objects[1].visible = false);
-    lab.document.amend(|scene| scene.objects[2].visible = false);
-    assert!(caption_text(&lab, &registry).starts_with("Lambert · Gouraud shading"));
-    lab.document.amend(|scene| scene.objects[0].visible = false);
-    assert_eq!(caption_text(&lab, &registry), "nothing visible");
+    session.document.amend(|scene| scene.objects[0].shading_model = Some("gouraud".to_owned()));
+    session.document.amend(|scene| scene.shading_model = "flat".to_owned());
+    session.selection = Selection::Room;
+    assert!(caption_text(&session, &registry).contains("Gouraud shading · computed per vertex"));
+    let mut session = with_objects(&["sphere", "sphere", "sphere"]);
+    session.document.amend(|scene| scene.objects[1].reflection_model = Some("phong".to_owned()));
+    session.document.amend(|scene| scene.objects[2].shading_model = Some("flat".to_owned()));
+    assert_eq!(caption_text(&session, &registry), "2 models · 2 shading models");
+    session.document.amend(|scene| scene.objects[1].visible = false);
+    session.document.amend(|scene| scene.objects[2].visible = false);
+    assert!(caption_text(&session, &registry).starts_with("Lambert · Gouraud shading"));
+    session.document.amend(|scene| scene.objects[0].visible = false);
+    assert_eq!(caption_text(&session, &registry), "nothing visible");
 }
 
 #[test]
 fn terms_that_are_empty_are_passed_over() {
     let press = |bench: &mut Bench| {
         bench.key(Key::T, Modifiers::NONE);
-        bench.lab.view.terms
+        bench.session.view.terms
     };
     // One term: there is nothing to take apart.
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     assert_eq!(press(&mut bench), TermSelection::All);
-    assert!(bench.lab.messages.iter().any(|m| m.text.contains("one term")));
+    assert!(bench.session.messages.iter().any(|m| m.text.contains("one term")));
     assert!(!bench.says("Terms:"), "no row for one term");
     let mut bench = Bench::with_model("phong");
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("k_a", Value::Number(0.0)))));
@@ -228,19 +228,19 @@ fn terms_that_are_empty_are_passed_over() {
 #[test]
 fn saving_says_where_and_offers_to_keep_the_view() {
     let path = PathBuf::from("/somewhere/lecture.json");
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::SaveAs(path.clone()));
     assert!(bench.effects.contains(&Effect::SaveFile { path: path.clone(), overwrite: true }));
-    bench.lab.saved(path.clone(), &bench.registry);
+    bench.session.saved(path.clone(), &bench.registry);
     bench.settle();
-    assert_eq!(bench.lab.title(), "lecture", "the scene has the name of its file");
-    assert!(!bench.lab.is_dirty());
+    assert_eq!(bench.session.title(), "lecture", "the scene has the name of its file");
+    assert!(!bench.session.is_dirty());
     assert!(bench.says("Saved to /somewhere/lecture.json"), "in sight without unfolding anything");
     assert!(bench.find("Set observer to this view").is_none(), "the view is the observer's");
-    bench.lab.camera_left = true;
-    bench.lab.saved(path.clone(), &bench.registry);
+    bench.session.camera_left = true;
+    bench.session.saved(path.clone(), &bench.registry);
     bench.settle();
-    assert_eq!(bench.lab.messages.len(), 1, "the last time counts");
+    assert_eq!(bench.session.messages.len(), 1, "the last time counts");
     assert!(bench.says("The view you turned to is not in the file"));
     bench.effects.clear();
     bench.click("Set observer to this view");
@@ -255,7 +255,7 @@ fn saving_says_where_and_offers_to_keep_the_view() {
     // A name that the user gave stays.
     bench.apply(Action::Edit(Edit::SceneName("My lecture".to_owned())));
     bench.apply(Action::SaveAs(PathBuf::from("/somewhere/other.json")));
-    assert_eq!(bench.lab.title(), "My lecture");
+    assert_eq!(bench.session.title(), "My lecture");
 }
 
 #[test]
@@ -265,9 +265,9 @@ fn a_light_that_is_off_is_no_light_from_everywhere() {
     scene.lights[0].enabled = false;
     assert_eq!(scene.shining().map(|l| l.light_type.as_str()).collect::<Vec<_>>(), ["ambient"]);
     let edit = Edit::Light(1, LightField::Enabled(false));
-    let mut bench = Bench::new(Lab::new(scene));
+    let mut bench = Bench::new(Session::new(scene));
     bench.apply(Action::Edit(edit));
-    assert_eq!(bench.lab.document.shining().count(), 0);
+    assert_eq!(bench.session.document.shining().count(), 0);
 }
 
 #[test]
@@ -279,14 +279,14 @@ fn the_caption_has_key_values_in_the_order_of_their_declaration() {
         ("blinn_phong", " · k_a 0.1 · k_d 0.8 · k_s 0.5 · α 32"),
     ] {
         let bench = Bench::with_model(model);
-        let caption = caption_text(&bench.lab, &bench.registry);
+        let caption = caption_text(&bench.session, &bench.registry);
         assert!(caption.contains(values), "{caption}");
         assert!(caption.matches(" · ").count() <= 6, "{caption}");
     }
     // What was changed is shown, wherever it stands.
     let mut bench = Bench::with_model("disney");
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("clearcoat", Value::Number(0.25)))));
-    assert!(caption_text(&bench.lab, &bench.registry).ends_with(" 0.25"));
+    assert!(caption_text(&bench.session, &bench.registry).ends_with(" 0.25"));
 }
 
 #[test]
@@ -298,8 +298,8 @@ fn the_caption_is_broken_between_its_parts_and_never_long() {
             let mut bench = Bench::with_model(model);
             bench.size = size.into();
             bench.apply(Action::View(ViewChange::Scale(scale)));
-            let foot = bench.lab.picture_rect.with_min_y(bench.lab.picture_rect.bottom() - 60.0);
-            let right = bench.lab.picture_rect.right() - 90.0;
+            let foot = bench.session.picture_rect.with_min_y(bench.session.picture_rect.bottom() - 60.0);
+            let right = bench.session.picture_rect.right() - 90.0;
             let texts: Vec<_> = (bench.shapes().into_iter())
                 .filter_map(|shape| match shape {
                     Shape::Text(t) if foot.contains(t.pos) && t.pos.x < right => {
@@ -327,7 +327,7 @@ fn a_badge_brings_hidden_terms_back_whatever_is_selected() {
         let button = badge(&bench).unwrap();
         assert_eq!((button.role, button.label.as_str()), (Role::Button, "Only the specular term · Show all"));
         bench.click_at(button.rect.center(), PointerButton::Primary);
-        assert_eq!((bench.lab.view.terms, bench.lab.selection), (TermSelection::All, part));
+        assert_eq!((bench.session.view.terms, bench.session.selection), (TermSelection::All, part));
         assert!(badge(&bench).is_none());
     }
     // A model that lacks the term shows black, and the badge says why.
@@ -340,10 +340,10 @@ fn a_badge_brings_hidden_terms_back_whatever_is_selected() {
 
 #[test]
 fn the_observer_is_offered_no_place_outside_the_room() {
-    let mut bench = Bench::new(Lab::default());
-    bench.lab.camera_left = true;
-    bench.lab.eye = glam::Vec3::new(5.0, 5.0, 14.0);
-    bench.lab.saved(PathBuf::from("/somewhere/lecture.json"), &bench.registry);
+    let mut bench = Bench::new(Session::default());
+    bench.session.camera_left = true;
+    bench.session.eye = glam::Vec3::new(5.0, 5.0, 14.0);
+    bench.session.saved(PathBuf::from("/somewhere/lecture.json"), &bench.registry);
     bench.settle();
     assert!(bench.says("The view is outside the room"));
     assert!(bench.find("Set observer to this view").is_none());
@@ -351,36 +351,36 @@ fn the_observer_is_offered_no_place_outside_the_room() {
     let button = bench.find("Set observer to this view").cloned().unwrap();
     assert!(button.disabled);
     bench.hover(button.rect.center());
-    bench.lab.eye.z = 9.0;
+    bench.session.eye.z = 9.0;
     bench.settle();
     assert!(!bench.find("Set observer to this view").unwrap().disabled);
 }
 
 #[test]
 fn the_window_names_the_file_beside_the_scene() {
-    let mut lab = Lab::default();
-    assert_eq!(lab.window_title(), "Default scene");
-    lab.path = Some(PathBuf::from("/somewhere/my-lesson.json"));
-    assert_eq!(lab.window_title(), "Default scene — my-lesson.json");
-    lab.document.amend(|scene| scene.name = None);
-    assert_eq!(lab.window_title(), "my-lesson");
+    let mut session = Session::default();
+    assert_eq!(session.window_title(), "Default scene");
+    session.path = Some(PathBuf::from("/somewhere/my-lesson.json"));
+    assert_eq!(session.window_title(), "Default scene — my-lesson.json");
+    session.document.amend(|scene| scene.name = None);
+    assert_eq!(session.window_title(), "my-lesson");
 }
 
 #[test]
 fn a_choice_that_every_object_overrides_says_why_nothing_changes() {
     let mut bench = Bench::new(with_objects(&["sphere", "sphere"]));
-    bench.lab.document.amend(|scene| scene.objects[0].shading_model = Some("phong".to_owned()));
+    bench.session.document.amend(|scene| scene.objects[0].shading_model = Some("phong".to_owned()));
     bench.apply(Action::Select(Selection::Room));
     bench.letter(Key::F, "f");
-    assert!(bench.lab.messages.is_empty(), "one object follows");
-    bench.lab.document.amend(|scene| scene.objects[1].shading_model = Some("gouraud".to_owned()));
+    assert!(bench.session.messages.is_empty(), "one object follows");
+    bench.session.document.amend(|scene| scene.objects[1].shading_model = Some("gouraud".to_owned()));
     bench.letter(Key::G, "g");
-    assert!(bench.lab.messages.iter().any(|m| m.text.contains("overrides the shading model")));
+    assert!(bench.session.messages.iter().any(|m| m.text.contains("overrides the shading model")));
 }
 
 #[test]
 fn a_shading_model_has_one_name_everywhere() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
     bench.settle();
     for shading in bench.registry.clone().shading_models() {

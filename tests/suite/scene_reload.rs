@@ -10,7 +10,7 @@ use lights_camera_models::{
     panel::{
         files::{self, Files as _, Looked},
         recovery::Offer,
-        state::{Action, Answer, Effect, Lab, Question, Severity, ViewChange},
+        state::{Action, Answer, Effect, Question, Session, Severity, ViewChange},
     },
     registry::Registry,
     render::entities::{CurrentScene, SceneEntities, reconcile},
@@ -24,7 +24,7 @@ use lights_camera_models::{
 
 /// A document that was read from a file, and what the window does with it.
 struct Desk {
-    lab: Lab,
+    session: Session,
     files: DiskFiles,
     registry: Registry,
     /// What is left to the window: all but what is done with files.
@@ -43,10 +43,10 @@ impl Desk {
         fs::write(&path, text).unwrap();
         let registry = Registry::builtin();
         let loaded = load::file(&path, &registry, Defaults::Use).unwrap();
-        let mut lab = Lab::new(loaded.scene);
-        lab.path = Some(path.clone());
+        let mut session = Session::new(loaded.scene);
+        session.path = Some(path.clone());
         let files = DiskFiles::new(Some(path), Some(loaded.stamp));
-        Self { lab, files, registry, left: Vec::new(), folder }
+        Self { session, files, registry, left: Vec::new(), folder }
     }
 
     fn path(&self) -> PathBuf {
@@ -65,9 +65,9 @@ impl Desk {
     fn carry_out(&mut self, effects: Vec<Effect>) {
         for effect in effects {
             if effect == Effect::DocumentChanged {
-                self.files.document_changed(self.lab.path.as_deref());
+                self.files.document_changed(self.session.path.as_deref());
             }
-            let more = files::run(&mut self.lab, &self.registry, effect.clone(), &mut self.files);
+            let more = files::run(&mut self.session, &self.registry, effect.clone(), &mut self.files);
             if more == [effect.clone()] {
                 self.left.push(effect);
             } else {
@@ -77,7 +77,7 @@ impl Desk {
     }
 
     fn act(&mut self, action: Action) {
-        let effects = self.lab.apply(action, &self.registry);
+        let effects = self.session.apply(action, &self.registry);
         self.carry_out(effects);
     }
 
@@ -99,11 +99,11 @@ impl Desk {
     }
 
     fn said(&self, words: &str) -> usize {
-        self.lab.messages.iter().filter(|m| m.text.contains(words)).count()
+        self.session.messages.iter().filter(|m| m.text.contains(words)).count()
     }
 
     fn badge(&self) -> &str {
-        self.lab.disk.badge.as_ref().map_or("", |b| &b.text)
+        self.session.disk.badge.as_ref().map_or("", |b| &b.text)
     }
 
     fn complaints(&self) -> Vec<&str> {
@@ -121,7 +121,7 @@ impl Desk {
     /// An unsaved change in the window.
     fn change(&mut self) {
         self.act(Action::Edit(Edit::Object(1, ObjectField::Size(0.5))));
-        assert!(self.lab.is_dirty());
+        assert!(self.session.is_dirty());
     }
 }
 
@@ -151,26 +151,26 @@ fn an_edit_elsewhere_becomes_the_document_and_the_view_stays() {
     desk.left.clear();
     desk.write(&text(&grown(0, 2.0)));
     assert!(!desk.report(), "nothing to wait for");
-    assert_eq!(desk.lab.document, grown(0, 2.0));
-    assert!(!desk.lab.is_dirty());
-    assert_eq!(desk.lab.selection, Selection::Object(2));
-    assert_eq!(desk.lab.view.terms, TermSelection::Diffuse);
+    assert_eq!(desk.session.document, grown(0, 2.0));
+    assert!(!desk.session.is_dirty());
+    assert_eq!(desk.session.selection, Selection::Object(2));
+    assert_eq!(desk.session.view.terms, TermSelection::Diffuse);
     // Neither back to the observer nor to another document.
     assert!(desk.left.is_empty(), "{:?}", desk.left);
     assert_eq!(desk.said("room.json was read again"), 1);
-    assert_eq!(desk.lab.messages[0].severity, Severity::Info);
+    assert_eq!(desk.session.messages[0].severity, Severity::Info);
     // Many editors touch the file once more; that changes nothing.
     assert!(!desk.report());
     assert_eq!(desk.said("room.json was read again"), 1);
     // Another version: the message is not piled up.
     desk.edited(&text(&grown(0, 3.0)));
-    assert_eq!(desk.lab.document, grown(0, 3.0));
-    assert_eq!(desk.lab.messages.len(), 1);
+    assert_eq!(desk.session.document, grown(0, 3.0));
+    assert_eq!(desk.session.messages.len(), 1);
     // The next save has nothing to ask.
     desk.change();
     desk.act(Action::Save);
-    assert_eq!(desk.lab.question, None);
-    assert!(!desk.lab.is_dirty());
+    assert_eq!(desk.session.question, None);
+    assert!(!desk.session.is_dirty());
     assert_eq!(
         load::from_text(&desk.on_disk(), "", &desk.registry, Defaults::Refuse).unwrap().scene.objects[1].size,
         0.5
@@ -188,9 +188,9 @@ fn opening_a_file_by_hand_does_go_back_to_the_observer() {
 #[test]
 fn the_same_content_changes_nothing() {
     let mut desk = Desk::new();
-    let before = format!("{:?}", desk.lab);
+    let before = format!("{:?}", desk.session);
     desk.edited(&text(&three()));
-    assert_eq!(format!("{:?}", desk.lab), before);
+    assert_eq!(format!("{:?}", desk.session), before);
     assert!(desk.left.is_empty());
 }
 
@@ -200,9 +200,9 @@ fn our_own_save_is_no_change_on_disk() {
     desk.change();
     desk.act(Action::Save);
     desk.left.clear();
-    let before = format!("{:?}", desk.lab);
+    let before = format!("{:?}", desk.session);
     assert!(!desk.report());
-    assert_eq!(format!("{:?}", desk.lab), before);
+    assert_eq!(format!("{:?}", desk.session), before);
     assert!(desk.left.is_empty());
     // Nor is saving to another file and going on there.
     let other = desk.folder.path().join("other.json");
@@ -229,11 +229,11 @@ fn objects_that_did_not_change_keep_their_entities() {
         let entities = world.resource::<SceneEntities>();
         (entities.objects.clone(), entities.lights.clone())
     };
-    let before = entities(&desk.lab.document);
+    let before = entities(&desk.session.document);
     let mut scene = grown(1, 2.5);
     scene.objects.push(Object { position: glam::Vec3::splat(2.0), size: 1.0, ..Object::default() });
     desk.edited(&text(&scene));
-    let after = entities(&desk.lab.document);
+    let after = entities(&desk.session.document);
     assert_eq!(after.0[..3], before.0[..]);
     assert_eq!(after.0.len(), 4);
     assert_eq!(after.1, before.1);
@@ -246,8 +246,8 @@ fn the_selection_follows_what_it_points_at() {
         let mut desk = Desk::new();
         desk.act(Action::Select(Selection::Object(at)));
         desk.edited(&text(scene));
-        assert_eq!(desk.lab.document, *scene);
-        desk.lab.selection
+        assert_eq!(desk.session.document, *scene);
+        desk.session.selection
     };
     // The first was removed: what was third is second now.
     let mut fewer = three();
@@ -272,11 +272,11 @@ fn an_empty_or_half_written_file_is_given_a_moment() {
         let mut desk = Desk::new();
         desk.write(half);
         assert!(desk.report(), "looks again");
-        assert!(desk.lab.messages.is_empty() && desk.badge().is_empty() && desk.left.is_empty());
-        assert_eq!(desk.lab.document, three());
+        assert!(desk.session.messages.is_empty() && desk.badge().is_empty() && desk.left.is_empty());
+        assert_eq!(desk.session.document, three());
         desk.write(&whole);
         assert!(!desk.report());
-        assert_eq!(desk.lab.document, grown(0, 2.0));
+        assert_eq!(desk.session.document, grown(0, 2.0));
         assert_eq!(desk.badge(), "");
         assert!(desk.complaints().is_empty());
     }
@@ -286,7 +286,7 @@ fn an_empty_or_half_written_file_is_given_a_moment() {
         desk.write(&whole[..end]);
         assert!(desk.report());
     }
-    assert!(desk.lab.messages.is_empty());
+    assert!(desk.session.messages.is_empty());
     assert!(!desk.report(), "now it rests");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
 }
@@ -298,43 +298,43 @@ fn a_broken_file_leaves_the_scene_and_says_where() {
         text(&three()).replace("\"size\": 1", &format!("\"size\": 1, \"material\": {{ \"k_d\": {k_d} }}"))
     };
     desk.edited(&broken("7"));
-    assert_eq!(desk.lab.document, three());
-    assert!(!desk.lab.is_dirty(), "nothing was changed here");
+    assert_eq!(desk.session.document, three());
+    assert!(!desk.session.is_dirty(), "nothing was changed here");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
     let name = desk.path().display().to_string();
     // Each of the three objects has the problem, with its line and column.
     let places: Vec<_> =
-        desk.lab.messages.iter().filter_map(|m| m.text.strip_prefix(&format!("{name}:"))).collect();
-    assert_eq!(places.len(), 3, "{:?}", desk.lab.messages);
+        desk.session.messages.iter().filter_map(|m| m.text.strip_prefix(&format!("{name}:"))).collect();
+    assert_eq!(places.len(), 3, "{:?}", desk.session.messages);
     for place in &places {
         let mut numbers = place.split(':');
         assert!(numbers.next().unwrap().parse::<u32>().is_ok_and(|line| line > 1), "{place}");
         assert!(numbers.next().unwrap().parse::<u32>().is_ok_and(|column| column > 1), "{place}");
         assert!(place.contains("k_d is 7"), "{place}");
     }
-    assert!(desk.lab.view.bottom_open);
-    assert!(desk.lab.disk.badge.as_ref().unwrap().help.contains("k_d is 7"), "the tooltip tells it all");
+    assert!(desk.session.view.bottom_open);
+    assert!(desk.session.disk.badge.as_ref().unwrap().help.contains("k_d is 7"), "the tooltip tells it all");
     assert_eq!(desk.complaints().len(), 1, "once on standard error");
     assert_eq!(desk.complaints()[0].lines().count(), 3);
     // The same version again says nothing more.
-    desk.lab.messages.clear();
+    desk.session.messages.clear();
     assert!(!desk.report());
-    assert!(desk.lab.messages.is_empty());
+    assert!(desk.session.messages.is_empty());
     assert_eq!(desk.complaints().len(), 1);
     // Another one replaces what was said.
     desk.edited(&broken("8"));
     desk.edited(&broken("9"));
     assert_eq!((desk.said("k_d is 8"), desk.said("k_d is 9")), (0, 3));
-    assert_eq!(desk.lab.messages.len(), 3);
+    assert_eq!(desk.session.messages.len(), 3);
     assert_eq!(desk.complaints().len(), 3);
     // A good one takes it all away, also when it is the one that is shown.
     desk.edited(&text(&three()));
     assert_eq!(desk.badge(), "");
-    assert!(desk.lab.messages.is_empty());
+    assert!(desk.session.messages.is_empty());
     desk.edited(&broken("7"));
     desk.edited(&text(&grown(0, 2.0)));
     assert_eq!(desk.badge(), "");
-    assert_eq!(desk.lab.messages.len(), 1);
+    assert_eq!(desk.session.messages.len(), 1);
     assert_eq!(desk.said("was read again"), 1);
 }
 
@@ -344,11 +344,11 @@ fn saving_over_a_broken_file_asks() {
     desk.edited("{ broken");
     desk.change();
     desk.act(Action::Save);
-    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
     assert_eq!(desk.on_disk(), "{ broken");
     desk.act(Action::Answer(Answer::Overwrite));
     assert_eq!(desk.badge(), "", "what was saved is good");
-    assert!(desk.lab.messages.iter().all(|m| m.text.starts_with("Saved to ")));
+    assert!(desk.session.messages.iter().all(|m| m.text.starts_with("Saved to ")));
     assert!(!desk.report());
 }
 
@@ -360,8 +360,8 @@ fn missing_parts_are_not_taken_unasked() {
     };
     let mut desk = Desk::new();
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
-    assert_eq!(desk.lab.document, three());
-    assert_eq!(desk.lab.question, None, "who types elsewhere is not stopped by a question");
+    assert_eq!(desk.session.document, three());
+    assert_eq!(desk.session.question, None, "who types elsewhere is not stopped by a question");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
     assert_eq!(desk.said("shading_model is missing"), 1);
     // Who agreed to a default has agreed.
@@ -369,24 +369,24 @@ fn missing_parts_are_not_taken_unasked() {
     desk.write(&lacking(&three(), "shading_model"));
     desk.act(Action::Reload);
     desk.act(Action::Answer(Answer::UseDefaults));
-    assert!(desk.lab.is_dirty(), "the file lacks what the document has");
+    assert!(desk.session.is_dirty(), "the file lacks what the document has");
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
-    assert_eq!(desk.lab.document, grown(0, 2.0));
-    assert!(desk.lab.is_dirty());
+    assert_eq!(desk.session.document, grown(0, 2.0));
+    assert!(desk.session.is_dirty());
     // But to that one only.
     let two = lacking(&grown(0, 3.0), "shading_model");
     let two: Vec<_> = two.lines().filter(|l| !l.contains("reflection_model")).collect();
     desk.edited(&two.join("\n"));
-    assert_eq!(desk.lab.document, grown(0, 2.0));
+    assert_eq!(desk.session.document, grown(0, 2.0));
     // Once the part is there, nothing is missing.
     desk.edited(&text(&grown(0, 4.0)));
-    assert_eq!(desk.lab.document, grown(0, 4.0));
-    assert!(!desk.lab.is_dirty());
+    assert_eq!(desk.session.document, grown(0, 4.0));
+    assert!(!desk.session.is_dirty());
     // `--use-defaults` agrees to all.
     let mut desk = Desk::new();
-    desk.lab.disk.use_defaults = true;
+    desk.session.disk.use_defaults = true;
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
-    assert_eq!(desk.lab.document, grown(0, 2.0));
+    assert_eq!(desk.session.document, grown(0, 2.0));
 }
 
 #[test]
@@ -398,27 +398,27 @@ fn a_deleted_file_leaves_the_scene_which_is_unsaved_then() {
     assert!(!desk.report());
     assert_eq!(desk.badge(), "room.json was deleted: showing its last version");
     assert_eq!(desk.said("no longer there"), 1);
-    assert_eq!(desk.lab.document, three());
+    assert_eq!(desk.session.document, three());
     desk.act(Action::Quit);
-    assert!(matches!(desk.lab.question, Some(Question::Unsaved { .. })), "nobody else has the scene");
+    assert!(matches!(desk.session.question, Some(Question::Unsaved { .. })), "nobody else has the scene");
     desk.act(Action::Answer(Answer::Cancel));
     // It comes back.
     desk.edited(&text(&three()));
     assert_eq!(desk.badge(), "");
-    assert!(!desk.lab.is_dirty() && desk.lab.messages.is_empty());
+    assert!(!desk.session.is_dirty() && desk.session.messages.is_empty());
     // And comes back as another one.
     fs::remove_file(desk.path()).unwrap();
     assert!(desk.report() && !desk.report());
     desk.edited(&text(&grown(0, 2.0)));
-    assert_eq!((desk.badge(), desk.lab.is_dirty()), ("", false));
-    assert_eq!(desk.lab.document, grown(0, 2.0));
+    assert_eq!((desk.badge(), desk.session.is_dirty()), ("", false));
+    assert_eq!(desk.session.document, grown(0, 2.0));
     // Saving writes it anew, without a question.
     fs::remove_file(desk.path()).unwrap();
     assert!(desk.report() && !desk.report());
     desk.act(Action::Save);
-    assert_eq!(desk.lab.question, None);
+    assert_eq!(desk.session.question, None);
     assert_eq!(desk.on_disk(), text(&grown(0, 2.0)));
-    assert_eq!((desk.badge(), desk.lab.is_dirty()), ("", false));
+    assert_eq!((desk.badge(), desk.session.is_dirty()), ("", false));
     assert!(!desk.report());
 }
 
@@ -431,7 +431,7 @@ fn saving_a_deleted_file_does_not_overwrite_what_came_in_its_place() {
     desk.write(&other);
     // Before the watcher says so.
     desk.act(Action::Save);
-    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
     assert_eq!(desk.on_disk(), other);
 }
 
@@ -440,11 +440,11 @@ fn conflict() -> Desk {
     let mut desk = Desk::new();
     desk.change();
     desk.edited(&text(&grown(0, 2.0)));
-    let Some(Question::NewerOnDisk { scene, .. }) = &desk.lab.question else {
-        panic!("{:?}", desk.lab.question)
+    let Some(Question::NewerOnDisk { scene, .. }) = &desk.session.question else {
+        panic!("{:?}", desk.session.question)
     };
     assert_eq!(**scene, grown(0, 2.0));
-    assert_eq!(desk.lab.document, grown(1, 0.5), "nothing is lost without a question");
+    assert_eq!(desk.session.document, grown(1, 0.5), "nothing is lost without a question");
     desk
 }
 
@@ -452,19 +452,19 @@ fn conflict() -> Desk {
 fn unsaved_changes_are_kept_when_the_user_says_so_and_saving_replaces_the_file() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Keep));
-    assert_eq!(desk.lab.document, grown(1, 0.5));
-    assert!(desk.lab.is_dirty());
+    assert_eq!(desk.session.document, grown(1, 0.5));
+    assert!(desk.session.is_dirty());
     assert!(!desk.report());
-    assert_eq!(desk.lab.question, None, "asked once about a version");
+    assert_eq!(desk.session.question, None, "asked once about a version");
     assert_eq!(desk.badge(), "");
     // Yet another version is another question.
     desk.edited(&text(&grown(0, 3.0)));
-    assert!(matches!(desk.lab.question, Some(Question::NewerOnDisk { .. })));
+    assert!(matches!(desk.session.question, Some(Question::NewerOnDisk { .. })));
     desk.act(Action::Answer(Answer::Keep));
     desk.act(Action::Save);
-    assert_eq!(desk.lab.question, None, "saving was what was meant");
+    assert_eq!(desk.session.question, None, "saving was what was meant");
     assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
-    assert!(!desk.lab.is_dirty());
+    assert!(!desk.session.is_dirty());
 }
 
 #[test]
@@ -472,21 +472,21 @@ fn who_kept_a_version_and_undoes_all_is_still_unsaved() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Keep));
     desk.act(Action::Edit(Edit::Object(1, ObjectField::Size(1.0))));
-    assert_eq!(desk.lab.document, three());
-    assert!(desk.lab.is_dirty(), "the file holds something else");
+    assert_eq!(desk.session.document, three());
+    assert!(desk.session.is_dirty(), "the file holds something else");
 }
 
 #[test]
 fn unsaved_changes_are_lost_only_on_yes() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Reload));
-    assert_eq!(desk.lab.document, grown(0, 2.0));
-    assert!(!desk.lab.is_dirty());
-    assert_eq!(desk.lab.question, None);
+    assert_eq!(desk.session.document, grown(0, 2.0));
+    assert!(!desk.session.is_dirty());
+    assert_eq!(desk.session.question, None);
     assert!(!desk.left.contains(&Effect::DocumentChanged), "the camera stays");
     desk.change();
     desk.act(Action::Save);
-    assert_eq!(desk.lab.question, None);
+    assert_eq!(desk.session.question, None);
 }
 
 #[test]
@@ -496,12 +496,12 @@ fn reading_again_takes_what_is_on_disk_by_then() {
     desk.act(Action::Answer(Answer::Reload));
     assert_eq!(desk.left.pop(), Some(Effect::LookAgain(desk.path())));
     assert!(!desk.report());
-    assert_eq!(desk.lab.document, grown(1, 0.5), "a broken file costs nothing");
+    assert_eq!(desk.session.document, grown(1, 0.5), "a broken file costs nothing");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
     let mut desk = conflict();
     desk.write(&text(&grown(0, 4.0)));
     desk.act(Action::Answer(Answer::Reload));
-    assert_eq!(desk.lab.document, grown(0, 4.0));
+    assert_eq!(desk.session.document, grown(0, 4.0));
 }
 
 #[test]
@@ -509,11 +509,11 @@ fn who_decides_later_is_asked_when_saving() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Cancel));
     assert_eq!(desk.badge(), "room.json changed on disk: showing yours");
-    assert_eq!(desk.lab.document, grown(1, 0.5));
+    assert_eq!(desk.session.document, grown(1, 0.5));
     assert!(!desk.report());
-    assert_eq!(desk.lab.question, None, "not asked again about the same version");
+    assert_eq!(desk.session.question, None, "not asked again about the same version");
     desk.act(Action::Save);
-    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
     assert_eq!(desk.on_disk(), text(&grown(0, 2.0)), "not overwritten");
     desk.act(Action::Answer(Answer::Overwrite));
     assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
@@ -522,8 +522,8 @@ fn who_decides_later_is_asked_when_saving() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Cancel));
     desk.edited(&text(&three()));
-    assert_eq!((desk.badge(), &desk.lab.question), ("", &None));
-    assert_eq!(desk.lab.document, grown(1, 0.5));
+    assert_eq!((desk.badge(), &desk.session.question), ("", &None));
+    assert_eq!(desk.session.document, grown(1, 0.5));
 }
 
 #[test]
@@ -531,16 +531,16 @@ fn where_both_did_the_same_or_only_the_layout_changed_there_is_nothing_to_ask() 
     let mut desk = Desk::new();
     desk.change();
     desk.edited(&text(&grown(1, 0.5)));
-    assert_eq!(desk.lab.question, None);
-    assert!(!desk.lab.is_dirty(), "the file holds what is shown");
+    assert_eq!(desk.session.question, None);
+    assert!(!desk.session.is_dirty(), "the file holds what is shown");
     let mut desk = Desk::new();
     desk.change();
     desk.edited(&text(&three()).replace("  ", "\t"));
-    assert_eq!(desk.lab.question, None);
-    assert_eq!(desk.lab.document, grown(1, 0.5));
-    assert!(desk.lab.is_dirty());
+    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.document, grown(1, 0.5));
+    assert!(desk.session.is_dirty());
     desk.act(Action::Save);
-    assert_eq!(desk.lab.question, None);
+    assert_eq!(desk.session.question, None);
 }
 
 #[test]
@@ -549,20 +549,20 @@ fn news_wait_for_the_answer_to_an_open_question() {
     desk.change();
     desk.act(Action::Quit);
     desk.edited(&text(&grown(0, 2.0)));
-    assert!(matches!(desk.lab.question, Some(Question::Unsaved { .. })), "the question stays");
+    assert!(matches!(desk.session.question, Some(Question::Unsaved { .. })), "the question stays");
     desk.act(Action::Answer(Answer::Cancel));
-    assert!(matches!(desk.lab.question, Some(Question::NewerOnDisk { .. })), "then comes the next");
+    assert!(matches!(desk.session.question, Some(Question::NewerOnDisk { .. })), "then comes the next");
     desk.act(Action::Answer(Answer::Keep));
-    assert_eq!(desk.lab.question, None);
+    assert_eq!(desk.session.question, None);
     // Saving finds the change by itself, and one question is enough.
     let mut desk = Desk::new();
     desk.change();
     desk.act(Action::Quit);
     desk.edited(&text(&grown(0, 2.0)));
     desk.act(Action::Answer(Answer::Save));
-    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
     desk.act(Action::Answer(Answer::Overwrite));
-    assert_eq!(desk.lab.question, None);
+    assert_eq!(desk.session.question, None);
     assert!(desk.left.contains(&Effect::Quit));
     assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
 }
@@ -572,9 +572,9 @@ fn a_document_without_a_file_has_nothing_to_follow() {
     let mut desk = Desk::new();
     desk.act(Action::New);
     desk.left.clear();
-    let before = format!("{:?}", desk.lab);
+    let before = format!("{:?}", desk.session);
     desk.edited(&text(&grown(0, 2.0)));
-    assert_eq!(format!("{:?}", desk.lab), before);
+    assert_eq!(format!("{:?}", desk.session), before);
     assert!(desk.left.is_empty());
 }
 
@@ -595,7 +595,7 @@ fn recovered(copy: &Scene, known: &str) -> Desk {
     let mut desk = Desk::new();
     let path = desk.path();
     // As a window without a scene.
-    desk.lab = Lab::default();
+    desk.session = Session::default();
     desk.files = DiskFiles::new(None, None);
     let offer = Offer {
         title: "Room".to_owned(),
@@ -604,10 +604,10 @@ fn recovered(copy: &Scene, known: &str) -> Desk {
         when: String::new(),
         scene: Ok(copy.clone()),
     };
-    desk.lab.ask(Question::Recover(Box::new(offer)));
+    desk.session.ask(Question::Recover(Box::new(offer)));
     desk.act(Action::Answer(Answer::Recover));
     desk.files.expect(&path, Some(Stamp::of(known.as_bytes())));
-    assert!(desk.lab.is_dirty());
+    assert!(desk.session.is_dirty());
     desk
 }
 
@@ -615,10 +615,10 @@ fn recovered(copy: &Scene, known: &str) -> Desk {
 fn what_is_recovered_is_saved_to_its_file_if_nobody_changed_that() {
     let mut desk = recovered(&grown(1, 0.5), &text(&three()));
     assert!(!desk.report());
-    assert_eq!(desk.lab.question, None);
+    assert_eq!(desk.session.question, None);
     desk.act(Action::Save);
-    assert_eq!((&desk.lab.question, desk.on_disk()), (&None, text(&grown(1, 0.5))));
-    assert!(!desk.lab.is_dirty());
+    assert_eq!((&desk.session.question, desk.on_disk()), (&None, text(&grown(1, 0.5))));
+    assert!(!desk.session.is_dirty());
 }
 
 #[test]
@@ -628,17 +628,21 @@ fn what_is_recovered_never_replaces_the_changes_of_others_unasked() {
         let mut desk = recovered(&grown(1, 0.5), "as it was");
         desk.write(&text(&other));
         desk.report();
-        assert!(matches!(desk.lab.question, Some(Question::NewerOnDisk { .. })), "{:?}", desk.lab.question);
-        assert_eq!(desk.lab.document, grown(1, 0.5));
+        assert!(
+            matches!(desk.session.question, Some(Question::NewerOnDisk { .. })),
+            "{:?}",
+            desk.session.question
+        );
+        assert_eq!(desk.session.document, grown(1, 0.5));
         desk.act(Action::Answer(Answer::Keep));
-        assert!(desk.lab.is_dirty());
+        assert!(desk.session.is_dirty());
         desk.act(Action::Save);
         assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
     }
     // Before the watcher says so.
     let mut desk = recovered(&grown(1, 0.5), "as it was");
     desk.act(Action::Save);
-    assert!(matches!(desk.lab.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
     assert_eq!(desk.on_disk(), text(&three()));
 }
 
@@ -646,6 +650,6 @@ fn what_is_recovered_never_replaces_the_changes_of_others_unasked() {
 fn what_is_recovered_and_on_disk_by_now_is_saved() {
     let mut desk = recovered(&three(), "as it was");
     desk.report();
-    assert_eq!(desk.lab.question, None);
-    assert!(!desk.lab.is_dirty());
+    assert_eq!(desk.session.question, None);
+    assert!(!desk.session.is_dirty());
 }

@@ -14,10 +14,10 @@ use lights_camera_models::{
     document::{Edit, ObjectField},
     library::status::{Reloaded, ShaderStatus, Trouble},
     panel::{
-        author::{Ask, ModelDraft},
+        author::{ModelCommand, ModelDraft},
         picture,
         shader::consequence,
-        state::{Action, Effect, Lab, ThemeChoice, ViewChange},
+        state::{Action, Effect, Session, ThemeChoice, ViewChange},
         theme::Palette,
     },
     registry::Registry,
@@ -66,9 +66,9 @@ fn folders() -> ShaderStatus {
 }
 
 fn bench_with(troubles: Vec<Trouble>) -> Bench {
-    let mut lab = Lab::default();
-    lab.shaders = ShaderStatus { troubles, ..folders() };
-    let mut bench = Bench::new(lab);
+    let mut session = Session::default();
+    session.shaders = ShaderStatus { troubles, ..folders() };
+    let mut bench = Bench::new(session);
     bench.size = vec2(1280.0, 720.0);
     bench.settle();
     bench
@@ -89,11 +89,11 @@ fn the_picture_says_that_it_is_not_what_the_shader_says() {
     for word in ["last good version of Lambert", "reflection/lambert.wgsl:12:36", "invalid field accessor"] {
         assert!(said.contains(word), "{said}");
     }
-    assert!(bench.lab.picture_rect.contains_rect(rect), "on the picture");
-    bench.lab.shaders.troubles.clear();
+    assert!(bench.session.picture_rect.contains_rect(rect), "on the picture");
+    bench.session.shaders.troubles.clear();
     bench.settle();
     assert_eq!(badge(&bench), None, "gone with the error");
-    bench.lab.shaders.troubles = vec![Trouble { stale: Vec::new(), ..broken_lambert() }];
+    bench.session.shaders.troubles = vec![Trouble { stale: Vec::new(), ..broken_lambert() }];
     bench.settle();
     assert_eq!(badge(&bench), None, "the picture is right");
     assert!(bench.says("nothing on the picture depends on it"), "but the status line tells");
@@ -106,14 +106,14 @@ fn the_badge_leads_to_the_errors_and_is_not_the_picture() {
     let (_, rect) = badge(&bench).expect("a badge");
     bench.frame(vec![Event::PointerMoved(rect.center())]);
     bench.frame(Vec::new());
-    assert!(!bench.lab.pointer_in_picture, "a click there must not turn the camera");
+    assert!(!bench.session.pointer_in_picture, "a click there must not turn the camera");
     bench.click_at(rect.center(), PointerButton::Primary);
-    assert!(bench.lab.view.bottom_open);
-    assert_eq!(bench.lab.view.bottom_tab, "shader");
+    assert!(bench.session.view.bottom_open);
+    assert_eq!(bench.session.view.bottom_tab, "shader");
     let below = pos2(rect.center().x, rect.bottom() + 40.0);
     bench.frame(vec![Event::PointerMoved(below)]);
     bench.frame(Vec::new());
-    assert!(bench.lab.pointer_in_picture, "beside it, the picture is the picture");
+    assert!(bench.session.pointer_in_picture, "beside it, the picture is the picture");
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn many_models_and_long_messages_stay_on_the_picture() {
         bench.size = size.into();
         bench.apply(Action::View(ViewChange::Scale(if large { 150 } else { 100 })));
         let (_, rect) = badge(&bench).expect("a badge");
-        let picture = bench.lab.picture_rect;
+        let picture = bench.session.picture_rect;
         assert!(picture.contains_rect(rect), "{size:?} {large}: {rect:?} in {picture:?}");
     }
 }
@@ -150,7 +150,7 @@ fn the_words_of_the_badge_can_be_read() {
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
         let mut bench = bench_with(vec![broken_lambert()]);
         bench.apply(Action::View(ViewChange::Theme(theme)));
-        let palette = Palette::of(&bench.lab.view);
+        let palette = Palette::of(&bench.session.view);
         let (_, rect) = badge(&bench).expect("a badge");
         let shapes = bench.shapes();
         let inside = |at: egui::Pos2| rect.expand(1.0).contains(at);
@@ -173,25 +173,25 @@ fn the_words_of_the_badge_can_be_read() {
 #[test]
 fn a_new_error_unfolds_the_panel_once() {
     let mut bench = bench_with(Vec::new());
-    assert!(!bench.lab.view.bottom_open);
-    bench.lab.shaders.troubles = vec![broken_lambert()];
+    assert!(!bench.session.view.bottom_open);
+    bench.session.shaders.troubles = vec![broken_lambert()];
     bench.settle();
-    assert!(bench.lab.view.bottom_open && bench.lab.view.bottom_tab == "shader");
+    assert!(bench.session.view.bottom_open && bench.session.view.bottom_tab == "shader");
     bench.apply(Action::View(ViewChange::Bottom(false)));
-    assert!(!bench.lab.view.bottom_open, "it stays folded");
-    bench.lab.shaders.troubles[0].problem.line += 3;
+    assert!(!bench.session.view.bottom_open, "it stays folded");
+    bench.session.shaders.troubles[0].problem.line += 3;
     bench.settle();
-    assert!(!bench.lab.view.bottom_open, "the same error, moved");
-    bench.lab.shaders.troubles.push(trouble("loop.wgsl", 1, 1, "x", "expected a declaration", &[]));
+    assert!(!bench.session.view.bottom_open, "the same error, moved");
+    bench.session.shaders.troubles.push(trouble("loop.wgsl", 1, 1, "x", "expected a declaration", &[]));
     bench.settle();
-    assert!(bench.lab.view.bottom_open, "the next one is news");
+    assert!(bench.session.view.bottom_open, "the next one is news");
     bench.apply(Action::View(ViewChange::Bottom(false)));
-    bench.lab.shaders.troubles.clear();
+    bench.session.shaders.troubles.clear();
     bench.settle();
-    assert!(!bench.lab.view.bottom_open, "good news unfold nothing");
-    bench.lab.shaders.troubles = vec![broken_lambert()];
+    assert!(!bench.session.view.bottom_open, "good news unfold nothing");
+    bench.session.shaders.troubles = vec![broken_lambert()];
     bench.settle();
-    assert!(bench.lab.view.bottom_open, "the old error, made again");
+    assert!(bench.session.view.bottom_open, "the old error, made again");
 }
 
 #[test]
@@ -201,14 +201,14 @@ fn the_tab_counts_the_errors_and_keys_and_status_line_lead_to_it() {
     assert!(bench.says("2 errors"));
     assert!(bench.says("2 shader errors: the picture shows the last good version"));
     bench.key(Key::F9, Modifiers::NONE);
-    assert!(!bench.lab.view.bottom_open, "F9 folds what it shows");
+    assert!(!bench.session.view.bottom_open, "F9 folds what it shows");
     bench.key(Key::F8, Modifiers::NONE);
-    assert_eq!(bench.lab.view.bottom_tab, "messages");
+    assert_eq!(bench.session.view.bottom_tab, "messages");
     bench.key(Key::F9, Modifiers::NONE);
-    assert_eq!(bench.lab.view.bottom_tab, "shader");
+    assert_eq!(bench.session.view.bottom_tab, "shader");
     bench.apply(Action::View(ViewChange::Bottom(false)));
     bench.click("2 shader errors: the picture shows the last good version");
-    assert!(bench.lab.view.bottom_open && bench.lab.view.bottom_tab == "shader");
+    assert!(bench.session.view.bottom_open && bench.session.view.bottom_tab == "shader");
 }
 
 #[test]
@@ -280,7 +280,7 @@ fn the_caret_stands_below_the_character_that_is_meant() {
 fn every_file_of_the_picture_is_listed_and_can_be_opened() {
     let mut bench = bench_with(vec![broken_lambert()]);
     bench.size = vec2(1280.0, 1400.0);
-    bench.lab.view.bottom_height = 700.0;
+    bench.session.view.bottom_height = 700.0;
     bench.settle();
     for (name, path) in [
         ("the model", "reflection/lambert.wgsl"),
@@ -307,7 +307,7 @@ fn every_file_of_the_picture_is_listed_and_can_be_opened() {
 
 #[test]
 fn built_in_shaders_can_be_written_out_and_not_opened() {
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     assert!(bench.says("The shaders are built in."));
     assert!(!bench.says("Open reflection/lambert.wgsl in an editor"));
@@ -316,18 +316,18 @@ fn built_in_shaders_can_be_written_out_and_not_opened() {
     assert!(bench.dialogs.is_open());
     let folder = PathBuf::from("/tmp/shaders");
     bench.effects.clear();
-    bench.apply(Action::Author(Ask::Export(folder.clone())));
+    bench.apply(Action::Model(ModelCommand::Export(folder.clone())));
     assert_eq!(bench.effects, [Effect::ExportShaders(folder)]);
-    let mut bench = Bench::new(Lab::default());
+    let mut bench = Bench::new(Session::default());
     bench.key(Key::E, Modifiers::COMMAND | Modifiers::CTRL);
     assert_eq!(bench.effects, []);
-    assert!(bench.lab.messages[0].text.contains("built in"));
+    assert!(bench.session.messages[0].text.contains("built in"));
 }
 
 #[test]
 fn what_was_taken_over_last_is_told_while_all_is_well() {
     let mut bench = bench_with(Vec::new());
-    bench.lab.shaders.last = Some(Reloaded { file: "loop.wgsl".to_owned(), milliseconds: 34.4 });
+    bench.session.shaders.last = Some(Reloaded { file: "loop.wgsl".to_owned(), milliseconds: 34.4 });
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     assert!(bench.says("No errors") && bench.says("loop.wgsl loaded in 34 ms"));
     assert!(!bench.says("shader error"));
@@ -339,14 +339,17 @@ fn what_was_taken_over_last_is_told_while_all_is_well() {
 fn a_new_model_is_named_and_written() {
     let mut bench = bench_with(Vec::new());
     bench.key(Key::N, Modifiers::COMMAND | Modifiers::CTRL | Modifiers::SHIFT);
-    assert_eq!(bench.lab.draft, Some(ModelDraft { of: None, name: "my_model".to_owned() }));
+    assert_eq!(bench.session.draft, Some(ModelDraft { of: None, name: "my_model".to_owned() }));
     // The field has the focus, and typing replaces the proposal.
     bench.frame(vec![Event::Text("größe".to_owned())]);
     bench.settle();
     assert!(bench.says("“groesse” would do"), "what would be right");
     assert!(bench.find("Create").expect("there").disabled);
     bench.key(Key::Enter, Modifiers::NONE);
-    assert!(bench.lab.draft.is_some() && bench.effects.is_empty(), "nothing is written under a wrong name");
+    assert!(
+        bench.session.draft.is_some() && bench.effects.is_empty(),
+        "nothing is written under a wrong name"
+    );
     bench.type_into("Name of the model", "phong");
     assert!(bench.says("There is already a model “phong”"));
     bench.type_into("Name of the model", "Student toon");
@@ -355,7 +358,7 @@ fn a_new_model_is_named_and_written() {
     bench.key(Key::Enter, Modifiers::NONE);
     let new = Effect::NewModel { name: "Student toon".to_owned(), id: "student_toon".to_owned() };
     assert_eq!(bench.effects, [new]);
-    assert_eq!(bench.lab.draft, None);
+    assert_eq!(bench.session.draft, None);
 }
 
 #[test]
@@ -365,16 +368,16 @@ fn the_shown_model_is_copied() {
     bench.click("Edit");
     bench.click("Duplicate the model as a file… Ctrl+Shift+D");
     assert_eq!(
-        bench.lab.draft,
+        bench.session.draft,
         Some(ModelDraft { of: Some("phong".to_owned()), name: "my_phong".to_owned() })
     );
     bench.click("Create");
     let (model, id) = ("phong".to_owned(), "my_phong".to_owned());
     assert_eq!(bench.effects, [Effect::DuplicateModel { model, name: id.clone(), id }]);
     bench.key(Key::D, Modifiers::COMMAND | Modifiers::CTRL | Modifiers::SHIFT);
-    assert!(bench.lab.draft.is_some());
+    assert!(bench.session.draft.is_some());
     bench.key(Key::Escape, Modifiers::NONE);
-    assert_eq!(bench.lab.draft, None, "Escape drops it");
+    assert_eq!(bench.session.draft, None, "Escape drops it");
 }
 
 #[test]
@@ -386,8 +389,8 @@ fn the_chooser_leads_to_custom_models() {
         assert!(!seen.disabled && seen.rect.bottom() < 720.0, "{button}: {:?}", seen.rect);
     }
     bench.click("New model…");
-    assert!(bench.lab.draft.is_some() && !bench.lab.view.chooser_open);
-    assert_eq!(*bench.lab.document, Scene::default(), "no model was chosen on the way");
+    assert!(bench.session.draft.is_some() && !bench.session.view.chooser_open);
+    assert_eq!(*bench.session.document, Scene::default(), "no model was chosen on the way");
     let mut bench = bench_with(Vec::new());
     bench.key(Key::R, Modifiers::NONE);
     bench.click("Open in editor");
@@ -399,38 +402,38 @@ fn the_chooser_leads_to_custom_models() {
 fn a_model_that_was_asked_for_is_chosen_once_it_is_there() {
     let mut bench = bench_with(Vec::new());
     bench.registry = Registry::default();
-    bench.lab.wanted_model = Some("phong".to_owned());
+    bench.session.wanted_model = Some("phong".to_owned());
     bench.settle();
-    assert_eq!(bench.lab.document.reflection_model, "lambert", "not there yet");
+    assert_eq!(bench.session.document.reflection_model, "lambert", "not there yet");
     bench.registry = Registry::builtin();
     bench.settle();
-    assert_eq!(bench.lab.document.reflection_model, "phong");
+    assert_eq!(bench.session.document.reflection_model, "phong");
     bench.apply(Action::Edit(Edit::Model("ward".to_owned())));
     bench.settle();
-    assert_eq!(bench.lab.document.reflection_model, "ward", "it was asked for once");
+    assert_eq!(bench.session.document.reflection_model, "ward", "it was asked for once");
 }
 
 #[test]
 fn a_model_that_vanishes_leaves_a_sentence() {
     let scene = Scene { reflection_model: "my_velvet".to_owned(), ..Scene::default() };
-    let mut bench = Bench::new(Lab::new(scene));
-    bench.lab.shaders = folders();
+    let mut bench = Bench::new(Session::new(scene));
+    bench.session.shaders = folders();
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     assert!(bench.says("the file models/my_velvet.wgsl is gone"));
     bench.click("Choose another model");
-    assert!(bench.lab.view.chooser_open);
+    assert!(bench.session.view.chooser_open);
     bench.key(Key::Escape, Modifiers::NONE);
-    bench.lab.shaders.troubles =
+    bench.session.shaders.troubles =
         vec![trouble("models/my_velvet.wgsl", 3, 9, "  x", "expected a declaration", &[])];
     bench.settle();
     assert!(bench.says("models/my_velvet.wgsl:3:9: expected a declaration"));
     assert!(bench.says("no version of the file models/my_velvet.wgsl yet that works"));
     // Nothing that can be asked of it is a reason to stop.
-    for ask in [Ask::Duplicate, Ask::EditShown] {
-        bench.apply(Action::Author(ask));
+    for ask in [ModelCommand::Duplicate, ModelCommand::EditShown] {
+        bench.apply(Action::Model(ask));
     }
-    assert_eq!(bench.lab.draft, None);
+    assert_eq!(bench.session.draft, None);
     let path = PathBuf::from("/home/mira/lab/models/my_velvet.wgsl");
     assert!(bench.effects.contains(&Effect::OpenInEditor { path, line: 3 }));
     for key in [Key::T, Key::Num1, Key::F1, Key::Tab] {
@@ -526,20 +529,20 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     let folder = tempfile::tempdir()?;
     let models = folder.path().join("models");
     let mut bench = bench_with(Vec::new());
-    bench.lab.shaders.models = Some(models.clone());
+    bench.session.shaders.models = Some(models.clone());
     let name = || "my_velvet".to_owned();
     let new = Effect::NewModel { id: name(), name: name() };
-    assert_eq!(write(&new, &mut bench.lab, &bench.registry), None);
+    assert_eq!(write(&new, &mut bench.session, &bench.registry), None);
     let file = models.join("my_velvet.wgsl");
     let text = fs::read_to_string(&file)?;
-    let said = bench.lab.messages.last().map(|m| m.text.clone()).unwrap_or_default();
+    let said = bench.session.messages.last().map(|m| m.text.clone()).unwrap_or_default();
     assert!(said.contains(&*file.to_string_lossy()) && said.contains("was written"), "{said}");
-    assert_eq!(bench.lab.wanted_model, Some(name()));
+    assert_eq!(bench.session.wanted_model, Some(name()));
     // What the reload system does when it sees the file.
     let model = custom::read(&file, &text, &bench.registry).map_err(|all| all[0].to_string())?;
     bench.registry.put_custom_model(model);
     bench.settle();
-    assert_eq!(bench.lab.document.reflection_model, "my_velvet");
+    assert_eq!(bench.session.document.reflection_model, "my_velvet");
     assert!(bench.says("My velvet"), "the name that its file says");
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     assert!(bench.says("the model: models/my_velvet.wgsl") && !bench.says("my_velvet.wgsl: edited"));
@@ -554,12 +557,12 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
         id: id.to_owned(),
         name: name.to_owned(),
     };
-    write(&copy("my_velvet", "My velvet"), &mut bench.lab, &bench.registry);
+    write(&copy("my_velvet", "My velvet"), &mut bench.session, &bench.registry);
     assert_eq!(fs::read_to_string(&file)?, "mine");
     let asked_again = ModelDraft { of: Some("phong".to_owned()), name: "My velvet".to_owned() };
-    assert_eq!(bench.lab.draft, Some(asked_again));
-    assert!(bench.lab.messages.last().is_some_and(|m| m.text.contains("exists already")));
-    write(&copy("my_phong", "My Phong"), &mut bench.lab, &bench.registry);
+    assert_eq!(bench.session.draft, Some(asked_again));
+    assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("exists already")));
+    write(&copy("my_phong", "My Phong"), &mut bench.session, &bench.registry);
     let file = models.join("my_phong.wgsl");
     let model = custom::read(&file, &fs::read_to_string(&file)?, &bench.registry)
         .map_err(|all| all[0].to_string())?;
@@ -567,12 +570,12 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     assert_eq!(model.entry.declaration.name, "My Phong", "as it was typed");
     let name = "x".to_owned();
     let gone = Effect::DuplicateModel { model: "gone".to_owned(), id: name.clone(), name };
-    write(&gone, &mut bench.lab, &bench.registry);
-    assert!(bench.lab.messages.last().is_some_and(|m| m.text.contains("no reflection model “gone”")));
+    write(&gone, &mut bench.session, &bench.registry);
+    assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("no reflection model “gone”")));
     // A folder that cannot be one.
-    bench.lab.shaders.models = Some(file.clone());
-    write(&new, &mut bench.lab, &bench.registry);
-    assert!(bench.lab.messages.last().is_some_and(|m| m.text.contains("could not be written")));
+    bench.session.shaders.models = Some(file.clone());
+    write(&new, &mut bench.session, &bench.registry);
+    assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("could not be written")));
     Ok(())
 }
 
@@ -581,16 +584,16 @@ fn shaders_are_written_out_once_and_told() -> Result<(), Box<dyn std::error::Err
     let folder = tempfile::tempdir()?;
     let mut bench = bench_with(Vec::new());
     let export = Effect::ExportShaders(folder.path().to_owned());
-    assert_eq!(write(&export, &mut bench.lab, &bench.registry).as_deref(), Some(folder.path()));
+    assert_eq!(write(&export, &mut bench.session, &bench.registry).as_deref(), Some(folder.path()));
     let loop_file = folder.path().join("shaders/loop.wgsl");
     fs::write(&loop_file, "// mine")?;
-    let last = |b: &Bench| b.lab.messages.last().map(|m| m.text.clone()).unwrap_or_default();
+    let last = |b: &Bench| b.session.messages.last().map(|m| m.text.clone()).unwrap_or_default();
     assert!(last(&bench).contains("files of shaders"), "{}", last(&bench));
-    write(&export, &mut bench.lab, &bench.registry);
+    write(&export, &mut bench.session, &bench.registry);
     assert_eq!(fs::read_to_string(&loop_file)?, "// mine");
     assert!(last(&bench).contains("already; 1 file that differ"), "{}", last(&bench));
     let impossible = Effect::ExportShaders(loop_file);
-    assert_eq!(write(&impossible, &mut bench.lab, &bench.registry), None);
+    assert_eq!(write(&impossible, &mut bench.session, &bench.registry), None);
     assert!(last(&bench).contains("could not be written"), "{}", last(&bench));
     Ok(())
 }
@@ -630,7 +633,7 @@ fn a_model_without_equation_source_and_laws_is_shown_as_it_is() {
 
 /// Asserts that these are whole within the strip.
 fn whole(bench: &Bench, labels: &[&str]) {
-    let scale = bench.lab.zoom;
+    let scale = bench.session.zoom;
     let bottom = (720.0 - 22.0) / scale;
     for label in labels {
         let all: Vec<_> = bench.tree.iter().filter(|s| s.label.starts_with(label)).map(|s| s.rect).collect();
@@ -649,7 +652,7 @@ fn the_panel_is_whole_where_everything_is_larger() {
         bench.apply(Action::View(ViewChange::Scale(scale)));
         bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
         whole(&bench, &["New model…", "Duplicate as a file…", "Open in editor"]);
-        bench.lab.shaders.troubles = vec![broken_lambert()];
+        bench.session.shaders.troubles = vec![broken_lambert()];
         bench.settle();
         whole(&bench, &["Open in editor", "line 12: ", "The picture shows the last good"]);
     }
@@ -669,11 +672,11 @@ fn pictures_of_the_shader_panel() -> Result<(), Box<dyn std::error::Error>> {
         b.apply(Action::View(ViewChange::Scale(150)));
     }
     fn one(b: &mut Bench) {
-        b.lab.shaders.troubles = vec![broken_lambert()];
+        b.session.shaders.troubles = vec![broken_lambert()];
     }
     fn several(b: &mut Bench) {
         let long = "the value of expression [21] has the type vec3<f32>, but a value of the type f32 was expected here, since the function `ggx` takes a number";
-        b.lab.shaders.troubles = vec![
+        b.session.shaders.troubles = vec![
             broken_lambert(),
             trouble(
                 "optics/fresnel.wgsl",
@@ -702,17 +705,17 @@ fn pictures_of_the_shader_panel() -> Result<(), Box<dyn std::error::Error>> {
         ];
     }
     fn built_in(b: &mut Bench) {
-        b.lab.shaders = ShaderStatus::default();
+        b.session.shaders = ShaderStatus::default();
         b.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     }
     fn well(b: &mut Bench) {
-        b.lab.shaders.last =
+        b.session.shaders.last =
             Some(Reloaded { file: "reflection/lambert.wgsl".to_owned(), milliseconds: 34.4 });
         b.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     }
     fn vanished(b: &mut Bench) {
-        b.lab.document.amend(|scene| scene.reflection_model = "my_velvet".to_owned());
-        b.lab.shaders.troubles = vec![trouble(
+        b.session.document.amend(|scene| scene.reflection_model = "my_velvet".to_owned());
+        b.session.shaders.troubles = vec![trouble(
             "models/my_velvet.wgsl",
             3,
             9,
@@ -740,7 +743,7 @@ fn pictures_of_the_shader_panel() -> Result<(), Box<dyn std::error::Error>> {
             "elsewhere",
             (1280.0, 720.0),
             46,
-            &[|b| b.lab.shaders.troubles = vec![Trouble { stale: Vec::new(), ..broken_lambert() }]],
+            &[|b| b.session.shaders.troubles = vec![Trouble { stale: Vec::new(), ..broken_lambert() }]],
         ),
         ("built-in", (1280.0, 720.0), 46, &[built_in]),
         ("built-in-large", (1280.0, 720.0), 46, &[large, light, built_in]),
@@ -779,8 +782,8 @@ fn pictures_of_the_shader_panel() -> Result<(), Box<dyn std::error::Error>> {
         }
         let mut bench = bench_with(Vec::new());
         bench.size = (*size).into();
-        bench.lab.status.frame_ms = 16.6;
-        bench.lab.status.backend = "Vulkan".to_owned();
+        bench.session.status.frame_ms = 16.6;
+        bench.session.status.backend = "Vulkan".to_owned();
         for setup in *setups {
             setup(&mut bench);
             bench.settle();

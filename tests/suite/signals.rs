@@ -122,7 +122,7 @@ impl Desk {
         assert_eq!(left.about.path.as_deref(), Some(&*self.file()));
         let expected = Scene { reflection_model: model.to_owned(), ..self.saved() };
         assert_eq!(left.scene(&Registry::builtin()), Ok(expected));
-        left.session.file()
+        left.journal.file()
     }
 
     fn press(&self, keys: &[Key]) {

@@ -24,13 +24,13 @@ fn a_knob_without_effect_is_disabled_and_says_why() {
     assert!(gamma.disabled, "the distribution is GGX");
     bench.hover(gamma.rect.center());
     assert!(bench.says("Not used with GGX: only GTR has γ"));
-    let value = bench.lab.document.objects[0].material.clone();
+    let value = bench.session.document.objects[0].material.clone();
     bench.click_at(gamma.rect.center(), PointerButton::Primary);
-    assert_eq!(bench.lab.document.objects[0].material, value);
-    assert!(!caption_text(&bench.lab, &bench.registry).contains('γ'), "nor does the caption show it");
+    assert_eq!(bench.session.document.objects[0].material, value);
+    assert!(!caption_text(&bench.session, &bench.registry).contains('γ'), "nor does the caption show it");
     choose(&mut bench, "distribution", "gtr");
     assert!(!bench.field("exponent of GTR").disabled);
-    assert!(caption_text(&bench.lab, &bench.registry).contains("γ 2"));
+    assert!(caption_text(&bench.session, &bench.registry).contains("γ 2"));
     // A chain: without Fresnel term there is no diffuse base, and without that no colour.
     choose(&mut bench, "fresnel", "none");
     assert!(bench.field("base colour in hexadecimal").disabled);
@@ -85,7 +85,7 @@ fn a_model_from_a_file_declares_it_too() {
         let mut registry = Registry::builtin();
         registry.put_custom_model(model);
         let mut bench = Bench::with_registry(
-            lights_camera_models::panel::state::Lab::new(lights_camera_models::scene::Scene {
+            lights_camera_models::panel::state::Session::new(lights_camera_models::scene::Scene {
                 reflection_model: "forms".to_owned(),
                 ..Default::default()
             }),

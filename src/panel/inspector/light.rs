@@ -10,7 +10,7 @@ use crate::{
     panel::{
         knob::{self, Caption},
         maths,
-        state::{Action, Lab},
+        state::{Action, Session},
         theme,
         top::segmented,
     },
@@ -19,10 +19,16 @@ use crate::{
     scene::Light,
 };
 
-pub(super) fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Vec<Action>) {
-    let Some(light) = lab.document.lights.get(i) else { return };
+pub(super) fn light(
+    ui: &mut Ui,
+    session: &Session,
+    registry: &Registry,
+    i: usize,
+    actions: &mut Vec<Action>,
+) {
+    let Some(light) = session.document.lights.get(i) else { return };
     let set = |field: LightField| Action::Edit(Edit::Light(i, field));
-    header(ui, lab, registry, Selection::Light(i), light.name.as_deref(), actions);
+    header(ui, session, registry, Selection::Light(i), light.name.as_deref(), actions);
     let types: Vec<_> = registry.lights().iter().map(|l| l.declaration).collect();
     let names: Vec<_> = types.iter().map(|d| d.name).collect();
     let chosen = registry.light_index(&light.light_type).map(|k| k as usize);
@@ -69,7 +75,7 @@ pub(super) fn light(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actio
                     "position",
                     &caption,
                     position,
-                    &position_limits(lab.document.scene_size),
+                    &position_limits(session.document.scene_size),
                 ) {
                     actions.push(set(LightField::Position(p)));
                 }

@@ -4,7 +4,7 @@ use bevy_egui::egui::{ScrollArea, Ui};
 
 use super::{
     Panel, Place,
-    state::{Action, Lab},
+    state::{Action, Session},
 };
 use crate::{document::Selection, registry::Registry};
 use {light::light, object::object, observer::observer, room::room};
@@ -34,19 +34,19 @@ impl Panel for Inspector {
         Place::Right
     }
 
-    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
         // Each part has fields of its own: what is typed about one must not turn up in another.
-        ui.push_id(lab.selection, |ui| {
+        ui.push_id(session.selection, |ui| {
             // The scroll bar floats over a margin, so that nothing moves when it comes.
             ui.spacing_mut().scroll.floating_allocated_width = 0.0;
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_max_width(ui.available_width() - 8.0);
-                match lab.selection {
-                    Selection::Room => room(ui, lab, registry, &mut actions),
-                    Selection::Observer => observer(ui, lab, &mut actions),
-                    Selection::Light(i) => light(ui, lab, registry, i, &mut actions),
-                    Selection::Object(i) => object(ui, lab, registry, i, &mut actions),
+                match session.selection {
+                    Selection::Room => room(ui, session, registry, &mut actions),
+                    Selection::Observer => observer(ui, session, &mut actions),
+                    Selection::Light(i) => light(ui, session, registry, i, &mut actions),
+                    Selection::Object(i) => object(ui, session, registry, i, &mut actions),
                 }
                 ui.add_space(16.0);
             });

@@ -6,7 +6,7 @@ use crate::{
     optics::TermSelection,
     panel::{
         author, chooser, icon, maths, shader,
-        state::{Action, Lab, Severity, ViewChange},
+        state::{Action, Session, Severity, ViewChange},
         theme::{self, Palette},
         top::segmented,
     },
@@ -37,7 +37,7 @@ pub(super) fn model_header(ui: &mut Ui, model: &ModelEntry) {
 /// The replacement for a model that is missing: its file is gone, or never worked.
 pub(super) fn missing_model(
     ui: &mut Ui,
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
     id: &str,
     actions: &mut Vec<Action>,
@@ -48,12 +48,12 @@ pub(super) fn missing_model(
         let (sign, _) = ui.allocate_exact_size(vec2(16.0, 20.0), Sense::hover());
         icon::severity(ui.painter(), sign.center(), 6.0, Severity::Error, &palette);
         ui.vertical(|ui| {
-            ui.add(egui::Label::new(shader::missing_model(lab, registry, id)).wrap().selectable(true));
+            ui.add(egui::Label::new(shader::missing_model(session, registry, id)).wrap().selectable(true));
             ui.horizontal_wrapped(|ui| {
                 if ui.button("Choose another model").clicked() {
                     actions.push(Action::View(ViewChange::Chooser(true)));
                 }
-                if !lab.shaders.troubles.is_empty() && ui.button("Show the error").clicked() {
+                if !session.shaders.troubles.is_empty() && ui.button("Show the error").clicked() {
                     actions.push(Action::View(ViewChange::BottomTab(author::SHADER_TAB.to_owned())));
                 }
             });
@@ -87,10 +87,10 @@ pub(super) fn equation(ui: &mut Ui, model: &ModelEntry) {
 }
 
 /// The choice of the term that the picture shows, where there is one.
-pub(super) fn terms(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
-    let mut options = lab.offered_terms(registry);
-    if !options.contains(&lab.view.terms) {
-        options.push(lab.view.terms);
+pub(super) fn terms(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+    let mut options = session.offered_terms(registry);
+    if !options.contains(&session.view.terms) {
+        options.push(session.view.terms);
     }
     if options.len() == 1 {
         return;
@@ -98,7 +98,7 @@ pub(super) fn terms(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut V
     ui.horizontal(|ui| {
         ui.set_min_height(30.0);
         ui.label(theme::small(ui, "show"));
-        let chosen = options.iter().position(|t| *t == lab.view.terms);
+        let chosen = options.iter().position(|t| *t == session.view.terms);
         let names: Vec<_> = options.iter().map(|t| t.id()).collect();
         let tip = |ui: &mut Ui, i: usize| {
             ui.label(match options[i] {

@@ -12,7 +12,7 @@ use crate::{
     panel::{
         knob::{self, Caption},
         model_override,
-        state::{Action, Lab},
+        state::{Action, Session},
         theme,
     },
     reflection::{ModelEntry, usage},
@@ -20,15 +20,21 @@ use crate::{
     scene::Object,
 };
 
-pub(super) fn object(ui: &mut Ui, lab: &Lab, registry: &Registry, i: usize, actions: &mut Vec<Action>) {
-    let Some(object) = lab.document.objects.get(i) else { return };
+pub(super) fn object(
+    ui: &mut Ui,
+    session: &Session,
+    registry: &Registry,
+    i: usize,
+    actions: &mut Vec<Action>,
+) {
+    let Some(object) = session.document.objects.get(i) else { return };
     let set: Set = &|field| Action::Edit(Edit::Object(i, field));
-    header(ui, lab, registry, Selection::Object(i), object.name.as_deref(), actions);
+    header(ui, session, registry, Selection::Object(i), object.name.as_deref(), actions);
 
-    let model = registry.model(lab.document.model_of(object));
-    section(ui, "Reflection", true, |ui| reflection(ui, lab, registry, object, model, set, actions));
-    section(ui, "Material", true, |ui| material(ui, lab, registry, object, model, set, actions));
-    section(ui, "Shape and position", true, |ui| geometry(ui, lab, registry, object, set, actions));
+    let model = registry.model(session.document.model_of(object));
+    section(ui, "Reflection", true, |ui| reflection(ui, session, registry, object, model, set, actions));
+    section(ui, "Material", true, |ui| material(ui, session, registry, object, model, set, actions));
+    section(ui, "Shape and position", true, |ui| geometry(ui, session, registry, object, set, actions));
 }
 
 /// An edit of the object from a new value of one of its fields.
@@ -37,7 +43,7 @@ type Set<'a> = &'a dyn Fn(ObjectField) -> Action;
 /// The model with its equation and terms, and the stage that evaluates it.
 fn reflection(
     ui: &mut Ui,
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
     object: &Object,
     model: Option<&ModelEntry>,
@@ -46,7 +52,7 @@ fn reflection(
 ) {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            actions.extend(model_override::control(ui, lab, registry, object).map(set));
+            actions.extend(model_override::control(ui, session, registry, object).map(set));
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 if let Some(model) = model {
                     model_header(ui, model);
@@ -57,11 +63,11 @@ fn reflection(
     match model {
         Some(model) => {
             equation(ui, model);
-            terms(ui, lab, registry, actions);
+            terms(ui, session, registry, actions);
         }
-        None => missing_model(ui, lab, registry, lab.document.model_of(object), actions),
+        None => missing_model(ui, session, registry, session.document.model_of(object), actions),
     }
-    if let Some(shading) = registry.shading_model(lab.document.shading_model_of(object)) {
+    if let Some(shading) = registry.shading_model(session.document.shading_model_of(object)) {
         stage(ui, shading);
     }
 }
@@ -69,7 +75,7 @@ fn reflection(
 /// The knobs of the parameters of the model, and the parameters that it does not use.
 fn material(
     ui: &mut Ui,
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
     object: &Object,
     model: Option<&ModelEntry>,
@@ -92,7 +98,7 @@ fn material(
     if model.parameters.is_empty() {
         ui.label(theme::small(ui, "This model has no knobs."));
     }
-    readouts(ui, lab, model, object);
+    readouts(ui, session, model, object);
     let unused: Vec<_> = registry
         .material_parameters()
         .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
@@ -111,7 +117,7 @@ fn material(
 /// The object type, its size and its place.
 fn geometry(
     ui: &mut Ui,
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
     object: &Object,
     set: Set,
@@ -126,7 +132,7 @@ fn geometry(
         actions.push(set(ObjectField::Type(types[k].id.to_owned())));
     }
     let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
-    let size_limits = limits::object_size(lab.document.scene_size);
+    let size_limits = limits::object_size(session.document.scene_size);
     let default = f64::from(crate::scene::DEFAULT_SIZE);
     if let Some(v) =
         knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
@@ -144,7 +150,7 @@ fn geometry(
         "position",
         &caption,
         object.position,
-        &position_limits(lab.document.scene_size),
+        &position_limits(session.document.scene_size),
     ) {
         actions.push(set(ObjectField::Position(p)));
     }
@@ -174,8 +180,8 @@ fn geometry(
 }
 
 /// The values derived from those of the knobs.
-fn readouts(ui: &mut Ui, lab: &Lab, model: &ModelEntry, object: &Object) {
-    let readouts = model.instantiate(&object.material, lab.document.display.encoding).readouts();
+fn readouts(ui: &mut Ui, session: &Session, model: &ModelEntry, object: &Object) {
+    let readouts = model.instantiate(&object.material, session.document.display.encoding).readouts();
     if readouts.is_empty() {
         return;
     }

@@ -7,14 +7,14 @@ use crate::{
     document::{Edit, limits},
     panel::{
         knob::{self, Caption},
-        state::{Action, Lab},
+        state::{Action, Session},
         theme,
     },
     scene::Observer,
 };
 
-pub(super) fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
-    let o = lab.document.observer;
+pub(super) fn observer(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let o = session.document.observer;
     let set = |o: Observer| Action::Edit(Edit::Observer(o));
     ui.label(RichText::new("Observer").heading());
     ui.label(theme::small(ui, "The camera of the scene"));
@@ -26,9 +26,13 @@ pub(super) fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
             help: "Position of the eye; y is up, the origin is a corner of the room.",
             ..Caption::default()
         };
-        if let Some(position) =
-            knob::vector_knob(ui, "position", &caption, o.position, &position_limits(lab.document.scene_size))
-        {
+        if let Some(position) = knob::vector_knob(
+            ui,
+            "position",
+            &caption,
+            o.position,
+            &position_limits(session.document.scene_size),
+        ) {
             actions.push(set(Observer { position, ..o }));
         }
         if let Some(direction) =
@@ -57,7 +61,7 @@ pub(super) fn observer(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
             if ui.button("View as observer").on_hover_text("Move the camera to the observer (H)").clicked() {
                 actions.push(Action::HomeView);
             }
-            let problem = lab.observer_problem();
+            let problem = session.observer_problem();
             if ui
                 .add_enabled(problem.is_none(), Button::new("Set observer to this view"))
                 .on_hover_text("Make the place of the camera that of the observer")

@@ -11,7 +11,7 @@ use crate::{
     panel::{
         icon::{self, Icon},
         knob::{self, Caption},
-        state::{Action, Lab},
+        state::{Action, Session},
         theme::{self, Palette},
     },
     registry::Registry,
@@ -39,13 +39,13 @@ pub(super) fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mu
 /// The name of a part, and buttons that focus, duplicate and delete it.
 pub(super) fn header(
     ui: &mut Ui,
-    lab: &Lab,
+    session: &Session,
     registry: &Registry,
     part: Selection,
     own: Option<&str>,
     actions: &mut Vec<Action>,
 ) {
-    let name = lab.name_of(part, registry);
+    let name = session.name_of(part, registry);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let width = ui.available_width() - 76.0;

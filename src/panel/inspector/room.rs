@@ -8,7 +8,7 @@ use crate::{
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
         knob::{self, Caption},
-        state::{Action, Lab},
+        state::{Action, Session},
         theme,
     },
     registry::Registry,
@@ -16,9 +16,9 @@ use crate::{
     text::plural,
 };
 
-pub(super) fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+pub(super) fn room(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let width = ui.available_width();
-    let s = &lab.document;
+    let s = &session.document;
     text_field(
         ui,
         "scene name",
@@ -53,7 +53,7 @@ pub(super) fn room(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Ve
             help: "Width along x, height along y, depth along z. One corner of the room is the origin; everything stands in it.",
             ..Caption::default()
         };
-        let limits = [0, 1, 2].map(|axis| lab.document.dimension_limits(axis, registry));
+        let limits = [0, 1, 2].map(|axis| session.document.dimension_limits(axis, registry));
         if let Some(c) = knob::vector_knob(ui, "size", &caption, size.corner(), &limits) {
             actions.push(Action::Edit(Edit::SceneSize(SceneSize { width: c.x, height: c.y, depth: c.z })));
         }

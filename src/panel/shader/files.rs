@@ -7,9 +7,9 @@ use bevy_egui::egui::{
 use super::missing_model;
 use crate::{
     panel::{
-        author::{self, Ask},
+        author::{self, ModelCommand},
         icon::{self, Icon},
-        state::{Action, Lab, Severity},
+        state::{Action, Session, Severity},
         theme::{self, Palette},
     },
     registry::{
@@ -60,17 +60,17 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
     (name.to_owned(), help)
 }
 
-pub(super) fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
+pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let (Some(model), Some(shading)) =
-        (registry.model(lab.model_shown()), registry.shading_model(lab.shading_shown()))
+        (registry.model(session.model_shown()), registry.shading_model(session.shading_shown()))
     else {
-        ui.add(egui::Label::new(missing_model(lab, registry, lab.model_shown())).wrap());
+        ui.add(egui::Label::new(missing_model(session, registry, session.model_shown())).wrap());
         return;
     };
     ui.horizontal(|ui| {
         let title = format!("{} · {}", model.declaration.name, shading.declaration.name);
         ui.label(theme::strong(ui, title)).on_hover_text("The picture is made of these files.");
-        folder(ui, lab, actions);
+        folder(ui, session, actions);
     });
     ScrollArea::vertical().id_salt("files").auto_shrink(false).show(ui, |ui| {
         // The scroll bar floats over this margin.
@@ -78,20 +78,20 @@ pub(super) fn files(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut V
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = ROW;
         for file in crate::registry::compose::files(registry.sources(), model, shading, registry.lights()) {
-            self::file(ui, lab, &file, actions);
+            self::file(ui, session, &file, actions);
         }
     });
 }
 
 /// The folder that is watched, or a button that exports one.
-fn folder(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
-    let Some(folder) = &lab.shaders.shaders else {
+fn folder(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let Some(folder) = &session.shaders.shaders else {
         ui.label(theme::small(ui, "The shaders are built in."));
         let button = ui.button("Write them out for editing…").on_hover_text(
             "Copies every shader file into a folder that you choose. A file saved there is reloaded at once.",
         );
         if button.clicked() {
-            actions.push(Action::Author(Ask::ExportDialog));
+            actions.push(Action::Model(ModelCommand::ExportDialog));
         }
         return;
     };
@@ -102,7 +102,7 @@ fn folder(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
     let shown = tail(ui, &text, TextStyle::Small, room);
     let path = ui.label(RichText::new(shown).small().color(palette.text));
     let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
-    if let Some(models) = &lab.shaders.models {
+    if let Some(models) = &session.shaders.models {
         help += &format!("\nCustom models: {}", models.display());
     }
     path.on_hover_text(help);
@@ -128,12 +128,12 @@ fn tail(ui: &Ui, text: &str, style: TextStyle, room: f32) -> String {
 /// The height of a row of the list, points.
 const ROW: f32 = 22.0;
 
-pub(super) fn file(ui: &mut Ui, lab: &Lab, file: &File, actions: &mut Vec<Action>) {
+pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, actions: &mut Vec<Action>) {
     let File { part, ref path, edited } = *file;
     let palette = Palette::here(ui);
     let (name, help) = words(part, path);
-    let trouble = lab.shaders.troubles.iter().find(|t| t.problem.file == *path);
-    let on_disk = author::on_disk(&lab.shaders, path);
+    let trouble = session.shaders.troubles.iter().find(|t| t.problem.file == *path);
+    let on_disk = author::on_disk(&session.shaders, path);
     let row = ui.horizontal(|ui| {
         ui.set_min_height(ROW);
         ui.spacing_mut().item_spacing.x = 6.0;
@@ -155,8 +155,8 @@ pub(super) fn file(ui: &mut Ui, lab: &Lab, file: &File, actions: &mut Vec<Action
             if let Some(file) = &on_disk {
                 let open = icon::button(ui, Icon::Pencil, &format!("Open {path} in an editor"));
                 if open.clicked() {
-                    let line = lab.line_of_trouble(path);
-                    actions.push(Action::Author(Ask::Edit { path: file.clone(), line }));
+                    let line = session.line_of_trouble(path);
+                    actions.push(Action::Model(ModelCommand::Edit { path: file.clone(), line }));
                 }
             }
             if let Some(t) = trouble {

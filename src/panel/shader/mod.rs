@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Align, Layout, ScrollArea, Sense, Ui, vec2};
 
 use super::{
     Panel, Place, author, laws,
-    state::{Action, Lab, Severity},
+    state::{Action, Session, Severity},
     theme::{self, Palette},
 };
 use crate::{custom::source_path, registry::Registry, text::plural};
@@ -33,18 +33,18 @@ impl Panel for Shader {
         Place::Bottom
     }
 
-    fn note(&self, lab: &Lab) -> Option<(Severity, String)> {
-        let count = lab.shaders.troubles.len();
+    fn note(&self, session: &Session) -> Option<(Severity, String)> {
+        let count = session.shaders.troubles.len();
         (count > 0).then(|| (Severity::Error, plural(count, "error")))
     }
 
-    fn show(&self, ui: &mut Ui, lab: &Lab, registry: &Registry) -> Vec<Action> {
+    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
         let mut actions = Vec::new();
         let palette = Palette::here(ui);
         let whole = ui.available_rect_before_wrap();
         let gap = 12.0;
         // What is wrong comes first where there is little room.
-        let share = if lab.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
+        let share = if session.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
         let left = (share * whole.width()).clamp(240.0, 620.0);
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
@@ -55,15 +55,15 @@ impl Panel for Shader {
                     add(ui);
                 });
             };
-            column(ui, left, &mut |ui| files(ui, lab, registry, &mut actions));
+            column(ui, left, &mut |ui| files(ui, session, registry, &mut actions));
             let (line, _) = ui.allocate_exact_size(vec2(2.0 * gap, whole.height()), Sense::hover());
             ui.painter().vline(line.center().x, whole.y_range(), egui::Stroke::new(1.0, palette.line));
             let right = (whole.width() - left - 2.0 * gap).max(64.0);
             column(ui, right, &mut |ui| {
-                if lab.shaders.troubles.is_empty() {
-                    well(ui, lab, registry, &mut actions);
+                if session.shaders.troubles.is_empty() {
+                    well(ui, session, registry, &mut actions);
                 } else {
-                    troubles(ui, lab, &mut actions);
+                    troubles(ui, session, &mut actions);
                 }
             });
         });
@@ -73,9 +73,10 @@ impl Panel for Shader {
 
 /// The message about a model that a scene names and that is missing.
 #[must_use]
-pub fn missing_model(lab: &Lab, registry: &Registry, id: &str) -> String {
+pub fn missing_model(session: &Session, registry: &Registry, id: &str) -> String {
     let path = source_path(id);
-    let trouble = lab.shaders.troubles.iter().find(|t| t.problem.file == path).map(|t| t.problem.to_string());
+    let trouble =
+        session.shaders.troubles.iter().find(|t| t.problem.file == path).map(|t| t.problem.to_string());
     match trouble.or_else(|| registry.broken_model(id).map(str::to_owned)) {
         Some(why) => format!(
             "There is no version of the file {path} yet that works: {why}. Correct the file, or choose another \
@@ -89,9 +90,9 @@ pub fn missing_model(lab: &Lab, registry: &Registry, id: &str) -> String {
 }
 
 /// The panel without errors: the file that was loaded last, and first steps.
-fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) {
-    let heading = if laws::are_broken(lab) { "No errors, but broken laws" } else { "No errors" };
-    let how = match &lab.shaders.shaders {
+fn well(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+    let heading = if laws::are_broken(session) { "No errors, but broken laws" } else { "No errors" };
+    let how = match &session.shaders.shaders {
         Some(_) => {
             "Open a file at the left, change it and save it: the picture follows. Errors appear here, and the picture keeps the last version that worked."
         }
@@ -102,8 +103,8 @@ fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, heading));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            laws::button(ui, lab, registry, actions);
-            let last = lab.shaders.last.as_ref();
+            laws::button(ui, session, registry, actions);
+            let last = session.shaders.last.as_ref();
             let text =
                 last.map(|last| format!("{} loaded in {:.0} ms", last.file, last.milliseconds.max(0.0)));
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
@@ -114,9 +115,9 @@ fn well(ui: &mut Ui, lab: &Lab, registry: &Registry, actions: &mut Vec<Action>) 
     ScrollArea::vertical().id_salt("well").auto_shrink(false).show(ui, |ui| {
         // The scroll bar floats over this margin.
         ui.set_width(ui.available_width() - 8.0);
-        laws::findings(ui, lab);
+        laws::findings(ui, session);
         ui.add(egui::Label::new(how).wrap());
         ui.add_space(4.0);
-        actions.extend(author::buttons(ui, lab, registry));
+        actions.extend(author::buttons(ui, session, registry));
     });
 }

@@ -7,9 +7,9 @@ use bevy_egui::egui::{
 use crate::{
     library::status::Trouble,
     panel::{
-        author::Ask,
+        author::ModelCommand,
         icon,
-        state::{Action, Lab, Severity},
+        state::{Action, Session, Severity},
         theme::{self, Palette},
     },
     shader::report::annotated,
@@ -86,8 +86,8 @@ pub fn report(trouble: &Trouble) -> String {
     format!("{text}\n{}\n", consequence(trouble))
 }
 
-pub(super) fn troubles(ui: &mut Ui, lab: &Lab, actions: &mut Vec<Action>) {
-    let mut all: Vec<_> = lab.shaders.troubles.iter().collect();
+pub(super) fn troubles(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let mut all: Vec<_> = session.shaders.troubles.iter().collect();
     // What the picture suffers from comes first.
     all.sort_by_key(|t| t.stale.is_empty());
     ScrollArea::vertical().id_salt("troubles").auto_shrink(false).show(ui, |ui| {
@@ -113,7 +113,7 @@ pub(super) fn trouble(ui: &mut Ui, trouble: &Trouble, actions: &mut Vec<Action>)
             if let Some(path) = &trouble.path {
                 let open = ui.button("Open in editor").on_hover_text(path.display().to_string());
                 if open.clicked() {
-                    actions.push(Action::Author(Ask::Edit { path: path.clone(), line: p.line }));
+                    actions.push(Action::Model(ModelCommand::Edit { path: path.clone(), line: p.line }));
                 }
             }
             if ui.button("Copy").on_hover_text("Copy place, message and line").clicked() {

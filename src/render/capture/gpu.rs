@@ -54,7 +54,7 @@ pub enum GpuError {
     /// No Vulkan adapter, not even a software one.
     #[error(
         "no Vulkan driver found; on Debian and Ubuntu `apt-get install libvulkan1 mesa-vulkan-drivers` installs \
-         one that needs no graphics card, or use `--renderer cpu`, which needs no driver"
+         one that needs no GPU, or use `--renderer cpu`, which needs no driver"
     )]
     NoAdapter,
     /// Nothing came out in time.
@@ -84,11 +84,11 @@ pub enum GpuError {
 pub struct AdapterFacts {
     /// The name that the driver gives, e.g. "llvmpipe (LLVM 15.0.6, 256 bits)".
     pub name: String,
-    /// Whether it is a program on the CPU.
+    /// True if it is a program on the CPU.
     pub software: bool,
 }
 
-/// Whether this machine may have a hardware GPU, judged by the device nodes that drivers make: the
+/// True if this machine may have a hardware GPU, judged by the device nodes that drivers make: the
 /// cheap sign that decides whether `--renderer auto` looks for an adapter at all.
 #[must_use]
 pub fn may_have_hardware() -> bool {

@@ -73,7 +73,7 @@ impl Bench {
 }
 
 thread_local! {
-    /// Whether a panic of this thread is expected, and nobody's business.
+    /// True if a panic of this thread is expected, and nobody's business.
     static EXPECTED: Cell<bool> = const { Cell::new(false) };
 }
 

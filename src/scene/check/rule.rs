@@ -25,7 +25,7 @@ pub const MAX_FIELD_OF_VIEW: f32 = 170.0;
 pub const MAX_EXPOSURE: f32 = 16.0;
 
 /// The largest legal size of an object, metres: a million kilometres. Far beyond, the squares of distances and of their
-/// derivatives are no numbers any more on graphics cards, and there is no picture that both renderers could agree on.
+/// derivatives are no numbers any more on GPUs, and there is no picture that both renderers could agree on.
 pub const MAX_SIZE: f32 = 1e9;
 
 /// `Ok`, or the rule that is broken.

@@ -137,7 +137,7 @@ impl<'a> Walk<'a> {
         Ok(self.cost)
     }
 
-    /// Whether the module has constants, variables or types that are costly to read.
+    /// True if the module has constants, variables or types that are costly to read.
     fn types_are_large(&self) -> bool {
         let global = |(_, variable): (_, &naga::GlobalVariable)| {
             variable.space == naga::AddressSpace::Private

@@ -236,7 +236,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Whether closing so many groups would close one from before the condition that is open.
+    /// True if closing so many groups would close one from before the condition that is open.
     fn in_section(&self, closed: usize) -> bool {
         self.sections.last().is_some_and(|(_, open)| self.groups.len() < open + closed)
     }
