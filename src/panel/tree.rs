@@ -8,6 +8,7 @@ use bevy_egui::egui::{
 use super::{
     Panel, Place,
     icon::{self, Icon},
+    knob,
     state::{Action, Session},
     theme::{self, Palette},
 };
@@ -357,12 +358,11 @@ fn colour_dot(
 ) {
     let palette = Palette::here(ui);
     let response = spot(ui, centre, ui.id().with(("dot", part)), &format!("Colour of {name}"));
-    let mut colour = egui::Color32::from_rgb(r, g, b);
-    ui.painter().circle(centre, 4.5, colour, Stroke::new(1.0, palette.weak));
+    ui.painter().circle(centre, 4.5, egui::Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
     egui::Popup::menu(&response).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
-        ui.spacing_mut().slider_width = 220.0;
-        if egui::color_picker::color_picker_color32(ui, &mut colour, egui::color_picker::Alpha::Opaque) {
-            let rgb = [colour.r(), colour.g(), colour.b()];
+        if let Some(rgb) =
+            knob::picker(ui, response.id.with("picker"), &format!("Colour of {name}"), [r, g, b])
+        {
             actions.extend(match part {
                 Selection::Light(i) => Some(Action::Edit(Edit::Light(i, LightField::Colour(rgb)))),
                 Selection::Object(i) => {

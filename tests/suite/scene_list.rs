@@ -76,6 +76,38 @@ fn the_dot_changes_the_colour() {
 }
 
 #[test]
+fn the_colour_picker_works_by_keys_and_grey_keeps_its_hue() {
+    let mut bench = Bench::new(with_objects(&["sphere"]));
+    let colour = |bench: &Bench| match bench.session.document.objects[0].material.get(&BASE_COLOUR) {
+        Value::Colour(rgb) => rgb,
+        other => panic!("{other:?}"),
+    };
+    bench.click("Colour of Sphere 1");
+    for label in ["Colour of Sphere 1: saturation and brightness", "Colour of Sphere 1: hue, degrees"] {
+        assert!(bench.find(label).is_some(), "{label}");
+    }
+    assert!(bench.find("U8").is_none(), "the library’s picker");
+    // White at first, and red as soon as it is saturated. The square has the focus.
+    (0..9).for_each(|_| bench.key(Key::ArrowRight, Modifiers::SHIFT));
+    let red = colour(&bench);
+    assert!(red[0] == 255 && red[1] < 120 && red[1] == red[2], "{red:?}");
+    (0..3).for_each(|_| bench.key(Key::ArrowDown, Modifiers::NONE));
+    assert!(colour(&bench)[0] < 255);
+    // Another hue, to white and back.
+    bench.click("Colour of Sphere 1: hue, degrees");
+    let cyan = colour(&bench);
+    assert!(cyan[0] < cyan[1], "{cyan:?}");
+    bench.click_at(
+        bench.find("Colour of Sphere 1: saturation and brightness").expect("there").rect.left_top(),
+        PointerButton::Primary,
+    );
+    assert_eq!(colour(&bench), [255; 3]);
+    (0..9).for_each(|_| bench.key(Key::ArrowRight, Modifiers::SHIFT));
+    let back = colour(&bench);
+    assert!(back[0] < 120 && back[1] == 255, "{back:?}");
+}
+
+#[test]
 fn objects_are_hidden_and_lights_switched_off_by_click_key_and_menu() {
     let mut bench = Bench::new(with_objects(&["sphere", "cube"]));
     bench.click("Hide Cube 1");

@@ -5,6 +5,7 @@ use bevy_egui::egui::{self, Color32, Id, Response, Sense, Stroke, Ui, WidgetInfo
 use super::{
     field::{complaint, field, text_field},
     line::{Caption, NUMBER, Words, capitalised, explain, head, tooltip, unit},
+    picker::picker,
     vector::axis_letter,
 };
 use crate::{
@@ -100,11 +101,7 @@ fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u
         .id(id)
         .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
         .show(|ui| {
-            ui.spacing_mut().slider_width = 220.0;
-            let mut colour = Color32::from_rgb(rgb[0], rgb[1], rgb[2]);
-            if egui::color_picker::color_picker_color32(ui, &mut colour, egui::color_picker::Alpha::Opaque) {
-                *rgb = [colour.r(), colour.g(), colour.b()];
-            }
+            *rgb = picker(ui, id.with("picker"), name, *rgb).unwrap_or(*rgb);
         });
     response.on_hover_text("Choose a colour. Double-click: default.")
 }

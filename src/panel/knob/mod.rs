@@ -14,6 +14,7 @@ mod colour;
 mod field;
 mod line;
 mod number;
+mod picker;
 mod readout;
 mod slider;
 mod vector;
@@ -24,6 +25,7 @@ pub use colour::{colour_knob, colour_sample, parse_hex};
 pub use field::{Field, field, parse};
 pub use line::Caption;
 pub use number::{number_knob, number_knob_beside, unit_choice};
+pub(super) use picker::picker;
 pub use readout::readout;
 pub use vector::{triple_knob, vector_knob};
 
