@@ -262,9 +262,10 @@ pub fn show(
     }
     let rect = ui.available_rect_before_wrap();
     let stage = presenting.then(|| presentation::Stage::of(ui, rect, session, registry));
-    let rect = stage.as_ref().map_or(rect, |stage| stage.picture);
     focus::region(&ctx, Region::Picture, rect);
     session.picture_rect = rect;
+    let rect = stage.as_ref().map_or(rect, |stage| stage.picture);
+    session.picture_frame = rect;
     let (asked, covered) = picture::overlays(ui, rect, stage.as_ref(), session, registry);
     actions.extend(asked);
     actions.extend(question::show(&ctx, session));

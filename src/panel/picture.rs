@@ -37,7 +37,8 @@ pub fn overlays(
     if rect.width() < 80.0 || rect.height() < 80.0 {
         return (Vec::new(), Vec::new());
     }
-    clipping::paint(&ui.painter_at(rect), rect, session, ui.pixels_per_point());
+    let whole = session.picture_rect;
+    clipping::paint(&ui.painter_at(whole), whole, session, ui.pixels_per_point());
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     let (mut actions, mut places) =
         if stage.is_some() { Default::default() } else { marks::marks(ui, rect, session, registry) };

@@ -149,17 +149,6 @@ impl Stage {
         let palette = Palette::here(ui);
         let height = self.whole.height();
         let padding = padding(self.whole);
-        if self.picture != self.whole {
-            let (whole, picture) = (self.whole, self.picture);
-            // The window beside the picture is of its colour.
-            for rest in [
-                whole.with_max_x(picture.left()),
-                whole.with_max_y(picture.top()),
-                whole.with_min_y(picture.bottom()),
-            ] {
-                ui.painter().rect_filled(rest, 0.0, palette.surround);
-            }
-        }
         ui.painter().rect_filled(self.caption, CornerRadius { ne: 8, ..CornerRadius::ZERO }, palette.panel);
         let width = self.whole.width() - 2.0 * padding.x;
         let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width);

@@ -86,6 +86,8 @@ pub struct Session {
     pub question: Option<Question>,
     /// Where the picture is, in points; written by the panels.
     pub picture_rect: egui::Rect,
+    /// The part of it that shows what the observer sees; around it the picture goes on. Written by the panels.
+    pub picture_frame: egui::Rect,
     /// How many points of the window are a point of the panels; written by them.
     pub zoom: f32,
     /// True if the pointer is over the picture with no panel, menu or dialog between; written by the
@@ -614,6 +616,7 @@ impl Session {
             eye: scene.observer.position,
             question: None,
             picture_rect: egui::Rect::NOTHING,
+            picture_frame: egui::Rect::NOTHING,
             zoom: 1.0,
             pointer_in_picture: false,
             popup_open: false,

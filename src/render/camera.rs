@@ -1,6 +1,6 @@
 //! The camera of the picture: it stands where the observer stands until someone moves it.
 
-use super::{entities::CurrentScene, overrides::Overrides};
+use super::{entities::CurrentScene, overrides::Overrides, view::View};
 use crate::{
     optics::{colour::BACKGROUND, tone::ToneMapping},
     scene::{
@@ -88,6 +88,7 @@ pub fn follow_scene(
     mut cameras: Query<(
         &PictureCamera,
         Option<&Overrides>,
+        Option<&View>,
         &mut Transform,
         &mut Projection,
         &mut Tonemapping,
@@ -95,7 +96,7 @@ pub fn follow_scene(
     )>,
 ) {
     let observer = &scene.0.observer;
-    for (camera, overrides, mut transform, mut lens, mut tone, hdr) in &mut cameras {
+    for (camera, overrides, view, mut transform, mut lens, mut tone, hdr) in &mut cameras {
         if camera.follows_observer {
             let wanted =
                 Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
@@ -104,7 +105,9 @@ pub fn follow_scene(
             }
         }
         let Projection::Perspective(perspective) = &*lens else { continue };
-        let fov = vertical_field_of_view(observer.field_of_view, perspective.aspect_ratio, camera.fits_width);
+        let inset = view.and_then(|view| view.inset).map(|inset| inset.size().as_vec2());
+        let aspect = inset.map_or(perspective.aspect_ratio, |size| size.x / size.y);
+        let fov = vertical_field_of_view(observer.field_of_view, aspect, camera.fits_width);
         if perspective.fov != fov
             && let Projection::Perspective(perspective) = &mut *lens
         {

@@ -7,20 +7,21 @@ use bevy::{
     app::{App, Plugin, PostUpdate},
     asset::{AssetEvent, AssetEventSystems, Assets, Handle, RenderAssetUsages},
     camera::{
-        Camera, CameraUpdateSystems, ClearColorConfig, Projection, RenderTarget,
-        visibility::VisibilitySystems,
+        Camera, CameraUpdateSystems, ClearColorConfig, Projection, RenderTarget, SubCameraView,
+        primitives::Frustum, visibility::VisibilitySystems,
     },
     color::Color,
     core_pipeline::tonemapping::Tonemapping,
     ecs::{prelude::*, system::SystemParam},
     image::Image,
+    math::{URect, primitives::ViewFrustum},
     mesh::Mesh,
     prelude::Shader,
     render::{
         render_resource::{TextureFormat, TextureUsages},
         storage::ShaderBuffer,
     },
-    transform::components::Transform,
+    transform::components::{GlobalTransform, Transform},
 };
 use glam::UVec2;
 use std::collections::HashSet;
@@ -48,6 +49,7 @@ impl Plugin for ViewPlugin {
             PostUpdate,
             (
                 fit.before(AssetEventSystems).before(CameraUpdateSystems),
+                frame.after(VisibilitySystems::UpdateFrusta),
                 rest.after(AssetEventSystems)
                     .after(CameraUpdateSystems)
                     .before(VisibilitySystems::CheckVisibility),
@@ -70,13 +72,16 @@ pub struct View {
     pub size: UVec2,
     /// What the texture holds.
     pub format: TextureFormat,
+    /// The part of the picture that shows what the lens says, in pixels; around it the picture goes on. `None` if it
+    /// is all of it.
+    pub inset: Option<URect>,
 }
 
 impl View {
     /// A view of what people see: 8 bits, sRGB-encoded.
     #[must_use]
     pub const fn for_display(size: UVec2) -> Self {
-        Self { size, format: TextureFormat::Rgba8UnormSrgb }
+        Self { size, format: TextureFormat::Rgba8UnormSrgb, inset: None }
     }
 }
 
@@ -147,9 +152,14 @@ pub fn texture_of(target: &RenderTarget) -> Option<&Handle<Image>> {
 /// Gives every view a texture of its size.
 fn fit(
     mut images: ResMut<Assets<Image>>,
-    mut views: Query<(&View, &mut RenderTarget, &mut Projection), Changed<View>>,
+    mut views: Query<(&View, &mut Camera, &mut RenderTarget, &mut Projection), Changed<View>>,
 ) {
-    for (view, mut target, mut lens) in &mut views {
+    for (view, mut camera, mut target, mut lens) in &mut views {
+        camera.sub_camera_view = view.inset.map(|inset| SubCameraView {
+            full_size: inset.size(),
+            offset: -inset.min.as_vec2(),
+            size: view.size,
+        });
         let known = texture_of(&target)
             .and_then(|handle| images.get(handle))
             .map(|image| (image.size(), image.texture_descriptor.format));
@@ -162,6 +172,19 @@ fn fit(
         *target = RenderTarget::Image(images.add(image).into());
         // Cameras look at their target when their lens changes.
         lens.set_changed();
+    }
+}
+
+/// Around an inset more is seen than the lens says.
+fn frame(mut views: Query<(&Camera, &GlobalTransform, &Projection, &mut Frustum), With<View>>) {
+    for (camera, transform, lens, mut frustum) in &mut views {
+        let clip_from_world = camera.clip_from_view() * transform.affine().inverse();
+        *frustum = Frustum(ViewFrustum::from_clip_from_world_custom_far(
+            &clip_from_world,
+            &transform.translation(),
+            &transform.back(),
+            lens.far(),
+        ));
     }
 }
 

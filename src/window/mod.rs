@@ -24,6 +24,7 @@ use bevy::{
     input::keyboard::{Key, KeyboardInput},
     light::cluster::GlobalClusterSettings,
     log::{Level, LogPlugin},
+    math::URect,
     prelude::DefaultPlugins,
     render::{
         RenderPlugin,
@@ -491,7 +492,10 @@ fn fit_picture(
     if place.size.min_element() == 0 {
         return;
     }
-    view.set_if_neq(View::for_display(place.size));
+    let frame = PicturePlace::of_rect(session.picture_frame, &session, &window);
+    let at = frame.at.saturating_sub(place.at);
+    let inset = (frame != place).then(|| URect::from_corners(at, at + frame.size));
+    view.set_if_neq(View { inset, ..View::for_display(place.size) });
     // In the light theme the surround is light.
     let grey = Palette::of(&session.view).surround;
     let surround = bevy::color::Color::srgb_u8(grey.r(), grey.g(), grey.b());
@@ -530,7 +534,10 @@ struct PicturePlace {
 
 impl PicturePlace {
     fn of(session: &Session, window: &Window) -> Self {
-        let rect = session.picture_rect;
+        Self::of_rect(session.picture_rect, session, window)
+    }
+
+    fn of_rect(rect: egui::Rect, session: &Session, window: &Window) -> Self {
         let limit = window.physical_size();
         if !rect.is_finite() || !rect.is_positive() || limit.min_element() == 0 {
             return Self { at: UVec2::ZERO, size: UVec2::ZERO };

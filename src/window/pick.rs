@@ -83,7 +83,7 @@ fn nearest_light(
     pointer: Vec2,
     reach: f32,
 ) -> Option<usize> {
-    let lens = Lens::of(session, session.picture_rect);
+    let lens = Lens::of(session, session.picture_frame);
     scene
         .0
         .lights
@@ -125,6 +125,7 @@ mod tests {
             let mut session = Session::new(scene.clone());
             session.selection = Selection::Observer;
             session.picture_rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
+            session.picture_frame = session.picture_rect;
             (session.zoom, session.pointer_in_picture) = (1.0, true);
             let mut camera = Camera::default();
             camera.computed.target_info = Some(RenderTargetInfo { physical_size: SIZE, scale_factor: 1.0 });

@@ -5,6 +5,7 @@ use bevy::{
     asset::{AssetEvent, Assets},
     camera::{Hdr, RenderTarget, visibility::RenderLayers},
     ecs::prelude::*,
+    math::URect,
     mesh::{Mesh3d, MeshTag},
     render::storage::ShaderBuffer,
     transform::components::{GlobalTransform, Transform},
@@ -92,6 +93,40 @@ fn drawn(renderer: &mut GpuRenderer) -> [u64; 2] {
 
 fn model(id: &str) -> Overrides {
     Overrides { reflection_model: Some(id.to_owned()), ..Overrides::default() }
+}
+
+#[test]
+fn around_an_inset_the_picture_goes_on() {
+    let mut scene = scene();
+    // Left of what the observer sees.
+    let front = scene.objects[0].clone();
+    scene.objects.push(Object { position: front.position - Vec3::X * 1.9, ..front });
+    let plain = alone(&scene, TermSelection::All);
+    let (at, whole) = (UVec2::new(60, 8), UVec2::new(180, 120));
+    let mut renderer =
+        GpuRenderer::new(whole.x, whole.y, 1, Output::Display).expect("software Vulkan is installed");
+    renderer.set_scene(scene);
+    let view = second_view(&mut renderer, Overrides::default());
+    let inset = Some(URect::from_corners(at, at + SIZE));
+    renderer.app().world_mut().entity_mut(view).insert(View { inset, ..View::for_display(whole) });
+    renderer.settle().expect("the GPU draws");
+    let picture = picture_of(&mut renderer, view);
+    assert_eq!(picture.len() as u32, 4 * whole.x * whole.y);
+    let pixel = |x: u32, y: u32| &picture[4 * (y * whole.x + x) as usize..][..4];
+    let (mut differ, mut beside) = (0, 0);
+    for (x, y) in (0..whole.y).flat_map(|y| (0..whole.x).map(move |x| (x, y))) {
+        let inside = (x.wrapping_sub(at.x) < SIZE && y.wrapping_sub(at.y) < SIZE)
+            .then(|| &plain[4 * ((y - at.y) * SIZE + x - at.x) as usize..][..4]);
+        match inside {
+            Some(expected) => {
+                differ += u32::from(pixel(x, y).iter().zip(expected).any(|(a, b)| a.abs_diff(*b) > 3))
+            }
+            None => beside += u32::from(x < at.x && pixel(x, y) != pixel(0, 0)),
+        }
+    }
+    // Edges may fall on the other side of a pixel's centre.
+    assert!(differ < 40, "{differ} of {} pixels differ", SIZE * SIZE);
+    assert!(beside > 200, "an object beside the inset is seen: {beside}");
 }
 
 #[test]

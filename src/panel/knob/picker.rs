@@ -1,8 +1,8 @@
 //! The colour picker: a square of saturation and brightness above a bar of hues, for the mouse and the arrow keys.
 
 use bevy_egui::egui::{
-    Color32, CornerRadius, EventFilter, Id, Key, Mesh, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui,
-    Vec2, WidgetInfo, WidgetType, ecolor::HsvaGamma, pos2, vec2,
+    Color32, CornerRadius, EventFilter, Frame, Id, Key, Mesh, Pos2, Rect, Response, Sense, Stroke,
+    StrokeKind, Ui, Vec2, WidgetInfo, WidgetType, ecolor::HsvaGamma, pos2, vec2,
 };
 
 use crate::panel::theme::Palette;
@@ -18,40 +18,47 @@ pub(in crate::panel) fn picker(ui: &mut Ui, id: Id, name: &str, rgb: [u8; 3]) ->
         let [r, g, b, _] = Color32::from(colour).to_array();
         [r, g, b]
     };
-    // Grey has no hue of its own: it keeps the one that was chosen.
-    let known: Option<HsvaGamma> = ui.data(|d| d.get_temp(id)).filter(|known| encoded(*known) == rgb);
-    let [r, g, b] = rgb;
-    let pass = ui.ctx().cumulative_pass_nr();
-    let mut colour = known.unwrap_or_else(|| Color32::from_rgb(r, g, b).into());
-    let before = colour;
-    ui.spacing_mut().item_spacing.y = 8.0;
+    Frame::new()
+        .inner_margin(6.0)
+        .show(ui, |ui| {
+            // Grey has no hue of its own: it keeps the one that was chosen.
+            let known: Option<HsvaGamma> = ui.data(|d| d.get_temp(id)).filter(|known| encoded(*known) == rgb);
+            let [r, g, b] = rgb;
+            let pass = ui.ctx().cumulative_pass_nr();
+            let mut colour = known.unwrap_or_else(|| Color32::from_rgb(r, g, b).into());
+            let before = colour;
+            ui.spacing_mut().item_spacing.y = 8.0;
 
-    let mut place = vec2(colour.s, 1.0 - colour.v);
-    let pure = HsvaGamma { h: colour.h, s: 1.0, v: 1.0, a: 1.0 };
-    let square = area(ui, SQUARE, 16, 12, &mut place, |at| HsvaGamma { s: at.x, v: 1.0 - at.y, ..pure });
-    (colour.s, colour.v) = (place.x, 1.0 - place.y);
-    let says = format!("{name}: saturation and brightness");
-    square.widget_info(|| WidgetInfo::labeled(WidgetType::Slider, true, &says));
-    if ui.data(|d| d.get_temp::<u64>(id)).is_none_or(|last| last + 1 < pass) {
-        // It was just opened.
-        square.request_focus();
-    }
-    square
-        .on_hover_text("Saturation to the right, brightness up. Arrow keys move it; Shift moves it faster.");
+            let mut place = vec2(colour.s, 1.0 - colour.v);
+            let pure = HsvaGamma { h: colour.h, s: 1.0, v: 1.0, a: 1.0 };
+            let square =
+                area(ui, SQUARE, 16, 12, &mut place, |at| HsvaGamma { s: at.x, v: 1.0 - at.y, ..pure });
+            (colour.s, colour.v) = (place.x, 1.0 - place.y);
+            let says = format!("{name}: saturation and brightness");
+            square.widget_info(|| WidgetInfo::labeled(WidgetType::Slider, true, &says));
+            if ui.data(|d| d.get_temp::<u64>(id)).is_none_or(|last| last + 1 < pass) {
+                // It was just opened.
+                square.request_focus();
+            }
+            square.on_hover_text(
+                "Saturation to the right, brightness up. Arrow keys move it; Shift moves it faster.",
+            );
 
-    let mut place = vec2(colour.h, 0.5);
-    let bar = area(ui, BAR, 36, 1, &mut place, |at| HsvaGamma { h: at.x, ..pure });
-    colour.h = place.x;
-    bar.widget_info(|| {
-        WidgetInfo::slider(true, f64::from(360.0 * colour.h), format!("{name}: hue, degrees"))
-    });
-    bar.on_hover_text("Hue");
+            let mut place = vec2(colour.h, 0.5);
+            let bar = area(ui, BAR, 36, 1, &mut place, |at| HsvaGamma { h: at.x, ..pure });
+            colour.h = place.x;
+            bar.widget_info(|| {
+                WidgetInfo::slider(true, f64::from(360.0 * colour.h), format!("{name}: hue, degrees"))
+            });
+            bar.on_hover_text("Hue");
 
-    ui.data_mut(|d| {
-        d.insert_temp(id, pass);
-        d.insert_temp(id, colour);
-    });
-    Some(encoded(colour)).filter(|new| colour != before && *new != rgb)
+            ui.data_mut(|d| {
+                d.insert_temp(id, pass);
+                d.insert_temp(id, colour);
+            });
+            Some(encoded(colour)).filter(|new| colour != before && *new != rgb)
+        })
+        .inner
 }
 
 /// A rectangle of colours with a handle, `place` in it from 0 to 1 in both directions.

@@ -269,7 +269,8 @@ impl GpuRenderer {
 
     /// From now on frames draw only what changed, as those of the window do.
     pub fn draw_on_demand(&mut self) {
-        let view = View { size: UVec2::new(self.width, self.height), format: self.output.format() };
+        let view =
+            View { size: UVec2::new(self.width, self.height), format: self.output.format(), inset: None };
         let world = self.app.world_mut();
         let cameras: Vec<_> = world.query_filtered::<Entity, With<PictureCamera>>().iter(world).collect();
         for camera in cameras {
