@@ -28,7 +28,7 @@ pub struct Part {
     pub symbol: &'static str,
     /// The words or the number.
     pub text: String,
-    /// What has the highest goes first where there is little room; 0 stays.
+    /// The highest goes first where there is little room; 0 stays.
     pub rank: u8,
 }
 
@@ -71,7 +71,7 @@ pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
             Some(shading) => {
                 let d = shading.declaration;
                 parts.push(Part::new(0, format!("{} shading", d.name)));
-                parts.push(Part::new(3, format!("computed {}", d.stage.phrase())));
+                parts.push(Part::new(u8::MAX, format!("computed {}", d.stage.phrase())));
             }
             None => parts.push(Part::new(0, format!("{id} shading"))),
         },
@@ -108,7 +108,8 @@ fn single<'a>(all: &BTreeSet<&'a str>) -> Option<&'a str> {
 }
 
 /// The values of the material in the order of their declaration: all of them where they are few, else those that are
-/// not the defaults and then the first.
+/// not the defaults and then the first. Where there is little room, those that are not the defaults stay longest, and
+/// the later ones longer: coefficients are declared before exponents and roughness, which say more.
 fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<Part> {
     let Some(model) = registry.model(model) else { return Vec::new() };
     let value = |p: &'static Parameter| {
@@ -129,7 +130,12 @@ fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<Part> {
     all.sort_by_key(|(_, (p, _))| object.material.get(p) == p.default_value());
     all.truncate(VALUES);
     all.sort_by_key(|(i, _)| *i);
-    all.into_iter().map(|(_, (_, part))| part).collect()
+    let ranked = all.into_iter().enumerate().map(|(place, (_, (p, part)))| {
+        let default = object.material.get(p) == p.default_value();
+        let rank = 2 + 2 * VALUES - place - if default { 0 } else { VALUES };
+        Part { rank: rank as u8, ..part }
+    });
+    ranked.collect()
 }
 
 /// A caption in lines.
