@@ -395,9 +395,9 @@ fn a_picture_never_takes_the_place_of_what_is_read_or_of_what_is_no_picture() {
     for (arguments, expected) in [
         (&["s.json", "-o", "link.png"][..], same),
         (&["s.json", "-o", "hard.png"], same),
-        (&["s.json", "-o", "notes.png"], "notes.png is there and is not a PNG file; it was not overwritten"),
+        (&["s.json", "-o", "notes.png"], "notes.png exists and is not a PNG file; it was not overwritten"),
         (&["s.json", "-o", "notes.txt"], "notes.txt is a file, but not a PNG file"),
-        (&["-o", "link.png"], "link.png is there and is not a PNG file"),
+        (&["-o", "link.png"], "link.png exists and is not a PNG file"),
         (
             &["s.json", "--models", "models", "--reflection", "mine", "-o", "model.png"],
             "model.png is the same file as",
@@ -413,7 +413,7 @@ fn a_picture_never_takes_the_place_of_what_is_read_or_of_what_is_no_picture() {
     for (capture, expected) in [
         ("s.json", "s.json is read by this command; it was not overwritten"),
         ("link.png", same),
-        ("notes.txt", "notes.txt is there and is not a PNG file"),
+        ("notes.txt", "notes.txt exists and is not a PNG file"),
         ("model.png", "model.png is the same file as"),
     ] {
         let mut command =
