@@ -1,4 +1,4 @@
-//! `lcm check`: everything that is wrong with scenes.
+//! `lcm check`: all problems of scenes.
 
 use std::{fmt::Write as _, path::PathBuf};
 
@@ -13,7 +13,7 @@ use crate::{
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// The scenes; - is standard input
+    /// Scene files; `-` is standard input
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     /// Print the result as JSON
@@ -30,7 +30,7 @@ struct Report {
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
-    // A check does not ask: what is missing is a finding, unless defaults are welcome.
+    // A check asks no questions: missing parts are problems, unless `--use-defaults` is given.
     let defaults = match options.defaults() {
         Defaults::Ask => Defaults::Refuse,
         answered => answered,

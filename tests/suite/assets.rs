@@ -56,7 +56,7 @@ fn a_new_model_is_written_listed_evaluated_and_checked() {
     assert!(made.err.contains("`lcm models check velvet_rim --models made/here`"), "{}", made.err);
     let again = run(at, "models new velvet_rim --models made/here", "");
     assert_eq!(again.status, Some(4));
-    assert!(again.err.contains("velvet_rim.wgsl is there already; it was left alone"), "{}", again.err);
+    assert!(again.err.contains("velvet_rim.wgsl already exists and was kept"), "{}", again.err);
 
     let table = run(at, "models --models made/here", "").out;
     assert!(
@@ -249,7 +249,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
     let bad = render("bad");
     assert_eq!(bad.status, Some(2));
     assert!(
-        bad.err.contains("bad\", but the file of that custom model has a mistake: models/bad.wgsl:4:"),
+        bad.err.contains("bad\", but the file of that custom model has an error: models/bad.wgsl:4:"),
         "{}",
         bad.err
     );
@@ -263,7 +263,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
     let checked = run(folder.path(), "check bad.json --models models", "");
     assert_eq!(checked.status, Some(1));
     assert!(
-        checked.err.contains("the file of that custom model has a mistake: models/bad.wgsl:4:"),
+        checked.err.contains("the file of that custom model has an error: models/bad.wgsl:4:"),
         "{}",
         checked.err
     );
@@ -271,7 +271,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
     assert_eq!(run(folder.path(), "check good.json --models models", "").status, Some(0));
     let refused = run(folder.path(), "check good.json --models elsewhere", "");
     assert!(
-        refused.status == Some(2) && refused.err.contains("elsewhere, but there is no such folder"),
+        refused.status == Some(2) && refused.err.contains("there is no folder elsewhere for --models"),
         "{}",
         refused.err
     );
@@ -298,21 +298,21 @@ fn shaders_are_exported_edited_and_used() {
     let edited = value("evaluate lambert --on gpu --assets mine");
     let number = |text: &str| text.lines().nth(1).unwrap().split(',').nth(4).unwrap().parse::<f32>().unwrap();
     assert!((number(&edited) / number(&original) - 0.5).abs() < 1e-6, "{edited}");
-    // The CPU renderer is Rust; that it does not follow is said where it matters.
+    // The CPU renderer is Rust; a message says that it ignores edits.
     let said = |arguments: &str| run(at, &format!("render --size 8x8 --assets mine {arguments}"), "").err;
-    let told = "the CPU renderer does not follow the edited reflection/lambert.wgsl; --renderer gpu does";
+    let told = "the CPU renderer ignores the edited reflection/lambert.wgsl; --renderer gpu uses the edits";
     assert!(said("--renderer cpu --reflection lambert").contains(told));
     assert!(!said("--renderer cpu --reflection phong").contains("follow"));
     assert!(!said("--renderer gpu --reflection lambert").contains("follow"));
     assert_eq!(said("--renderer cpu --reflection lambert --quiet"), "");
-    // What was edited is left alone, and what is missing comes back.
+    // Edited files are kept, and missing files come back.
     fs::remove_file(at.join("mine/shaders/loop.wgsl")).unwrap();
     let again = run(at, "assets export mine", "");
     assert_eq!(again.out.trim(), Path::new("mine/shaders/loop.wgsl").display().to_string());
     assert!(
-        again.err.contains(
-            "mine/shaders/reflection/lambert.wgsl differs from the built-in one; it was left alone"
-        ),
+        again
+            .err
+            .contains("mine/shaders/reflection/lambert.wgsl differs from the built-in file and was kept"),
         "{}",
         again.err
     );

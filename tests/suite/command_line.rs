@@ -45,11 +45,11 @@ fn wrong_usage_has_status_2() {
         (&["render", "--exposure", "-17"], "the exposure must be between -16 and 16 EV"),
         (&["render", "a.json", "b.json", "-o", "x.png"], "-o x.png is one file, but there are 2 scenes"),
         (&["render", "a/x.json", "b/x.json"], "would both be written to renders/x.png"),
-        (&["render", "-o", "x.jpg"], "only PNG files are written; did you mean x.png?"),
+        (&["render", "-o", "x.jpg"], "only PNG files can be written; did you mean x.png?"),
         (&["render", "-", "-"], "- can be given once"),
         (&["view", "--exit-after", "0"], "0 is not in 1.."),
         (&["--use-defaults", "--no-defaults", "check", "x"], "cannot be used with"),
-        (&["room.json", "models"], "room.json stands before the command"),
+        (&["room.json", "models"], "room.json must come after the command"),
         (&["rendr"], "did you mean lcm render?"),
         (&["evaluate", "fong"], "did you mean \"phong\"?"),
         (
@@ -119,7 +119,7 @@ fn missing_parts_need_an_answer() {
     refused(
         &lcm(&["render", "-"], ""),
         1,
-        "standard input is empty. Load the default scene? --use-defaults says yes",
+        "standard input is empty. Load the default scene? Use --use-defaults to accept.",
     );
 }
 

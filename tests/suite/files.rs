@@ -366,7 +366,7 @@ fn pictures_go_to_devices_and_pipes() {
     let all = fs::read(at.join("all")).expect("readable");
     assert!(all.starts_with(b"before\n\x89PNG") && all.ends_with(b"after\n"));
     drop(UnixListener::bind(at.join("socket.png")).expect("bound"));
-    refused(&run(&mut render(at, &["-o", "socket.png"])), 4, "no place for a picture");
+    refused(&run(&mut render(at, &["-o", "socket.png"])), 4, "is neither a file nor a folder");
     // A reader that has enough is no error.
     let ran = run(&mut shell(
         at,
@@ -438,7 +438,7 @@ fn a_report_is_replaced_only_when_the_user_says_so() {
     fs::create_dir(at.join("mine")).expect("made");
     fs::write(at.join("mine/index.html"), "<html>mine</html>").expect("written");
     for arguments in [&["-o", "mine"][..], &["-o", "mine", "--overwrite"]] {
-        refused(&study(arguments), 4, "mine holds files that are no report; it was left alone");
+        refused(&study(arguments), 4, "mine has files that are not a report");
     }
     assert_eq!(fs::read_to_string(at.join("mine/index.html")).expect("there"), "<html>mine</html>");
     // An empty folder is as good as none.
@@ -446,11 +446,7 @@ fn a_report_is_replaced_only_when_the_user_says_so() {
     assert_eq!(study(&["-o", "st"]).status, Some(0));
     let page = at.join("st/index.html");
     let report = fs::metadata(&page).expect("there");
-    refused(
-        &study(&["-o", "st"]),
-        4,
-        "st holds a report already; it was left alone: --overwrite replaces it",
-    );
+    refused(&study(&["-o", "st"]), 4, "st already has a report; --overwrite replaces it");
     assert_eq!(fs::metadata(&page).expect("there").ino(), report.ino());
     let again = study(&["-o", "st", "--overwrite"]);
     assert_eq!(again.status, Some(0), "{}", again.err);
@@ -760,7 +756,7 @@ fn rows_without_end_take_no_memory_without_end() {
     let lines: Vec<_> = ran.err.lines().collect();
     assert_eq!(lines.len(), 21, "{}", ran.err);
     assert_eq!(lines[0], "standard input:2: mu is \"x\", but it must be a finite number");
-    assert_eq!(lines[20], "standard input: there are at least 999980 more problems");
+    assert_eq!(lines[20], "standard input: at least 999980 more problems");
     // Rows that are good are answered as they come: the end is not waited for.
     let ran = limited(
         "(echo theta_i,phi_i,theta_o,phi_o; yes 10,20,30,40) | \"$LCM\" evaluate phong | head -n 3000000 | tail -n 1",

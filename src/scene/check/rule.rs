@@ -192,7 +192,7 @@ fn unknown_material_parameter(registry: &Registry, name: &str) -> String {
 pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
     let known = registry.models().iter().map(|m| (m.declaration.id, m.declaration.name));
     one_of("the reflection model", id, known).map_err(|rule| match registry.broken_model(id) {
-        Some(why) => format!("the file of that custom model has a mistake: {why}"),
+        Some(why) => format!("the file of that custom model has an error: {why}"),
         None => rule + &custom_model_missing(registry, id),
     })
 }
