@@ -281,7 +281,7 @@ mod tests {
                 ("reflection/lambert.wgsl", "#import \"a.wgsl\""),
                 ("reflection/a.wgsl", "#import \"lambert.wgsl\"")
             ]),
-            "reflection/a.wgsl:1:1: the files import each other in a circle: reflection/lambert.wgsl → reflection/a.wgsl → reflection/lambert.wgsl"
+            "reflection/a.wgsl:1:1: circular import: reflection/lambert.wgsl → reflection/a.wgsl → reflection/lambert.wgsl"
         );
         assert!(
             problem(&[("terms.wgsl", "#import \"terms.wgsl\"")]).contains("circle: terms.wgsl → terms.wgsl")

@@ -278,7 +278,7 @@ fn limits() -> String {
         ("elements of an array", l.elements.to_string()),
         ("a value", kib(l.value_bytes.into())),
         ("all variables of a function, with those of the functions that it calls", kib(l.variable_bytes)),
-        ("steps of a function, with every call written out", l.steps.to_string()),
+        ("steps of a function, with all calls inlined", l.steps.to_string()),
     ];
     table(&["what", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
 }
