@@ -360,7 +360,7 @@ fn declarations_agree_on_types_in_the_order_of_names() {
     for (said, id) in told.iter().zip(["b", "d"]) {
         let place = format!("models/{id}.wgsl:1:");
         assert!(
-            said.starts_with(&place) && said.contains("a has a parameter of that name whose type is number"),
+            said.starts_with(&place) && said.contains("a has a parameter of that name with type number"),
             "{said}"
         );
     }

@@ -75,7 +75,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             "banana is not a key of a model; a model has the keys name, author, source, summary",
         ),
         ("{ \"name\": \"a\",\n \"name\": \"b\" }", "2:2: name is given twice"),
-        ("{ \"name\": 3 }", "1:18: name is 3, but it must be text on one line, of at most 60 characters"),
+        ("{ \"name\": 3 }", "1:18: name is 3, but it must be one line of text, of at most 60 characters"),
         ("{ \"name\": \" \" }", "name is \" \", but a name must have letters"),
         ("{ \"anisotropic\": 1 }", "anisotropic is 1, but it must be true or false"),
         ("{ \"equation\": 1 }", "equation is 1, but it must be text, or a list of parts"),
@@ -101,7 +101,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             "{ \"parameters\": [\"base_color\"] }",
             "parameters[0] is \"base_color\", but no built-in model has a parameter of that name; did you mean \"base_colour\"?",
         ),
-        ("{ \"parameters\": [\"banana\"] }", "to declare a new one write { \"name\": …"),
+        ("{ \"parameters\": [\"banana\"] }", "to declare a new one, write { \"name\": …"),
         ("{ \"parameters\": [3] }", "parameters[0] is 3, but a parameter must be an object"),
         ("{ \"parameters\": [{ \"min\": 0 }] }", "parameters[0].name is missing"),
         ("{ \"parameters\": [{ \"name\": 3 }] }", "parameters[0].name is 3, but it must be text"),
@@ -114,7 +114,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ("{ \"parameters\": [\"k_s\", { \"name\": \"k_s\" }] }", "there are two parameters k_s"),
         (
             "{ \"parameters\": [{ \"name\": \"base_colour\", \"type\": \"number\" }] }",
-            "parameters[0].name is \"base_colour\", but lambert has a parameter of that name whose type is colour",
+            "parameters[0].name is \"base_colour\", but lambert has a parameter of that name with type colour",
         ),
         (
             &parameter("\"type\": \"nummer\""),
@@ -133,8 +133,11 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             "parameters[0].range is [1, 1], but the largest value must be greater",
         ),
         (&parameter("\"range\": 1"), "parameters[0].range is 1, but a range must be two numbers: [min, max]"),
-        (&parameter("\"range\": [0, 1], \"max\": 2"), "parameters[0].range is given, but so is max"),
-        (&parameter("\"above\": 1"), "parameters[0].above is 1, but it must be 0"),
+        (&parameter("\"range\": [0, 1], \"max\": 2"), "parameters[0].range conflicts with max"),
+        (
+            &parameter("\"above\": 1"),
+            "parameters[0].above is 1, but it must be 0; it replaces min and means greater than 0",
+        ),
         (&parameter("\"default\": 2"), "parameters[0].default is 2, but it must be between 0 and 1"),
         (
             &parameter("\"type\": \"integer\", \"default\": 1.5"),
@@ -146,7 +149,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ),
         (
             &parameter("\"type\": \"integer\", \"slider_max\": 0"),
-            "slider_max is 0, but it must be greater than 0, where the slider begins",
+            "slider_max is 0, but it must be greater than 0, the start of the slider",
         ),
         (
             &parameter("\"type\": \"colour\", \"default\": [1, 2]"),
@@ -328,9 +331,7 @@ fn registering_replaces_in_place_and_removing_forgets() {
         &matt("{ \"parameters\": [{ \"name\": \"x\", \"type\": \"colour\" }] }"),
         &with("second", &matt("{ \"parameters\": [{ \"name\": \"x\" }] }")),
     );
-    assert!(
-        clash.unwrap_err()[0].message.contains("second has a parameter of that name whose type is number")
-    );
+    assert!(clash.unwrap_err()[0].message.contains("second has a parameter of that name with type number"));
 }
 
 #[test]

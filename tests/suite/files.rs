@@ -319,7 +319,7 @@ fn models_and_shaders_that_are_no_files_hold_nothing_up() {
     );
     let ran = run(&mut lcm(at, ["check", "--assets", "assets", "x.json"]));
     assert_eq!(ran.status, Some(1), "{}", ran.err);
-    assert!(ran.err.contains("this is a named pipe, no file that can be read"), "{}", ran.err);
+    assert!(ran.err.contains("this is a named pipe, not a regular file"), "{}", ran.err);
 }
 
 /// The signature of PNG files.

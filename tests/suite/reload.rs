@@ -296,7 +296,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "invalid UTF-8",
         file: "reflection/phong.wgsl",
         change: |t| [t.as_bytes(), b"\n// caf\xe9\n"].concat(),
-        said: "not UTF-8 text from the byte 0xe9",
+        said: "the byte 0xe9 is not UTF-8",
         line: "// caf",
     },
     Breakage {
