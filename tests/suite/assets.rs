@@ -254,7 +254,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
         bad.err
     );
     let gone = render("gone");
-    assert!(gone.err.contains("among the custom models there is no models/gone.wgsl"), "{}", gone.err);
+    assert!(gone.err.contains("the folder of custom models has no models/gone.wgsl"), "{}", gone.err);
     assert_eq!(render("helped_model").status, Some(0));
 
     let scene = fs::read_to_string(root().join("scenes/default.json")).unwrap();

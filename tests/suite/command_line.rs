@@ -111,7 +111,7 @@ fn missing_parts_need_an_answer() {
         refused(
             &run,
             1,
-            "standard input:1:1: shading_model (default: gouraud) is missing; --use-defaults takes the defaults, --no-defaults",
+            "standard input:1:1: shading_model (default: gouraud) is missing; --use-defaults accepts the defaults, --no-defaults",
         );
         assert_eq!(run.err.lines().count(), 1);
     }
@@ -130,9 +130,7 @@ fn render_says_everything_that_is_wrong_with_all_scenes() {
     fs::write(folder.path().join("b.json"), "[]").expect("written");
     let run = lcm_in(folder.path(), &["render", "a.json", "b.json", "c.json"], b"");
     refused(&run, 1, "a.json:1:2: not JSON");
-    assert!(
-        run.err.contains("b.json:1:1: the scene is []") && run.err.contains("c.json: there is no such file")
-    );
+    assert!(run.err.contains("b.json:1:1: the scene is []") && run.err.contains("c.json: file not found"));
     assert!(!folder.path().join("renders").exists());
 }
 
@@ -145,10 +143,10 @@ fn new_writes_the_default_scene_and_overwrites_nothing() {
     refused(
         &lcm_in(folder.path(), &["new", "a.json"], b""),
         4,
-        "a.json exists already; it was not overwritten",
+        "a.json already exists; it was not overwritten",
     );
     refused(&lcm_in(folder.path(), &["new", "x/a.json"], b""), 4, "there is no folder x");
-    refused(&lcm_in(folder.path(), &["new", "."], b""), 4, "is a folder; name a file");
+    refused(&lcm_in(folder.path(), &["new", "."], b""), 4, "is a folder; choose a file name");
 }
 
 #[test]

@@ -253,7 +253,7 @@ fn messages_list_and_suggest_what_only_declarations_know() {
         "\"fuzz_0\"",
         "\"fuzz_499\"",
         "did you mean \"fuzz_321\"?",
-        "among the custom models there is no models/fuzzz_321.wgsl",
+        "the folder of custom models has no models/fuzzz_321.wgsl",
         "did you mean \"depth_321\"?",
     ] {
         assert!(unknown.err.contains(expected), "{expected} is not in {}", unknown.err);
