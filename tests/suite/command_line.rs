@@ -24,7 +24,7 @@ fn help_and_version_are_results() {
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
         assert!(!run.out.is_empty());
     }
-    assert!(lcm(&["--help"], "").out.contains("Exit status: 0 done"));
+    assert!(lcm(&["--help"], "").out.contains("Exit status: 0 success"));
 }
 
 #[test]

@@ -398,7 +398,7 @@ fn a_model_brings_the_files_that_it_imports() {
     for (id, expected) in [
         ("round", "circular import"),
         ("itself", "circular import"),
-        ("lost", "models/latin.wgsl:1:4: this is not UTF-8 text"),
+        ("lost", "models/latin.wgsl:1:4: the byte 0xe9 is not UTF-8"),
     ] {
         let Reading::Broken(problems) = read_model(id, &mut registry) else { panic!("{id}") };
         let told: Vec<_> = problems.iter().map(|(_, problem)| problem.to_string()).collect();

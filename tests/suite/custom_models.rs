@@ -204,10 +204,7 @@ fn a_file_without_a_good_name_or_declaration_is_refused() {
     let good = matt("{}");
     assert_eq!(said_of("mine", &good), "");
     for (id, expected) in [
-        (
-            "Mine",
-            "models/Mine.wgsl:1:1: the name of the file is the id of the model: Mine must be lower-case",
-        ),
+        ("Mine", "models/Mine.wgsl:1:1: the file name is the id of the model: Mine must be lower-case"),
         ("my model", "must be lower-case letters"),
         ("1st", "begin with a letter"),
         ("phong", "models/phong.wgsl:1:1: phong is the id of a built-in model; give the file another name"),

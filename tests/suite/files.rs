@@ -395,7 +395,7 @@ fn a_picture_never_takes_the_place_of_what_is_read_or_of_what_is_no_picture() {
         (&["s.json", "-o", "link.png"][..], same),
         (&["s.json", "-o", "hard.png"], same),
         (&["s.json", "-o", "notes.png"], "notes.png exists and is not a PNG file; it was not overwritten"),
-        (&["s.json", "-o", "notes.txt"], "notes.txt is a file, but not a PNG file"),
+        (&["s.json", "-o", "notes.txt"], "notes.txt is not a PNG file; name a PNG file or a folder"),
         (&["-o", "link.png"], "link.png exists and is not a PNG file"),
         (
             &["s.json", "--models", "models", "--reflection", "mine", "-o", "model.png"],

@@ -88,14 +88,18 @@ fn corpus() -> Vec<Case> {
     };
     let case = |id, text, said| Case { id, text, said };
     vec![
-        case("workgroup", file("workgroup.wgsl"), ":7:1: memory of a workgroup is not available"),
-        case("workgroup_array", file("workgroup_array.wgsl"), "memory of a workgroup"),
-        case("workgroup_atomic", file("workgroup_atomic.wgsl"), "memory of a workgroup"),
-        case("workgroup_hidden", file("workgroup_hidden.wgsl"), "memory of a workgroup"),
+        case("workgroup", file("workgroup.wgsl"), ":7:1: workgroup memory is not available"),
+        case("workgroup_array", file("workgroup_array.wgsl"), "workgroup memory"),
+        case("workgroup_atomic", file("workgroup_atomic.wgsl"), "workgroup memory"),
+        case("workgroup_hidden", file("workgroup_hidden.wgsl"), "workgroup memory"),
         case("buffer", file("buffer.wgsl"), "@binding(0) is not available to a model"),
         case("texture", file("texture.wgsl"), "@binding(4) is not available to a model"),
         case("barrier", file("barrier.wgsl"), "barriers are not available"),
-        case("hidden_brackets", file("hidden_brackets.wgsl"), "closes a bracket from before a condition"),
+        case(
+            "hidden_brackets",
+            file("hidden_brackets.wgsl"),
+            "closes a bracket from before an open condition",
+        ),
         case("hidden_comment", file("hidden_comment.wgsl"), "ends the comment in WGSL although"),
         case("quotation", file("quotation.wgsl"), "this quotation mark is not closed"),
         case("array_of_arrays", file("array_of_arrays.wgsl"), "bytes; at most 4096 are allowed"),
@@ -103,7 +107,7 @@ fn corpus() -> Vec<Case> {
         case("parentheses_800", nested(800, "(-"), "this is nested 101 brackets deep; at most 100"),
         case("parentheses_3000", nested(3000, "("), "this is nested 101 brackets deep; at most 100"),
         case("calls_3000", nested(3000, "sin("), "this is nested 101 brackets deep; at most 100"),
-        case("summands_3000", chain(3000, " + x"), "has 257 operators and brackets on one way"),
+        case("summands_3000", chain(3000, " + x"), "has 257 operators and brackets on one path"),
         case("summands_20000", chain(20_000, " + x"), "has 257 operators and brackets"),
         case("factors_3000", chain(3000, " * x"), "has 257 operators and brackets"),
         case("members_5000", model("", &format!("let y = v{}.x;", ".xyz".repeat(5000))), "has 257 operators"),
@@ -179,7 +183,7 @@ fn corpus() -> Vec<Case> {
         case(
             "constant_array",
             model("const A = array<f32, 1 << 20>();", "let y = A[u32(x)];"),
-            "the length of this array cannot be told",
+            "the length of this array cannot be determined",
         ),
         case(
             "many_variables",
@@ -235,14 +239,14 @@ fn corpus() -> Vec<Case> {
             model(&format!("const {} = 1;", "a".repeat(100_000)), "let y = x;"),
             "this word has 100000 bytes",
         ),
-        case("open_1mib", file_of("("), "words and signs"),
-        case("less_1mib", file_of("a < "), "words and signs"),
-        case("blocks_1mib", file_of("{"), "words and signs"),
-        case("semicolons_1mib", file_of("a;"), "words and signs"),
-        case("minus_1mib", file_of("-"), "words and signs"),
-        case("attributes_1mib", file_of("@"), "words and signs"),
-        case("hash_1mib", file_of("#if A\n"), "words and signs"),
-        case("numbers_1mib", file_of("1,"), "words and signs"),
+        case("open_1mib", file_of("("), "words and symbols"),
+        case("less_1mib", file_of("a < "), "words and symbols"),
+        case("blocks_1mib", file_of("{"), "words and symbols"),
+        case("semicolons_1mib", file_of("a;"), "words and symbols"),
+        case("minus_1mib", file_of("-"), "words and symbols"),
+        case("attributes_1mib", file_of("@"), "words and symbols"),
+        case("hash_1mib", file_of("#if A\n"), "words and symbols"),
+        case("numbers_1mib", file_of("1,"), "words and symbols"),
     ]
 }
 
@@ -588,7 +592,7 @@ fn a_loop_that_only_data_make_endless_is_not_given_to_the_graphics_card() {
         let run = watched(folder.path(), &arguments, Duration::from_secs(60));
         assert!(matches!(run.status, Some(1 | 3)), "{command}: {:?} {}", run.status, run.err);
         assert!(
-            run.err.contains("a function runs too long; a loop may have no end"),
+            run.err.contains("a function runs too long; a loop may be endless"),
             "{command}: {}",
             run.err
         );

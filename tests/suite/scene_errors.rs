@@ -379,7 +379,7 @@ fn unknown_keys_name_the_nearest_known_one_or_where_they_belong() {
         ("/lights/1/coneAngle", "did you mean \"cone_angle\"?"),
         ("/observer/fov", "did you mean \"field_of_view\"?"),
         ("/objects/0/positon", "did you mean \"position\"?"),
-        ("/objects/0/k_d", "objects[0].k_d is not a key of an object; it is a parameter of the material"),
+        ("/objects/0/k_d", "objects[0].k_d is not a key of an object; it is a material parameter"),
         ("/objects/0/material/shininess", "did you mean \"alpha\"?"),
         ("/objects/0/material/kd", "did you mean \"k_d\"?"),
         ("/objects/0/material/basecolor", "did you mean \"base_colour\"?"),

@@ -373,8 +373,8 @@ mod tests {
         assert_eq!(said("#ifdef A\nfn f() { x = (1); }\n#else\nfn f() { }\n#endif\n"), "");
         assert_eq!(said("fn f() {\n#ifdef A\n x = (1);\n#endif\n}"), "");
         for (text, what) in [
-            ("fn f() { x = (\n#ifdef A\n)\n#endif\n1); }", "from before a condition"),
-            ("fn f() {\n#ifdef A\n}\n#endif\n}", "from before a condition"),
+            ("fn f() { x = (\n#ifdef A\n)\n#endif\n1); }", "from before an open condition"),
+            ("fn f() {\n#ifdef A\n}\n#endif\n}", "from before an open condition"),
             ("#ifdef A\nfn f() { x = (\n#else\n#endif", "must close its own"),
             ("#ifdef A\nfn f() { }", "has no #endif"),
             ("fn f() { }\n#endif", "has no condition before it"),
