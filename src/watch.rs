@@ -48,15 +48,15 @@ const BATCH: usize = 4096;
 #[derive(Debug)]
 pub struct Watcher {
     orders: Sender<Order>,
-    told: Arc<Mutex<Told>>,
+    reported: Arc<Mutex<Reported>>,
 }
 
 /// The thread's reports to its owner.
 #[derive(Debug, Default)]
-struct Told {
+struct Reported {
     /// Files that are quiet, and when they began to change.
     changed: Vec<(Instant, PathBuf)>,
-    /// When the next file will be quiet.
+    /// The time at which the next file will be quiet.
     next: Option<Instant>,
     complaint: Option<String>,
 }
@@ -102,7 +102,7 @@ impl Watcher {
         wake: impl Fn() + Send + Sync + 'static,
         make: impl FnOnce(Sender<Order>) -> notify::Result<Backend>,
     ) -> Self {
-        let told = Arc::new(Mutex::new(Told::default()));
+        let reported = Arc::new(Mutex::new(Reported::default()));
         let (orders, received) = mpsc::channel();
         let (backend, refusal) = match make(orders.clone()) {
             Ok(backend) => (Some(backend), None),
@@ -118,15 +118,16 @@ impl Watcher {
             reminders: Vec::new(),
             aftershock: None,
             next_poll: None,
-            told: told.clone(),
+            reported: reported.clone(),
             wake: Box::new(wake),
         };
         let started =
             thread::Builder::new().name("file watcher".to_owned()).spawn(move || worker.run(&received));
         if let Err(error) = started {
-            lock(&told).complaint = Some(format!("Changes of files on disk will not be noticed: {error}."));
+            lock(&reported).complaint =
+                Some(format!("Changes of files on disk will not be noticed: {error}."));
         }
-        Self { orders, told }
+        Self { orders, reported }
     }
 
     /// Watches a folder and everything below it, links included, but not hidden folders. It may not exist yet, and may
@@ -156,19 +157,19 @@ impl Watcher {
     /// [`PATIENCE`], the oldest change first. They include deleted and renamed files, but not temporary files and
     /// backups of editors in watched folders. Paths begin with the name under which the folder is watched.
     pub fn changed(&self) -> Vec<PathBuf> {
-        let mut changed = std::mem::take(&mut lock(&self.told).changed);
+        let mut changed = std::mem::take(&mut lock(&self.reported).changed);
         changed.sort_by_key(|(first, _)| *first);
         changed.into_iter().map(|(_, file)| file).collect()
     }
 
     /// The time until a change is due for reporting, if there is one. The thread calls `wake` then.
     pub fn pending(&self) -> Option<Duration> {
-        lock(&self.told).next.map(|at| at.saturating_duration_since(Instant::now()))
+        lock(&self.reported).next.map(|at| at.saturating_duration_since(Instant::now()))
     }
 
     /// A message for the user: the system reports no changes, so files are looked at twice a second instead.
     pub fn complaint(&self) -> Option<String> {
-        lock(&self.told).complaint.clone()
+        lock(&self.reported).complaint.clone()
     }
 
     /// Sends an order and waits until it is carried out.
@@ -188,8 +189,8 @@ impl Drop for Watcher {
 }
 
 /// A thread that panicked leaves nothing half done here.
-fn lock(told: &Mutex<Told>) -> MutexGuard<'_, Told> {
-    told.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock(reported: &Mutex<Reported>) -> MutexGuard<'_, Reported> {
+    reported.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A watched file or folder.
@@ -241,13 +242,13 @@ struct Worker {
     watched: BTreeSet<PathBuf>,
     /// True if the system refuses to watch a folder.
     refused: bool,
-    /// What changed, the oldest change first.
+    /// The changes to report, the oldest first.
     waiting: Vec<Change>,
     /// Paths to be reported anyway, and when.
     reminders: Vec<(Instant, PathBuf)>,
     aftershock: Option<Instant>,
     next_poll: Option<Instant>,
-    told: Arc<Mutex<Told>>,
+    reported: Arc<Mutex<Reported>>,
     wake: Box<dyn Fn() + Send + Sync>,
 }
 
@@ -297,7 +298,7 @@ impl Worker {
             return;
         }
         let mut root = Root { path, kind, known: HashMap::new(), places: Vec::new() };
-        // What exists now is nothing new.
+        // Existing files are no news.
         root.known = root.look().files;
         self.roots.push(root);
     }
@@ -308,7 +309,7 @@ impl Worker {
         let held = |file: &Path| roots.iter().any(|r| r.holds(file));
         self.waiting.retain(|c| held(&c.path));
         self.reminders.retain(|(_, file)| held(file));
-        lock(&self.told).changed.retain(|(_, file)| held(file));
+        lock(&self.reported).changed.retain(|(_, file)| held(file));
     }
 
     /// Handles an event from the system. True if folders must be looked at.
@@ -444,10 +445,10 @@ impl Worker {
                 "The system does not report file changes: {why}. Files are checked twice a second instead."
             )
         });
-        let mut told = lock(&self.told);
-        if told.complaint != complaint {
-            told.complaint = complaint;
-            drop(told);
+        let mut reported = lock(&self.reported);
+        if reported.complaint != complaint {
+            reported.complaint = complaint;
+            drop(reported);
             (self.wake)();
         }
     }
@@ -465,16 +466,16 @@ impl Worker {
         due.retain(|change| self.take_note(&change.path));
         let reminders = self.reminders.extract_if(.., |(at, _)| *at <= now);
         due.extend(reminders.map(|(at, path)| Change { path, first: at, last: at }));
-        let mut told = lock(&self.told);
-        told.next = self.next_report();
-        let before = told.changed.len();
+        let mut reported = lock(&self.reported);
+        reported.next = self.next_report();
+        let before = reported.changed.len();
         for Change { path, first, .. } in due {
-            if told.changed.iter().all(|(_, known)| *known != path) {
-                told.changed.push((first, path));
+            if reported.changed.iter().all(|(_, known)| *known != path) {
+                reported.changed.push((first, path));
             }
         }
-        let news = told.changed.len() > before;
-        drop(told);
+        let news = reported.changed.len() > before;
+        drop(reported);
         if news {
             (self.wake)();
         }

@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         answered => answered,
     };
     let mut reports = Vec::new();
-    let mut told = String::new();
+    let mut listed = String::new();
     let mut invalid = 0;
     for path in &arguments.scenes {
         let source = Source::of(Some(path));
@@ -46,7 +46,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
                 let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
                 // Writing to a String cannot fail.
                 let _ = writeln!(
-                    told,
+                    listed,
                     "{}: valid: {}, {}",
                     source.name(),
                     counted(loaded.scene.lights.len(), "light"),
@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
         print(&format!("{json}\n"))?;
     } else if !options.quiet {
-        print_text(&told)?;
+        print_text(&listed)?;
     }
     match invalid {
         0 => Ok(()),

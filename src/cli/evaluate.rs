@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     pub model: String,
     #[command(flatten)]
     pub set: Settings,
-    /// Where to evaluate the model
+    /// Machine that evaluates the model
     #[arg(long, value_enum, default_value_t = Machine::Cpu)]
     pub on: Machine,
 }

@@ -54,7 +54,7 @@ pub(super) struct Arguments {
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: Size,
-    /// What renders the picture
+    /// Renderer of the picture
     #[arg(long, value_enum, default_value_t = Renderer::Auto)]
     renderer: Renderer,
     /// Samples per pixel: 1, or 4 for smooth edges
@@ -78,7 +78,7 @@ pub(super) struct Arguments {
     term: TermSelection,
 }
 
-/// What renders.
+/// The choice of renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Renderer {
     /// A hardware GPU if there is one, otherwise the CPU

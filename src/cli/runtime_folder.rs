@@ -1,9 +1,9 @@
 //! The folder that graphics drivers expect in the environment.
 //!
-//! Where `XDG_RUNTIME_DIR` is not set, as after `su` or on a bare server, Mesa still looks for a Wayland display, and
-//! the library that it calls prints a line for each attempt. Nothing that can be set within a process keeps it quiet,
-//! so the program replaces itself by a new start (the same process, with the same streams) with this user's folder in
-//! the variable. The folder need not exist.
+//! Without `XDG_RUNTIME_DIR`, as after `su` or on a bare server, Mesa still looks for a Wayland display, and the
+//! library that it calls prints a line for each attempt. Nothing that can be set within a process keeps it quiet, so
+//! the program replaces itself by a new start (the same process, with the same streams) with this user's folder in the
+//! variable. The folder need not exist.
 
 use std::{
     env,

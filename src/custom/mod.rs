@@ -16,7 +16,7 @@
 //! }
 //! ```
 //!
-//! The GPU runs the file as it is, the CPU interprets it. With a second function `fn ambient_response(v: vec3<f32>,
+//! The GPU runs the file unchanged, the CPU interprets it. With a second function `fn ambient_response(v: vec3<f32>,
 //! frame: Frame, m: Parameters) -> vec3<f32>` the model answers uniform light by a formula, without it by its
 //! directional albedo.
 

@@ -74,7 +74,7 @@ pub fn may_overwrite<'a>(
     sort: Signature,
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Refused> {
-    // Where there is nothing, nothing is lost; other problems show in writing.
+    // Writing nowhere loses nothing; other problems show in writing.
     if !kind(output).is_ok_and(|kind| kind == Kind::File) || descriptor(output).is_some() {
         return Ok(());
     }
@@ -106,7 +106,7 @@ impl Output {
     /// # Errors
     /// If it is a folder or a socket, nobody reads from it, or it cannot be written to.
     pub fn open(path: &Path) -> Result<Self, FileError> {
-        // An inherited descriptor is written to as it is, even if it leads to a file: that may hold more.
+        // An inherited descriptor is written to directly, even if it leads to a file: that may hold more.
         if descriptor(path) == Some("1") {
             return Ok(Self::Standard(io::stdout()));
         }

@@ -244,15 +244,15 @@ mod tests {
             kind: ParameterKind::Choice { options: &[("a", "A"), ("b", "B")], default: 0 },
             ..BASE_COLOUR
         };
-        let told = |condition: (&'static str, &'static [&'static str])| {
+        let problem_of = |condition: (&'static str, &'static [&'static str])| {
             let list = [choice("one"), choice("two").used_when(condition.0, condition.1), BASE_COLOUR];
             problem(&list, &list[1]).unwrap_or_default()
         };
-        assert_eq!(told(("one", &["a"])), "");
-        assert!(told(("three", &["a"])).contains("there is no \"three\""));
-        assert!(told(("base_colour", &["a"])).contains("has another type"));
-        assert!(told(("one", &["c"])).contains("\"c\" is not a choice of one, which has \"a\", \"b\""));
-        assert!(told(("two", &["a"])).contains("must not depend on two"));
+        assert_eq!(problem_of(("one", &["a"])), "");
+        assert!(problem_of(("three", &["a"])).contains("there is no \"three\""));
+        assert!(problem_of(("base_colour", &["a"])).contains("has another type"));
+        assert!(problem_of(("one", &["c"])).contains("\"c\" is not a choice of one, which has \"a\", \"b\""));
+        assert!(problem_of(("two", &["a"])).contains("must not depend on two"));
         let circle = [choice("one").used_when("two", &["a"]), choice("two").used_when("one", &["a"])];
         assert!(problem(&circle, &circle[0]).is_some_and(|p| p.contains("must not depend on two")));
         assert_eq!(unused(&circle, &circle[0], &Values::default()), None, "and it ends");

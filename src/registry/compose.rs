@@ -284,7 +284,8 @@ mod tests {
             "reflection/a.wgsl:1:1: circular import: reflection/lambert.wgsl → reflection/a.wgsl → reflection/lambert.wgsl"
         );
         assert!(
-            problem(&[("terms.wgsl", "#import \"terms.wgsl\"")]).contains("circle: terms.wgsl → terms.wgsl")
+            problem(&[("terms.wgsl", "#import \"terms.wgsl\"")])
+                .contains("circular import: terms.wgsl → terms.wgsl")
         );
         assert!(problem(&[("terms.wgsl", "#import \"../../x.wgsl\"")]).contains("leads out"));
         assert!(problem(&[("terms.wgsl", "#define_import_path a")]).contains("no import path"));

@@ -154,7 +154,7 @@ pub enum LoadError {
         name: String,
         /// The position where reading stopped.
         place: Place,
-        /// What was expected.
+        /// The expectation there.
         what: String,
     },
     /// JSON, but not a valid scene. With every problem, in the order of the file.

@@ -90,17 +90,17 @@ fn tidy(schema: &mut Json) {
 
 /// One of several ids; editors show the names and summaries beside them.
 fn choose<'a>(field: &mut Json, choices: impl Iterator<Item = (&'a str, &'a str, &'a str)>) {
-    let (mut ids, mut told) = (Vec::new(), Vec::new());
+    let (mut ids, mut descriptions) = (Vec::new(), Vec::new());
     for (id, name, summary) in choices {
         ids.push(Json::from(id));
-        told.push(Json::from(if summary.is_empty() {
+        descriptions.push(Json::from(if summary.is_empty() {
             name.to_owned()
         } else {
             format!("{name}: {summary}")
         }));
     }
     field["enum"] = ids.into();
-    field["enumDescriptions"] = told.into();
+    field["enumDescriptions"] = descriptions.into();
 }
 
 /// A position: inside the largest legal room.

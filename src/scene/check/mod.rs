@@ -415,7 +415,7 @@ mod tests {
         parts.extend(observer(&s, &registry));
         parts.extend((0..s.objects.len()).flat_map(|i| object(&s, i, &registry)));
         parts.extend(display(&s, &registry));
-        // Where two parts conflict, each check reports it; the check of the whole scene reports it once.
+        // Each part's check reports a conflict of two parts; the check of the whole scene reports it once.
         let both: Vec<_> = parts.iter().filter(|p| !whole.contains(p)).map(ToString::to_string).collect();
         assert_eq!(
             both,

@@ -54,8 +54,8 @@ pub(super) fn scene(
     }
     if defaults == Defaults::Refuse {
         // A missing size may be reported already.
-        let told = |m: &&Missing| problems.iter().any(|(_, p)| p.path == m.path);
-        let more: Vec<_> = missing.iter().filter(|m| !told(m)).map(|m| (0, m.problem())).collect();
+        let reported = |m: &&Missing| problems.iter().any(|(_, p)| p.path == m.path);
+        let more: Vec<_> = missing.iter().filter(|m| !reported(m)).map(|m| (0, m.problem())).collect();
         problems.extend(more);
     }
     problems.sort_by_key(|(at, _)| *at);

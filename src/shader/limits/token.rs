@@ -163,7 +163,7 @@ impl<'a> Scanner<'a> {
         self.tokens.push(Token { kind, text, at: start, end: 0 });
     }
 
-    /// What stands within the innermost brackets cannot begin a template list any more.
+    /// The code within the innermost brackets can no longer begin a template list.
     fn drop_pending(&mut self) {
         while self.pending.last().is_some_and(|(_, brackets)| *brackets >= self.brackets) {
             self.pending.pop();
