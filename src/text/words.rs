@@ -1,4 +1,4 @@
-//! Words for people: lists, numbers, quotations, the nearest spelling.
+//! Words for messages: lists, numbers, quotations, the nearest spelling.
 
 use serde_json::Value as Json;
 
