@@ -14,7 +14,7 @@ use serde_json::Value as Json;
 
 use crate::support::{Run, lcm_in, root};
 
-/// A folder to work in, with an empty folder `models`.
+/// A folder for the test, with an empty folder `models`.
 fn workplace() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("models")).unwrap();
@@ -146,7 +146,7 @@ fn a_model_is_duplicated_to_a_file() {
             assert!((a / b - 1.0).abs() < 1e-4, "{on}: {original}{copy}");
         }
     }
-    // A copy of the copy, under a name.
+    // A copy of the copy, with a given name.
     let again = run(folder.path(), "models duplicate microfacet_copy other --models models", "");
     assert_eq!(again.out.trim(), "models/other.wgsl", "{}", again.err);
     let table = run(folder.path(), "models --models models", "").out;
@@ -218,7 +218,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
         &model("helped(cos_l)").replace("*/\n", "*/\n#import \"helper.wgsl\"\n"),
     );
     fs::write(folder.path().join("models/notes.txt"), "no model").unwrap();
-    // The list is of declarations, and that of the bad one is right.
+    // The list is of declarations, and that of the broken model is right.
     let listed = run(folder.path(), "models --models models", "");
     assert_eq!((listed.status, listed.err.as_str()), (Some(0), ""));
     for id in ["good", "helped_model", "bad"] {
@@ -289,7 +289,7 @@ fn shaders_are_exported_edited_and_used() {
     let text = fs::read_to_string(&lambert).unwrap();
     assert_eq!(text, fs::read_to_string(root().join("assets/shaders/reflection/lambert.wgsl")).unwrap());
     assert!(at.join("mine/models/gooch.wgsl").is_file());
-    // The exported files are the built-in ones, and give the same numbers.
+    // The exported files equal the built-in ones, and give the same numbers.
     let value = |arguments: &str| run(at, arguments, ANGLES).out;
     let original = value("evaluate lambert --on gpu");
     assert_eq!(value("evaluate lambert --on gpu --assets mine"), original);

@@ -1,4 +1,4 @@
-//! The command line as users see it: output, messages, exit status.
+//! The command line as seen by users: output, messages, exit status.
 
 use std::{
     fs,
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::support::{Run, changed, command_in, full_scene, lcm, lcm_in, root};
 
-/// Asserts the status and one line on standard error that contains a text.
+/// Asserts the status and one line on standard error with a given text.
 fn refused(run: &Run, status: i32, expected: &str) {
     assert_eq!(run.status, Some(status), "{}", run.err);
     assert!(run.err.contains(expected), "{}\nnot: {expected}", run.err);
@@ -229,13 +229,13 @@ fn albedo_integrates_on_both_machines() {
             assert_eq!((cells[0], e[2]), (mu, 0.0));
             assert!((e[0] - 1.0).abs() < 1e-4 && (e[1] - 0.502_886).abs() < 1e-4, "{line}");
         }
-        // A narrow lobe at normal incidence. The response of this family has no cosine of its own.
+        // A narrow lobe at normal incidence. The response of this family has no cosine.
         let set = ["k_d=0.5", "k_s=1", "alpha=998", "base_colour=0,0,0"];
         let mut arguments = vec!["albedo", "phong", "--on", machine];
         arguments.extend(set.iter().flat_map(|s| ["--set", *s]));
         let run = lcm(&arguments, "mu\n1\n");
         let e: f32 = run.out.lines().nth(1).and_then(|l| l.split(',').nth(1)).unwrap().parse().unwrap();
-        // ∫ cos^998 over the hemisphere, over π. An exponent of 999 is told apart.
+        // ∫ cos^998 over the hemisphere, over π. An exponent of 999 fails.
         assert!((e - 2.0 / 999.0).abs() < 5e-7, "{e}");
     }
 }
@@ -278,7 +278,7 @@ fn a_closed_pipe_is_no_error() {
     }
 }
 
-/// Mesa looks for a Wayland display where nobody said that there is one, and a library of it complains.
+/// Mesa looks for a Wayland display even without the variable, and one of its libraries complains.
 #[cfg(target_os = "linux")]
 #[test]
 fn nothing_is_printed_about_a_runtime_folder_that_is_not_set() {

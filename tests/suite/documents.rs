@@ -1,5 +1,5 @@
-//! The documents: their tables are those of the registry, their examples are the examples, and the tour of the README
-//! is right.
+//! The documents: their tables match the registry, their examples match the program, and the tour of the README is
+//! right.
 
 use std::fs;
 
@@ -71,7 +71,7 @@ fn code(id: &str) -> String {
     format!("`{id}`")
 }
 
-/// The tables and examples that are made from the program, by page and by the name of their place.
+/// The tables and examples generated from the program, by page and by the name of their place.
 fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
     let registry = Registry::builtin();
     let example = |file: &str, language: &str| {
@@ -230,7 +230,7 @@ fn fields(schema: &Json) -> String {
     table(&["field", "meaning", "range", "default"], rows.into_iter())
 }
 
-/// The range of a field that is one number.
+/// The range of a numeric field.
 fn range(field: &Json) -> String {
     let number = |key: &str| field[key].as_number().map(ToString::to_string);
     match (number("minimum"), number("exclusiveMinimum"), number("maximum")) {

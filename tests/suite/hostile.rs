@@ -1,5 +1,5 @@
-//! A corpus of hostile models: short files that would end or freeze what reads them. Each is refused with its place
-//! and the limit, within a bound on time and memory, and what else is in the folder goes on working.
+//! A corpus of hostile models: short files that would crash or freeze their readers. Each is refused with its place and
+//! the limit, within a bound on time and memory, and the rest of the folder keeps working.
 
 use std::{
     fs,
@@ -25,12 +25,12 @@ use lights_camera_models::{
 
 use crate::support::{command_in, root};
 
-/// What a thread of Bevy has.
+/// The stack of a thread of Bevy.
 const STACK: usize = 2 << 20;
-/// No single thing may take longer, on a machine that does much else.
+/// No single case may take longer, even on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A model whose response is `y`; `items` stand before the function, `body` in it.
+/// A model whose response is `y`; `items` come before the function, `body` is in it.
 fn model(items: &str, body: &str) -> String {
     format!(
         "/* lcm {{}} */\n{items}\nfn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{\n    \
@@ -38,12 +38,12 @@ fn model(items: &str, body: &str) -> String {
     )
 }
 
-/// Something again and again, with its number.
+/// Something repeated, with its number.
 fn repeated(count: usize, each: impl Fn(usize) -> String) -> String {
     (0..count).map(each).collect()
 }
 
-/// `count` functions, each of which calls the one before twice.
+/// `count` functions, each of which calls the previous one twice.
 fn doubling(count: usize) -> String {
     let functions =
         repeated(count, |i| format!("fn g{}(x: f32) -> f32 {{ return g{i}(x) + g{i}(x + 1.0); }}\n", i + 1));
@@ -58,7 +58,7 @@ fn switch(cases: usize) -> String {
     model("", &format!("var y = x;\n    switch u32(x * 1000.0) {{\n{cases}        default: {{}}\n    }}"))
 }
 
-/// A hostile model: what it is called, its text, and what is said of it.
+/// A hostile model: its name, its text, and the expected message.
 struct Case {
     id: &'static str,
     text: String,
@@ -250,12 +250,12 @@ fn corpus() -> Vec<Case> {
     ]
 }
 
-/// A function that is nearly as long as a file may be.
+/// A function nearly as long as a file may be.
 fn file_of(piece: &str) -> String {
     model("", &format!("let y = x;\n    {}", piece.repeat((1_000_000) / piece.len())))
 }
 
-/// What reading a model says, on a thread as Bevy has them.
+/// The messages of reading a model, on a thread like Bevy's.
 fn said(id: &str, text: &str) -> Result<(), Vec<ShaderProblem>> {
     let path = Path::new("somewhere").join(format!("{id}.wgsl"));
     thread::scope(|scope| {
@@ -286,8 +286,8 @@ fn every_hostile_model_is_refused_with_its_place_and_the_limit() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Models that go as far as is allowed, in every direction in which something calls itself; in the others as far as
-/// software Vulkan takes no more than a second.
+/// Models at the limits, in every direction in which something recurses; in the others as far as software Vulkan takes
+/// no more than a second.
 fn at_the_limit() -> Vec<(&'static str, String)> {
     let most = limits::LIMITS;
     let nested = |count: usize, open: &str, close: &str| {
@@ -394,7 +394,7 @@ fn at_the_limit() -> Vec<(&'static str, String)> {
 
 #[test]
 fn what_is_within_the_limits_needs_a_quarter_of_the_stack() {
-    // What overflows here ends the process: there is nothing gentler.
+    // A stack overflow here ends the process: there is nothing gentler.
     for (id, text) in at_the_limit() {
         let registry = Registry::builtin();
         let path = Path::new("somewhere").join(format!("{id}.wgsl"));
@@ -425,7 +425,7 @@ fn what_is_within_the_limits_needs_a_quarter_of_the_stack() {
             };
             small.spawn_scoped(scope, call).expect("a thread").join().expect("no panic");
         });
-        // Ours need next to nothing of the stack of whoever calls.
+        // Our checks need next to nothing of the caller's stack.
         thread::scope(|scope| {
             let tiny = thread::Builder::new().stack_size(STACK / 16);
             let call = || assert!(validate(&composed).is_ok(), "{id}");
@@ -443,16 +443,16 @@ fn composes(text: &str) {
     assert!(composed.is_ok(), "{:?}", composed.err().map(|e| e.inner));
 }
 
-/// What a run of the program gave, and what it took.
+/// The result of a run of the program, and its cost.
 struct Watched {
     status: Option<i32>,
     out: String,
     err: String,
-    /// The most memory, bytes; 0 where the system does not tell.
+    /// The most memory, bytes; 0 if the system does not report it.
     memory: u64,
 }
 
-/// Runs the program in a folder, for so long at most.
+/// Runs the program in a folder, with a time limit.
 fn watched(folder: &Path, arguments: &[&str], patience: Duration) -> Watched {
     let mut child = command_in(folder, arguments)
         .stdin(Stdio::null())
@@ -489,7 +489,7 @@ fn pump(from: Option<impl Read + Send + 'static>) -> thread::JoinHandle<String> 
     })
 }
 
-/// The most memory that a process has had.
+/// The most memory that a process has used.
 fn peak(child: &Child) -> u64 {
     let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or_default();
@@ -498,7 +498,7 @@ fn peak(child: &Child) -> u64 {
 
 const GIB: u64 = 1 << 30;
 
-/// A folder with all hostile models, a good one, and a scene with that.
+/// A folder with all hostile models, a good one, and a scene that uses it.
 fn folder() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
     let models = folder.path().join("models");
@@ -572,7 +572,7 @@ fn models_at_the_limits_are_drawn() {
     }
 }
 
-/// Without end where the light is above the surface, which no look at the text tells.
+/// Endless where the light is above the surface, which the text does not reveal.
 fn endless() -> String {
     model("", "var y = 0.0;\n    while y >= 0.0 { y += f32(frame.n.z >= 0.0); }")
 }

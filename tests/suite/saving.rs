@@ -1,4 +1,4 @@
-//! Saving: all or nothing, and never over what someone else wrote.
+//! Saving: all or nothing, and never over somebody else's changes.
 
 use std::{
     fs,
@@ -124,7 +124,7 @@ fn the_reference_to_the_schema_is_kept_or_made_where_the_schema_is() {
     assert!(fs::read_to_string(&file).expect("readable").contains("\"$schema\": \"./scene.schema.json\""));
 }
 
-/// The file that the child process of the next test writes to; only set there.
+/// The file written by the child process of the next test; only set there.
 const LOOP_FILE: &str = "LCM_TEST_SAVE_LOOP";
 
 /// Two scenes of very different length, so that half of one is not the other.

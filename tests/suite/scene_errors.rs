@@ -1,4 +1,4 @@
-//! Every kind of bad scene has its own message, which says what, where, and what would be right.
+//! Every kind of error in a scene has its own message: the error, its place, and the remedy.
 
 use std::{fs, time::Instant};
 
@@ -36,7 +36,7 @@ fn a_message_names_file_line_column_path_value_and_rule() {
     );
 }
 
-/// A change of the full scene, and what the message must contain.
+/// A change of the full scene, and the expected part of the message.
 type Case = (&'static str, Value, &'static str);
 
 #[test]

@@ -1,4 +1,4 @@
-//! Parameters that the chosen options do not use: their knobs, and where they are declared and listed.
+//! Parameters not used by the chosen options: their knobs, declarations and lists.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn a_knob_without_effect_is_disabled_and_says_why() {
     choose(&mut bench, "distribution", "gtr");
     assert!(!bench.field("exponent of GTR").disabled);
     assert!(caption_text(&bench.session, &bench.registry).contains("γ 2"));
-    // A chain: without Fresnel term there is no diffuse base, and without that no colour.
+    // A chain: without a Fresnel term there is no diffuse base, and without that no colour.
     choose(&mut bench, "fresnel", "none");
     assert!(bench.field("base colour in hexadecimal").disabled);
     let base = bench.tree.iter().find(|s| s.role == Role::ComboBox && s.label.starts_with("diffuse base"));
@@ -58,7 +58,7 @@ fn the_list_of_models_says_when_a_parameter_is_used() {
     assert!(parameter("cook_torrance", "extinction")["used_when"].is_null());
 }
 
-/// A model with a parameter that counts for one of two forms.
+/// A model with a parameter used by one of two forms.
 fn forms(used_when: &str) -> String {
     format!(
         "/* lcm {{ \"parameters\": [\n\
