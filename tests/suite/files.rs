@@ -847,7 +847,7 @@ fn a_window_that_starts_cleans_up_after_the_one_that_was_killed() {
     assert_eq!(fs::read_to_string(&file).expect("there"), text);
     assert_eq!(names(at), ["a.json", "config"]);
     assert!(!names(&config).iter().any(|name| name.ends_with(".tmp")));
-    // Without a display, an invalid scene is still reported first.
+    // A scene that is no file is reported even without a display.
     let mut command = screen::lcm(&["view", "pipe"], &config);
     pipe(&at.join("pipe"));
     refused(&run(command.current_dir(at)), 1, "a named pipe");
