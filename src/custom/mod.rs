@@ -154,7 +154,7 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
     Ok(CustomModel { entry, ..model })
 }
 
-/// Reads the declaration of a model without its WGSL: on both machines a stand-in is drawn. For a model not used yet,
+/// Reads the declaration of a model without its WGSL: both renderers draw a stand-in. For a model not used yet,
 /// and for a window that opens while a file is broken. Cheap: nothing is compiled.
 ///
 /// # Errors

@@ -118,10 +118,10 @@ const TEMPLATE: &str = r#"/* lcm
 }
 */
 
-// What the surface sends to the viewer per unit of light, π f_r cos θ_l, where f_r is the BRDF. l points to the
-// light and v to the viewer, both of length 1; frame holds the normal n, the tangent t and the bitangent b;
-// m has the parameters, colours as linear light. The functions of terms.wgsl and optics/ may be called,
-// such as half_vector, power, schlick and ggx.
+// The light reflected to the viewer per unit of light, π f_r cos θ_l, where f_r is the BRDF. l points to the
+// light and v to the viewer, both of length 1; frame has the normal n, the tangent t and the bitangent b;
+// m has the parameters, colours as linear light. Functions of terms.wgsl and optics/ are available, such as
+// half_vector, power, schlick and ggx.
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_l = dot(frame.n, l);
     let cos_v = dot(frame.n, v);
@@ -131,7 +131,7 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_h = max(dot(frame.n, half_vector(l, v)), 0.0);
     let diffuse = (1.0 - m.gloss) * m.base_colour * cos_l;
     let specular = vec3(m.gloss * power(cos_h, m.polish) * cos_l);
-    // Ambient, diffuse, specular: the terms that the window can show alone.
+    // Ambient, diffuse, specular: the window can show each term alone.
     return Terms(vec3(0.0), diffuse, specular);
 }
 

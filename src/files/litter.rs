@@ -41,12 +41,12 @@ impl std::fmt::Display for Unfinished {
         match &self.file {
             Some(file) => {
                 write!(f, "{} may be incomplete: saving it was interrupted", file.display())?;
-                write!(f, ". Its whole content is in {copy}; take that, or delete it.")
+                write!(f, ". Its whole content is in {copy}; use that, or delete it.")
             }
             None => {
                 write!(
                     f,
-                    "{copy} is the whole content of a file that is no longer there; take it, or delete it."
+                    "{copy} is the whole content of a file that no longer exists; use it, or delete it."
                 )
             }
         }

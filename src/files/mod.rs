@@ -3,7 +3,7 @@
 //!
 //! To read:
 //! - [`read`]`(path, limit)`: the content of a regular file, links followed. It never waits: pipes, devices,
-//!   sockets and folders are refused before they are opened, and so is what is larger than the limit.
+//!   sockets and folders are refused before they are opened, and so are files larger than the limit.
 //! - [`read_start`]: its first bytes.
 //! - [`read_input`]: a path from the command line, which may also be a stream, such as a shell's `<(…)`.
 //!

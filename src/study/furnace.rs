@@ -319,7 +319,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         p .equation { span { "E(v) = ∫ f(l, v) (n · l) dl," } }
         p {
             "integrated adaptively to 10⁻⁴ by " code { "optics::albedo::directional" } " (which " code { "lcm albedo" } " prints). Every surface is white: base and specular colours are 1. "
-            "The Phong family stands in the table with n = 8; it gains most with a wide highlight, so the largest albedo for legal exponents is searched from n = 0 to 16, at 0° and 60°. "
+            "The Phong family has n = 8 in the table; it gains most with a wide highlight, so the largest albedo for legal exponents is searched from n = 0 to 16, at 0° and 60°. "
             "Models that share energy between a diffuse and a specular part are set to an even share. GGX is tested with F = 1, a mirror that absorbs nothing, and α = 0.8, where light bounces several times between "
             "facets; the compensations of Kulla and Conty (2017) and of Turquin (2019) return the light that the plain model loses."
         }

@@ -695,7 +695,7 @@ fn a_whole_copy_is_no_litter() {
     assert_eq!(fs::read_to_string(&file).expect("there"), "edited");
     assert_eq!(fs::read_to_string(&left).expect("there"), text);
     fs::remove_file(&file).expect("removed");
-    assert!(files::tidy(at)[0].to_string().contains("no longer there"));
+    assert!(files::tidy(at)[0].to_string().contains("no longer exists"));
     assert!(left.exists());
     // The copy of another user's file may come from anybody.
     fs::write(&file, "").expect("written");

@@ -43,7 +43,7 @@ pub struct Unsupported {
     pub what: String,
 }
 
-/// A program ran longer than [`STEPS`], perhaps for ever; its results are undefined.
+/// A program ran longer than [`STEPS`], perhaps forever; its results are undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("it did not end within {STEPS} steps of its loops")]
 pub struct StepLimit;

@@ -170,7 +170,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Goes behind the next token; none on a character that is none.
+    /// Advances past the next token; `None` at a character that is no token.
     fn advance(&mut self) -> Option<Kind> {
         let (first, second) = (self.byte(0), self.byte(1));
         let closes = self.pending.last().is_some_and(|(_, brackets)| *brackets == self.brackets);

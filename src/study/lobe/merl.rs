@@ -125,7 +125,7 @@ impl Merl {
         self.contestants.len() - 1
     }
 
-    /// The number of materials for which a contestant is the best. A tie is no win.
+    /// The number of materials for which a contestant is the best. Ties do not count.
     pub(super) fn best(&self, i: usize) -> usize {
         let wins = |f: &&MerlFit| (0..self.contestants.len()).all(|j| j == i || f.error(i) < f.error(j));
         self.fits.iter().filter(wins).count()
@@ -207,7 +207,7 @@ impl Merl {
         lab.table(
             &html! {
                 "Fits to " (fits.len()) " materials of the MERL database, as represented by the SGD fits of Bagher et al. (2012): median of the log error, the number of materials for which the model is the best of the four, "
-                "and for which it is better than Blinn–Phong; a tie is no win. "
+                "and for which it is better than Blinn–Phong; ties do not count. "
                 @if self.flat > 0 { (self.flat) " more materials without a specular part, which every model fits exactly, are not counted." }
             },
             &["Model", "free numbers", "median error", "best for", "better than Blinn–Phong"],
