@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     pub model: String,
     #[command(flatten)]
     pub set: Settings,
-    /// Machine that evaluates the model
+    /// Evaluate on the CPU or on the GPU
     #[arg(long, value_enum, default_value_t = Machine::Cpu)]
     pub on: Machine,
 }
@@ -48,9 +48,9 @@ pub(super) struct Settings {
 /// The machine that evaluates a model.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum Machine {
-    /// The CPU: Rust functions, or the interpreted WGSL of a custom model
+    /// Rust functions, or the interpreted WGSL of a custom model
     Cpu,
-    /// The GPU: WGSL functions in a compute shader; software Vulkan suffices
+    /// WGSL functions in a compute shader; software Vulkan suffices
     Gpu,
 }
 

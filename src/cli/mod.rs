@@ -126,7 +126,7 @@ enum Command {
     /// Copy the built-in shaders and example models to a folder for editing
     #[command(subcommand)]
     Assets(assets::Command),
-    /// Print the BRDF of a model at given angles, as CSV
+    /// Print the BRDF (the reflectance by direction) of a model at given angles, as CSV
     ///
     /// Reads CSV from standard input, with the columns theta_i, phi_i, theta_o, phi_o: the directions to the light (i)
     /// and to the observer (o) in degrees, theta from the normal and phi around it from the tangent. Adds the columns

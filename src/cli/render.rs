@@ -54,7 +54,7 @@ pub(super) struct Arguments {
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: Size,
-    /// Renderer of the picture
+    /// Render on the GPU or on the CPU
     #[arg(long, value_enum, default_value_t = Renderer::Auto)]
     renderer: Renderer,
     /// Samples per pixel: 1, or 4 for smooth edges
@@ -70,10 +70,10 @@ pub(super) struct Arguments {
         "Use this tone mapping instead of the scene's: {}", crate::text::listed(&ToneMapping::ALL.map(ToneMapping::id), "or")
     ))]
     tone_mapping: Option<String>,
-    /// Use this exposure instead of the scene's
+    /// Use this exposure in EV instead of the scene's; each step up doubles the light
     #[arg(long, value_name = "EV", allow_hyphen_values = true)]
     exposure: Option<f32>,
-    /// Show only one term of the equation
+    /// Show only one term of the reflection model's equation
     #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
     term: TermSelection,
 }

@@ -833,7 +833,7 @@ fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
     assert!(lab.settled() == green);
     let troubles = lab.troubles();
     assert_eq!(troubles.len(), 1, "{troubles:?}");
-    assert!(troubles[0].problem.message.contains("@binding(7) is not there"), "{troubles:?}");
+    assert!(troubles[0].problem.message.contains("@binding(7) is not available to a model"), "{troubles:?}");
     assert_eq!(
         (troubles[0].problem.file.as_str(), &troubles[0].stale[..]),
         ("models/tinted.wgsl", &["Tinted".to_owned()][..])
