@@ -138,8 +138,8 @@ enum Command {
     /// Print the directional albedo of a model at given viewing angles, as CSV
     ///
     /// Reads CSV from standard input, with the column mu: the cosine of the angle between the normal and the view,
-    /// above 0 and at most 1. Adds the columns of the directional albedo, the fraction of uniform light that the
-    /// surface sends to the observer. Anisotropic models are seen along the tangent.
+    /// above 0 and at most 1. Adds the columns e_r, e_g, e_b: the directional albedo, the fraction of uniform light
+    /// that the surface sends to the observer. Anisotropic models are seen along the tangent.
     Albedo(evaluate::Arguments),
     /// Print the JSON Schema of scene files
     Schema,
