@@ -87,8 +87,8 @@ fn interpreted(c: &mut Criterion) {
     group.finish();
 }
 
-/// What the limits cost when a model is read, beside all that checks it: the text and the module of a shader that
-/// draws, and one that is as long as a file may be.
+/// The cost of the limits in reading a model, apart from all other checks: the text and the module of a shader that
+/// draws, and one as long as a file may be.
 fn limited(c: &mut Criterion) {
     let registry = Registry::builtin();
     let model = registry.model("disney").expect("built in");

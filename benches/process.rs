@@ -1,4 +1,4 @@
-//! The whole process, as a user pays for it: start, read, render, write the PNG file, end.
+//! The whole process, as experienced by a user: start, read, render, write the PNG file, end.
 
 use std::{
     fs,
@@ -32,7 +32,7 @@ fn render(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// What custom models cost commands that do not name them, and one that lists them.
+/// The cost of custom models for commands that do not use them, and for one that lists them.
 fn custom_models(criterion: &mut Criterion) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(root.join("assets/models/charlie_sheen.wgsl")).expect("it is shipped");

@@ -1,7 +1,7 @@
-//! From saving a shader to the picture: median and 95th percentile for a model, a term that all models use, and
-//! the light loop, in the default scene at the size of a window. A file is written, the watcher tells of it, the
-//! new version is tried, exchanged, compiled and drawn; frames follow each other as in a window that was woken. It is
-//! tried in the same process, and in another one as the window has it.
+//! From saving a shader to the picture: median and 95th percentile for a model, a term used by all models, and the
+//! light loop, in the default scene at the size of a window. A file is written, the watcher reports it, the new version
+//! is tried, swapped in, compiled and drawn; frames follow each other as in a window that is awake. The trial runs in
+//! the same process, and in another one as for the window.
 //!
 //! Criterion reports means and medians; the 95th percentile is printed beside them.
 
@@ -30,7 +30,7 @@ use lights_camera_models::{
     watch::Watcher,
 };
 
-/// The lab with its shaders in a folder that is watched.
+/// The laboratory with its shaders in a watched folder.
 struct Lab {
     renderer: GpuRenderer,
     watcher: Watcher,
@@ -52,7 +52,7 @@ impl Lab {
         renderer.app().world_mut().resource_mut::<LiveShaders>().start(Sources::default(), folders);
         renderer.set_scene(Scene::default());
         renderer.settle().expect("the GPU draws");
-        // What did not change is not drawn: in the window, the processors have the trial to themselves.
+        // Unchanged content is not drawn: in the window, the processors are free for the trial.
         renderer.draw_on_demand();
         renderer.settle().expect("the GPU draws");
         let (wake, news) = mpsc::channel();
@@ -83,7 +83,7 @@ impl Lab {
             let changed = self.watcher.changed();
             let world = self.renderer.app().world_mut();
             world.resource_scope(|world, mut live: Mut<LiveShaders>| {
-                // As in the window: that a file was looked at is no news of the models.
+                // As in the window: a look at a file is no news about the models.
                 let mut registry = world.resource_mut::<Registry>();
                 changed.iter().for_each(|f| live.look_at(f, registry.bypass_change_detection()));
             });

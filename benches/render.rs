@@ -1,4 +1,4 @@
-//! How long the CPU renderer takes, for what, and how it scales.
+//! Times of the CPU renderer, for various scenes, and their scaling.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::hint::black_box;

@@ -20,7 +20,7 @@ use bevy::{
 use bevy_egui::{EguiContexts, EguiPlugin, EguiPrimaryContextPass, egui};
 use lights_camera_models::render::capture::gpu::wgpu_settings;
 
-/// Frames of a run, and of those how many are not counted because the window is still being made.
+/// Frames of a run, and the number of first frames that are skipped because the window is still being created.
 const FRAMES: usize = 220;
 const FIRST: usize = 20;
 
@@ -55,7 +55,7 @@ fn said(command: &mut Command) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout)
 }
 
-/// The median that a text names after `mark`.
+/// The median after `mark` in a text.
 fn number(text: &str, mark: &str) -> Option<f64> {
     let after = &text[text.rfind(mark)? + mark.len()..];
     let after = after.split(';').next()?;

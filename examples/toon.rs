@@ -1,9 +1,9 @@
 //! A reflection model from outside the crate, complete: cartoon shading in a few tones.
 //!
-//! `cargo run --release --example toon` draws a teapot with it to `renders/toon.png`. The struct holds
-//! the parameters, `DECLARATION` says what the model is called and claims, `response` is the equation,
-//! and `toon.wgsl` is the same equation for the GPU. Within the crate the same code would be
-//! `src/reflection/toon.rs` and one line in its `register_builtin`.
+//! `cargo run --release --example toon` draws a teapot with it to `renders/toon.png`. The struct has the
+//! parameters, `DECLARATION` the name and the laws of the model, `response` is the equation, and `toon.wgsl`
+//! the same equation for the GPU. Within the crate the same code would be `src/reflection/toon.rs` and one
+//! line in its `register_builtin`.
 #![allow(clippy::print_stdout, missing_docs)]
 
 use std::{error::Error, path::Path};
@@ -26,7 +26,7 @@ const TONES: Parameter = Parameter {
     symbol: "n",
     label: "tones",
     unit: "",
-    help: "How many tones there are between black and the base colour.",
+    help: "The number of tones between black and the base colour.",
     kind: ParameterKind::Integer { min: 1, max: Some(16), slider_max: 8, default: 4 },
     used_when: None,
 };
@@ -34,9 +34,9 @@ const TONES: Parameter = Parameter {
 parameters! {
     /// Lambert in a few tones.
     pub struct Toon {
-        /// Its colour, linear.
+        /// The colour, linear.
         base_colour: colour = BASE_COLOUR,
-        /// How many tones.
+        /// The number of tones.
         tones: number = TONES,
     }
 }
@@ -67,7 +67,7 @@ impl ReflectionModel for Toon {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // In the window it is `app.add_reflection_model::<Toon>()`: the same call.
+    // For an `App` the call is the same: `app.add_reflection_model::<Toon>()`.
     let mut registry = Registry::builtin();
     registry.add_reflection_model::<Toon>();
 

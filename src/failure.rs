@@ -1,19 +1,19 @@
-//! Why a command did not do what it was asked, and the exit status for it.
+//! The reason why a command failed, and its exit status.
 
 use std::io;
 
-/// Why a command did not do what it was asked.
+/// The reason why a command failed.
 #[derive(Debug)]
 pub enum Failure {
     /// A scene or an input is invalid: exit status 1. One line per problem.
     Invalid(String),
-    /// The command line makes no sense: exit status 2.
+    /// The command line is wrong: exit status 2.
     Usage(String),
     /// There is no renderer or no display: exit status 3.
     NoRenderer(String),
     /// A result could not be written: exit status 4.
     Write(String),
-    /// Whoever read the output has read enough: not an error.
+    /// The reader of the output closed it: not an error.
     Closed,
 }
 

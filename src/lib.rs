@@ -1,7 +1,7 @@
 //! # Lights, Camera, Models!
 //!
-//! A laboratory for the equations that light a surface. The modules stand in the order in which they know each
-//! other: each uses only those above it, which `tests/suite/modules.rs` checks.
+//! A laboratory for the equations that light a surface. The modules are in the order of their dependencies: each
+//! uses only those above it, which `tests/suite/modules.rs` checks.
 //!
 //! ```text
 //! JSON ─► scene ─► entities ─► materials, lights, meshes ─► a texture per view ─► window
@@ -9,13 +9,13 @@
 //!         panel
 //! ```
 //!
-//! From the outside of the program:
+//! The outside of the program:
 //!
-//! - [`text`]: words for people, and JSON whose values know where they stand.
+//! - [`text`]: words for messages, and JSON whose values know their place.
 //! - [`files`]: the one guard between the program and files.
-//! - [`failure`]: why a command did not do what it was asked.
+//! - [`failure`]: the reason why a command failed.
 //! - [`signals`]: requests from outside to end the program.
-//! - [`watch`]: which files on disk change.
+//! - [`watch`]: changes of files on disk.
 //!
 //! The equations:
 //!
@@ -24,7 +24,7 @@
 //! - [`shader`]: WGSL text in, WGSL text out: composing, checking, interpreting.
 //! - [`reflection`], [`shading`], [`light`], [`shape`]: a trait and a list each; one file per model, per shading
 //!   model, per light type, per object type.
-//! - [`registry`]: everything that is known, by id; registration from inside and outside the crate.
+//! - [`registry`]: all known models, lights and shapes, by id; registration from inside and outside the crate.
 //! - [`custom`]: reflection models written as one WGSL file.
 //!
 //! The scene and its pictures:
@@ -32,15 +32,15 @@
 //! - [`scene`]: the scene as a value; reading, checking and writing JSON.
 //! - [`document`]: the one writer of the scene: edits, checks, undo and redo.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
-//! - [`library`]: the shader library: which file holds which text, and what is wrong with it.
+//! - [`library`]: the shader library: the files of all shader texts, and their errors.
 //! - [`recovery`]: copies of unsaved work, for the next start.
-//! - [`render`]: everything of Bevy that draws.
+//! - [`render`]: drawing with Bevy.
 //!
 //! The program:
 //!
 //! - [`panel`]: egui panels, as functions of a state that return actions.
 //! - [`window`]: panels, camera and entities in one window.
-//! - [`study`]: what tells the models apart, as numbers and a report.
+//! - [`study`]: the differences between models, as numbers and a report.
 //! - [`cli`]: the command line.
 
 pub mod text;

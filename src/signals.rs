@@ -1,9 +1,9 @@
-//! What ends the program from outside: Ctrl+C in the terminal, and the signals of the operating system.
+//! Requests from outside to end the program: Ctrl+C in the terminal, and the signals of the operating system.
 //!
-//! A thread of their own hears them, so that they work while the window sleeps or hangs. The first Ctrl+C (`SIGINT`)
-//! is a wish: the window closes as it does for Ctrl+Q, with a question if there are unsaved changes. The second one,
-//! `SIGTERM`, `SIGHUP` and `SIGQUIT` end the program whatever the window does, after a last act that the caller
-//! gives; then the process dies of the signal, as whoever waits for it expects.
+//! A thread of its own handles them, so they work while the window sleeps or hangs. The first Ctrl+C (`SIGINT`) is a
+//! request: the window closes as with Ctrl+Q, with a question if there are unsaved changes. The second one, `SIGTERM`,
+//! `SIGHUP` and `SIGQUIT` end the program whatever the window does, after a last action given by the caller; then the
+//! process dies of the signal, as whoever waits for it expects.
 
 use std::{
     io,
@@ -13,23 +13,23 @@ use std::{
     },
 };
 
-/// What became of Ctrl+C.
+/// The state of a request by Ctrl+C.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt(Arc<AtomicU8>);
 
-/// Nobody asked.
+/// No request.
 const NONE: u8 = 0;
 /// The window does not know yet.
 const HEARD: u8 = 1;
-/// The window closes, or asks whether it may.
+/// The window closes, or asks for confirmation.
 const TAKEN: u8 = 2;
 
 impl Interrupt {
-    /// Listens from now on. `wake` is called at the first Ctrl+C, `last_act` with the name of the signal that ends the
-    /// program, both on the thread that listens.
+    /// Starts listening. `wake` is called at the first Ctrl+C, `last_act` with the name of the signal that ends the
+    /// program, both on the listening thread.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// If the system refuses.
     pub fn listen(
         wake: impl Fn() + Send + 'static,
         last_act: impl Fn(&str) + Send + 'static,
@@ -45,7 +45,7 @@ impl Interrupt {
         self.0.compare_exchange(HEARD, TAKEN, Ordering::SeqCst, Ordering::SeqCst).is_ok()
     }
 
-    /// The user decided to stay: the next Ctrl+C is a wish again.
+    /// The user decided to stay: the next Ctrl+C is a request again.
     pub fn stay(&self) {
         let _ = self.0.compare_exchange(TAKEN, NONE, Ordering::SeqCst, Ordering::SeqCst);
     }
@@ -98,8 +98,8 @@ mod system {
         Ok(())
     }
 
-    /// The signals that whoever started the program wants ignored, as `nohup` does with `SIGHUP`, one bit each. Only
-    /// Linux tells.
+    /// The signals that the parent process wants ignored, as `nohup` does with `SIGHUP`, one bit each. Only Linux
+    /// reports them.
     pub(super) fn ignored(status: &str) -> u64 {
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
         mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
@@ -118,7 +118,7 @@ mod system {
 
     use super::Interrupt;
 
-    /// What shells say of a program that Ctrl+C ended.
+    /// The exit status that shells give a program ended by Ctrl+C.
     const INTERRUPTED: i32 = 130;
 
     pub(super) fn listen(

@@ -1,13 +1,12 @@
-//! Watching files on disk, so that what others edit is seen at once.
+//! Watching files on disk, so that edits by other programs show at once.
 //!
-//! Editors do not agree on what saving is: some write into the file, some empty it first, some write
-//! another file and rename it over the old one. [`Watcher`] looks at names, not at files, and tells of
-//! a name once it has been quiet for [`QUIET`]. What changed it does not say: whoever is interested
-//! reads the file and compares.
+//! Editors save in different ways: some write into the file, some empty it first, some write another file and rename it
+//! over the old one. [`Watcher`] looks at names, not at files, and reports a name once it has been quiet for [`QUIET`].
+//! It does not report what changed: its user reads the file and compares.
 //!
-//! A thread of its own hears what the operating system tells of folders. Each folder is watched by
-//! itself and remembered with the state of its files, so that nothing is lost in folders that appear,
-//! vanish and come back, behind links that lead elsewhere, or when the system drops news.
+//! A thread of its own receives the operating system's events for folders. Each folder is watched separately and
+//! remembered with the state of its files, so that nothing is lost in folders that appear, vanish and come back, behind
+//! links that lead elsewhere, or when the system drops events.
 
 use std::{
     collections::{BTreeSet, HashMap},
@@ -33,44 +32,44 @@ mod system;
 #[cfg(test)]
 mod tests;
 
-/// A file is reported once nothing has happened to it for so long.
+/// A file is reported once it has been unchanged for this long.
 pub const QUIET: Duration = Duration::from_millis(10);
-/// A file that never rests is reported after so long, and again after as long.
+/// A file that keeps changing is reported after this long, and again each time it has passed.
 pub const PATIENCE: Duration = Duration::from_millis(100);
-/// How often files are looked at where the system does not tell of changes.
+/// The interval between looks at files on systems that do not report changes.
 const POLL: Duration = Duration::from_millis(500);
-/// After a folder vanished or came, it is looked at once more: news that were on their way then may
-/// concern the folder that had its name before.
+/// After a folder vanished or appeared, it is looked at once more: events that were under way then may concern the
+/// folder that had its name before.
 const AFTERSHOCK: Duration = Duration::from_millis(100);
-/// The most news that are read before they are acted upon.
+/// The most events that are read before they are acted upon.
 const BATCH: usize = 4096;
 
-/// Tells of files that change on disk.
+/// Reports files that change on disk.
 #[derive(Debug)]
 pub struct Watcher {
     orders: Sender<Order>,
-    told: Arc<Mutex<Told>>,
+    reported: Arc<Mutex<Reported>>,
 }
 
-/// What the thread tells its owner.
+/// The thread's reports to its owner.
 #[derive(Debug, Default)]
-struct Told {
+struct Reported {
     /// Files that are quiet, and when they began to change.
     changed: Vec<(Instant, PathBuf)>,
-    /// When the next file will be quiet.
+    /// The time at which the next file will be quiet.
     next: Option<Instant>,
     complaint: Option<String>,
 }
 
-/// What the thread is told.
+/// Messages to the thread.
 enum Order {
-    /// Watch this; answer when it is done.
+    /// Watch this; reply when done.
     Add(PathBuf, Kind, Sender<()>),
-    /// Watch this no longer; answer when it is done.
+    /// Stop watching this; reply when done.
     Forget(PathBuf, Sender<()>),
-    /// Report this file once so much time has passed.
+    /// Report this file after this time.
     Remind(PathBuf, Duration),
-    /// The system says something.
+    /// An event from the system.
     Heard(notify::Result<Event>),
     Stop,
 }
@@ -84,12 +83,12 @@ enum Kind {
 type Backend = Box<dyn notify::Watcher + Send>;
 
 impl Watcher {
-    /// A watcher of nothing yet. `wake` is called from another thread whenever there is news: files
-    /// that [`changed`](Self::changed), or another [`complaint`](Self::complaint).
+    /// A watcher of nothing yet. `wake` is called from another thread whenever there is something new: files that
+    /// [`changed`](Self::changed), or another [`complaint`](Self::complaint).
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self::with_backend(wake, |news| {
             let hear = move |event: notify::Result<Event>| {
-                // Who only reads changes nothing.
+                // Reading changes nothing.
                 if !matches!(&event, Ok(e) if is_reading(e.kind)) {
                     // Nobody listens any more when the window closes.
                     let _ = news.send(Order::Heard(event));
@@ -103,7 +102,7 @@ impl Watcher {
         wake: impl Fn() + Send + Sync + 'static,
         make: impl FnOnce(Sender<Order>) -> notify::Result<Backend>,
     ) -> Self {
-        let told = Arc::new(Mutex::new(Told::default()));
+        let reported = Arc::new(Mutex::new(Reported::default()));
         let (orders, received) = mpsc::channel();
         let (backend, refusal) = match make(orders.clone()) {
             Ok(backend) => (Some(backend), None),
@@ -119,67 +118,65 @@ impl Watcher {
             reminders: Vec::new(),
             aftershock: None,
             next_poll: None,
-            told: told.clone(),
+            reported: reported.clone(),
             wake: Box::new(wake),
         };
         let started =
             thread::Builder::new().name("file watcher".to_owned()).spawn(move || worker.run(&received));
         if let Err(error) = started {
-            lock(&told).complaint = Some(format!("Changes of files on disk will not be noticed: {error}."));
+            lock(&reported).complaint =
+                Some(format!("Changes of files on disk will not be noticed: {error}."));
         }
-        Self { orders, told }
+        Self { orders, reported }
     }
 
-    /// Watches a folder and everything below it, through links too, but without hidden folders. It may
-    /// not exist yet: then it is noticed when it appears. It may be deleted and come back.
+    /// Watches a folder and everything below it, links included, but not hidden folders. It may not exist yet, and may
+    /// be deleted and come back.
     pub fn watch_folder(&mut self, folder: &Path) {
         self.order(|done| Order::Add(folder.to_owned(), Kind::Folder, done));
     }
 
-    /// Watches one file through its folder: atomic renames, deletion and making it anew are noticed. It
-    /// may be a link, and may not exist yet.
+    /// Watches one file through its folder, so atomic renames, deletion and re-creation are noticed. It may be a link,
+    /// and may not exist yet.
     pub fn watch_file(&mut self, file: &Path) {
         self.order(|done| Order::Add(file.to_owned(), Kind::File, done));
     }
 
-    /// Watches a file or folder no longer, as it was named when that began.
+    /// Stops watching a file or folder, given the name under which it is watched.
     pub fn forget(&mut self, path: &Path) {
         self.order(|done| Order::Forget(path.to_owned(), done));
     }
 
-    /// Reports a file after a while, whether it changes or not: for who wants to look again.
+    /// Reports a file after a while, whether it changes or not.
     pub fn report_later(&self, file: &Path, after: Duration) {
-        // An error: the thread is gone.
+        // An error: the thread has ended.
         let _ = self.orders.send(Order::Remind(file.to_owned(), after));
     }
 
-    /// Files that may have changed since the last call, each once, once they have been quiet for
-    /// [`QUIET`], or after [`PATIENCE`], the oldest change first. Files that were deleted or renamed are
-    /// among them; temporary files and backups of editors in watched folders are not. Paths begin as the
-    /// watched folder was named.
+    /// Files that may have changed since the last call, each once, after being quiet for [`QUIET`], or after
+    /// [`PATIENCE`], the oldest change first. They include deleted and renamed files, but not temporary files and
+    /// backups of editors in watched folders. Paths begin with the name under which the folder is watched.
     pub fn changed(&self) -> Vec<PathBuf> {
-        let mut changed = std::mem::take(&mut lock(&self.told).changed);
+        let mut changed = std::mem::take(&mut lock(&self.reported).changed);
         changed.sort_by_key(|(first, _)| *first);
         changed.into_iter().map(|(_, file)| file).collect()
     }
 
-    /// How long until something that changed just now is quiet, or is to be reported, if there is
-    /// anything. The thread calls `wake` then.
+    /// The time until a change is due for reporting, if there is one. The thread calls `wake` then.
     pub fn pending(&self) -> Option<Duration> {
-        lock(&self.told).next.map(|at| at.saturating_duration_since(Instant::now()))
+        lock(&self.reported).next.map(|at| at.saturating_duration_since(Instant::now()))
     }
 
-    /// What people should know: that the system does not tell of changes, so that files are looked at
-    /// twice a second instead.
+    /// A message for the user: the system reports no changes, so files are looked at twice a second instead.
     pub fn complaint(&self) -> Option<String> {
-        lock(&self.told).complaint.clone()
+        lock(&self.reported).complaint.clone()
     }
 
-    /// Gives an order and waits until it is carried out.
+    /// Sends an order and waits until it is carried out.
     fn order(&self, order: impl FnOnce(Sender<()>) -> Order) {
         let (done, wait) = mpsc::channel();
         if self.orders.send(order(done)).is_ok() {
-            // An error: the thread is gone.
+            // An error: the thread has ended.
             let _ = wait.recv();
         }
     }
@@ -192,17 +189,17 @@ impl Drop for Watcher {
 }
 
 /// A thread that panicked leaves nothing half done here.
-fn lock(told: &Mutex<Told>) -> MutexGuard<'_, Told> {
-    told.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock(reported: &Mutex<Reported>) -> MutexGuard<'_, Reported> {
+    reported.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Something that is watched.
+/// A watched file or folder.
 struct Root {
     path: PathBuf,
     kind: Kind,
     /// The files as they were when they were last reported, or found at the beginning.
     known: HashMap<PathBuf, Print>,
-    /// Where changes are of interest.
+    /// The places where changes matter.
     places: Vec<Place>,
 }
 
@@ -223,7 +220,7 @@ impl Root {
     }
 }
 
-/// A change that is not reported yet.
+/// A change not reported yet.
 struct Change {
     path: PathBuf,
     first: Instant,
@@ -239,19 +236,19 @@ impl Change {
 /// The thread.
 struct Worker {
     backend: Option<Backend>,
-    /// Why there is no backend.
+    /// The reason why there is no backend.
     refusal: Option<String>,
     roots: Vec<Root>,
     watched: BTreeSet<PathBuf>,
     /// True if the system refuses to watch a folder.
     refused: bool,
-    /// What changed, the oldest change first.
+    /// The changes to report, the oldest first.
     waiting: Vec<Change>,
-    /// What is to be reported anyway, and when.
+    /// Paths to be reported anyway, and when.
     reminders: Vec<(Instant, PathBuf)>,
     aftershock: Option<Instant>,
     next_poll: Option<Instant>,
-    told: Arc<Mutex<Told>>,
+    reported: Arc<Mutex<Reported>>,
     wake: Box<dyn Fn() + Send + Sync>,
 }
 
@@ -283,7 +280,7 @@ impl Worker {
                     }
                     Order::Heard(Ok(event)) => look |= self.hear(&event),
                     Order::Remind(file, after) => self.reminders.push((Instant::now() + after, file)),
-                    // News were lost.
+                    // Events were lost.
                     Order::Heard(Err(_)) => look = true,
                     Order::Stop => return,
                 }
@@ -301,7 +298,7 @@ impl Worker {
             return;
         }
         let mut root = Root { path, kind, known: HashMap::new(), places: Vec::new() };
-        // What is there now is no news.
+        // Existing files are no news.
         root.known = root.look().files;
         self.roots.push(root);
     }
@@ -312,10 +309,10 @@ impl Worker {
         let held = |file: &Path| roots.iter().any(|r| r.holds(file));
         self.waiting.retain(|c| held(&c.path));
         self.reminders.retain(|(_, file)| held(file));
-        lock(&self.told).changed.retain(|(_, file)| held(file));
+        lock(&self.reported).changed.retain(|(_, file)| held(file));
     }
 
-    /// Takes in what the system says. Returns whether folders must be looked at.
+    /// Handles an event from the system. True if folders must be looked at.
     fn hear(&mut self, event: &Event) -> bool {
         let now = Instant::now();
         let mut look = event.need_rescan();
@@ -353,7 +350,7 @@ impl Worker {
         }
     }
 
-    /// Looks at folders when something asks for it: news, or the clock.
+    /// Looks at folders when an event or the clock calls for it.
     fn catch_up(&mut self, look: bool) {
         let now = Instant::now();
         let over = |at: Option<Instant>| at.is_some_and(|at| at <= now);
@@ -368,15 +365,15 @@ impl Worker {
         }
     }
 
-    /// Looks at everything that is watched, notes what differs, and watches the folders that there are.
-    /// `anew` watches again what seems to be watched.
+    /// Looks at everything watched, notes differences, and watches the folders that exist. With `anew`, folders that
+    /// seem to be watched are watched again.
     fn look(&mut self, anew: bool) {
         if anew {
             for folder in std::mem::take(&mut self.watched) {
                 self.unwatch(&folder);
             }
         }
-        // What appears between looking and watching is seen by the next look.
+        // The next look sees what appears between looking and watching.
         for _ in 0..4 {
             self.compare();
             if !self.watch_places() {
@@ -400,7 +397,7 @@ impl Worker {
         }
     }
 
-    /// Watches the folders of interest and no others. Returns whether there were new ones.
+    /// Watches exactly the folders that matter. True if some are new.
     fn watch_places(&mut self) -> bool {
         let places = self.roots.iter().flat_map(|r| &r.places);
         let wanted: BTreeSet<_> = places.map(|p| p.folder.clone()).collect();
@@ -426,7 +423,7 @@ impl Worker {
                 }
                 Err(error) if is_absent(&error) => self.aftershock = Some(Instant::now() + AFTERSHOCK),
                 Err(error) => {
-                    problem = Some(format!("{}, says the system of {}", reason(&error), folder.display()));
+                    problem = Some(format!("{}: {}", folder.display(), reason(&error)));
                 }
             }
         }
@@ -436,7 +433,7 @@ impl Worker {
 
     fn unwatch(&mut self, folder: &Path) {
         if let Some(backend) = &mut self.backend {
-            // Of a folder that is gone the system forgets by itself.
+            // The system forgets a deleted folder by itself.
             let _ = backend.unwatch(folder);
         }
     }
@@ -445,13 +442,13 @@ impl Worker {
         self.refused = problem.is_some();
         let complaint = problem.map(|why| {
             format!(
-                "The system does not tell when files change: {why}. They are looked at twice a second instead."
+                "The system does not report file changes: {why}. Files are checked twice a second instead."
             )
         });
-        let mut told = lock(&self.told);
-        if told.complaint != complaint {
-            told.complaint = complaint;
-            drop(told);
+        let mut reported = lock(&self.reported);
+        if reported.complaint != complaint {
+            reported.complaint = complaint;
+            drop(reported);
             (self.wake)();
         }
     }
@@ -460,7 +457,7 @@ impl Worker {
         self.waiting.iter().map(Change::due).chain(self.reminders.iter().map(|r| r.0)).min()
     }
 
-    /// Tells of what is quiet by now.
+    /// Reports the files that are quiet by now.
     fn report(&mut self) {
         let now = Instant::now();
         let (due, waiting) = std::mem::take(&mut self.waiting).into_iter().partition(|c| c.due() <= now);
@@ -469,23 +466,23 @@ impl Worker {
         due.retain(|change| self.take_note(&change.path));
         let reminders = self.reminders.extract_if(.., |(at, _)| *at <= now);
         due.extend(reminders.map(|(at, path)| Change { path, first: at, last: at }));
-        let mut told = lock(&self.told);
-        told.next = self.next_report();
-        let before = told.changed.len();
+        let mut reported = lock(&self.reported);
+        reported.next = self.next_report();
+        let before = reported.changed.len();
         for Change { path, first, .. } in due {
-            if told.changed.iter().all(|(_, known)| *known != path) {
-                told.changed.push((first, path));
+            if reported.changed.iter().all(|(_, known)| *known != path) {
+                reported.changed.push((first, path));
             }
         }
-        let news = told.changed.len() > before;
-        drop(told);
+        let news = reported.changed.len() > before;
+        drop(reported);
         if news {
             (self.wake)();
         }
     }
 
-    /// Remembers a file as it is now. Returns whether there is something to tell: folders are not told
-    /// of, nor what came and went in the meantime.
+    /// Remembers the present state of a file. True if it is worth a report: folders are not, nor are files that came
+    /// and went in the meantime.
     fn take_note(&mut self, path: &Path) -> bool {
         let print = Print::of(path);
         let mut tell = false;

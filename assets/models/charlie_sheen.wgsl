@@ -3,7 +3,7 @@
     "name": "Charlie sheen",
     "author": "A. C. Estevez, C. Kulla 2017",
     "source": "A. C. Estevez, C. Kulla (2017), Production Friendly Microfacet Sheen BRDF, Sony Pictures Imageworks",
-    "summary": "Velvet and other cloth: fibres stand up, so the surface is bright where it is seen from the side and dark where it is seen from above. The opposite of a highlight.",
+    "summary": "Velvet and other cloth: upright fibres make the surface bright at grazing views and dark at normal ones. The opposite of a highlight.",
     "equation": [
         { "term": "diffuse", "text": "I_d = (1 − w) C_b (N·L)" },
         { "term": "specular", "text": "I_s = w π D C_f/(4 (N·V) (1 + Λ(L) + Λ(V))), D = (2 + 1/r) sin^{1/r} θ_h/(2π)" },
@@ -13,22 +13,22 @@
         "base_colour",
         {
             "name": "fibre_colour", "symbol": "C_f", "label": "fibre colour", "type": "colour",
-            "help": "The colour of the light that the fibres scatter towards the side.",
+            "help": "The colour of the light scattered sideways by the fibres.",
         },
         {
             "name": "sheen_weight", "symbol": "w", "label": "sheen", "type": "number", "default": 0.7,
-            "help": "How much of the surface is covered with fibres; the rest is matt.",
+            "help": "The fraction of the surface covered with fibres; the rest is matte.",
         },
         {
             "name": "sheen_roughness", "symbol": "r", "label": "sheen roughness", "type": "number",
             "min": 0.1, "max": 1, "default": 0.3,
-            "help": "How far the fibres lean over: small for velvet, whose rim is narrow; large for wool.",
+            "help": "The tilt of the fibres: small for velvet, with its narrow rim; large for wool.",
         },
     ],
 }
 */
 
-// The table of the paper for the masking of the distribution, between the softest and the sharpest:
+// The paper's table for the masking of the distribution, between the softest and the sharpest:
 // L(x) = a/(1 + b x^c) + d x + e.
 fn sheen_fit(x: f32, r: f32) -> f32 {
     let sharp = (1.0 - r) * (1.0 - r);
@@ -40,7 +40,7 @@ fn sheen_fit(x: f32, r: f32) -> f32 {
     return a / (1.0 + b * power(x, c)) + d * x + e;
 }
 
-// Λ, mirrored about the cosine 0.5 as the paper does it.
+// Λ, mirrored about the cosine 0.5 as in the paper.
 fn sheen_lambda(cosine: f32, r: f32) -> f32 {
     if cosine < 0.5 {
         return exp(sheen_fit(cosine, r));
@@ -59,7 +59,7 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let r = m.sheen_roughness;
     let d = (2.0 + 1.0 / r) * power(sin_h, 1.0 / r) / (2.0 * PI);
     let seen = 1.0 + sheen_lambda(cos_l, r) + sheen_lambda(cos_v, r);
-    // The guard is for views along the surface, where the highest values are.
+    // The guard is for grazing views, which have the highest values.
     let sheen = PI * d / (4.0 * max(cos_v, 1e-6) * seen);
     return Terms(
         vec3(0.0),

@@ -3,17 +3,17 @@
     "name": "Gooch",
     "author": "A. Gooch et al. 1998",
     "source": "A. Gooch, B. Gooch, P. Shirley, E. Cohen (1998), A Non-Photorealistic Lighting Model for Automatic Technical Illustration, SIGGRAPH 98",
-    "summary": "Drawings in manuals: surfaces go from warm where they face the light to cool where they turn away, so that their shape shows everywhere, also in shadow. Breaks every law but one, on purpose.",
+    "summary": "The look of technical drawings: surfaces shade from warm facing the light to cool facing away, so their shape is visible everywhere, even in shadow. Deliberately breaks every law but one.",
     "equation": [
         { "term": "diffuse", "text": "I_d = t (y C_y + β C_b) + (1 − t)(b C_u + α C_b), t = (1 + N·L)/2" },
     ],
     "laws": ["non-negative"],
     "parameters": [
         "base_colour",
-        { "name": "blue", "symbol": "b", "label": "blue in the shade", "default": 0.4, "help": "How blue the shade is." },
-        { "name": "yellow", "symbol": "y", "label": "yellow in the light", "default": 0.4, "help": "How yellow the lit side is." },
-        { "name": "shade_share", "symbol": "α", "label": "colour in the shade", "default": 0.2, "help": "How much of the base colour is left in the shade." },
-        { "name": "light_share", "symbol": "β", "label": "colour in the light", "default": 0.6, "help": "How much of the base colour is seen in the light." },
+        { "name": "blue", "symbol": "b", "label": "blue in the shade", "default": 0.4, "help": "The amount of blue in the shade." },
+        { "name": "yellow", "symbol": "y", "label": "yellow in the light", "default": 0.4, "help": "The amount of yellow on the lit side." },
+        { "name": "shade_share", "symbol": "α", "label": "colour in the shade", "default": 0.2, "help": "The fraction of the base colour in the shade." },
+        { "name": "light_share", "symbol": "β", "label": "colour in the light", "default": 0.6, "help": "The fraction of the base colour in the light." },
     ],
 }
 */

@@ -1,5 +1,5 @@
-// The light record and the light loop. Which model answers, the loop does not know; which type a
-// light has, only the generated `incident` knows.
+// The light record and the terms of the light loop. The loop does not know the model, and only the
+// generated `incident` knows the types of lights.
 
 // Must equal `MAX_LIGHTS` in src/light/mod.rs (a test compares the layouts).
 const MAX_LIGHTS: u32 = 256u;
@@ -19,7 +19,7 @@ struct Light {
     parameters: vec4<f32>,
 }
 
-// All lights of the scene, and how the picture is to be shown.
+// All lights of the scene, and the display settings.
 struct Illumination {
     count: u32,
     terms: u32,
@@ -28,15 +28,15 @@ struct Illumination {
     lights: array<Light, MAX_LIGHTS>,
 }
 
-// The light that arrives at a point from one light: from the direction l, or, where `everywhere` is
-// not zero, from all directions alike.
+// The light that arrives at a point from one light: from the direction l, or, if `everywhere` is not
+// zero, equally from all directions.
 struct Incident {
     l: vec3<f32>,
     intensity: f32,
     everywhere: u32,
 }
 
-// The terms that are shown, added up.
+// The sum of the visible terms.
 fn select_terms(terms: Terms, selection: u32) -> vec3<f32> {
     switch selection {
         case TERM_AMBIENT: { return terms.ambient; }

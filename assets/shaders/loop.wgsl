@@ -1,8 +1,8 @@
 // The light loop: the colour of a point with a unit normal and a tangent under all lights, linear,
 // before exposure. `illumination`, `parameters` and `observer_position` come from the wrapper.
 fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {
-    // An interpolated normal may turn away from a viewer who sees the surface all the same: the viewer then
-    // counts as mirrored in it, or rims would be black.
+    // An interpolated normal may face away from a viewer who still sees the surface: the viewer is then
+    // mirrored in the surface, or rims would be black.
     let eye = unit_or_zero(observer_position() - position);
     let v = eye - 2.0 * min(dot(normal, eye), 0.0) * normal;
     let frame = frame_new(normal, tangent);

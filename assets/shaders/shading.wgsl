@@ -1,4 +1,4 @@
-// What goes into and out of a shading mode, the twin of `Corner` and `Varying` in src/shading/mod.rs.
+// The inputs and outputs of a shading model, the twin of `Corner` and `Varying` in src/shading/mod.rs.
 
 struct Corner {
     position: vec3<f32>,

@@ -25,7 +25,7 @@ fn frame_from_normal(n: vec3<f32>) -> Frame {
     return Frame(n, vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x), vec3(c, s + n.y * n.y * a, -n.y));
 }
 
-// A direction of the room in the local frame: along tangent, bitangent and normal.
+// A direction of the room in the local frame: components along tangent, bitangent and normal.
 fn to_local(frame: Frame, d: vec3<f32>) -> vec3<f32> {
     return vec3(dot(frame.t, d), dot(frame.b, d), dot(frame.n, d));
 }
@@ -42,13 +42,13 @@ fn frame_new(n: vec3<f32>, tangent: vec3<f32>) -> Frame {
     return frame_from_normal(n);
 }
 
-// The vector at length 1, or zero where it has no direction.
+// The vector normalised, or zero if it has no direction.
 fn unit_or_zero(x: vec3<f32>) -> vec3<f32> {
     let squared = dot(x, x);
     return select(vec3(0.0), x * inverseSqrt(max(squared, 1e-37)), squared > 1e-37);
 }
 
-// x^p for x ≥ 0, with 0^0 = 1 as in the equations; WGSL's pow leaves that undefined.
+// x^p for x ≥ 0, with 0^0 = 1 as in the equations; undefined for WGSL's pow.
 fn power(x: f32, p: f32) -> f32 {
     if p == 0.0 {
         return 1.0;

@@ -3,7 +3,7 @@
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
 
-// The parameters of all objects under the model, with what follows from them; an object's row is its
+// The parameters of all objects with the model, and values derived from them; an object's row is its
 // mesh tag.
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> parameter_table: array<Row>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
@@ -11,7 +11,7 @@
 // The largest half float; the twin of `BRIGHTEST` in src/optics/tone.rs.
 const BRIGHTEST: f32 = 65504.0;
 
-// The parameters of the object that is being drawn.
+// The parameters of the object being drawn.
 var<private> parameters: Parameters;
 var<private> object_row: u32;
 
@@ -49,8 +49,8 @@ fn vertex(in: VertexIn) -> Stages {
     let centre = room_from_local[3].xyz;
     var corner: Corner;
     corner.position = (room_from_local * vec4(in.position, 1.0)).xyz;
-    // Objects are scaled alike in all directions, so normals turn as positions do. A tangent
-    // keeps its length, which says how much it counts between corners.
+    // Objects are scaled uniformly, so normals turn like positions. A tangent keeps its length, which
+    // is its weight in interpolation between corners.
     corner.normal = unit_or_zero((room_from_local * vec4(in.normal, 0.0)).xyz);
     corner.tangent = (room_from_local * vec4(in.tangent, 0.0)).xyz;
 #ifdef FACES
@@ -76,10 +76,10 @@ fn fragment(in: Stages) -> @location(0) vec4<f32> {
     parameters = parameter_table[object_row].parameters;
     let passed = Varying(in.position, in.normal, in.tangent, in.colour, in.offset);
     let light = shade_pixel(passed) * illumination.exposure;
-    // What the target's half floats cannot hold would become infinite, and black when tone mapped.
+    // Values beyond the target's half floats would become infinite, and black in tone mapping.
     let linear = clamp(light, vec3(-BRIGHTEST), vec3(BRIGHTEST));
     if illumination.gamma_naive != 0u {
-        // The display encodes what it gets; decoding first undoes that, and the numbers stand as they are.
+        // The display encodes its input; decoding first undoes that, and the numbers stay unchanged.
         let c = clamp(linear, vec3(0.0), vec3(1.0));
         return vec4(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b), 1.0);
     }

@@ -1,8 +1,8 @@
 # shellcheck shell=bash
-# What the scripts need from the machine: found if it is there, installed on Debian and Ubuntu if not,
-# and named elsewhere. Sourced by scripts/run and scripts/test.
+# Requirements of the scripts: missing ones are installed on Debian and Ubuntu, and listed on other
+# systems. Sourced by scripts/run and scripts/test.
 #
-# LCM_DRY_RUN=1  prints the commands that would install, and does not run them.
+# LCM_DRY_RUN=1  prints the installation commands without running them.
 
 say() {
     printf '%s\n' "$*" >&2
@@ -12,8 +12,8 @@ have() {
     command -v "$1" >/dev/null 2>&1
 }
 
-# Whether the dynamic linker finds a library. Where there is no cache to ask (musl, macOS), the answer
-# is yes: the program itself says what it misses.
+# True if the dynamic linker finds a library, or if there is no cache to ask (musl, macOS): the program
+# itself reports missing libraries.
 have_library() {
     local cache
     have ldconfig || [[ -x /sbin/ldconfig ]] || return 0
@@ -21,7 +21,7 @@ have_library() {
     [[ -z $cache || $cache == *"$1"* ]]
 }
 
-# Whether some Vulkan driver is installed, for hardware or software.
+# True if some Vulkan driver is installed, for hardware or software.
 have_vulkan_driver() {
     local folder
     [[ -n ${VK_ICD_FILENAMES:-}${VK_DRIVER_FILES:-} ]] && return 0
@@ -32,7 +32,7 @@ have_vulkan_driver() {
     return 1
 }
 
-# What is missing: parallel lists of Debian packages and of what each is for.
+# Missing requirements: parallel lists of Debian packages and of their purposes.
 packages=()
 reasons=()
 
@@ -41,7 +41,7 @@ need() {
     reasons+=("$2")
 }
 
-# Looks for what building needs.
+# Looks for the requirements of building.
 look_for_build_tools() {
     if ! have cc; then
         need gcc "a C linker, which Rust uses"
@@ -49,7 +49,7 @@ look_for_build_tools() {
     fi
 }
 
-# Looks for what drawing with Vulkan and opening a window needs. macOS has both.
+# Looks for the requirements of drawing with Vulkan and opening a window. macOS has both.
 look_for_graphics() {
     [[ $(uname -s) == Linux ]] || return 0
     have_library libvulkan.so.1 || need libvulkan1 "the Vulkan loader"
@@ -61,10 +61,10 @@ look_for_graphics() {
     have_library libXrandr.so.2 || need libxrandr2 "the size of screens"
 }
 
-# Looks for a virtual screen, which the test of the window draws on.
+# Looks for a virtual screen, for the tests of the window.
 look_for_virtual_screen() {
     [[ $(uname -s) == Linux ]] || return 0
-    have Xvfb || need xvfb "a virtual screen for the test of the window"
+    have Xvfb || need xvfb "a virtual screen for the tests of the window"
 }
 
 run_or_show() {
@@ -75,12 +75,12 @@ run_or_show() {
     fi
 }
 
-# Installs what is missing, or says what to install.
+# Installs missing packages, or says what to install.
 install_missing() {
     ((${#packages[@]})) || return 0
     local i
     local as_root=()
-    say "This machine lacks:"
+    say "Missing on this machine:"
     for i in "${!packages[@]}"; do
         say "  ${packages[i]}: ${reasons[i]}"
     done
@@ -90,7 +90,7 @@ install_missing() {
     fi
     if ((EUID != 0)); then
         if ! have sudo; then
-            say "Installing needs an administrator, and there is no sudo. As root:"
+            say "Installing needs root, and there is no sudo. As root, run:"
             say "  apt-get install --no-install-recommends ${packages[*]}"
             exit 1
         fi
@@ -102,7 +102,7 @@ install_missing() {
         apt-get install -q -y --no-install-recommends "${packages[@]}"
 }
 
-# The same things under the names of other systems.
+# The same packages under the names of other systems.
 say_elsewhere() {
     if have dnf; then
         say "Fedora: sudo dnf install gcc vulkan-loader mesa-vulkan-drivers libxkbcommon-x11 libX11-xcb \\"
@@ -116,24 +116,24 @@ say_elsewhere() {
     elif [[ $(uname -s) == Darwin ]]; then
         say "macOS: xcode-select --install"
     else
-        say "Please install the equivalents with the package manager of this system."
+        say "Please install the equivalents with your system's package manager."
     fi
-    say "Going on without; what cannot be done is said when it is needed."
+    say "Continuing without; anything that fails for lack of them will say so."
 }
 
-# Rust installs for a user, not for a machine, so installing it is the user's decision.
+# Rust installs per user, not per machine, so installing it is the user's decision.
 require_rust() {
     local cargo_home=${CARGO_HOME:-${HOME:-/root}/.cargo}
     if ! have cargo && [[ -x $cargo_home/bin/cargo ]]; then
         PATH=$cargo_home/bin:$PATH
     fi
     if ! have cargo; then
-        say "Rust is missing. Install it as https://rustup.rs says, then run this again."
+        say "Rust is missing. Install it from https://rustup.rs, then run this again."
         exit 1
     fi
 }
 
-# Programs with windows want a private folder; without one Mesa and the window library complain.
+# Graphical programs expect a private folder; without one Mesa and the window library complain.
 ensure_runtime_folder() {
     if [[ -z ${XDG_RUNTIME_DIR:-} || ! -d ${XDG_RUNTIME_DIR:-} ]]; then
         XDG_RUNTIME_DIR=$(mktemp -d "${TMPDIR:-/tmp}/lcm-runtime.XXXXXX")

@@ -1,23 +1,23 @@
-//! Tables of numbers on standard input: CSV with a header line, every problem with its line. They may be without
-//! end: rows are answered as they come, and neither lines nor problems grow without bound.
+//! Tables of numbers on standard input: CSV with a header line, every problem with its line. Input may be endless: rows
+//! are answered as they come, and neither lines nor problems grow without bound.
 
 use std::io::{BufRead, Read as _};
 
 use super::Outcome;
 use crate::{failure::Failure, parameter::ABOVE_ZERO, scene::load::STDIN, text::quoted};
 
-/// No line is longer, bytes: four numbers, each written out in full, take a fraction of it.
+/// The longest line, in bytes: four numbers, each written out in full, take a fraction of it.
 const MAX_LINE: usize = 4096;
-/// So many rows are answered at a time, or fewer when their text is long.
+/// The rows answered at a time; fewer if their text is long.
 const BATCH_ROWS: usize = 16_384;
-/// No batch has much more text, bytes.
+/// The approximate limit of the text in a batch, in bytes.
 const BATCH_BYTES: usize = 1 << 20;
-/// So many problems are told; of others only how many there are.
-const MAX_TOLD: usize = 20;
-/// Who has made so many mistakes need not wait for the last one.
+/// The most problems listed; the rest are only counted.
+const MAX_LISTED: usize = 20;
+/// After this many problems reading stops.
 const MAX_PROBLEMS: usize = 1_000_000;
 
-/// One line of a table: the text as it was written, and its numbers.
+/// One line of a table: its text and its numbers.
 pub(super) struct Row<const N: usize> {
     /// The columns as written, without white space around them.
     pub text: [String; N],
@@ -25,20 +25,21 @@ pub(super) struct Row<const N: usize> {
     pub numbers: [f64; N],
 }
 
-/// One column: its name, and what is allowed in it.
+/// One column: its name and its legal values.
 pub(super) struct Column {
-    /// As the header must say.
+    /// The name required in the header.
     pub name: &'static str,
     /// Smallest and largest legal value; any finite number if there are none. [`ABOVE_ZERO`] is the
     /// smallest number that is greater than zero.
     pub range: Option<(f64, f64)>,
 }
 
-/// Reads a table and has its rows answered in batches, in order; the last one may be empty. Once there is a problem
-/// nothing more is answered, but the rest is read for others. A table whose first batch has one gives no answer.
+/// Reads a table and answers its rows in batches, in order; the last one may be empty. After the first problem nothing
+/// more is answered, but the rest is read to find other problems. A table with a problem in its first batch gives no
+/// answer.
 ///
 /// # Errors
-/// Everything that is wrong with the table, or what went wrong with an answer.
+/// Everything that is wrong with the table, or the failure of an answer.
 pub(super) fn stream<const N: usize>(
     input: impl BufRead,
     columns: &[Column; N],
@@ -55,7 +56,7 @@ pub(super) fn stream<const N: usize>(
             continue;
         }
         bytes += line.len();
-        // What was found before is kept as long as all is well.
+        // Earlier rows are kept only while there are no problems.
         match table.row(&line) {
             Some(row) if table.problems.count == 0 => batch.push(row),
             _ => batch.clear(),
@@ -72,30 +73,30 @@ pub(super) fn stream<const N: usize>(
     answer(&batch)
 }
 
-/// What is wrong with a table: the first problems, and how many there are.
+/// The problems of a table: the first ones, and the number of all.
 #[derive(Default)]
 struct Problems {
-    told: Vec<String>,
+    listed: Vec<String>,
     count: usize,
 }
 
 impl Problems {
     fn add(&mut self, problem: String) {
         self.count += 1;
-        if self.told.len() < MAX_TOLD {
-            self.told.push(problem);
+        if self.listed.len() < MAX_LISTED {
+            self.listed.push(problem);
         }
     }
 
     /// All in one, a line each.
     fn failure(&self) -> Failure {
-        let mut lines = self.told.clone();
+        let mut lines = self.listed.clone();
         match self.count - lines.len() {
             0 => {}
-            1 => lines.push(format!("{STDIN}: there is 1 more problem")),
+            1 => lines.push(format!("{STDIN}: 1 more problem")),
             more => {
                 let least = if self.count < MAX_PROBLEMS { "" } else { "at least " };
-                lines.push(format!("{STDIN}: there are {least}{more} more problems"));
+                lines.push(format!("{STDIN}: {least}{more} more problems"));
             }
         }
         Failure::Invalid(lines.join("\n"))
@@ -106,9 +107,9 @@ impl Problems {
 struct Table<'a, R, const N: usize> {
     input: R,
     columns: &'a [Column; N],
-    /// The lines that were read.
+    /// The number of lines read.
     lines: usize,
-    /// Their bytes.
+    /// Their size in bytes.
     bytes: usize,
     problems: Problems,
 }
@@ -118,13 +119,13 @@ impl<'a, R: BufRead, const N: usize> Table<'a, R, N> {
         Self { input, columns, lines: 0, bytes: 0, problems: Problems::default() }
     }
 
-    /// A problem after which nothing can be understood, and those before it.
+    /// A problem that ends reading, after those before it.
     fn give_up(&mut self, problem: String) -> Failure {
         self.problems.add(problem);
         self.problems.failure()
     }
 
-    /// The next line, with its end.
+    /// The next line, with its line end.
     fn line(&mut self) -> Result<Option<String>, Failure> {
         let mut line = Vec::new();
         if let Err(e) = (&mut self.input).take(MAX_LINE as u64 + 1).read_until(b'\n', &mut line) {
@@ -137,14 +138,14 @@ impl<'a, R: BufRead, const N: usize> Table<'a, R, N> {
         if line.len() > MAX_LINE {
             let number = self.lines;
             return Err(self.give_up(format!(
-                "{STDIN}:{number}: the line is longer than {MAX_LINE} bytes, which no row of numbers is"
+                "{STDIN}:{number}: the line is longer than {MAX_LINE} bytes, too long for a row of numbers"
             )));
         }
         let begin = self.bytes;
         self.bytes += line.len();
         String::from_utf8(line).map(Some).map_err(|e| {
             let at = begin + e.utf8_error().valid_up_to();
-            self.give_up(format!("{STDIN}: not UTF-8 text from byte {at} on"))
+            self.give_up(format!("{STDIN}: not UTF-8 at byte {at}"))
         })
     }
 
@@ -169,7 +170,7 @@ impl<'a, R: BufRead, const N: usize> Table<'a, R, N> {
         Err(self.give_up(format!("{STDIN}:1: the header is {}, but it must be {header}", quoted(first))))
     }
 
-    /// The row in a line, if it is one.
+    /// The row in a line, if it is valid.
     fn row(&mut self, line: &str) -> Option<Row<N>> {
         let number = self.lines;
         let cells: Vec<_> = line.split(',').map(|cell| cell.trim().to_owned()).collect();
@@ -302,19 +303,19 @@ mod tests {
     #[test]
     fn problems_and_lines_are_bounded() {
         let problems = parse(&format!("a,b\n{}", "x,1\n".repeat(25)), &COLUMNS).err().unwrap_or_default();
-        assert_eq!(problems.len(), MAX_TOLD + 1);
-        assert_eq!(problems[MAX_TOLD], "standard input: there are 5 more problems");
+        assert_eq!(problems.len(), MAX_LISTED + 1);
+        assert_eq!(problems[MAX_LISTED], "standard input: 5 more problems");
         let problems = parse(&format!("a,b\n{}", "x,1\n".repeat(21)), &COLUMNS).err().unwrap_or_default();
-        assert_eq!(problems[MAX_TOLD], "standard input: there is 1 more problem");
+        assert_eq!(problems[MAX_LISTED], "standard input: 1 more problem");
         let long = format!("a,b\n1,{}\n", "0".repeat(MAX_LINE));
         let problems = parse(&long, &COLUMNS).err().unwrap_or_default();
         assert_eq!(
             problems,
-            ["standard input:2: the line is longer than 4096 bytes, which no row of numbers is"]
+            ["standard input:2: the line is longer than 4096 bytes, too long for a row of numbers"]
         );
         let fits = format!("a,b\n1,{}\n", "0".repeat(MAX_LINE - 3));
         assert!(parse(&fits, &COLUMNS).is_ok());
-        // Problems from before are told too.
+        // Earlier problems are listed too.
         let both =
             parse(&format!("a,b\nx,1\n1,{}", "0".repeat(MAX_LINE)), &COLUMNS).err().unwrap_or_default();
         assert_eq!(both.len(), 2, "{both:?}");

@@ -1,4 +1,4 @@
-//! `lcm assets`: copies of the built-in shaders and of the example models, to edit.
+//! `lcm assets`: copies of the built-in shaders and of the example models for editing.
 
 use std::path::PathBuf;
 
@@ -9,10 +9,10 @@ use crate::{failure::Failure, library::assets, registry::Registry};
 
 #[derive(Subcommand, Debug)]
 pub(super) enum Command {
-    /// Write the built-in shaders to FOLDER/shaders and the example models to FOLDER/models; files that are there
-    /// and differ are left alone
+    /// Write the built-in shaders to FOLDER/shaders and the example models to FOLDER/models; existing files that differ
+    /// are kept
     Export {
-        /// The folder; it is made if it is not there
+        /// Destination folder; created if it does not exist
         folder: PathBuf,
     },
 }
@@ -22,10 +22,10 @@ pub(super) fn run(command: &Command, options: Options, registry: &Registry) -> O
     let exported = assets::export(folder, registry).map_err(|e| Failure::Write(e.to_string()))?;
     print_paths(exported.written.iter().map(PathBuf::as_path))?;
     for path in &exported.kept {
-        complain(format_args!("{} differs from the built-in one; it was left alone", path.display()));
+        complain(format_args!("{} differs from the built-in file and was kept", path.display()));
     }
     options.tell(format_args!(
-        "wrote {} files, {} were there already; lcm view --assets {} shows what you change in them",
+        "wrote {} files, {} already existed; run lcm view --assets {} and edit them",
         exported.written.len(),
         exported.same + exported.kept.len(),
         folder.display()

@@ -1,4 +1,4 @@
-//! `lcm check`: everything that is wrong with scenes.
+//! `lcm check`: all problems of scenes.
 
 use std::{fmt::Write as _, path::PathBuf};
 
@@ -13,7 +13,7 @@ use crate::{
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// The scenes; - is standard input
+    /// Scene files; `-` is standard input
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     /// Print the result as JSON
@@ -30,13 +30,13 @@ struct Report {
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
-    // A check does not ask: what is missing is a finding, unless defaults are welcome.
+    // A check asks no questions: missing parts are problems, unless `--use-defaults` is given.
     let defaults = match options.defaults() {
         Defaults::Ask => Defaults::Refuse,
         answered => answered,
     };
     let mut reports = Vec::new();
-    let mut told = String::new();
+    let mut listed = String::new();
     let mut invalid = 0;
     for path in &arguments.scenes {
         let source = Source::of(Some(path));
@@ -46,7 +46,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
                 let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
                 // Writing to a String cannot fail.
                 let _ = writeln!(
-                    told,
+                    listed,
                     "{}: valid: {}, {}",
                     source.name(),
                     counted(loaded.scene.lights.len(), "light"),
@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
         print(&format!("{json}\n"))?;
     } else if !options.quiet {
-        print_text(&told)?;
+        print_text(&listed)?;
     }
     match invalid {
         0 => Ok(()),

@@ -44,33 +44,31 @@ pub(super) fn duplicate(id: &str, name: Option<&str>, options: Options, places: 
     write(&copy, &text, options, places)
 }
 
-/// The id of a model that is to be called by a name.
+/// The id of a model with a given name.
 fn id_of(name: &str) -> Result<String, Failure> {
     custom::id_of_name(name).map_err(|rule| Failure::Usage(format!("NAME is {}, but {rule}", quoted(name))))
 }
 
-/// Writes a new file for a custom model, and says what to do with it.
+/// Writes a new file for a custom model, and suggests the next steps.
 fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
     if Registry::builtin().model(id).is_some() {
         return Err(Failure::Usage(format!("{id} is the id of a built-in model; choose another name")));
     }
     let Some(folder) = places.folders()?.models else {
-        return Err(Failure::Usage(
-            "there is no folder for custom models; name one: --models FOLDER".to_owned(),
-        ));
+        return Err(Failure::Usage("there is no folder for custom models; use --models FOLDER".to_owned()));
     };
     let path: PathBuf = folder.join(format!("{id}.{}", custom::EXTENSION));
     write_new(&path, text).map_err(|e| match e.kind() {
         io::ErrorKind::AlreadyExists => {
-            Failure::Write(format!("{} is there already; it was left alone", path.display()))
+            Failure::Write(format!("{} already exists and was kept", path.display()))
         }
         _ => Failure::Write(format!("{} could not be written: {e}", path.display())),
     })?;
     print_paths([path.as_path()])?;
     let flags = places.flags();
     options.tell(format_args!(
-        "Edit this file; scenes name the model \"{id}\". `lcm render --reflection {id}{flags}` shows it, \
-         `lcm models check {id}{flags}` tests the laws that it claims."
+        "Edit this file; its id in scenes is \"{id}\". `lcm render --reflection {id}{flags}` shows it, \
+         `lcm models check {id}{flags}` tests the laws that it claims to keep."
     ));
     Ok(())
 }
@@ -80,8 +78,8 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
     workshop.need(id);
     let registry = &workshop.registry;
     if registry.broken_model(id).is_some() {
-        // What is wrong with it is told already.
-        return Err(Failure::Invalid(format!("{id} was not checked: its file has a mistake")));
+        // Its problems are printed already.
+        return Err(Failure::Invalid(format!("{id} was not checked: its file has errors")));
     }
     let model = find(registry, id)?;
     valid(registry, model)?;

@@ -25,14 +25,14 @@ use crate::{
     text::{nearest, quoted},
 };
 
-/// A model with its parameters, and who is asked about it.
+/// A model with its parameters, and the machine that evaluates it.
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// The id of the model, as `lcm models` lists it
+    /// ID of the model, as listed by `lcm models`
     pub model: String,
     #[command(flatten)]
     pub set: Settings,
-    /// What evaluates the model
+    /// Evaluate on the CPU or on the GPU
     #[arg(long, value_enum, default_value_t = Machine::Cpu)]
     pub on: Machine,
 }
@@ -40,22 +40,22 @@ pub(super) struct Arguments {
 /// Parameters of a model on the command line.
 #[derive(Args, Debug)]
 pub(super) struct Settings {
-    /// Set a parameter of the model, e.g. k_d=0.7 or base_colour=255,128,0; can be repeated
+    /// Set a parameter of the model, such as k_d=0.7 or base_colour=255,128,0; can be repeated
     #[arg(long = "set", value_name = "NAME=VALUE")]
     settings: Vec<Setting>,
 }
 
-/// Who evaluates a model.
+/// The machine that evaluates a model.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum Machine {
-    /// The Rust functions; the WGSL of custom models, interpreted
+    /// Rust functions, or the interpreted WGSL of a custom model
     Cpu,
-    /// The WGSL functions, in a compute pass; software Vulkan will do
+    /// WGSL functions in a compute shader; software Vulkan suffices
     Gpu,
 }
 
 impl Machine {
-    /// True if it can run a model, or could when it last tried.
+    /// True if it can run a model, or could at the last attempt.
     pub(super) fn can_run(self, model: &ModelEntry) -> Outcome {
         match (self, model.not_on_cpu()) {
             (Self::Cpu, Some(why)) => Err(not_on_cpu(model, &why, "--on gpu")),
@@ -64,15 +64,15 @@ impl Machine {
     }
 }
 
-/// A machine that is ready to answer for a model with its parameters.
+/// A machine ready to evaluate a model with its parameters.
 pub(super) enum Started<'a> {
-    /// With the surface that answers.
+    /// With the surface to evaluate.
     Cpu(Arc<dyn Surface>),
-    /// With what it needs to begin.
+    /// With everything it needs to start.
     Gpu(Box<Gpu<'a>>),
 }
 
-/// A GPU that begins to work when it is first asked.
+/// A GPU that starts at the first question.
 pub(super) struct Gpu<'a> {
     registry: &'a Registry,
     model: &'a ModelEntry,
@@ -95,7 +95,7 @@ impl Gpu<'_> {
 }
 
 impl Machine {
-    /// Makes it ready.
+    /// Prepares it.
     pub(super) fn start<'a>(
         self,
         registry: &'a Registry,
@@ -125,7 +125,7 @@ impl FromStr for Setting {
     }
 }
 
-/// The columns that are read. Angles beyond 90° are below the surface, where the BRDF is 0.
+/// The input columns. Angles beyond 90° are below the surface, where the BRDF is 0.
 const COLUMNS: [Column; 4] = [
     Column { name: "theta_i", range: Some((0.0, 180.0)) },
     Column { name: "phi_i", range: None },
@@ -178,7 +178,7 @@ impl Answers {
         Self { out: BufWriter::new(io::stdout().lock()), header: Some(header) }
     }
 
-    /// Adds rows: what was asked, and the answer.
+    /// Adds rows: input and answer.
     pub(super) fn write(&mut self, rows: impl Iterator<Item = (String, Vec3)>) -> Outcome {
         if let Some(header) = self.header.take() {
             writeln!(self.out, "{header}")?;
@@ -186,17 +186,17 @@ impl Answers {
         for (asked, answer) in rows {
             writeln!(self.out, "{asked},{},{},{}", answer.x, answer.y, answer.z)?;
         }
-        // Whoever waits for a batch gets it.
+        // A reader may be waiting for the batch.
         Ok(self.out.flush()?)
     }
 
-    /// That was all.
+    /// Finishes the output.
     pub(super) fn finish(mut self) -> Outcome {
         self.write(std::iter::empty())
     }
 }
 
-/// The model of that id.
+/// The model with a given id.
 pub(super) fn find<'a>(registry: &'a Registry, id: &str) -> Result<&'a ModelEntry, Failure> {
     check::reflection_model(registry, id)
         .map_err(|rule| Failure::Usage(format!("MODEL is {}, but {rule}", quoted(id))))?;
@@ -239,7 +239,7 @@ fn setting(model: &ModelEntry, name: &str, written: &str) -> Result<(&'static st
         .map_err(|rule| format!("--set {name}={written}: {name} is {written}, but {rule}"))
 }
 
-/// A value as the command line writes it.
+/// A value in the syntax of the command line.
 fn parse(parameter: &Parameter, written: &str) -> Option<Value> {
     match parameter.kind {
         ParameterKind::Number { .. } => written.parse().ok().map(Value::Number),

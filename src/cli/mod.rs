@@ -1,8 +1,7 @@
-//! The command line: what `lcm` understands, and how it answers.
+//! The command line: parsing, and the commands themselves.
 //!
-//! Results go to standard output, errors to standard error, one line each. The exit status says what
-//! kind of error it was: see [`Failure`]. Nothing heavy happens here: a renderer or a window is started
-//! by the command that needs it.
+//! Results go to standard output, errors to standard error, one line each. The exit status gives the kind of error: see
+//! [`Failure`]. Nothing heavy happens here: a command starts the renderer or window that it needs.
 
 use crate::{failure::Failure, files::printable, registry::Registry, scene::load::Defaults};
 use std::{
@@ -35,9 +34,9 @@ mod trial;
 mod view;
 mod workshop;
 
-/// A laboratory for the equations that light a surface: see, compare, edit and trust reflection models.
+/// A laboratory for the equations that light a surface: see, compare, edit and test reflection models.
 ///
-/// Without a command, opens the window; without a scene, the default scene.
+/// Without a command, opens the window; without a scene, shows the default scene.
 #[derive(Parser, Debug)]
 #[command(name = "lcm", version, override_usage = USAGE, after_help = EXIT_STATUS)]
 struct Cli {
@@ -62,29 +61,30 @@ impl Cli {
 
 /// With or without a command.
 const USAGE: &str = "lcm [OPTIONS] [SCENE]\n       lcm [OPTIONS] <COMMAND>";
-/// Explained below the help.
-const EXIT_STATUS: &str = "Exit status: 0 done; 1 a scene or an input is invalid; 2 wrong usage; \
-                           3 no renderer or no display; 4 could not write; 128 + n ended by signal n (Ctrl+C: 130).";
+/// Printed below the help.
+const EXIT_STATUS: &str = "Exit status: 0 success; 1 a scene or an input is invalid; 2 wrong usage; \
+                           3 no renderer or no display; 4 a result could not be written; \
+                           128 + n ended by signal n (130 for Ctrl+C).";
 
-/// What holds for every command.
+/// Options of every command.
 #[derive(Args, Clone, Copy, Debug)]
 struct Options {
-    /// Use the defaults when a scene lacks scene size, reflection model or shading model
+    /// Use defaults for a missing scene size, reflection model or shading model, without asking
     #[arg(long, global = true, conflicts_with = "no_defaults")]
     use_defaults: bool,
-    /// Refuse a scene that lacks scene size, reflection model or shading model
+    /// Reject scenes without scene size, reflection model or shading model, without asking
     #[arg(long, global = true)]
     no_defaults: bool,
-    /// Say nothing but results and errors
+    /// Print only results and errors
     #[arg(long, short, global = true, conflicts_with = "verbose")]
     quiet: bool,
-    /// Say more of what is done
+    /// Print details of what is done
     #[arg(long, short, global = true)]
     verbose: bool,
 }
 
 impl Options {
-    /// The answer to missing parts, as far as the flags give one.
+    /// The answer of the flags to missing parts, if they give one.
     fn defaults(self) -> Defaults {
         match (self.use_defaults, self.no_defaults) {
             (true, _) => Defaults::Use,
@@ -93,14 +93,14 @@ impl Options {
         }
     }
 
-    /// Tells of something that was done, unless the user wants quiet.
+    /// Reports a step, unless `--quiet` is given.
     fn tell(self, what: impl fmt::Display) {
         if !self.quiet {
             complain(what);
         }
     }
 
-    /// Tells of a detail, if the user wants details.
+    /// Reports a detail, if `--verbose` is given.
     fn detail(self, what: impl fmt::Display) {
         if self.verbose {
             complain(what);
@@ -110,32 +110,36 @@ impl Options {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Open the window (what `lcm` alone does too)
+    /// Open the window (same as `lcm` alone)
     View(view::Arguments),
     /// Render scenes to PNG files
     Render(render::Arguments),
-    /// Check scenes and print everything that is wrong with them
+    /// Check scenes and print every problem
     Check(check::Arguments),
     /// Write the default scene to a new file
     New {
-        /// The file to write
+        /// File to write; it must not exist yet
         file: PathBuf,
     },
-    /// List the reflection models with their laws and parameters, or write and check own ones
+    /// List the reflection models with their laws and parameters; write and check custom models
     Models(models::Arguments),
-    /// Copy the built-in shaders and the example models to a folder, to edit them there
+    /// Copy the built-in shaders and example models to a folder for editing
     #[command(subcommand)]
     Assets(assets::Command),
-    /// Evaluate the BRDF of a model: angles from standard input, values to standard output, as CSV
+    /// Print the BRDF (the reflectance by direction) of a model at given angles, as CSV
     ///
-    /// Reads the columns theta_i, phi_i, theta_o, phi_o: degrees from the normal and around it from the tangent, to
-    /// the light (i) and to the observer (o). Writes them with f_r, f_g, f_b: the BRDF in 1/sr without the cosine,
-    /// diffuse and specular; 0 beyond 90°.
+    /// Reads CSV from standard input, with the columns theta_i, phi_i, theta_o, phi_o: the directions to the light (i)
+    /// and to the observer (o) in degrees, theta from the normal and phi around it from the tangent. Adds the columns
+    /// f_r, f_g, f_b: the red, green and blue BRDF in 1/sr, diffuse and specular without the cosine; 0 below the
+    /// surface (theta beyond 90°).
     Evaluate(evaluate::Arguments),
-    /// Compare Blinn–Phong with physically based models: four phenomena as a report with numbers
+    /// Compare Blinn–Phong with physically based models: a report on four phenomena, with numbers
     Study(study::Arguments),
-    /// Integrate a model: cosines of the view, `mu`, above 0 up to 1, from standard input, its directional
-    /// albedos to standard output, as CSV; of an anisotropic model as seen along the tangent
+    /// Print the directional albedo of a model at given viewing angles, as CSV
+    ///
+    /// Reads CSV from standard input, with the column mu: the cosine of the angle between the normal and the view,
+    /// above 0 and at most 1. Adds the columns e_r, e_g, e_b: the directional albedo, the fraction of uniform light
+    /// that the surface sends to the observer. Anisotropic models are seen along the tangent.
     Albedo(evaluate::Arguments),
     /// Print the JSON Schema of scene files
     Schema,
@@ -144,7 +148,7 @@ enum Command {
     TryShaders,
 }
 
-/// What a command does.
+/// The result of a command.
 type Outcome = Result<(), Failure>;
 
 /// Runs the command line of this process.
@@ -172,26 +176,26 @@ pub fn main() -> ExitCode {
     ended(run(cli))
 }
 
-/// Tells of a failure, and gives the exit status.
+/// Prints a failure, and returns the exit status.
 fn ended(outcome: Outcome) -> ExitCode {
     let Err(failure) = outcome else { return ExitCode::SUCCESS };
     match &failure {
         Failure::Closed => {}
         Failure::Usage(what) => complain(format_args!("error: {what}")),
-        // The problems are told already, as a result.
+        // The problems are already printed as a result.
         Failure::Invalid(what) if what.is_empty() => {}
         Failure::Invalid(what) | Failure::NoRenderer(what) | Failure::Write(what) => complain(what),
     }
     ExitCode::from(failure.status())
 }
 
-/// Tells of a mistake that clap found, in its colours unless it repeats what a terminal would obey.
+/// Prints a usage error found by clap, in its colours unless it repeats control characters.
 fn misunderstood(error: &clap::Error) {
     let odd = std::env::args_os().any(|word| printable(&word.to_string_lossy()) != word.to_string_lossy());
     if odd {
         complain(error.render().to_string().trim_end());
     } else {
-        // Nobody is left to tell if this fails.
+        // If this fails, there is nobody left to inform.
         let _ = error.print();
     }
 }
@@ -199,7 +203,7 @@ fn misunderstood(error: &clap::Error) {
 fn run(cli: Cli) -> Outcome {
     let options = cli.options;
     if let Some(stray) = cli.view.given().filter(|_| cli.command.is_some()) {
-        return Err(Failure::Usage(format!("{stray} stands before the command; write it behind")));
+        return Err(Failure::Usage(format!("{stray} must come after the command")));
     }
     let places = &cli.places;
     match cli.command {
@@ -218,30 +222,30 @@ fn run(cli: Cli) -> Outcome {
     }
 }
 
-/// Writes a result for people to standard output, without what a terminal would obey.
+/// Prints a result for people to standard output, control characters escaped.
 fn print_text(text: &str) -> Outcome {
     print(&printable(text))
 }
 
-/// Writes paths to standard output, a line each: as they are for programs, fit to be shown for people.
+/// Prints paths to standard output, a line each: unchanged for programs, printable for people.
 fn print_paths<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Outcome {
     let lines: String = paths.into_iter().map(|path| format!("{}\n", path.display())).collect();
     if io::stdout().is_terminal() { print_text(&lines) } else { print(&lines) }
 }
 
-/// Writes a result for programs to standard output.
+/// Prints a result for programs to standard output.
 fn print(text: &str) -> Outcome {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes())?;
     Ok(out.flush()?)
 }
 
-/// Writes a line to standard error, without what a terminal would obey. That nobody reads it is no reason to panic.
+/// Prints a line to standard error, control characters escaped. A missing reader is no reason to panic.
 fn complain(what: impl fmt::Display) {
     let _ = writeln!(io::stderr().lock(), "{}", printable(&what.to_string()));
 }
 
-/// A bar of so many steps where it helps: several of them, a terminal, and nobody who wants quiet.
+/// A progress bar if it helps: several steps, a terminal, and no `--quiet`.
 fn progress(steps: u64, options: Options) -> ProgressBar {
     if steps < 2 || options.quiet || !io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -253,7 +257,7 @@ fn progress(steps: u64, options: Options) -> ProgressBar {
     bar
 }
 
-/// Asks a yes-or-no question on the terminal; no terminal, no yes. Anything but y or yes is a no.
+/// Asks a yes-or-no question on the terminal; `None` without a terminal. Anything but y or yes is a no.
 fn ask(question: &str) -> Option<bool> {
     if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return None;

@@ -1,4 +1,4 @@
-//! `lcm models`: what there is to choose from.
+//! `lcm models`: the reflection models.
 
 use super::{Options, Outcome, custom, print, print_text, workshop::Places};
 use crate::{
@@ -18,28 +18,28 @@ use clap::{Args, Subcommand};
 pub(super) struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
-    /// As JSON
+    /// Print the list as JSON
     #[arg(long)]
     json: bool,
 }
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Write a commented file for a custom model to start from
+    /// Write a commented file as a start for a custom model
     New {
-        /// What the model is to be called; its id and the name of the file follow
+        /// Name of the model; its id and file name follow from it
         name: String,
     },
-    /// Write a model that there is as a file: the same picture, the same knobs
+    /// Copy an existing model to a file: same picture, same parameters
     Duplicate {
-        /// The id of the model, as `lcm models` lists it
+        /// ID of the model, as listed by `lcm models`
         id: String,
-        /// What the copy is to be called; without it, the id with _copy
+        /// Name of the copy; by default, the id with _copy appended
         name: Option<String>,
     },
-    /// Try to find the laws that a model claims broken, on the GPU; software Vulkan will do
+    /// Search for violations of the laws that a model claims to keep, on the GPU; software Vulkan suffices
     Check {
-        /// The id of the model, as `lcm models` lists it
+        /// ID of the model, as listed by `lcm models`
         id: String,
         /// Print the result as JSON
         #[arg(long)]
@@ -64,7 +64,7 @@ fn list(as_json: bool, registry: &Registry) -> Outcome {
     print_text(&table(registry))
 }
 
-/// A model as programs read it.
+/// A model as shown to programs.
 fn model(entry: &ModelEntry, registry: &Registry) -> Json {
     let d = entry.declaration;
     let laws = |kept: bool| -> Vec<_> {
@@ -95,7 +95,7 @@ fn model(entry: &ModelEntry, registry: &Registry) -> Json {
     json
 }
 
-/// A parameter as programs read it.
+/// A parameter as shown to programs.
 fn parameter(p: &Parameter) -> Json {
     let mut json = json!({
         "name": p.name,
@@ -138,7 +138,7 @@ fn parameter(p: &Parameter) -> Json {
     json
 }
 
-/// The models as people read them.
+/// The models as shown to people.
 fn table(registry: &Registry) -> String {
     let mut text = String::new();
     let longest = |of: fn(&ModelEntry) -> &str| {

@@ -1,4 +1,4 @@
-//! `lcm new`: the default scene as a file to start from.
+//! `lcm new`: the default scene as a new file.
 
 use std::path::Path;
 

@@ -38,26 +38,26 @@ use crate::{
     text::quoted,
 };
 
-/// Of so many objects the model is tried on the CPU before the GPU draws it.
+/// From this many objects on, the model is tried on the CPU before the GPU draws it.
 const MOST_TRIED: usize = 64;
-/// Where pictures go when nothing else is said (CA `RENDERS_DIR`).
+/// The default folder for pictures (CA `RENDERS_DIR`).
 const RENDERS_DIR: &str = "renders";
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// The scenes; - is standard input; none is the default scene
+    /// Scene files; `-` is standard input; without any, the default scene
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
-    /// The PNG file, or the folder for renders of several scenes
+    /// PNG file, or folder for the pictures of several scenes; by default the folder renders
     #[arg(long, short, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
-    /// The size of the picture in pixels
+    /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: Size,
-    /// Who renders: `auto` is a hardware GPU if there is one, and the CPU otherwise
+    /// Render on the GPU or on the CPU
     #[arg(long, value_enum, default_value_t = Renderer::Auto)]
     renderer: Renderer,
-    /// Samples per pixel
+    /// Samples per pixel: 1, or 4 for smooth edges
     #[arg(long, default_value = "4", value_parser = samples)]
     samples: u32,
     /// Use this reflection model for every object
@@ -67,25 +67,25 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "ID")]
     shading: Option<String>,
     #[arg(long, value_name = "NAME", help = format!(
-        "Use this tone mapping: {}", crate::text::listed(&ToneMapping::ALL.map(ToneMapping::id), "or")
+        "Use this tone mapping instead of the scene's: {}", crate::text::listed(&ToneMapping::ALL.map(ToneMapping::id), "or")
     ))]
     tone_mapping: Option<String>,
-    /// Use this exposure
+    /// Use this exposure in EV instead of the scene's; each step up doubles the light
     #[arg(long, value_name = "EV", allow_hyphen_values = true)]
     exposure: Option<f32>,
-    /// Show one term of the equation alone
+    /// Show only one term of the reflection model's equation
     #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
     term: TermSelection,
 }
 
-/// Who renders.
+/// The choice of renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Renderer {
-    /// A hardware GPU if there is one, and the CPU otherwise
+    /// A hardware GPU if there is one, otherwise the CPU
     Auto,
     /// The GPU, software Vulkan included
     Gpu,
-    /// Our own CPU code
+    /// The program's own CPU renderer; needs no driver
     Cpu,
 }
 
@@ -96,7 +96,7 @@ pub(super) struct Size {
     pub(super) height: u32,
 }
 
-/// The longest side of a picture, pixels: what graphics hardware commonly draws.
+/// The longest side of a picture in pixels: the usual limit of GPUs.
 const MAX_SIDE: u32 = 16_384;
 
 impl FromStr for Size {
@@ -129,7 +129,7 @@ fn term(text: &str) -> Result<TermSelection, String> {
     })
 }
 
-/// One picture to make.
+/// One picture to render.
 pub(super) struct Job<'a> {
     pub(super) scene: &'a Scene,
     pub(super) source: &'a Source,
@@ -154,7 +154,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let changes = Changes::new(arguments, &workshop.registry)?;
     let files = files(&sources, arguments.output.as_deref())?;
 
-    // All scenes are read before the first is rendered: what is wrong with the last one is said at once.
+    // All scenes are read before the first is rendered, so errors in the last one show at once.
     let mut scenes = Vec::with_capacity(sources.len());
     let mut problems = Vec::new();
     for source in &sources {
@@ -169,7 +169,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
 
     let registry = &workshop.registry;
-    // By now it knows the files of models and shaders that are read.
+    // By now the registry knows the files of models and shaders.
     let read = inputs(sources.iter().filter_map(Source::file), registry);
     files.iter().try_for_each(|file| outputs::picture(file, &read))?;
     for scene in &scenes {
@@ -184,7 +184,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if !passed.is_empty() {
         let passed: Vec<_> = passed.iter().map(String::as_str).collect();
         options.tell(format_args!(
-            "the CPU renderer does not follow the edited {}; --renderer gpu does",
+            "the CPU renderer ignores the edited {}; --renderer gpu uses the edits",
             crate::text::listed(&passed, "and")
         ));
     }
@@ -193,7 +193,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
         if let Some(folder) = folder {
             fs::create_dir_all(folder).map_err(|e| {
-                Failure::Write(format!("the folder {} could not be made: {e}", folder.display()))
+                Failure::Write(format!("the folder {} could not be created: {e}", folder.display()))
             })?;
         }
         let Size { width, height } = arguments.size;
@@ -212,7 +212,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     Ok(())
 }
 
-/// Makes pictures, one after the other, with the renderer that was asked for.
+/// Renders pictures, one after the other, with the chosen renderer.
 struct Painter {
     renderer: Renderer,
     gpu: bool,
@@ -228,19 +228,19 @@ impl Painter {
                 find_adapter().map_err(|e| Failure::NoRenderer(e.to_string()))?;
                 true
             }
-            // Asking the driver takes longer than drawing a picture; the device nodes tell at once that
-            // there is nothing to ask.
+            // Querying the driver takes longer than rendering a picture; the device nodes show at once that there is no
+            // GPU.
             Renderer::Auto => may_have_hardware() && find_adapter().is_ok_and(|a| !a.software),
         };
         Ok(Self { renderer, gpu, last: None })
     }
 
-    /// True if the GPU draws a scene.
+    /// True if the GPU renders a scene.
     fn takes_gpu(&self, scene: &Scene, registry: &Registry) -> bool {
         self.gpu || self.renderer == Renderer::Auto && cpu_can_draw(scene, registry).is_err()
     }
 
-    /// Makes one picture.
+    /// Renders one picture.
     fn draw(&mut self, job: &Job, registry: &Registry) -> Outcome {
         let gpu = self.takes_gpu(job.scene, registry);
         let rgb8 = if gpu { self.on_gpu(job, registry)? } else { on_cpu(job, registry)? };
@@ -265,7 +265,7 @@ impl Painter {
             GpuError::Invalid(_) | GpuError::Endless(_) => e.into(),
             e => Failure::NoRenderer(format!("{}: {e}", job.file.display())),
         };
-        // Nothing stops a loop without end on a GPU.
+        // Nothing stops an endless loop on a GPU.
         for object in job.scene.objects.iter().take(MOST_TRIED) {
             if let Some(model) = registry.model(job.scene.model_of(object)) {
                 check_that_it_ends(model, &object.material, Encoding::Srgb).map_err(|e| failed(e.into()))?;
@@ -294,7 +294,7 @@ impl Painter {
     }
 }
 
-/// Has shaders that a user wrote tried in another process, for a driver may not survive them.
+/// Tries the user's shaders in another process, since a driver may not survive them.
 fn try_apart(app: &mut App, registry: &Registry) {
     if registry.sources().edited().next().is_some()
         && let Some(program) = super::trial::program()
@@ -309,11 +309,11 @@ fn on_cpu(job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
     let settings =
         reference::Settings { width: job.width, height: job.height, samples: job.samples, terms: job.terms };
     let rgb8 = reference::render_rgb8(job.scene, registry, &settings);
-    // That a function has no end shows when it is run.
+    // An endless function shows only when it runs.
     cpu_can_draw(job.scene, registry).map(|()| rgb8)
 }
 
-/// True if the CPU renderer knows all that the models of a scene do, as far as one can tell.
+/// Fails if the CPU renderer is known to lack something that a scene's models need.
 fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
     for model in scene.objects.iter().filter_map(|o| registry.model(scene.model_of(o))) {
         if let Some(why) = model.not_on_cpu() {
@@ -323,7 +323,7 @@ fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
     Ok(())
 }
 
-/// What the command line changes in every scene.
+/// Changes from the command line to every scene.
 struct Changes {
     reflection: Option<String>,
     shading: Option<String>,
@@ -360,8 +360,8 @@ impl Changes {
         })
     }
 
-    /// The scene with the changes. A model on the command line is for every object, also for those
-    /// that name their own: the point is to see the whole scene with it.
+    /// The scene with the changes. A model from the command line replaces the overrides of objects too: the point is to
+    /// see the whole scene with it.
     fn apply(&self, mut scene: Scene) -> Scene {
         if let Some(id) = &self.reflection {
             scene.reflection_model.clone_from(id);
@@ -409,26 +409,24 @@ fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Fail
     Ok(files)
 }
 
-/// What `-o` means.
+/// The meaning of `-o`.
 #[derive(Debug, PartialEq, Eq)]
 enum Output {
     File,
     Folder,
 }
 
-/// A path that ends in `.png` is a file, unless there is a folder of that name; so is a device or a pipe. Other
-/// picture formats are a misunderstanding; everything else is a folder.
+/// A path that ends in `.png` is a file, unless there is a folder of that name; so is a device or a pipe. Other picture
+/// formats are refused; anything else is a folder.
 fn kind(path: &Path) -> Result<Output, Failure> {
     if path == Path::new("-") {
-        return Err(Failure::Usage(
-            "-o -: name a PNG file, or the device of standard output, /dev/stdout".to_owned(),
-        ));
+        return Err(Failure::Usage("-o -: name a PNG file, or /dev/stdout for standard output".to_owned()));
     }
     match kind_on_disk(path) {
         Ok(Kind::Folder) => return Ok(Output::Folder),
         Ok(Kind::Device | Kind::Pipe) => return Ok(Output::File),
         Ok(Kind::Socket | Kind::Unknown) => {
-            return Err(Failure::Write(format!("-o {} is no place for a picture", path.display())));
+            return Err(Failure::Write(format!("-o {} is neither a file nor a folder", path.display())));
         }
         Ok(Kind::File) if is_descriptor(path) => return Ok(Output::File),
         Ok(Kind::File) | Err(_) => {}
@@ -440,13 +438,13 @@ fn kind(path: &Path) -> Result<Output, Failure> {
         | "pdf" => {
             let png = path.with_extension("png");
             Err(Failure::Usage(format!(
-                "-o {}: only PNG files are written; did you mean {}?",
+                "-o {}: only PNG files can be written; did you mean {}?",
                 path.display(),
                 png.display()
             )))
         }
         _ if path.is_file() => Err(Failure::Write(format!(
-            "-o {} is a file, but not a PNG file; name a PNG file or a folder",
+            "-o {} is not a PNG file; name a PNG file or a folder",
             path.display()
         ))),
         _ => Ok(Output::Folder),

@@ -1,9 +1,9 @@
-//! The folder that graphics drivers expect the environment to name.
+//! The folder that graphics drivers expect in the environment.
 //!
-//! Where `XDG_RUNTIME_DIR` is not set, as after `su` or on a bare server, Mesa looks for a Wayland display all the same,
-//! and the library that it asks prints a line of its own for each attempt. Nothing that can be set within a process
-//! keeps it quiet, so the program becomes itself once more (the same process, with the same streams), with the folder
-//! named that belongs to this user. It need not exist.
+//! Without `XDG_RUNTIME_DIR`, as after `su` or on a bare server, Mesa still looks for a Wayland display, and the
+//! library that it calls prints a line for each attempt. Nothing that can be set within a process keeps it quiet, so
+//! the program replaces itself by a new start (the same process, with the same streams) with this user's folder in the
+//! variable. The folder need not exist.
 
 use std::{
     env,
@@ -15,10 +15,10 @@ use std::{
 /// The variable that names the folder.
 const VARIABLE: &str = "XDG_RUNTIME_DIR";
 
-/// Starts the program anew with the folder in its environment, unless it is there. Returns where that is so, and where
-/// starting fails, which costs no more than a few lines on the terminal.
+/// Restarts the program with the folder in its environment, unless it is there already. Returns if it is, or if
+/// restarting fails, which costs only a few lines on the terminal.
 pub(super) fn provide() {
-    // What does not begin at the root is taken for nothing.
+    // Relative paths count as unset.
     let usable = |folder: &OsStr| folder.as_bytes().starts_with(b"/");
     if env::var_os(VARIABLE).is_some_and(|folder| usable(&folder)) {
         return;

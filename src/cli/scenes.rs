@@ -1,5 +1,5 @@
-//! Where commands get their scenes from: a file, standard input, or none for the default scene; and
-//! the questions that reading may raise.
+//! The sources of scenes: a file, standard input, or none for the default scene; and the questions that reading may
+//! raise.
 
 use std::{
     io,
@@ -17,10 +17,10 @@ use crate::{
     text::listed,
 };
 
-/// Where a scene comes from.
+/// The source of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// No scene was named.
+    /// No scene on the command line.
     Default,
     /// `-`.
     Stdin,
@@ -29,7 +29,7 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// The source that an argument names.
+    /// The source named by an argument.
     pub(super) fn of(argument: Option<&Path>) -> Self {
         match argument {
             None => Self::Default,
@@ -46,7 +46,7 @@ impl Source {
         }
     }
 
-    /// What pictures of the scene are called.
+    /// The name for pictures of the scene.
     pub(super) fn stem(&self) -> String {
         match self {
             Self::Default => "default".to_owned(),
@@ -57,7 +57,7 @@ impl Source {
         }
     }
 
-    /// What messages call it.
+    /// The name in messages.
     pub(super) fn name(&self) -> String {
         match self {
             Self::Default => "the default scene".to_owned(),
@@ -66,7 +66,7 @@ impl Source {
         }
     }
 
-    /// Reads it as it is: no questions.
+    /// Reads it without questions.
     pub(super) fn read(&self, workshop: &mut Workshop, defaults: Defaults) -> Result<Loaded, LoadError> {
         match self {
             Self::Default => {
@@ -81,7 +81,7 @@ impl Source {
         }
     }
 
-    /// Reads it, and asks what there is to ask.
+    /// Reads it, with questions where needed.
     pub(super) fn open(&self, workshop: &mut Workshop, options: Options) -> Result<Scene, Failure> {
         let invalid = |e: LoadError| Failure::Invalid(e.to_string());
         match self.read(workshop, options.defaults()) {
@@ -98,7 +98,7 @@ impl Source {
                 Ok(scene)
             }
             Err(error @ LoadError::Empty { .. }) => match answer(options, &error.to_string()) {
-                None => Err(Failure::Invalid(format!("{error} --use-defaults says yes"))),
+                None => Err(Failure::Invalid(format!("{error} Use --use-defaults to accept."))),
                 Some(false) => Err(Failure::Invalid(format!("{} was not loaded", self.name()))),
                 Some(true) => Ok(Scene::default()),
             },
@@ -107,7 +107,7 @@ impl Source {
     }
 }
 
-/// The answer of the flags, or of the user; nothing if there is nobody to ask, or the flags refuse.
+/// The answer of the flags, or of the user; `None` if there is nobody to ask, or the flags refuse.
 fn answer(options: Options, question: &str) -> Option<bool> {
     match options.defaults() {
         Defaults::Use => Some(true),

@@ -16,25 +16,25 @@ use crate::{
     study,
 };
 
-/// Where the report goes when nothing else is said.
+/// The default folder of the report.
 const FOLDER: &str = "study";
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// The folder for the report and its numbers
+    /// Folder for the report and its numbers
     #[arg(long, short, value_name = "FOLDER", default_value = FOLDER)]
     output: PathBuf,
-    /// Small pictures and a tenth of the materials, to try that everything works
+    /// Use small pictures and a tenth of the materials, for a quick trial
     #[arg(long)]
     quick: bool,
-    /// Replace a report that is in the folder already
+    /// Replace an existing report in the folder
     #[arg(long)]
     overwrite: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
     let folder = &arguments.output;
-    // What cannot be written is better known now than in half a minute.
+    // A write error is better known now than in half a minute.
     free(folder, arguments.overwrite)?;
     writable(folder)?;
     let start = Instant::now();
@@ -61,24 +61,24 @@ pub(super) fn run(arguments: &Arguments, options: Options, registry: &Registry) 
     Ok(())
 }
 
-/// Refuses a folder that holds something: a report is only replaced when the user says so, anything else never.
+/// Refuses a folder with files in it: a report is replaced only at the user's request, anything else never.
 fn free(folder: &Path, overwrite: bool) -> Outcome {
-    // What is wrong with a folder that cannot be read shows when it is written to.
+    // A problem of a folder that cannot be read shows on writing.
     let Ok(mut entries) = fs::read_dir(folder) else { return Ok(()) };
     let name = folder.display();
     match (entries.next(), study::is_report(folder)) {
         (None, _) => Ok(()),
         (_, true) if overwrite => Ok(()),
         (_, true) => Err(Failure::Write(format!(
-            "{name} holds a report already; it was left alone: --overwrite replaces it, -o FOLDER names another folder"
+            "{name} already has a report; --overwrite replaces it, -o FOLDER writes to another folder"
         ))),
         (_, false) => Err(Failure::Write(format!(
-            "{name} holds files that are no report; it was left alone: -o FOLDER names another folder"
+            "{name} has files that are not a report; use -o FOLDER to write to another folder"
         ))),
     }
 }
 
-/// Makes the folder, and says so if files cannot be put there.
+/// Creates the folder, and fails if it cannot be written to.
 fn writable(folder: &Path) -> Outcome {
     fs::create_dir_all(folder)
         .map_err(FileError::from)

@@ -9,9 +9,9 @@ pub(super) fn run() -> Outcome {
     Ok(serve(io::stdin().lock(), io::stdout().lock())?)
 }
 
-/// The program whose command this is, to be started again.
+/// This program's executable, to start it again.
 pub(super) fn program() -> Option<PathBuf> {
-    // This name stays right when the file is replaced or removed, as a new build does.
+    // This name stays valid when the file is replaced or removed, as by a new build.
     let own = PathBuf::from("/proc/self/exe");
     if cfg!(target_os = "linux") && own.exists() { Some(own) } else { env::current_exe().ok() }
 }

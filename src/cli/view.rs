@@ -14,21 +14,21 @@ use crate::{
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// The scene; - is standard input; none is the default scene
+    /// Scene file; `-` is standard input; without one, the default scene
     scene: Option<PathBuf>,
-    /// Close the window after so many frames
+    /// Close the window after this many frames
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..))]
     exit_after: Option<u32>,
     /// Write the whole window, panels included, to a PNG file before it closes
     #[arg(long, value_name = "FILE", requires = "exit_after")]
     capture: Option<PathBuf>,
-    /// The size of the window in pixels
+    /// Size of the window in pixels
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
 }
 
 impl Arguments {
-    /// What was given, if anything, for messages.
+    /// The first argument given, for messages.
     pub(super) fn given(&self) -> Option<String> {
         let scene = self.scene.as_ref().map(|s| s.display().to_string());
         scene
@@ -46,7 +46,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         let _ = files::tidy(files::folder_of(capture));
     }
     let warnings = match &source {
-        // What a killed process was about to save is finished before it is read.
+        // The interrupted writes of a killed process are finished before the file is read.
         Source::File(path) => {
             let target = files::follow(path).unwrap_or_else(|_| path.clone());
             files::tidy(files::folder_of(&target)).iter().map(ToString::to_string).collect()
@@ -73,7 +73,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         quiet,
     };
     match source {
-        // What can be read only once cannot be followed or saved to.
+        // Input that can be read only once cannot be followed or saved to.
         Source::File(ref path) if files::is_stream(path) => {
             view.scene = source.open(&mut workshop, options)?;
         }
@@ -81,7 +81,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
             let path = path.clone();
             meant_command(&path)?;
             match source.read(&mut workshop, options.defaults()) {
-                // The window asks what there is to ask, with a dialog.
+                // The window asks in a dialog.
                 Ok(loaded) if !loaded.missing.is_empty() && options.defaults() == Defaults::Ask => {
                     view.open = Some(path);
                 }
@@ -89,7 +89,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
                     Defaults::Ask => view.open = Some(path),
                     Defaults::Use => {}
                     Defaults::Refuse => {
-                        return Err(Failure::Invalid(format!("{error} --use-defaults says yes")));
+                        return Err(Failure::Invalid(format!("{error} Use --use-defaults to accept.")));
                     }
                 },
                 Ok(loaded) => {
@@ -106,7 +106,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
     crate::window::view(view)
 }
 
-/// `lcm rendr room.json` is not a scene called rendr.
+/// `lcm rendr room.json` is a misspelt command, not a scene called rendr.
 fn meant_command(path: &Path) -> Outcome {
     const COMMANDS: [&str; 10] =
         ["view", "render", "check", "new", "models", "evaluate", "schema", "albedo", "study", "assets"];

@@ -1,4 +1,4 @@
-//! Shaders and custom models on disk: where commands find them, and what is said of those that are wrong.
+//! Shaders and custom models on disk: where commands find them, and messages about errors in them.
 
 use std::{
     collections::BTreeSet,
@@ -31,10 +31,10 @@ use crate::{
     shading::Stage,
 };
 
-/// Where shaders and custom models are.
+/// The folders of shaders and custom models.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Places {
-    /// Read shaders from FOLDER/shaders instead of using the built-in ones, and custom models from FOLDER/models
+    /// Read shaders from FOLDER/shaders instead of the built-in ones, and custom models from FOLDER/models
     #[arg(long, global = true, value_name = "FOLDER")]
     assets: Option<PathBuf>,
     /// Read custom models from this folder
@@ -42,7 +42,7 @@ pub(super) struct Places {
     models: Option<PathBuf>,
 }
 
-/// A word as a shell takes it.
+/// A word quoted for a shell.
 fn pasted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "/:._-+,@".contains(c) || cfg!(windows) && c == '\\';
     if !word.is_empty() && word.chars().all(plain) {
@@ -52,20 +52,21 @@ fn pasted(word: &str) -> String {
     }
 }
 
-/// What is known, and where it was read from. Of the folder of custom models only so much is read as a command needs.
+/// The known models and shaders, and their sources. Of the folder of custom models, only as much is read as a command
+/// needs.
 pub(super) struct Workshop {
     pub registry: Registry,
     pub folders: Folders,
     options: Options,
-    /// A window draws models that are broken as stand-ins, and tells of them itself.
+    /// A window draws broken models as stand-ins, and reports them itself.
     for_window: bool,
-    /// The ids whose files were read, or are not there.
+    /// The ids whose files were read, or do not exist.
     tried: BTreeSet<String>,
 }
 
 impl Workshop {
-    /// Reads the model of that id, since it is used. Without one the declarations of all are read, so that messages
-    /// can list what there is.
+    /// Reads the model with that id. If there is none, the declarations of all are read, so that messages can list
+    /// them.
     pub(super) fn need(&mut self, id: &str) {
         self.read(id);
         if self.registry.model(id).is_none() && self.registry.broken_model(id).is_none() {
@@ -73,7 +74,7 @@ impl Workshop {
         }
     }
 
-    /// Reads the model of that id, if it is not read yet; whether more is known now.
+    /// Reads the model with that id, if it is not read yet. True if more is known now.
     fn read(&mut self, id: &str) -> bool {
         if !self.tried.insert(id.to_owned()) {
             return false;
@@ -94,8 +95,8 @@ impl Workshop {
         }
     }
 
-    /// Reads the declarations of all models that are not known yet; whether there was one, and what is wrong with
-    /// files. That the folder cannot be read is told at once.
+    /// Reads the declarations of all models not yet known. Returns whether there was one, and the problems of files. A
+    /// folder that cannot be read is reported at once.
     fn declare_rest(&mut self) -> (bool, folder::Problems) {
         let found = folder::declare_rest(&mut self.registry);
         let is_folder = |path: &Path| Some(path) == self.registry.custom_folder();
@@ -110,7 +111,7 @@ impl Workshop {
         (found.files > 0, of_files)
     }
 
-    /// Reads all declarations for a command that is about them, and tells what is wrong with them.
+    /// Reads all declarations for a command that needs them, and reports their problems.
     pub(super) fn list(&mut self) -> &Registry {
         let (_, problems) = self.declare_rest();
         if !problems.is_empty() {
@@ -119,8 +120,8 @@ impl Workshop {
         &self.registry
     }
 
-    /// Reads a scene from the content of a file, with the custom models that it names. Only what is wrong with it makes
-    /// the declarations of others necessary: it may have parameters that they declare, and messages list them.
+    /// Reads a scene from the content of a file, with the custom models that it names. The declarations of others are
+    /// read only if there are problems: the scene may have parameters that they declare, and messages list them.
     pub(super) fn load(&mut self, bytes: &[u8], name: &str, defaults: Defaults) -> Result<Loaded, LoadError> {
         loop {
             let loaded = load::from_bytes(bytes, name, &self.registry, defaults);
@@ -131,7 +132,7 @@ impl Workshop {
                 }
                 Err(_) => return loaded,
             };
-            // Each is read, also when the first brings something new.
+            // Read each, even when the first brings something new.
             let read = named.iter().filter(|id| self.read(id)).count() > 0;
             let rest = || matches!(loaded, Err(LoadError::Invalid { .. }));
             let more = read || rest() && self.declare_rest().0;
@@ -143,7 +144,7 @@ impl Workshop {
 }
 
 impl Places {
-    /// The folders as the command line named them, to be repeated in another: each with a space before it.
+    /// The folders as given on the command line, to be repeated in another: each with a space before it.
     pub(super) fn flags(&self) -> String {
         [("--assets", &self.assets), ("--models", &self.models)]
             .into_iter()
@@ -162,15 +163,12 @@ impl Places {
     /// Reads the shaders; one that cannot be read is an error. Custom models are read when they are needed.
     pub(super) fn open(&self, options: Options) -> Result<Workshop, Failure> {
         if let Some(named) = self.models.as_deref().filter(|m| !m.exists()) {
-            return Err(Failure::Usage(format!(
-                "--models is {}, but there is no such folder",
-                named.display()
-            )));
+            return Err(Failure::Usage(format!("there is no folder {} for --models", named.display())));
         }
         self.open_for_writing(options)
     }
 
-    /// As [`open`](Self::open), for commands that make the folder of custom models if it is not there.
+    /// As [`open`](Self::open), for commands that create the folder of custom models.
     pub(super) fn open_for_writing(&self, options: Options) -> Result<Workshop, Failure> {
         let folders = self.folders()?;
         let mut registry = Registry::builtin();
@@ -188,9 +186,9 @@ impl Places {
         Ok(Workshop { registry, folders, options, for_window: false, tried: BTreeSet::new() })
     }
 
-    /// Reads what a window starts with: the declarations of all custom models, since it lists them. Those that its scene
-    /// does not use are drawn as stand-ins until they are read, and so are those that are wrong. Nothing that is wrong
-    /// keeps the window from opening.
+    /// Reads what a window needs at the start: the declarations of all custom models, since it lists them. Models that
+    /// its scene does not use are drawn as stand-ins until they are read, and so are broken ones. No problem keeps the
+    /// window from opening.
     pub(super) fn open_for_window(&self, options: Options) -> Result<Workshop, Failure> {
         let folders = self.folders()?;
         let mut registry = Registry::builtin();
@@ -198,19 +196,19 @@ impl Places {
             registry.set_shader_folder(shaders);
         }
         if let Some(models) = &folders.models {
-            // The window itself tells of what is wrong.
+            // The window itself reports problems.
             let _ = folder::declare_folder(models, &mut registry);
         }
         Ok(Workshop { registry, folders, options, for_window: true, tried: BTreeSet::new() })
     }
 }
 
-/// Problems one below the other.
+/// Problems, one below the other.
 pub(super) fn all_annotated(problems: &[(PathBuf, ShaderProblem)]) -> String {
     let mut each: Vec<_> = problems
         .iter()
         .map(|(path, problem)| {
-            // A model may be wrong because of a file that it shares with others.
+            // A model may be broken because of a file that it shares with others.
             let own = path.ends_with(problem.file.rsplit('/').next().unwrap_or_default());
             annotated(problem, &if own { path.display().to_string() } else { problem.file.clone() })
         })
@@ -229,7 +227,7 @@ impl From<GpuError> for Failure {
     }
 }
 
-/// That the CPU cannot run a model, and what can.
+/// The failure for a model that the CPU cannot run, with the alternative.
 pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failure {
     let id = model.declaration.id;
     if model.runs_too_long() {
@@ -237,16 +235,16 @@ pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failur
         return Failure::Invalid(format!("{id} cannot be run: {why}"));
     }
     Failure::NoRenderer(format!(
-        "{id} cannot be run on the CPU, which interprets custom models: {why}; with {instead} the GPU runs it"
+        "{id} cannot be run on the CPU, which interprets custom models: {why}; use {instead}"
     ))
 }
 
-/// The file on disk that a source was read from, for messages.
+/// The file on disk from which a source was read, for messages.
 fn on_disk(registry: &Registry, file: &str) -> String {
     registry.path_on_disk(file).map_or_else(|| file.to_owned(), |path| path.display().to_string())
 }
 
-/// True if the shader of a model is valid as the files on disk have it. What is built in is.
+/// Fails if the shader of a model is invalid, as the files on disk have it. Built-in shaders are valid.
 pub(super) fn valid(registry: &Registry, model: &ModelEntry) -> Outcome {
     if registry.sources().edited().next().is_none() {
         return Ok(());
@@ -256,12 +254,12 @@ pub(super) fn valid(registry: &Registry, model: &ModelEntry) -> Outcome {
         .map_err(|problem| invalid(registry, &problem))
 }
 
-/// That a shader is not valid.
+/// The failure for an invalid shader.
 pub(super) fn invalid(registry: &Registry, problem: &ShaderProblem) -> Failure {
     Failure::Invalid(annotated(problem, &on_disk(registry, &problem.file)))
 }
 
-/// True if everything that draws a scene is valid as the files on disk have it.
+/// Fails if a shader for a scene is invalid, as the files on disk have it.
 pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
     if registry.sources().edited().next().is_none() {
         return Ok(());
@@ -279,8 +277,8 @@ pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
     Ok(())
 }
 
-/// The edited shaders that a scene is drawn with on the GPU and not on the CPU. There everything is Rust
-/// but custom models, with what they import and the functions that they share.
+/// The edited shaders that a scene uses on the GPU and not on the CPU. There everything is Rust except custom models,
+/// with their imports and the functions that they share.
 pub(super) fn not_followed_on_cpu(registry: &Registry, scene: &Scene) -> BTreeSet<String> {
     if registry.sources().edited().all(|path| path.starts_with("models/")) {
         return BTreeSet::new();

@@ -8,20 +8,19 @@ use crate::{
 };
 
 impl Reader<'_> {
-    /// The choices of another parameter under which this one is used: `{ "distribution": ["gtr"] }`.
+    /// The choices of another parameter for which this one is used: `{ "distribution": ["gtr"] }`.
     pub(super) fn used_when(&mut self, fields: &Fields) -> Option<UsedWhen> {
         let value = fields.get("used_when")?;
         let condition = condition(value);
         if condition.is_none() {
-            let rule =
-                "it must name one other parameter and the choices of it: { \"distribution\": [\"gtr\"] }";
+            let rule = "it must name one other parameter and its choices: { \"distribution\": [\"gtr\"] }";
             self.wrong(value, rule);
         }
         condition
     }
 
-    /// Reports conditions that no parameter of the model can meet. They can name parameters that come later,
-    /// so it is done once all are known.
+    /// Reports conditions that no parameter of the model can meet. They may name parameters that come later, so this
+    /// runs once all are known.
     pub(super) fn check_conditions(&mut self, list: Cursor, parameters: &[Parameter]) {
         for element in list.list().into_iter().flatten() {
             let Some((name, value)) = element.get("name").zip(element.get("used_when")) else { continue };

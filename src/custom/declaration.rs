@@ -1,5 +1,5 @@
-//! The declaration at the top of a custom model: a comment `/* lcm { … } */` whose inside is JSON with
-//! comments and trailing commas. Every mistake is told with its place, the value and the rule.
+//! The declaration at the top of a custom model: a comment `/* lcm { … } */` containing JSON with comments and trailing
+//! commas. Every error is reported with its place, the value and the rule.
 
 use jsonc_parser::{ParseOptions, common::Ranged as _};
 
@@ -20,10 +20,10 @@ use crate::{
     },
 };
 
-/// What a declaration may say.
+/// The keys of a declaration.
 const MODEL_KEYS: &[&str] =
     &["name", "author", "source", "summary", "equation", "laws", "anisotropic", "lobe", "parameters"];
-/// What a part of the equation says.
+/// The keys of a part of the equation.
 const PART_KEYS: &[&str] = &["term", "text"];
 /// Other words for keys, for suggestions.
 const OTHER_WORDS: &[(&str, &str)] =
@@ -34,12 +34,12 @@ pub(super) const LONGEST_NAME: usize = 60;
 const MOST_BRACKETS: usize = 600;
 /// The longest declaration, bytes.
 const MOST_BYTES: usize = 64 << 10;
-/// So many mistakes are told; who makes more made one at the beginning.
+/// The most errors reported; in longer lists, later errors follow from an early one.
 const MOST_MISTAKES: usize = 50;
 /// The longest text, characters.
 pub(super) const LONGEST_TEXT: usize = 2000;
 
-/// What a declaration says.
+/// The contents of a declaration.
 pub(super) struct Said {
     pub name: &'static str,
     pub author: &'static str,
@@ -51,23 +51,23 @@ pub(super) struct Said {
     /// The built-in model whose lobe the model uses.
     pub lobe: Option<&'static str>,
     pub parameters: &'static [Parameter],
-    /// The byte behind the comment.
+    /// The byte after the comment.
     pub end: usize,
 }
 
-/// Reads the declaration of the model of that id.
+/// Reads the declaration of the model with that id.
 ///
 /// # Errors
 /// Everything that is wrong with it.
 pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Vec<Mistake>> {
     let comment = comment(text).map_err(|mistake| vec![mistake])?;
-    // The parser goes as deep as the brackets do.
+    // The parser recurses as deep as the brackets.
     if comment.json.matches(['[', '{']).count() > MOST_BRACKETS {
-        let what = format!("the declaration has more than {MOST_BRACKETS} brackets, which none needs");
+        let what = format!("the declaration has more than {MOST_BRACKETS} brackets, the most allowed");
         return Err(vec![(comment.start, what)]);
     }
     if comment.json.len() > MOST_BYTES {
-        let what = format!("the declaration is longer than {} KiB, which none needs to be", MOST_BYTES >> 10);
+        let what = format!("the declaration is longer than {} KiB, the most allowed", MOST_BYTES >> 10);
         return Err(vec![(comment.start, what)]);
     }
     let options = ParseOptions { allow_comments: true, allow_trailing_commas: true, ..STRICT };
@@ -91,13 +91,13 @@ pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Ve
     }
 }
 
-/// With a small first letter.
+/// With a lower-case first letter.
 fn lower(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
-/// What is being read.
+/// The state of reading.
 pub(super) struct Reader<'a> {
     json: &'a str,
     start: usize,
@@ -117,7 +117,7 @@ impl json::Reader for Reader<'_> {
         self.mistake(at, format!("{place} {found}{rule}"));
     }
 
-    /// Short lists as they are written.
+    /// Short lists as written.
     fn shown(&self, value: &Ast) -> String {
         match value {
             Ast::Array(list) if list.elements.len() <= 4 => shortened(value.text(self.json)),
@@ -140,7 +140,7 @@ impl Reader<'_> {
         self.mistakes.push((self.start + at, what.into()));
     }
 
-    /// A key that is given, and should not be, or not so.
+    /// A given key that is superfluous or wrong.
     pub(super) fn misplaced(&mut self, value: Cursor, predicate: &str) {
         self.report(value.start(), value.path(), None, predicate);
     }
@@ -169,7 +169,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A text of limited length, if it is given.
+    /// A text of limited length, if given.
     pub(super) fn words(&mut self, fields: &Fields, key: &str, longest: usize) -> Option<&'static str> {
         let value = fields.get(key)?;
         let fits = |text: &&str| text.chars().count() <= longest && !text.contains(char::is_control);
@@ -180,14 +180,14 @@ impl Reader<'_> {
             }
             Some(text) => Some(intern::text(text)),
             None => {
-                let rule = format!("it must be text on one line, of at most {longest} characters");
+                let rule = format!("it must be one line of text, of at most {longest} characters");
                 self.wrong(value, &rule);
                 None
             }
         }
     }
 
-    /// One of some words, each of which stands for something.
+    /// One of several words, each with its value.
     pub(super) fn word<T: Copy>(
         &mut self,
         value: Cursor,
@@ -226,7 +226,7 @@ impl Reader<'_> {
                 };
                 let text = self.words(&part, "text", LONGEST_TEXT);
                 if part.get("text").is_none() {
-                    self.lacking(&part, "text", "a part of an equation has one");
+                    self.lacking(&part, "text", "a part of an equation needs one");
                 }
                 parts.extend(term.zip(text).map(|(term, text)| EquationPart { term, text }));
             }
@@ -310,20 +310,20 @@ impl Reader<'_> {
         self.registry.models().iter().filter(|m| self.registry.custom_file(m.declaration.id).is_none())
     }
 
-    /// The parameter of that name of some built-in model.
+    /// The parameter of that name in some built-in model.
     pub(super) fn built_in(&self, name: &str) -> Option<&'static Parameter> {
         self.built_in_models().find_map(|m| m.parameter(name))
     }
 
     fn shared(&mut self, value: Cursor, name: &str) -> Option<Parameter> {
         if let Some(parameter) = self.built_in(name) {
-            // Its condition is about the parameters of that model.
+            // Its condition concerns the parameters of that model.
             return Some(Parameter { used_when: None, ..parameter.clone() });
         }
         let known = self.built_in_models().flat_map(|m| m.parameters).map(|p| (p.name, p.name));
         let hint = match did_you_mean(&name.replace("color", "colour"), known) {
             none if none.is_empty() => {
-                "; to declare a new one write { \"name\": …, \"min\": …, \"max\": …, \"default\": … }"
+                "; to declare a new one, write { \"name\": …, \"min\": …, \"max\": …, \"default\": … }"
             }
             hint => &hint.clone(),
         };

@@ -1,4 +1,4 @@
-//! Reading shader files, and saying where one is no text.
+//! Reading shader files, and locating bytes that are not text.
 
 use std::{io, path::Path};
 
@@ -10,10 +10,10 @@ use crate::{
 /// The largest file that is read, bytes.
 pub const MAX_BYTES: u64 = 1 << 20;
 
-/// The text of a file that messages call `name`, without a byte order mark.
+/// The text of a file called `name` in messages, without a byte order mark.
 ///
 /// # Errors
-/// When it is not there, cannot be read, is larger than [`MAX_BYTES`], or is not UTF-8.
+/// If it is missing, cannot be read, is larger than [`MAX_BYTES`], or is not UTF-8.
 pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
     let failed = |message: String| ShaderProblem {
         file: name.to_owned(),
@@ -27,9 +27,9 @@ pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
             FileError::Io(e) if e.kind() == io::ErrorKind::NotFound => {
                 "the file is missing; it reloads when restored".to_owned()
             }
-            FileError::Kind(kind) => format!("this is {kind}, no file that can be read"),
+            FileError::Kind(kind) => format!("this is {kind}, not a regular file"),
             FileError::TooLarge(_) => {
-                format!("the file is larger than {} MiB, which no shader is", MAX_BYTES >> 20)
+                format!("the file is larger than {} MiB, the most allowed for a shader", MAX_BYTES >> 20)
             }
             error => format!("the file could not be read: {error}"),
         })
@@ -43,10 +43,7 @@ pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
             line: bytes[..at].iter().filter(|b| **b == b'\n').count() + 1,
             column: String::from_utf8_lossy(&bytes[start..at]).chars().count() + 1,
             source: String::from_utf8_lossy(&bytes[start..end]).into_owned(),
-            ..failed(format!(
-                "this is not UTF-8 text from the byte 0x{:02x} on; save the file as UTF-8",
-                bytes[at]
-            ))
+            ..failed(format!("the byte 0x{:02x} is not UTF-8; save the file as UTF-8", bytes[at]))
         }
     })?;
     Ok(text.strip_prefix('\u{FEFF}').map_or(text.clone(), str::to_owned))
@@ -71,7 +68,7 @@ mod tests {
         assert_eq!(said("\u{FEFF}// é\r\n".as_bytes()), Ok("// é\r\n".to_owned()));
         assert_eq!(
             said(b"// one\n// caf\xe9\n"),
-            Err("a.wgsl:2:7: this is not UTF-8 text from the byte 0xe9 on; save the file as UTF-8".to_owned())
+            Err("a.wgsl:2:7: the byte 0xe9 is not UTF-8; save the file as UTF-8".to_owned())
         );
         let large = said(&vec![b' '; MAX_BYTES as usize + 1]).expect_err("too large");
         assert!(large.contains("larger than 1 MiB"), "{large}");
@@ -79,6 +76,6 @@ mod tests {
         assert!(gone.message.contains("the file is missing"), "{gone}");
         let folder = tempfile::tempdir().expect("a folder");
         let is_folder = read(folder.path(), "a.wgsl").expect_err("is a folder");
-        assert!(is_folder.message.contains("no file"), "{is_folder}");
+        assert!(is_folder.message.contains("not a regular file"), "{is_folder}");
     }
 }

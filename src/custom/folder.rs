@@ -1,8 +1,8 @@
-//! The folder of custom models. A model is known by the name of its file alone, by its declaration, or whole; only
-//! as much is read as somebody needs, so that neither many files nor a bad one are in the way of the others.
+//! The folder of custom models. A model is known by its file name alone, by its declaration, or completely; only as
+//! much is read as is needed, so that neither many files nor a bad one affect the others.
 //!
-//! [`read_model`] reads one model whole, [`declare_rest`] the declarations of all others, many at a time. The
-//! registry keeps what was read; a file that did not change since is not read again.
+//! [`read_model`] reads one complete model, [`declare_rest`] the declarations of all others, many at a time. The
+//! registry keeps the results; an unchanged file is not read again.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -23,39 +23,39 @@ use crate::{
     watch::Print,
 };
 
-/// How the paths of the sources begin that are files of the folder.
+/// The prefix of the paths of sources in the folder.
 const PREFIX: &str = "models/";
 
-/// Problems, each with the file that it is about.
+/// Problems, each with its file.
 pub type Problems = Vec<(PathBuf, ShaderProblem)>;
 
 /// The outcome of [`read_model`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reading {
-    /// The model was known already, all of it.
+    /// The model was already completely known.
     Known,
-    /// The folder has no model of that id.
+    /// The folder has no model with that id.
     Missing,
     /// The model was read, and the registry knows it.
     Read,
-    /// It has mistakes. Why is kept in the registry (see [`Registry::broken_model`]); what was known of the model
-    /// stays as it was.
+    /// It has errors. The registry keeps them (see [`Registry::broken_model`]), and keeps its earlier knowledge of the
+    /// model.
     Broken(Problems),
 }
 
 /// The outcome of [`declare_rest`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Declared {
-    /// The number of files that were read.
+    /// The number of files read.
     pub files: usize,
-    /// Problems of declarations, of files that cannot be read, and of the folder, in the order of the names.
+    /// Problems of declarations, of unreadable files, and of the folder, in the order of the names.
     pub problems: Problems,
 }
 
-/// The WGSL files in a folder, by name; none where there is no folder.
+/// The WGSL files in a folder, by name; none if there is no folder.
 ///
 /// # Errors
-/// When the folder cannot be read.
+/// If the folder cannot be read.
 pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
@@ -74,7 +74,7 @@ pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Reads the model of that id whole, with the files that it imports, if the folder of the registry has it and the
+/// Reads the complete model with that id, and the files that it imports, if the registry's folder has it and the
 /// registry does not.
 pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
     if registry.model(id).is_some() && registry.unread_file(id).is_none() {
@@ -83,7 +83,7 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
     let Some(path) = registry.unread_file(id).map(Path::to_owned).or_else(|| file_of(id, registry)) else {
         return Reading::Missing;
     };
-    // What is found to be bad is not declared later.
+    // A model found to be bad is not declared later.
     if let Some(print) = Print::of(&path) {
         registry.note_seen(&path, print);
     }
@@ -108,10 +108,10 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
     }
 }
 
-/// The texts of shaders and models with that of one more model, of which so far only the declaration was read.
+/// The texts of shaders and models, plus one more model of which only the declaration was read so far.
 ///
 /// # Errors
-/// When its file cannot be read.
+/// If its file cannot be read.
 pub fn sources_with(id: &str, registry: &Registry) -> Result<Sources, ShaderProblem> {
     let mut sources = registry.sources().clone();
     if let Some(path) = registry.unread_file(id) {
@@ -120,7 +120,7 @@ pub fn sources_with(id: &str, registry: &Registry) -> Result<Sources, ShaderProb
     Ok(sources)
 }
 
-/// The file of a model that the registry does not know.
+/// The file of a model unknown to the registry.
 fn file_of(id: &str, registry: &Registry) -> Option<PathBuf> {
     let file = registry.custom_folder()?.join(id).with_extension(EXTENSION);
     (is_id(id) && file.is_file()).then_some(file)
@@ -135,14 +135,14 @@ fn broken(id: &str, problems: Problems, registry: &mut Registry) -> Reading {
     Reading::Broken(problems)
 }
 
-/// Reads the files of the folder that edited shaders import, since shaders may do that too.
+/// Reads the files in the folder imported by edited shaders, which may do so too.
 pub fn import_for_shaders(registry: &mut Registry) -> Problems {
     let sources = registry.sources().clone();
     let edited = sources.edited().filter(|path| !path.starts_with(PREFIX));
     edited.flat_map(|path| import(path, sources.get(path).unwrap_or_default(), registry)).collect()
 }
 
-/// Reads the files of the folder that a text imports, and those that these import, unless they are known.
+/// Reads the files in the folder imported by a text, and their imports, unless they are known.
 fn import(path: &str, text: &str, registry: &mut Registry) -> Problems {
     let mut problems = Vec::new();
     let mut looked_at = HashSet::from([path.to_owned()]);
@@ -167,24 +167,24 @@ fn import(path: &str, text: &str, registry: &mut Registry) -> Problems {
     problems
 }
 
-/// A file whose declaration was looked for.
+/// A file that was searched for a declaration.
 enum Found {
     /// A model.
     Model(Box<CustomModel>),
-    /// A model with mistakes.
+    /// A model with errors.
     Broken(Vec<ShaderProblem>),
-    /// Functions that models share.
+    /// Functions shared by models.
     Shared(String),
 }
 
-/// Reads the declarations of all models in a folder, which is that of the registry from now on.
+/// Reads the declarations of all models in a folder, which becomes the registry's folder.
 pub fn declare_folder(folder: &Path, registry: &mut Registry) -> Declared {
     registry.set_custom_folder(folder);
     declare_rest(registry)
 }
 
-/// Reads the declarations of the models that the registry does not know, from its folder, with what models share.
-/// Files that were read before are passed over if they did not change, and so are models that are known whole.
+/// Reads the declarations of models in the registry's folder that are still unknown, with shared files. Unchanged files
+/// read before are skipped, and so are completely known models.
 pub fn declare_rest(registry: &mut Registry) -> Declared {
     let Some(folder) = registry.custom_folder() else { return Declared::default() };
     let paths = match files_in(folder) {
@@ -231,7 +231,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
             }
             Found::Broken(wrong) => wrong,
             Found::Model(model) => {
-                // Each was read as if it were alone; what they must agree on is the types of parameters.
+                // Each was read as if alone; they must agree on the types of parameters.
                 let agrees = model.entry.parameters.iter().all(|p| {
                     let kind = discriminant(&p.kind);
                     *kinds.entry(p.name).or_insert(kind) == kind
@@ -256,7 +256,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
     Declared { files, problems }
 }
 
-/// Looks for a declaration in a file.
+/// Searches a file for a declaration.
 fn look(path: &Path, registry: &Registry) -> Found {
     match file::read(path, &named(path)) {
         Err(problem) => Found::Broken(vec![problem]),

@@ -1,6 +1,6 @@
-//! Declarations of custom models live as long as the program, as those of built-in models do. Equal ones are
-//! the same one: reading a file again whose declaration did not change keeps nothing new, and whoever asks
-//! whether it changed compares pointers.
+//! Declarations of custom models live as long as the program, like those of built-in models. Equal ones are stored
+//! once: re-reading a file with an unchanged declaration stores nothing new, and comparing pointers shows if it
+//! changed.
 
 use std::{
     collections::HashSet,
@@ -12,10 +12,10 @@ use crate::{
     reflection::{Declaration, EquationPart},
 };
 
-/// What has been kept of one type.
+/// The stored values of one type.
 type Kept<T> = Mutex<Vec<&'static T>>;
 
-/// The kept value that is equal to another; the other itself, kept from now on, if there is none.
+/// The stored value equal to another; or the other itself, now stored.
 fn kept<T: PartialEq + ?Sized, O>(all: &'static Kept<T>, new: O, keep: fn(O) -> &'static T) -> &'static T
 where
     O: AsRef<T>,
@@ -41,7 +41,7 @@ pub(super) fn text(text: &str) -> &'static str {
     new
 }
 
-/// The choices of a parameter: name in files, name for people.
+/// The choices of a parameter: name in files, name in the window.
 pub(super) fn options(options: Vec<(&'static str, &'static str)>) -> &'static [(&'static str, &'static str)] {
     static ALL: Kept<[(&str, &str)]> = Mutex::new(Vec::new());
     kept(&ALL, options, |new| new.leak())

@@ -1,4 +1,4 @@
-//! The parameters that a model's file declares.
+//! The parameters declared by a model's file.
 
 use jsonc_parser::common::Ranged as _;
 
@@ -15,7 +15,7 @@ use crate::{
     },
 };
 
-/// What an entry of `parameters` may say.
+/// The keys of an entry of `parameters`.
 const PARAMETER_KEYS: &[&str] = &[
     "name",
     "symbol",
@@ -34,7 +34,7 @@ const PARAMETER_KEYS: &[&str] = &[
 ];
 /// The types of parameters.
 const TYPES: &[&str] = &["number", "integer", "colour", "triple", "choice"];
-/// The symbol of a parameter that gives none: a Greek letter where the name begins with the name of one.
+/// The default symbol of a parameter: a Greek letter if the name begins with the name of one.
 fn symbol_of(name: &str) -> String {
     const GREEK: &[(&str, &str)] = &[
         ("alpha", "α"),
@@ -69,7 +69,7 @@ impl Reader<'_> {
             self.lacking(
                 &fields,
                 "name",
-                "it is what scene files call the parameter, and the shader: m.NAME",
+                "it is the parameter's name in scene files, and in the shader: m.NAME",
             );
             return None;
         };
@@ -113,7 +113,7 @@ impl Reader<'_> {
         (self.mistakes.len() == before).then_some(parameter)
     }
 
-    /// Parameters are shared by name, so the same name is the same type everywhere.
+    /// Parameters are shared by name, so the same name has the same type everywhere.
     fn same_type_elsewhere(&mut self, named: Cursor, name: &str, kind: Option<&ParameterKind>) {
         let Some(kind) = kind else { return };
         let other = self.registry.models().iter().filter(|m| m.declaration.id != self.id).find_map(|m| {
@@ -122,7 +122,7 @@ impl Reader<'_> {
         });
         if let Some((model, parameter)) = other {
             let rule = format!(
-                "{} has a parameter of that name whose type is {}, and parameters are shared by name; give it that type or another name",
+                "{} has a parameter of that name with type {}, and parameters are shared by name; use that type or another name",
                 model.declaration.id,
                 type_name(&parameter.kind),
             );
@@ -174,7 +174,7 @@ impl Reader<'_> {
         number
     }
 
-    /// A whole number that 32-bit floats hold exactly, as the shader gets it.
+    /// A whole number that is exact as a 32-bit float, as in the shader.
     fn whole(&mut self, value: Cursor) -> Option<i64> {
         const EXACT: i64 = 1 << 24;
         let number = value.integer().filter(|n| (-EXACT..=EXACT).contains(n));
@@ -202,7 +202,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A field that need not be there; `None` only if it is wrong.
+    /// An optional field; `None` only if it is wrong.
     fn given<T>(
         &mut self,
         fields: &Fields,
@@ -223,7 +223,7 @@ impl Reader<'_> {
         let (mut low, mut high) = (min, max);
         if let Some(value) = fields.get("range") {
             if let Some(other) = ["min", "max", "above"].into_iter().find(|key| fields.get(key).is_some()) {
-                self.misplaced(value, &format!("is given, but so is {other}; a range is [min, max]"));
+                self.misplaced(value, &format!("conflicts with {other}; a range is [min, max]"));
                 return None;
             }
             let Some(list) = value.list().filter(|list| list.len() == 2) else {
@@ -237,7 +237,7 @@ impl Reader<'_> {
         if let Some(value) = fields.get("above") {
             let zero = value.integer() == Some(0);
             let Some(above) = above_zero.filter(|_| zero && fields.get("min").is_none()) else {
-                self.wrong(value, "it must be 0, and stands in place of min: greater than 0");
+                self.wrong(value, "it must be 0; it replaces min and means greater than 0");
                 return None;
             };
             low = above;
@@ -251,7 +251,7 @@ impl Reader<'_> {
         Some((low, high))
     }
 
-    /// A default that lies in the range.
+    /// A default within the range.
     fn within(&mut self, fields: &Fields, parameter: ParameterKind) -> Option<ParameterKind> {
         let probe = Parameter {
             name: "",
@@ -304,7 +304,7 @@ impl Reader<'_> {
             max.map_or_else(|| slider.unwrap_or(default.max(min) + 16), |m| slider.unwrap_or(m).min(m));
         if slider_max <= min {
             if let Some(value) = fields.get("slider_max") {
-                self.wrong(value, &format!("it must be greater than {min}, where the slider begins"));
+                self.wrong(value, &format!("it must be greater than {min}, the start of the slider"));
             }
             return None;
         }
@@ -354,7 +354,7 @@ impl Reader<'_> {
             self.lacking(
                 fields,
                 "choices",
-                "a choice has some: [\"one\", \"other\"], or { \"one\": \"its name\" }",
+                "a choice needs some: [\"one\", \"other\"], or { \"one\": \"its name\" }",
             );
             return None;
         }

@@ -1,12 +1,11 @@
-//! Models that users write, one file each: `models/ID.wgsl` declares at its top what the model is called
-//! and which parameters it has, and defines below it `fn response` in WGSL. Nothing is compiled into the
-//! program. Of the files in a [`folder`] only so much is read as is needed: all of a model that is used, of the
-//! others the declaration when it is asked for, and nothing when it is not.
+//! Users' models, one file each: `models/ID.wgsl` declares at its top the model's name and parameters, and defines
+//! below it `fn response` in WGSL. Nothing is compiled into the program. The files of a [`folder`] are read on demand:
+//! a used model completely, the declarations of others when needed, otherwise nothing.
 //!
 //! ```wgsl
 //! /* lcm
 //! {
-//!     "name": "Matt",
+//!     "name": "Matte",
 //!     "laws": ["reciprocal", "energy conserving", "non-negative"],
 //!     "parameters": ["base_colour", { "name": "strength", "min": 0, "max": 1, "default": 0.8 }],
 //! }
@@ -17,9 +16,9 @@
 //! }
 //! ```
 //!
-//! The GPU runs the file as it is, the CPU interprets it. With a second function
-//! `fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>` the model answers to light
-//! from everywhere by a formula of its own, without it by its directional albedo.
+//! The GPU runs the file unchanged, the CPU interprets it. With a second function `fn ambient_response(v: vec3<f32>,
+//! frame: Frame, m: Parameters) -> vec3<f32>` the model answers uniform light by a formula, without it by its
+//! directional albedo.
 
 use std::path::Path;
 
@@ -54,23 +53,23 @@ pub use surface::OnCpu;
 pub use text::MARKER;
 pub use write::{BadName, NotDuplicated, duplicate, id_of_name, template};
 
-/// The ending of the files.
+/// The file extension.
 pub const EXTENSION: &str = "wgsl";
 
-/// What every custom model's material is made of: they share one type of material, since their shaders, not
-/// their types, tell them apart.
+/// The marker type of all custom models' materials: they share one material type, since their shaders, not their types,
+/// distinguish them.
 #[derive(Clone, Copy, Debug)]
 pub struct CustomFile;
 
 pub use crate::registry::CustomModel;
 
-/// How messages and [`Sources`](crate::shader::compose::Sources) call the file of a model.
+/// The name of a model's file in messages and [`Sources`](crate::shader::compose::Sources).
 #[must_use]
 pub fn source_path(id: &str) -> String {
     format!("models/{id}.{EXTENSION}")
 }
 
-/// The id of the model in a file: its name without the ending.
+/// The id of the model in a file: the file name without the extension.
 #[must_use]
 pub fn id_of(path: &Path) -> Option<&str> {
     path.extension().filter(|e| *e == EXTENSION).and(path.file_stem()).and_then(|stem| stem.to_str())
@@ -82,17 +81,17 @@ pub fn is_id(word: &str) -> bool {
     text::identifier(word).is_ok()
 }
 
-/// True if a text is that of a model: it declares one, or defines `response`. Other files of the folder hold
-/// functions that models share.
+/// True if a text is that of a model: it declares one, or defines `response`. Other files of the folder hold functions
+/// shared by models.
 #[must_use]
 pub fn is_model(text: &str) -> bool {
-    // A comment that is not closed swallows the function.
+    // An unclosed comment swallows the function.
     let begins =
         text.trim_start().strip_prefix("/*").is_some_and(|rest| rest.trim_start().starts_with(MARKER));
     begins || text::comment(text).is_ok() || text::definition(text, "response").is_some()
 }
 
-/// How messages call a file before its name is known to be good.
+/// The name of a file in messages before it is known to be valid.
 fn named(path: &Path) -> String {
     format!("models/{}", path.file_name().unwrap_or_default().to_string_lossy())
 }
@@ -102,11 +101,11 @@ fn problem(path: &Path, text: &str, (at, message): text::Mistake) -> ShaderProbl
     ShaderProblem::at(&named(path), text, at, message)
 }
 
-/// Reads a model: its declaration, and its WGSL as far as one can tell without drawing. A registry that knows
-/// a custom model of the same id takes this one for its next version.
+/// Reads a model: its declaration, and its WGSL as far as it can be checked without drawing. A registry that knows a
+/// custom model with the same id treats this one as its next version.
 ///
 /// # Errors
-/// Everything that is wrong with the declaration, or the first thing that is wrong with the WGSL.
+/// Everything that is wrong with the declaration, or the first error in the WGSL.
 pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel, Vec<ShaderProblem>> {
     let (model, lobe) = declared(path, text, registry)?;
     let problem_at = |at, message: String| vec![problem(path, text, (at, message))];
@@ -121,7 +120,7 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
     let mut sources = registry.sources().clone();
     sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
     let module = check::validate(&compose_evaluation(&sources, &model.entry)).map_err(|found| {
-        // What calls the model is not what is wrong.
+        // The caller of the model is not the culprit.
         if found.file == crate::shader::compose::EVALUATE.path
             && let Some(at) = text::definition(text, "response")
         {
@@ -139,7 +138,8 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
         let composed = compose(&sources, &model.entry, shading, registry.lights());
         let faces = shading.declaration.stage == Stage::Polygon;
         validate_drawing(&composed, faces).map_err(|found| {
-            // What the light loop, a light or a shading model calls its own comes after the model, and is told to be there twice.
+            // Names used by the light loop, a light or a shading model come after the model, and are reported as
+            // duplicates.
             let name =
                 found.message.strip_prefix("redefinition of `").and_then(|rest| rest.split('`').next());
             match name.and_then(|name| Some((name, text::defined_at(text, name)?))) {
@@ -154,8 +154,8 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
     Ok(CustomModel { entry, ..model })
 }
 
-/// Reads the declaration of a model and leaves its WGSL alone: what is drawn, on both machines, is a stand-in. For
-/// a model that is not used yet, and for a window that opens while a file is broken. Cheap: nothing is compiled.
+/// Reads the declaration of a model without its WGSL: both renderers draw a stand-in. For a model not used yet,
+/// and for a window that opens while a file is broken. Cheap: nothing is compiled.
 ///
 /// # Errors
 /// Everything that is wrong with the declaration.
@@ -163,7 +163,7 @@ pub fn declare(path: &Path, text: &str, registry: &Registry) -> Result<CustomMod
     declared(path, text, registry).map(|(model, _)| model)
 }
 
-/// What the functions of a model are, for messages.
+/// The signatures of a model's functions, for messages.
 const RESPONSE: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms";
 const AMBIENT_RESPONSE: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>";
 
@@ -198,25 +198,23 @@ fn declared(
     Ok((CustomModel { entry, path: path.to_owned(), text: text.into() }, lobe))
 }
 
-/// The id of a file, if it can be one.
+/// The id of a file, if valid.
 fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String> {
-    let id = id_of(path).ok_or_else(|| {
-        format!("the file is called {}, but a model is a file ID.{EXTENSION}", path.display())
-    })?;
-    text::identifier(id)
-        .map_err(|rule| format!("the name of the file is the id of the model: {id} {rule}"))?;
+    let id = id_of(path)
+        .ok_or_else(|| format!("the file name is {}, but it must be ID.{EXTENSION}", path.display()))?;
+    text::identifier(id).map_err(|rule| format!("the file name is the id of the model: {id} {rule}"))?;
     if registry.model(id).is_some() && registry.custom_file(id).is_none() {
         return Err(format!("{id} is the id of a built-in model; give the file another name"));
     }
     Ok(id)
 }
 
-/// Lambert's law in grey, whatever the parameters: stands in for models without a good version.
+/// Lambert's law in grey, whatever the parameters: the stand-in for models without a good version.
 const STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
 }
 ";
-/// The same for models that answer to uniform light by a formula.
+/// The same for models that answer uniform light by a formula.
 const FORMULA_STAND_IN: &str =
     "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
@@ -226,7 +224,7 @@ fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
 }
 ";
 
-/// True if the function for uniform light takes and gives what the light loop expects.
+/// True if the function for uniform light has the signature that the light loop expects.
 fn has_ambient_signature(module: &Module) -> bool {
     let vector = |ty| {
         matches!(

@@ -19,16 +19,16 @@ use crate::{
     shader::interpret::Program,
 };
 
-/// A custom model as the CPU runs it.
+/// A custom model as run by the CPU.
 pub struct OnCpu {
     programs: Result<Programs, String>,
-    /// True if a function did not come to an end.
+    /// True if a function ran too long.
     endless: AtomicBool,
 }
 
 struct Programs {
     response: Program,
-    /// Of models that answer to uniform light by a formula.
+    /// For models that answer uniform light by a formula.
     ambient: Option<Program>,
 }
 
@@ -53,7 +53,7 @@ impl OnCpu {
         Self { programs, endless: AtomicBool::new(false) }
     }
 
-    /// The results of a function; zeros when it cannot be run.
+    /// The results of a function; zeros if it cannot be run.
     fn run<const N: usize>(
         &self,
         which: fn(&Programs) -> Option<&Program>,
@@ -62,7 +62,7 @@ impl OnCpu {
     ) -> [f32; N] {
         let mut results = [0; N];
         let Some(program) = self.programs.as_ref().ok().and_then(which) else { return [0.0; N] };
-        // Each run up to the limit takes a while, and a picture asks a million times.
+        // Each run up to the limit takes a while, and a picture needs a million runs.
         if self.endless.load(Ordering::Relaxed) {
             return [0.0; N];
         }
@@ -79,7 +79,7 @@ impl crate::reflection::Interpreted for OnCpu {
         match &self.programs {
             Err(what) => Some(what.clone()),
             Ok(_) if self.endless.load(Ordering::Relaxed) => {
-                Some("a function runs too long; a loop may have no end".to_owned())
+                Some("a function runs too long; a loop may be endless".to_owned())
             }
             Ok(_) => None,
         }
@@ -103,7 +103,7 @@ pub(super) fn entry(
         let on_cpu = on_cpu.clone();
         Arc::new(move |values, encoding| {
             let lobe = lobe.as_ref().and_then(|model| {
-                // What the model does not declare must not decide how it looks.
+                // Undeclared parameters must not affect its look.
                 let mut own = Values::default();
                 for p in parameters {
                     own.set(p.name, values.get(p));
@@ -124,8 +124,8 @@ pub(super) fn entry(
     ModelEntry::custom(declaration, parameters, reads, instantiate, Some(on_cpu))
 }
 
-/// The entry of a model of which no more is known than its declaration: the CPU draws the same as the WGSL of the
-/// stand-in, Lambert's law in grey.
+/// The entry of a model known only by its declaration: the CPU draws the same stand-in as the WGSL, Lambert's law in
+/// grey.
 pub(super) fn stand_in(
     declaration: &'static Declaration,
     parameters: &'static [Parameter],
@@ -153,7 +153,7 @@ impl Surface for Grey {
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
-        // As the GPU has it, which reads the curve where there is one.
+        // As on the GPU, which reads the curve if there is one.
         self.curve().map_or(Vec3::splat(GREY), |curve| curve.at(v, frame))
     }
 
@@ -185,14 +185,14 @@ fn flattened(parameters: &[Parameter], values: &Values, encoding: Encoding) -> V
             ParameterKind::Choice { .. } => words.push(values.choice(p)),
         }
     }
-    // A struct without members is none: it has one that nobody uses.
+    // WGSL has no empty struct: this one has an unused member.
     if words.is_empty() {
         words.push(0);
     }
     words
 }
 
-/// The row of an object as the shader reads it, with the albedo of the lobe.
+/// The row of an object as read by the shader, with the albedo of the lobe.
 fn row(
     declaration: &Declaration,
     parameters: &[Parameter],
@@ -212,7 +212,7 @@ struct Interpreted {
     ambient: Ambient,
     anisotropic: bool,
     parameters: Vec<u32>,
-    /// As the table of the shader has it, without the curve; empty where that is not read.
+    /// The row as in the shader's table, without the curve; empty if it is not read.
     row: Vec<u32>,
     lobe: Option<LobeAlbedo>,
     curve: OnceLock<Option<AlbedoCurve>>,

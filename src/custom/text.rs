@@ -1,24 +1,24 @@
-//! The text of a model's file: where its declaration is, what it defines, and which names are allowed.
+//! The text of a model's file: its declaration, its definitions, and the names that are allowed.
 
 /// The longest id or name of a parameter, characters.
 pub(super) const LONGEST_ID: usize = 40;
-/// The word behind `/*` that makes a comment the declaration.
+/// The word after `/*` that marks the declaration.
 pub const MARKER: &str = "lcm";
 
-/// A mistake: the byte in the file, and what is wrong there.
+/// An error: its byte in the file, and the message.
 pub(super) type Mistake = (usize, String);
 
-/// The comment that declares, within a file.
+/// The comment with the declaration, within a file.
 pub(super) struct Comment<'a> {
-    /// What stands between the marker and the end.
+    /// The text between the marker and the end.
     pub json: &'a str,
-    /// The byte where that begins.
+    /// Its first byte.
     pub start: usize,
-    /// The byte behind the comment.
+    /// The byte after the comment.
     pub end: usize,
 }
 
-/// The bytes of a comment that begins at a byte with `/*`: up to behind its end. Comments nest, as in WGSL.
+/// The byte after a comment that starts at a byte with `/*`. Comments nest, as in WGSL.
 fn block_comment(text: &str, start: usize) -> Option<usize> {
     let bytes = text.as_bytes();
     let (mut at, mut depth) = (start, 0);
@@ -39,7 +39,7 @@ fn block_comment(text: &str, start: usize) -> Option<usize> {
     None
 }
 
-/// Finds the declaration: the first thing in the file but for space and other comments.
+/// Finds the declaration: the first thing in the file except for space and other comments.
 pub(super) fn comment(text: &str) -> Result<Comment<'_>, Mistake> {
     let mut at = 0;
     loop {
@@ -69,7 +69,7 @@ pub(super) fn comment(text: &str) -> Result<Comment<'_>, Mistake> {
     }
 }
 
-/// The text without its comments: spaces in their place.
+/// The text with spaces instead of comments.
 pub(super) fn without_comments(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut at = 0;
@@ -93,7 +93,7 @@ pub(super) fn without_comments(text: &str) -> String {
     out
 }
 
-/// The byte of the name of a function in a WGSL text, if the text defines it.
+/// The byte of the name of a function in a WGSL text, if it is defined there.
 pub(super) fn definition(text: &str, name: &str) -> Option<usize> {
     let plain = without_comments(text);
     let word = |c: char| c.is_alphanumeric() || c == '_';
@@ -129,14 +129,14 @@ pub(super) fn allowed_in_wgsl(name: &str) -> bool {
     !naga::keywords::wgsl::RESERVED.contains(&name)
 }
 
-/// An id as people read it: `charlie_sheen` is Charlie sheen.
+/// An id as a name: `charlie_sheen` becomes Charlie sheen.
 pub(super) fn humanised(id: &str) -> String {
     let spaced = id.replace('_', " ");
     let mut letters = spaced.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The byte where a text defines something of that name.
+/// The byte at which a text defines a name.
 pub(super) fn defined_at(text: &str, name: &str) -> Option<usize> {
     let word = |c: char| c.is_alphanumeric() || c == '_';
     let plain = without_comments(text);

@@ -1,4 +1,4 @@
-//! New files for custom models: a commented one to start from, and copies of models that there are.
+//! New files for custom models: a commented template, and copies of existing models.
 
 use std::fmt::Write as _;
 
@@ -17,10 +17,10 @@ use crate::{
     text::number,
 };
 
-/// Why a model could not be copied to a file.
+/// The reason why a model could not be copied to a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotDuplicated {
-    /// The id of the copy is none.
+    /// The id of the copy is invalid.
     #[error("{id} cannot be the id of a model: it {rule}")]
     Id {
         /// The id.
@@ -30,21 +30,21 @@ pub enum NotDuplicated {
     },
 }
 
-/// A name from which no identifier follows.
+/// A name without a valid identifier.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the id of a model {rule}{}", .instead.as_ref().map_or_else(String::new, |id| format!("; {id} would do")))]
 pub struct BadName {
     /// The rule that it breaks.
     pub rule: String,
-    /// An identifier that is near to it.
+    /// A similar valid identifier.
     pub instead: Option<String>,
 }
 
-/// The identifier of a model that people call by a name: `Student toon (2)` is `student_toon_2`. Spaces and signs
-/// become underscores; of letters beyond a–z, dots and slashes only the name that would do makes something.
+/// The identifier for a model's name: `Student toon (2)` becomes `student_toon_2`. Spaces and punctuation become
+/// underscores; letters beyond a–z, dots and slashes are errors with a suggestion.
 ///
 /// # Errors
-/// The rule that the name breaks, and a name that would do.
+/// The rule that the name breaks, and a suggestion.
 pub fn id_of_name(name: &str) -> Result<String, BadName> {
     let name = name.trim();
     if identifier(name).is_ok() {
@@ -63,21 +63,21 @@ pub fn id_of_name(name: &str) -> Result<String, BadName> {
         })
 }
 
-/// A name in the letters a–z: umlauts as Germans write them without, others as they sound.
+/// A name in the letters a–z: umlauts in German transliteration, others by sound.
 fn latin(name: &str) -> String {
     let umlauts = [('ä', "ae"), ('ö', "oe"), ('ü', "ue"), ('Ä', "Ae"), ('Ö', "Oe"), ('Ü', "Ue")];
     let name = umlauts.iter().fold(name.to_owned(), |name, (letter, two)| name.replace(*letter, two));
     deunicode::deunicode(&name)
 }
 
-/// Lower case, with one underscore for whatever stands between letters and digits.
+/// Lower case, with one underscore for anything between letters and digits.
 fn joined(name: &str) -> String {
     let lower = name.to_lowercase();
     let words = lower.split(|c: char| !c.is_ascii_alphanumeric());
     words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join("_")
 }
 
-/// A commented file to start from, valid as it is: a matt body under a soft gloss that keeps all laws.
+/// A commented template, valid unchanged: a matte body under a soft gloss that keeps all laws.
 #[must_use]
 pub fn template(id: &str, name: &str) -> String {
     let name = if name == id { humanised(id) } else { name.to_owned() };
@@ -86,42 +86,42 @@ pub fn template(id: &str, name: &str) -> String {
 
 const TEMPLATE: &str = r#"/* lcm
 {
-    // What choosers call the model. Its id in scene files is the name of this file, FILE.
+    // The name in the window. The id in scene files is the name of this file, FILE.
     "name": NAME,
-    "author": "who thought of it, and the year",
-    "source": "where it was published",
-    "summary": "A matt body under a soft gloss. What one has, the other lacks.",
+    "author": "name and year",
+    "source": "publication",
+    "summary": "A matte body under a soft gloss; the two share the light.",
     // One part for each term: total, ambient, diffuse, specular. _x is a subscript, ^x a superscript.
     "equation": [
         { "term": "diffuse", "text": "I_d = (1 − g) C_b (N·L)" },
         { "term": "specular", "text": "I_s = g (N·H)^n (N·L)" },
     ],
-    // The laws that the model keeps. `lcm models check ID` tries to find them broken.
+    // The laws that the model keeps. `lcm models check ID` searches for violations.
     "laws": ["reciprocal", "energy conserving", "non-negative"],
-    // Say true if turning the surface about its normal changes the response.
+    // True if turning the surface about its normal changes the response.
     "anisotropic": false,
-    // A name alone is a parameter that other models have too: a surface keeps it when the model changes.
-    // Types are number, integer, colour, triple and choice; what is left out has a sensible value.
+    // A name alone is a parameter shared with other models: a surface keeps its value when the model changes.
+    // Types are number, integer, colour, triple and choice; missing keys have sensible defaults.
     "parameters": [
         "base_colour",
         {
             "name": "gloss", "symbol": "g", "label": "gloss", "type": "number",
             "min": 0, "max": 1, "default": 0.3,
-            "help": "How much of the light the surface mirrors instead of scattering it.",
+            "help": "The fraction of light that is mirrored instead of scattered.",
         },
         {
             "name": "polish", "symbol": "n", "label": "polish", "type": "number",
             "min": 1, "max": 200, "default": 20,
-            "help": "The exponent of the highlight: the larger, the smaller it is.",
+            "help": "The exponent of the highlight: larger values make it smaller.",
         },
     ],
 }
 */
 
-// What the surface sends to the viewer per unit of light, π f_r cos θ_l, where f_r is the BRDF. l points to the
-// light and v to the viewer, both of length 1; frame holds the normal n, the tangent t and the bitangent b;
-// m has the parameters, colours as linear light. The functions of terms.wgsl and optics/ may be called,
-// such as half_vector, power, schlick and ggx.
+// The light reflected to the viewer per unit of light, π f_r cos θ_l, where f_r is the BRDF. l points to the
+// light and v to the viewer, both of length 1; frame has the normal n, the tangent t and the bitangent b;
+// m has the parameters, colours as linear light. Functions of terms.wgsl and optics/ are available, such as
+// half_vector, power, schlick and ggx.
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_l = dot(frame.n, l);
     let cos_v = dot(frame.n, v);
@@ -131,20 +131,20 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_h = max(dot(frame.n, half_vector(l, v)), 0.0);
     let diffuse = (1.0 - m.gloss) * m.base_colour * cos_l;
     let specular = vec3(m.gloss * power(cos_h, m.polish) * cos_l);
-    // Ambient, diffuse, specular: the terms that the window can show alone.
+    // Ambient, diffuse, specular: the window can show each term alone.
     return Terms(vec3(0.0), diffuse, specular);
 }
 
-// The model answers uniform light by its directional albedo, which is calculated. A model with a
-// formula of its own for that defines it:
+// The model answers uniform light by its directional albedo, which is calculated. To use a
+// formula instead, define:
 // fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> { … }
 "#;
 
-/// A model as a file of that id: the same picture, the same knobs. `name` is what people call the copy; where that is
-/// the id, one follows from it.
+/// A model as a file with that id: the same picture, the same knobs. `name` is the displayed name of the copy; if it
+/// equals the id, a name is derived from it.
 ///
 /// # Errors
-/// When the id cannot be one.
+/// If the id is not valid.
 pub fn duplicate(
     entry: &ModelEntry,
     sources: &Sources,
@@ -154,7 +154,7 @@ pub fn duplicate(
     identifier(id).map_err(|rule| NotDuplicated::Id { id: id.to_owned(), rule })?;
     let d = entry.declaration;
     let source = sources.text(&d.wgsl);
-    // Of a model from a file everything but the declaration is copied; that is written anew.
+    // From a file everything but the declaration is copied; that is written anew.
     let body = comment(source).map_or(source, |c| &source[c.end..]).trim_start();
     let name = match name {
         name if name != id => name.to_owned(),
@@ -214,12 +214,12 @@ pub fn duplicate(
     Ok(out)
 }
 
-/// A text as JSON writes it, with nothing in it that begins or ends a comment.
+/// A text in JSON, without anything that begins or ends a comment.
 fn text(text: &str) -> String {
     Json::from(text).to_string().replace("*/", "*\\/").replace("/*", "\\/*")
 }
 
-/// JSON on one line, with spaces where people put them.
+/// JSON on one line, with spaces in the usual places.
 fn spaced(json: &Json) -> String {
     match json {
         Json::Array(list) => {
@@ -230,7 +230,7 @@ fn spaced(json: &Json) -> String {
     }
 }
 
-/// A parameter with everything that its declaration says.
+/// A parameter with its complete declaration.
 fn declare(out: &mut String, p: &Parameter) {
     let _ = writeln!(
         out,

@@ -10,49 +10,49 @@ use tempfile::NamedTempFile;
 
 use super::{FileError, folder_of, follow, is_same, litter, options, regular, tidy};
 
-/// Writes a document, whether there is one or not: all or nothing, and on disk when this returns. Links are followed;
-/// mode, owner, group and hard links stay as they are where the system allows it.
+/// Writes a document, replacing any that exists: all or nothing, and on disk when this returns. Links are followed;
+/// mode, owner, group and hard links are kept where the system allows it.
 ///
 /// # Errors
-/// When the path leads to something that is no regular file, or it cannot be written.
+/// If the path leads to anything but a regular file, or it cannot be written.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let mut draft = Draft::new(path)?;
     draft.write_all(bytes)?;
     draft.replace()
 }
 
-/// Writes a document where there is none yet, as [`write()`] does.
+/// Writes a new document, as [`write()`] does.
 ///
 /// # Errors
-/// [`io::ErrorKind::AlreadyExists`] when there is a file, and as [`write()`].
+/// [`io::ErrorKind::AlreadyExists`] if there is a file, and as [`write()`].
 pub fn create(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let mut draft = Draft::new(path)?;
     draft.write_all(bytes)?;
     draft.create()
 }
 
-/// The new content of a file, not yet in its place. It is gone when dropped.
+/// The new content of a file, not yet in its place. Dropping it deletes it.
 #[derive(Debug)]
 pub struct Draft {
-    /// The file that it is for, links followed.
+    /// The destination, links followed.
     target: PathBuf,
     file: NamedTempFile,
-    /// True if it has to be on disk before it takes its place.
+    /// True if it must be on disk before it takes its place.
     synced: bool,
 }
 
 impl Draft {
-    /// An empty draft of a document; its folder is [`tidy`] then.
+    /// An empty draft of a document, after [`tidy`] in its folder.
     ///
     /// # Errors
-    /// When the path leads to something that is no regular file, or nothing can be written in its folder.
+    /// If the path leads to anything but a regular file, or nothing can be written in its folder.
     pub fn new(path: &Path) -> Result<Self, FileError> {
         let draft = Self::beside(path, true)?;
         let _ = tidy(folder_of(&draft.target));
         Ok(draft)
     }
 
-    /// An empty draft of what can be calculated again, so that nobody need wait for the disk.
+    /// An empty draft of something that can be calculated again, so nobody need wait for the disk.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -61,7 +61,7 @@ impl Draft {
     }
 
     fn beside(path: &Path, synced: bool) -> Result<Self, FileError> {
-        /// Another process that tidies up can take a file between its creation and its lock.
+        /// Another process that tidies up can delete a file between its creation and its lock.
         const ATTEMPTS: usize = 16;
         let target = follow(path)?;
         let is_new = existing(&target)?.is_none();
@@ -70,7 +70,7 @@ impl Draft {
         #[cfg(unix)]
         if is_new {
             use std::os::unix::fs::PermissionsExt as _;
-            // As any program makes a new file; the umask of the user takes away from it.
+            // The mode of any new file, before the umask.
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
         #[cfg(not(unix))]
@@ -89,13 +89,13 @@ impl Draft {
                 return Ok(Self { target, file, synced });
             }
         }
-        Err(io::Error::other("its folder is tidied up without end").into())
+        Err(io::Error::other("another process keeps deleting temporary files in its folder").into())
     }
 
-    /// Puts it in its place, where there must be nothing yet.
+    /// Puts it in its place, if nothing is there yet.
     ///
     /// # Errors
-    /// [`io::ErrorKind::AlreadyExists`] when there is something, and what the system says otherwise.
+    /// [`io::ErrorKind::AlreadyExists`] if there is something, and any error of the system.
     pub fn create(mut self) -> Result<(), FileError> {
         self.sync()?;
         let Self { target, file, synced } = self;
@@ -105,11 +105,11 @@ impl Draft {
         Ok(())
     }
 
-    /// Puts it in its place, whether there is a file or not.
+    /// Puts it in its place, replacing any file there.
     ///
     /// # Errors
-    /// When there is something else than a regular file, and what the system says otherwise. But for
-    /// [`FileError::Unfinished`], what was there is unchanged then.
+    /// If there is anything but a regular file, and any error of the system. Unless it is [`FileError::Unfinished`],
+    /// the old file is unchanged.
     pub fn replace(mut self) -> Result<(), FileError> {
         let old = existing(&self.target)?;
         if let Some(old) = &old {
@@ -128,8 +128,8 @@ impl Draft {
         Ok(())
     }
 
-    /// Overwrites what is there. That can be interrupted, so the draft is kept under a name that is no litter until
-    /// all is done.
+    /// Overwrites the existing file. That can be interrupted, so until it is done the draft is kept under a name that
+    /// is not treated as litter.
     fn overwrite(mut self, mut place: File, old: &Metadata) -> Result<(), FileError> {
         self.synced = true;
         self.sync()?;
@@ -141,7 +141,7 @@ impl Draft {
             .rewind()
             .and_then(|()| fill(&mut whole, &mut place))
             .map_err(|error| FileError::Unfinished { copy: copy.clone(), error })?;
-        // All is done; a copy that could not be removed is found to be one by whoever tidies up.
+        // Done; if the copy cannot be removed, the next tidying recognises it as a copy.
         let _ = fs::remove_file(&copy);
         Ok(())
     }
@@ -162,14 +162,15 @@ impl Write for Draft {
     }
 }
 
-/// Makes an open file what another one is, and waits until that is on disk. On the way it is a beginning of it.
+/// Makes an open file equal to another, and waits until that is on disk. Until then its content is a prefix of the
+/// other's.
 pub(super) fn fill(from: &mut File, place: &mut File) -> io::Result<()> {
     place.set_len(0)?;
     io::copy(from, place)?;
     place.sync_all()
 }
 
-/// The regular file that is there, if any.
+/// The regular file at a path, if any.
 fn existing(target: &Path) -> Result<Option<Metadata>, FileError> {
     match fs::metadata(target) {
         Ok(metadata) => regular(&metadata).map(|()| Some(metadata)),
@@ -178,14 +179,14 @@ fn existing(target: &Path) -> Result<Option<Metadata>, FileError> {
     }
 }
 
-/// Opens a file to overwrite it, if this user may and it is still the one that was looked at.
+/// Opens a file to overwrite it, if this user may and it is still the one examined before.
 pub(super) fn open_to_overwrite(target: &Path, old: &Metadata) -> Option<File> {
     let file = options().write(true).open(target).ok()?;
     let now = file.metadata().ok()?;
     (regular(&now).is_ok() && is_same(&now, old)).then_some(file)
 }
 
-/// Gives a file the owner and group of another; true if it has both.
+/// Gives a file the owner and group of another; true if both succeeded.
 #[cfg_attr(not(unix), allow(unused_variables))]
 fn take_after(file: &File, old: &Metadata) -> bool {
     #[cfg(unix)]
@@ -197,7 +198,7 @@ fn take_after(file: &File, old: &Metadata) -> bool {
         if (user, group) == (None, None) || fchown(file, user, group).is_ok() {
             return true;
         }
-        // Better the group alone than neither.
+        // The group alone is better than neither.
         user.is_some() && group.is_some() && {
             let _ = fchown(file, None, group);
             false
@@ -218,8 +219,8 @@ fn links(metadata: &Metadata) -> u64 {
     1
 }
 
-/// A new name is safe once its folder is on disk too. Not every file system can do this, and the file itself is
-/// whole either way.
+/// A new name is safe once its folder is on disk too. Not every file system can do this; the file itself is complete
+/// either way.
 #[cfg_attr(not(unix), allow(unused_variables))]
 fn sync_folder(file: &Path, synced: bool) {
     #[cfg(unix)]

@@ -10,7 +10,7 @@ use std::{
 
 use super::{FileError, Kind, options, read};
 
-/// The longest wait for somebody who writes to a named pipe.
+/// The longest wait for a writer of a named pipe.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// The time between two attempts to read.
 const PAUSE: Duration = Duration::from_millis(5);
@@ -21,12 +21,11 @@ pub fn is_stream(path: &Path) -> bool {
     super::kind(path).is_ok_and(|kind| matches!(kind, Kind::Pipe | Kind::Device))
 }
 
-/// The content of what a command line names: as [`read`], but it may be a stream too, such as `/dev/stdin` or the
-/// `<(…)` of a shell. Those who write to it are waited for, but not for somebody who might begin to.
+/// The content of a path from the command line: as [`read`], but it may also be a stream, such as `/dev/stdin` or a
+/// shell's `<(…)`. It waits for processes that write to the stream, but not for one that might start to.
 ///
 /// # Errors
-/// When it is neither file nor stream, nobody writes to it, more than `limit` bytes come from it, or it cannot be
-/// read.
+/// If it is neither a file nor a stream, nobody writes to it, it has more than `limit` bytes, or it cannot be read.
 pub fn read_input(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let kind = Kind::of(fs::metadata(path)?.file_type());
     match kind {
@@ -40,7 +39,7 @@ pub fn read_input(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     if Kind::of(stream.metadata()?.file_type()) != kind {
         return Err(io::Error::other("it changed while it was opened").into());
     }
-    // Whoever writes to a pipe that this process was given is there from the beginning.
+    // A pipe inherited by this process has its writers from the start.
     let patience = if kind == Kind::Pipe && descriptor(path).is_none() { PATIENCE } else { Duration::ZERO };
     match read_all(stream, limit, patience)? {
         bytes if bytes.is_empty() && !patience.is_zero() => Err(FileError::Kind(kind)),
@@ -54,7 +53,7 @@ pub fn is_descriptor(path: &Path) -> bool {
     descriptor(path).is_some()
 }
 
-/// The number of the open file of this process that a path stands for.
+/// The descriptor for which a path stands.
 pub(super) fn descriptor(path: &Path) -> Option<&str> {
     let path = path.to_str()?;
     match path {
@@ -75,7 +74,7 @@ fn read_all(mut from: impl Read, limit: u64, patience: Duration) -> Result<Vec<u
             Ok(0) if bytes.is_empty() && begin.elapsed() < patience => thread::sleep(PAUSE),
             Ok(0) => return Ok(bytes),
             Ok(n) => bytes.extend_from_slice(&piece[..n]),
-            // Somebody holds the other end, and says nothing for now.
+            // A writer exists, but has nothing to say yet.
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => thread::sleep(PAUSE),
             Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
             Err(e) => return Err(e.into()),

@@ -13,20 +13,20 @@ use super::{
     is_same, options, read, read_start,
 };
 
-/// The beginning of the names of all temporary files. The dot hides them from whoever watches a folder.
+/// The prefix of all temporary files. The dot hides them from programs that watch the folder.
 pub(super) const PREFIX: &str = ".lcm-";
-/// The end of the name of a draft.
+/// The suffix of a draft.
 pub(super) const DRAFT: &str = ".tmp";
-/// The end of the name of a whole copy of a file that is being overwritten.
+/// The suffix of the whole copy of a file that is being overwritten.
 const WHOLE: &str = ".whole";
 /// The length of the random part of a name.
 const RANDOM: usize = 6;
-/// Files under the names of older versions have no lock; none takes as long to write.
+/// Files named by older versions have no lock; no write takes this long.
 const OLD: Duration = Duration::from_secs(60);
 /// No document is larger.
 const LARGEST: u64 = 64 << 20;
 
-/// A file that was being overwritten when its process ended, and is not what was to become of it.
+/// A file whose overwriting was cut short when its process ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unfinished {
     /// The copy with the whole content.
@@ -41,19 +41,19 @@ impl std::fmt::Display for Unfinished {
         match &self.file {
             Some(file) => {
                 write!(f, "{} may be incomplete: saving it was interrupted", file.display())?;
-                write!(f, ". Its whole content is in {copy}; take that, or delete it.")
+                write!(f, ". Its whole content is in {copy}; use that, or delete it.")
             }
             None => {
                 write!(
                     f,
-                    "{copy} is the whole content of a file that is no longer there; take it, or delete it."
+                    "{copy} is the whole content of a file that no longer exists; use it, or delete it."
                 )
             }
         }
     }
 }
 
-/// The name of the whole copy of a file while that is overwritten.
+/// The name of the whole copy of a file during overwriting.
 #[cfg_attr(not(unix), allow(unused_variables))]
 pub(super) fn whole(draft: &Path, old: &Metadata) -> PathBuf {
     #[cfg(unix)]
@@ -64,18 +64,18 @@ pub(super) fn whole(draft: &Path, old: &Metadata) -> PathBuf {
     draft.with_file_name(format!("{}.{inode}-{}{WHOLE}", name.trim_end_matches(DRAFT), changed(old)))
 }
 
-/// When a file was changed last, nanoseconds since 1970.
+/// The modification time of a file, in nanoseconds since 1970.
 fn changed(file: &Metadata) -> u64 {
     let since = file.modified().ok().and_then(|at| at.duration_since(UNIX_EPOCH).ok());
     since.map_or(0, |since| since.as_nanos() as u64)
 }
 
-/// A name that this program gives.
+/// A name given by this program.
 #[derive(Debug, PartialEq, Eq)]
 enum Name {
-    /// A draft, locked as long as its process lives.
+    /// A draft, locked while its process lives.
     Draft,
-    /// The whole copy of the file with that inode, which was changed last at that time.
+    /// The whole copy of the file with that inode and modification time.
     Whole(u64, u64),
     /// A draft of a scene by an older version.
     OldScene,
@@ -97,7 +97,7 @@ impl Name {
             return known.then(|| Some(Self::Whole(inode.parse().ok()?, time.parse().ok()?))).flatten();
         }
         if let Some((file, word)) = name.strip_suffix(DRAFT).and_then(|rest| rest.rsplit_once('.')) {
-            // People write words; what is random has almost always letters of both sizes or digits among them.
+            // People write words; random names almost always mix cases or have digits.
             let classes = [u8::is_ascii_lowercase, u8::is_ascii_uppercase, u8::is_ascii_digit];
             let mixed = classes.iter().filter(|class| word.bytes().any(|b| class(&b))).count() > 1;
             let is_scene = file.len() >= ".x.json".len() && file.starts_with('.') && file.ends_with(".json");
@@ -109,8 +109,8 @@ impl Name {
     }
 }
 
-/// Removes from a folder the drafts that no process works on any more, and finishes what was interrupted while it
-/// overwrote a file. Returns what could not be finished.
+/// Removes drafts abandoned by their processes from a folder, and finishes interrupted overwriting. Returns those that
+/// could not be finished.
 #[must_use]
 pub fn tidy(folder: &Path) -> Vec<Unfinished> {
     let mut unfinished = Vec::new();
@@ -129,21 +129,21 @@ pub fn tidy(folder: &Path) -> Vec<Unfinished> {
     unfinished
 }
 
-/// A regular file that no process has locked, locked; a link is none.
+/// A regular file that no other process has locked, locked; never a link.
 fn left(path: &Path) -> Option<File> {
     if !fs::symlink_metadata(path).ok()?.is_file() {
         return None;
     }
     let file = options().read(true).open(path).ok()?;
     file.try_lock().ok()?;
-    // It may have been renamed before the lock was taken, and another may have its name.
+    // It may have been renamed before the lock was taken, and another file may have its name.
     let there = fs::symlink_metadata(path).ok()?;
     (there.is_file() && is_same(&there, &file.metadata().ok()?)).then_some(file)
 }
 
 fn remove_if_left(path: &Path) {
     if let Some(_lock) = left(path) {
-        // What cannot be removed is no news: the next one tries again.
+        // A file that cannot be removed is no news: the next tidying tries again.
         let _ = fs::remove_file(path);
     }
 }
@@ -158,9 +158,9 @@ fn remove_if_old(path: &Path, beginning: &[u8]) {
     }
 }
 
-/// Finishes overwriting a file, if it was interrupted and nothing happened since.
+/// Finishes overwriting a file, if it was interrupted and unchanged since.
 fn finish(folder: &Path, copy: &Path, inode: u64, time: u64) -> Option<Unfinished> {
-    // Locked: somebody is at it.
+    // Locked: another process is working on it.
     let mut lock = left(copy)?;
     let unfinished = |file| Some(Unfinished { copy: copy.to_owned(), file });
     let Some((file, metadata)) = with_inode(folder, inode) else { return unfinished(None) };
@@ -171,8 +171,8 @@ fn finish(folder: &Path, copy: &Path, inode: u64, time: u64) -> Option<Unfinishe
         Err(_) => return None,
     };
     if there != wanted {
-        // Only what the interruption itself explains is undone, and only among files of one owner: in a folder that
-        // all may write to, the copy could come from anybody.
+        // Only the effect of the interruption itself is undone, and only among files of one owner: in a folder that
+        // everyone may write to, the copy could come from anybody.
         let begun = wanted.starts_with(&there) || changed(&metadata) == time;
         let interrupted = begun && lock.metadata().is_ok_and(|m| owner(&m) == owner(&metadata));
         let place = interrupted.then(|| open_to_overwrite(&file, &metadata)).flatten();

@@ -1,37 +1,37 @@
-//! The one guard between the program and files: everything that is read or written goes through here, and nothing
-//! else in the program opens a file.
+//! The one guard between the program and files: all reading and writing goes through here, and nothing else in the
+//! program opens a file.
 //!
 //! To read:
 //! - [`read`]`(path, limit)`: the content of a regular file, links followed. It never waits: pipes, devices,
-//!   sockets and folders are refused before they are opened, and so is what is larger than the limit.
+//!   sockets and folders are refused before they are opened, and so are files larger than the limit.
 //! - [`read_start`]: its first bytes.
-//! - [`read_input`]: for what a command line names, which may also be a stream, such as `<(…)` of a shell.
+//! - [`read_input`]: a path from the command line, which may also be a stream, such as a shell's `<(…)`.
 //!
 //! To write:
-//! - [`write()`]`(path, bytes)`: a document, all or nothing, on disk when it returns; [`create`]: the same where
-//!   there must be none yet; [`Draft`]: the same in steps. They keep mode, owner, group, links and hard links, and
-//!   refuse pipes, devices and sockets.
-//! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] is asked before it
-//!   is calculated.
-//! - [`tidy`]: removes what killed processes left in a folder, and finishes what they could not.
+//! - [`write()`]`(path, bytes)`: a document, all or nothing, on disk when it returns; [`create`]: the same for a new
+//!   file; [`Draft`]: the same in steps. They keep mode, owner, group, links and hard links, and refuse pipes, devices
+//!   and sockets.
+//! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] is called before it is
+//!   calculated.
+//! - [`tidy`]: removes the leftovers of killed processes from a folder, and finishes their interrupted writes.
 //!
-//! To tell of it:
-//! - [`printable`]: a text without what a terminal would obey.
+//! To report:
+//! - [`printable`]: a text without the characters that a terminal would act on.
 //!
 //! # How a file is replaced
 //!
-//! The new content is first written to a file beside it, called `.lcm-XXXXXX.tmp` whatever the name of the other is,
-//! so that names of any length can be written. It is locked as long as its process lives. Usually it is then
-//! renamed, so that there is never half a file.
+//! The new content is first written to a file beside the old one, called `.lcm-XXXXXX.tmp` whatever the other's name,
+//! so that names of any length work. It is locked while its process lives. Usually it is then renamed, so there is
+//! never half a file.
 //!
-//! Renaming gives the name to another file. Where that would part hard links, or give the file to another owner or
-//! group than this user may restore, and where this user may write to the file, its content is overwritten instead.
+//! Renaming gives the name to another file. Where that would separate hard links, or give the file an owner or group
+//! that this user may not restore, and where this user may write to the file, its content is overwritten instead.
 //! Because that can be interrupted, the complete copy beside it is first synced and renamed to
-//! `.lcm-XXXXXX.INODE-TIME.whole`, with the inode of the file that is overwritten and when that last changed. It is
-//! only removed when all is synced.
-//! [`tidy`] never takes such a copy for litter. If the file it belongs to is as long as the copy and equal to it, all
-//! was done; if it is a beginning of the copy, the overwriting was interrupted, and is done again; otherwise both are
-//! left alone and the user is told.
+//! `.lcm-XXXXXX.INODE-TIME.whole`, with the inode and the modification time of the file to be overwritten. It is
+//! removed only when everything is synced.
+//! [`tidy`] never treats such a copy as litter. If the file it belongs to is equal to the copy, the overwriting was
+//! finished; if it is a prefix of the copy, the overwriting was interrupted, and is repeated; otherwise both are kept
+//! and the user is informed.
 
 use std::{
     fmt,
@@ -52,14 +52,14 @@ pub use litter::{Unfinished, tidy};
 pub use output::{Output, PNG, Refused, Signature, may_overwrite};
 pub use shown::printable;
 
-/// The kind of thing that a path leads to.
+/// The kind of file that a path leads to, or other thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// A regular file.
     File,
     /// A folder.
     Folder,
-    /// A named pipe, or one that another program writes to.
+    /// A named pipe, or an anonymous one to another program.
     Pipe,
     /// A socket.
     Socket,
@@ -109,17 +109,17 @@ impl fmt::Display for Kind {
     }
 }
 
-/// A failure to read or write a file. Its text follows the name of the file: "c.json could not be read: …".
+/// A failure to read or write a file. Its text follows the file name: "c.json could not be read: …".
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// The path leads to something that is no regular file.
+    /// The path leads to something other than a regular file.
     #[error("it is {0}, but it must be a file")]
     Kind(Kind),
-    /// It is larger than what was asked for can be.
+    /// It is larger than the limit of the caller.
     #[error("it is larger than {}", size(*.0))]
     TooLarge(u64),
-    /// It was overwritten in part only; the new content is whole in another file.
-    #[error("{error}; it is incomplete now, and its whole new content is in {}", .copy.display())]
+    /// It was only partly overwritten; the new content is complete in another file.
+    #[error("{error}; it is incomplete now; its complete new content is in {}", .copy.display())]
     Unfinished {
         /// The file that holds the whole content.
         copy: PathBuf,
@@ -147,15 +147,15 @@ impl From<FileError> for io::Error {
     }
 }
 
-/// A limit as people read it.
+/// A limit as shown to people.
 fn size(bytes: u64) -> String {
     if bytes >= 1 << 20 { format!("{} MiB", bytes >> 20) } else { format!("{} KiB", bytes >> 10) }
 }
 
-/// The kind of thing that a path leads to, links followed.
+/// The kind of file that a path leads to, links followed.
 ///
 /// # Errors
-/// When there is nothing, or it cannot be looked at.
+/// If there is nothing, or it cannot be examined.
 pub fn kind(path: &Path) -> io::Result<Kind> {
     Ok(Kind::of(fs::metadata(path)?.file_type()))
 }
@@ -163,7 +163,7 @@ pub fn kind(path: &Path) -> io::Result<Kind> {
 /// The content of a regular file, links followed.
 ///
 /// # Errors
-/// When it is no regular file, is larger than `limit` bytes, or cannot be read.
+/// If it is not a regular file, is larger than `limit` bytes, or cannot be read.
 pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let (file, length) = open_to_read(path)?;
     if length > limit {
@@ -171,23 +171,23 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     }
     let mut bytes = Vec::with_capacity(length as usize);
     file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
-    // It may have grown, and some files do not say how long they are.
+    // It may have grown, and some files do not report their length.
     if bytes.len() as u64 > limit { Err(FileError::TooLarge(limit)) } else { Ok(bytes) }
 }
 
-/// The first bytes of a regular file, links followed: as many as asked for, or all there are.
+/// The first bytes of a regular file, links followed: as many as requested, or all there are.
 ///
 /// # Errors
-/// When it is no regular file or cannot be read.
+/// If it is not a regular file or cannot be read.
 pub fn read_start(path: &Path, length: u64) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
     open_to_read(path)?.0.take(length).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// Opens a regular file, and says how long it claims to be.
+/// Opens a regular file, and returns its claimed length.
 fn open_to_read(path: &Path) -> Result<(File, u64), FileError> {
-    // Opening alone can have effects: a pipe waits for a writer, a tape is wound back.
+    // Opening alone can have effects: a pipe waits for a writer, a tape is rewound.
     regular(&fs::metadata(path)?)?;
     let file = options().read(true).open(path)?;
     // Something else may have taken its place meanwhile.
@@ -196,7 +196,7 @@ fn open_to_read(path: &Path) -> Result<(File, u64), FileError> {
     Ok((file, metadata.len()))
 }
 
-/// Options that never make opening wait, nor a terminal the one of this process.
+/// Options that keep opening from waiting, and a terminal from becoming this process's controlling one.
 fn options() -> OpenOptions {
     let mut options = OpenOptions::new();
     #[cfg(unix)]
@@ -213,13 +213,13 @@ pub fn same(a: &Path, b: &Path) -> bool {
     matches!((file_id::get_file_id(a), file_id::get_file_id(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// The end of a path, links followed; nothing need be there.
+/// The end of a path, links followed; nothing need exist there.
 ///
 /// # Errors
-/// When links lead in a circle.
+/// If links form a circle.
 pub fn follow(path: &Path) -> io::Result<PathBuf> {
     let mut at = path.to_owned();
-    // As many as Linux follows.
+    // The limit of Linux.
     for _ in 0..40 {
         match fs::read_link(&at) {
             Ok(target) => at = at.parent().unwrap_or(Path::new("")).join(target),
@@ -243,7 +243,7 @@ fn regular(metadata: &Metadata) -> Result<(), FileError> {
     }
 }
 
-/// True if two descriptions are of one file; where that cannot be told, true.
+/// True if two descriptions are of one file, or if that is unknown.
 #[cfg_attr(not(unix), allow(unused_variables))]
 fn is_same(a: &Metadata, b: &Metadata) -> bool {
     #[cfg(unix)]

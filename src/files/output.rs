@@ -1,4 +1,4 @@
-//! The results of commands: where they may go, and how they get there.
+//! The results of commands: destinations, and how to write them.
 
 use std::{
     fs::File,
@@ -10,7 +10,7 @@ use std::{
 
 use super::{Draft, FileError, Kind, input::descriptor, kind, options, read_start, same};
 
-/// The longest wait for somebody who reads from a named pipe.
+/// The longest wait for a reader of a named pipe.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// The time between two attempts to write.
 const PAUSE: Duration = Duration::from_millis(1);
@@ -18,7 +18,7 @@ const PAUSE: Duration = Duration::from_millis(1);
 /// The first bytes of the files of a format.
 #[derive(Clone, Copy, Debug)]
 pub struct Signature {
-    /// The sort: "a PNG file".
+    /// The name of the format: "a PNG file".
     pub what: &'static str,
     /// The first bytes.
     pub begins: &'static [u8],
@@ -31,23 +31,23 @@ pub const PNG: Signature = Signature { what: "a PNG file", begins: b"\x89PNG\r\n
 #[derive(Debug, thiserror::Error)]
 pub enum Refused {
     /// It is one of the inputs.
-    #[error("{} {}; it was not overwritten", .output.display(), told(.output, .input))]
+    #[error("{} {}; it was not overwritten", .output.display(), overlap(.output, .input))]
     Input {
         /// The output.
         output: PathBuf,
         /// The input that is the same file.
         input: PathBuf,
     },
-    /// There is a file of another sort.
-    #[error("{} is there and is not {what}; it was not overwritten", .output.display())]
+    /// There is a file of another format.
+    #[error("{} exists and is not {what}; it was not overwritten", .output.display())]
     Foreign {
         /// The output.
         output: PathBuf,
-        /// The format that it would have to have.
+        /// The required format.
         what: &'static str,
     },
-    /// The file there cannot be examined.
-    #[error("{} is there and cannot be looked at ({error}); it was not overwritten", .output.display())]
+    /// The existing file cannot be examined.
+    #[error("{} exists and could not be examined ({error}); it was not overwritten", .output.display())]
     Unknown {
         /// The output.
         output: PathBuf,
@@ -56,7 +56,7 @@ pub enum Refused {
     },
 }
 
-fn told(output: &Path, input: &Path) -> String {
+fn overlap(output: &Path, input: &Path) -> String {
     if output == input {
         "is read by this command".to_owned()
     } else {
@@ -64,9 +64,8 @@ fn told(output: &Path, input: &Path) -> String {
     }
 }
 
-/// Asks whether a result may be written to a path. A file that is there must be of the same sort, so that nothing
-/// else is lost, and none of the inputs, whichever way a link leads. Nothing can be lost in an empty file, nor in a
-/// device.
+/// Checks that a result may be written to a path. An existing file must be of the same format, so that nothing else is
+/// lost, and must not be an input, not even by way of links. An empty file or a device has nothing to lose.
 ///
 /// # Errors
 /// If it may not.
@@ -75,7 +74,7 @@ pub fn may_overwrite<'a>(
     sort: Signature,
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Refused> {
-    // Where there is nothing, nothing is lost; what is wrong with other things shows when they are written to.
+    // Writing nowhere loses nothing; other problems show in writing.
     if !kind(output).is_ok_and(|kind| kind == Kind::File) || descriptor(output).is_some() {
         return Ok(());
     }
@@ -90,8 +89,7 @@ pub fn may_overwrite<'a>(
     }
 }
 
-/// The destination of a result: a file, which appears complete or not at all, or standard output, a device or a
-/// pipe.
+/// The destination of a result: a file, which appears complete or not at all, or standard output, a device or a pipe.
 #[derive(Debug)]
 pub enum Output {
     /// A file; [`finish`](Self::finish) puts it in its place.
@@ -103,12 +101,12 @@ pub enum Output {
 }
 
 impl Output {
-    /// Opens it. A pipe is given some time to be read from.
+    /// Opens it. A pipe gets some time to find a reader.
     ///
     /// # Errors
-    /// When it is a folder or a socket, nobody reads from it, or it cannot be written to.
+    /// If it is a folder or a socket, nobody reads from it, or it cannot be written to.
     pub fn open(path: &Path) -> Result<Self, FileError> {
-        // What is open already is written to as it is, also where it leads to a file: that may hold more.
+        // An inherited descriptor is written to directly, even if it leads to a file: that may hold more.
         if descriptor(path) == Some("1") {
             return Ok(Self::Standard(io::stdout()));
         }
@@ -120,7 +118,7 @@ impl Output {
         }
     }
 
-    /// All is written.
+    /// Finishes writing.
     ///
     /// # Errors
     /// Any failure of the system.
@@ -133,13 +131,13 @@ impl Output {
     }
 }
 
-/// Opens what is written to straight.
+/// Opens a destination for direct writing.
 #[cfg_attr(not(unix), allow(unused_variables))]
 fn stream(path: &Path, kind: Kind) -> Result<File, FileError> {
     let begin = Instant::now();
     loop {
         match options().write(true).open(path) {
-            // A pipe that nobody reads from.
+            // A pipe without a reader.
             #[cfg(unix)]
             Err(e) if kind == Kind::Pipe && e.raw_os_error() == Some(libc::ENXIO) => {
                 if begin.elapsed() > PATIENCE {

@@ -1,10 +1,10 @@
-//! Texts as they may be shown.
+//! Texts made safe to show.
 
 use std::borrow::Cow;
 
-/// A text without what a terminal would obey instead of showing it: control characters other than the end of a line
-/// and a tab, and those that turn the direction of writing, are written as escapes such as `\u{1b}`. Names of files
-/// may hold all of these.
+/// A text without the characters that a terminal would act on instead of showing them: control characters other than
+/// line ends and tabs, and those that change the direction of writing, are written as escapes such as `\u{1b}`. File
+/// names may hold all of these.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     if !text.contains(is_unfit) {
@@ -38,6 +38,6 @@ mod tests {
         let plain = "größe → „ö“\n\tα² 中文 🙂";
         assert!(matches!(printable(plain), Cow::Borrowed(text) if text == plain));
         let once = printable("\u{1b}").into_owned();
-        assert_eq!(printable(&once), once, "a text that is shown twice is escaped once");
+        assert_eq!(printable(&once), once, "escaping twice changes nothing more");
     }
 }

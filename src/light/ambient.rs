@@ -4,8 +4,7 @@ use glam::Vec3;
 use super::{Declaration, Incident, LightRecord, LightType};
 use crate::shader::wgsl;
 
-/// **Ambient light**: the same from every direction, `I(p) = I` in lux. Models answer with their
-/// `ambient_response`.
+/// **Ambient light**: the same from every direction, `I(p) = I` in lux. Models answer with their `ambient_response`.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Ambient;
 
@@ -13,7 +12,7 @@ impl LightType for Ambient {
     const DECLARATION: Declaration = Declaration {
         id: "ambient",
         name: "Ambient",
-        summary: "The same light from every direction: lights every point alike, whatever its normal.",
+        summary: "The same light from every direction: illuminates every point equally, whatever its normal.",
         glyph: "◌",
         has_position: false,
         has_direction: false,

@@ -1,4 +1,4 @@
-//! Light types: how much light arrives at a point, and from where (R9).
+//! Light types: the amount and direction of the light that arrives at a point (R9).
 //!
 //! **To add one**: write `light/x.rs` and `assets/shaders/light/x.wgsl`, and add its name to
 //! [`register_builtin`].
@@ -23,13 +23,13 @@ pub use directional::Directional;
 pub use point::Point;
 pub use spot::Spot;
 
-/// Takes light types one after the other.
+/// Receives light types one after the other.
 pub trait Take {
-    /// Takes the next one.
+    /// Receives the next one.
     fn take<T: LightType>(&mut self);
 }
 
-/// The built-in light types, in the order in which choosers list them. The one list.
+/// The built-in light types, in the order of all lists: the one list.
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Point>();
     to.take::<Spot>();
@@ -40,49 +40,48 @@ pub fn register_builtin(to: &mut impl Take) {
 /// The most lights that a scene may have; the capacity of the light buffer.
 pub const MAX_LIGHTS: usize = 256;
 
-/// The most parameters that a light type may declare beside those that all lights have.
+/// The most parameters that a light type may declare beside those common to all lights.
 pub const MAX_LIGHT_PARAMETERS: usize = 4;
 
-/// What a light type is called and which properties it has.
+/// The name and properties of a light type.
 #[derive(Debug)]
 pub struct Declaration {
     /// The name in scene files.
     pub id: &'static str,
-    /// The name that people read.
+    /// The name shown to people.
     pub name: &'static str,
-    /// One sentence: what it does.
+    /// One sentence: its behaviour.
     pub summary: &'static str,
     /// A glyph for lists.
     pub glyph: &'static str,
-    /// True if it stands somewhere.
+    /// True if it has a position.
     pub has_position: bool,
-    /// True if it shines in a direction.
+    /// True if it has a direction.
     pub has_direction: bool,
-    /// The unit of its intensity: `cd` or `lx`. For a type in `cd`, [`LightType::solid_angle`] says what
-    /// that is in lumen.
+    /// The unit of its intensity: `cd` or `lx`. For a type in `cd`, [`LightType::solid_angle`] converts it to lumen.
     pub unit: &'static str,
-    /// Its intensity when the scene does not give one.
+    /// Its intensity if the scene gives none.
     pub default_intensity: f32,
-    /// Where a slider for the intensity ends.
+    /// The upper end of a slider for the intensity.
     pub slider_max: f32,
     /// Further numbers, at most [`MAX_LIGHT_PARAMETERS`].
     pub parameters: &'static [Parameter],
     /// The half angle in degrees of the cone that a gizmo should draw: the index in `parameters`.
     pub cone_parameter: Option<usize>,
-    /// The equation of what arrives at a point, readable mathematics.
+    /// The equation of the light that arrives at a point, as readable mathematics.
     pub equation: &'static str,
     /// The twin in WGSL: `fn incident_<id>(light: Light, p: vec3<f32>) -> Incident`.
     pub wgsl: Source,
 }
 
-/// A light as calculation sees it: decoded colour, unit direction, numbers.
+/// A light for calculation: decoded colour, unit direction, numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightRecord {
     /// Index of the type in the registry.
     pub kind: u32,
-    /// Where it stands, metres; zero when the type has no position.
+    /// Its position, metres; zero if the type has none.
     pub position: Vec3,
-    /// Where it shines, unit vector; zero when the type has no direction.
+    /// The direction in which it shines, unit vector; zero if the type has none.
     pub direction: Vec3,
     /// Linear colour.
     pub colour: Vec3,
@@ -102,7 +101,7 @@ pub enum Incident {
         /// `I(p)`.
         intensity: f32,
     },
-    /// From everywhere alike.
+    /// Equal from all directions.
     Uniform {
         /// `I(p)`.
         intensity: f32,
@@ -117,9 +116,8 @@ pub trait LightType: Component + Default {
     /// The light that arrives at `p` (room coordinates).
     fn incident(light: &LightRecord, p: Vec3) -> Incident;
 
-    /// The integral of its profile over all directions, sr, given the declared parameters in order:
-    /// luminous flux (lm) over intensity (cd), `Φ = I Ω`. `None` for types that have no flux, such as
-    /// light from infinitely far away.
+    /// The integral of its profile over all directions, sr, given the declared parameters in order: luminous flux (lm)
+    /// over intensity (cd), `Φ = I Ω`. `None` for types without flux, such as light from infinitely far away.
     fn solid_angle(_parameters: &[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64> {
         None
     }
@@ -134,9 +132,9 @@ pub struct LightEntry {
     pub incident: fn(&LightRecord, Vec3) -> Incident,
     /// See [`LightType::solid_angle`].
     solid_angle: fn(&[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64>,
-    /// Puts the marker component on an entity.
+    /// Adds the marker component to an entity.
     pub mark: fn(&mut bevy::ecs::system::EntityCommands),
-    /// Takes the marker component off an entity.
+    /// Removes the marker component from an entity.
     pub unmark: fn(&mut bevy::ecs::system::EntityCommands),
 }
 

@@ -7,8 +7,8 @@ use crate::{
     shader::wgsl,
 };
 
-/// **Point light**: shines alike in every direction; `I(p) = I / |p − p₀|²` (CA DD7), I in candela. Its
-/// luminous flux is `Φ = 4π I` lumen.
+/// **Point light**: shines equally in every direction; `I(p) = I / |p − p₀|²` (CA DD7), I in candela. Its luminous flux
+/// is `Φ = 4π I` lumen.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Point;
 
@@ -16,7 +16,7 @@ impl LightType for Point {
     const DECLARATION: Declaration = Declaration {
         id: "point",
         name: "Point",
-        summary: "Shines alike in every direction from one point; falls off with the square of the distance.",
+        summary: "Shines equally in every direction from one point; falls off with the square of the distance.",
         glyph: "☀",
         has_position: true,
         has_direction: false,

@@ -19,13 +19,13 @@ const CONE_ANGLE: Parameter = Parameter {
     used_when: None,
 };
 
-/// How soft the edge is.
+/// The softness of the edge.
 const PENUMBRA: Parameter = Parameter {
     name: "penumbra",
     symbol: "p",
     label: "penumbra",
     unit: "",
-    help: "How much of the cone the soft edge takes: 0 is a hard edge, 1 fades from the axis on.",
+    help: "The fraction of the cone taken by the soft edge: 0 is a hard edge, 1 fades from the axis outwards.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.1 },
     used_when: None,
 };

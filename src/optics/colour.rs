@@ -5,24 +5,23 @@ use glam::Vec3;
 /// Weights of linear Rec. 709 red, green and blue in luminance (ITU-R BT.709-6).
 pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-/// What is seen where no object is, sRGB-encoded: a neutral grey, since colour is judged against it. It
-/// is not light of the scene, so exposure does not change it; tone mapping does.
+/// The background colour, sRGB-encoded: a neutral grey, since colour is judged against it. It is not light of the
+/// scene, so exposure does not change it; tone mapping does.
 pub const BACKGROUND: [u8; 3] = [46, 46, 46];
 
-/// True if colours are decoded on the way in and encoded on the way out.
+/// Decoding of colours on the way in and encoding on the way out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Encoding {
-    /// Input colours are sRGB-encoded and decoded to linear light; the picture is encoded (IEC
-    /// 61966-2-1). What every calculation with light assumes.
+    /// Input colours are sRGB-encoded and decoded to linear light; the picture is encoded (IEC 61966-2-1). Every
+    /// calculation with light assumes this.
     #[default]
     Srgb,
-    /// Neither: the numbers are taken as they are ("gamma-naive"). Wrong on purpose: seeing the
-    /// difference is a lesson.
+    /// Neither: the numbers are used unchanged ("gamma-naive"). Deliberately wrong, for comparison.
     Off,
 }
 
 impl Encoding {
-    /// Every choice, in the order in which they are offered.
+    /// Every choice, in the order of presentation.
     pub const ALL: [Self; 2] = [Self::Srgb, Self::Off];
 
     /// The name in scene files.
@@ -34,7 +33,7 @@ impl Encoding {
         }
     }
 
-    /// The colour for calculation of an 8-bit colour as users write it.
+    /// The colour for calculation from an 8-bit colour as written by users.
     #[must_use]
     pub fn decode(self, rgb: [u8; 3]) -> Vec3 {
         let v = Vec3::new(f32::from(rgb[0]), f32::from(rgb[1]), f32::from(rgb[2])) / 255.0;
@@ -57,7 +56,7 @@ pub fn srgb_encode(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Linear light to sRGB-encoded eight bits; what a display cannot show is clipped.
+/// Linear light to sRGB-encoded eight bits; values beyond the display's range are clipped.
 #[must_use]
 pub fn srgb_encode8(linear: f32) -> u8 {
     (255.0 * srgb_encode(linear.clamp(0.0, 1.0))).round() as u8

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::fresnel::schlick_weight;
 
-/// Cosines below this count as this: what divides by them stays finite.
+/// The lower bound of cosines in divisions, which keeps the results finite.
 const GRAZING: f32 = 1e-12;
 
 /// The factor of B. Burley (2012), *Physically Based Shading at Disney*, on Lambert's diffuse BRDF:
@@ -36,12 +36,12 @@ pub fn oren_nayar_qualitative(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32) -
     a + b * across.max(0.0) / cos_l.max(cos_v).max(GRAZING)
 }
 
-/// The factor of M. Oren, S. K. Nayar (1994) on Lambert's diffuse BRDF, in full: single reflection, of three
-/// parts with C₁, C₂, C₃, plus light that two facets pass on, `0.17 ρ σ²/(σ² + 0.13) (1 − cos φ (2β/π)²)`.
-/// Where φ is beyond 90°, `C₂ = 0.45 σ²/(σ² + 0.09) (sin α − (2β/π)³)`.
+/// The factor of M. Oren, S. K. Nayar (1994) on Lambert's diffuse BRDF, in full: single reflection, in three parts with
+/// C₁, C₂, C₃, plus interreflection between two facets, `0.17 ρ σ²/(σ² + 0.13) (1 − cos φ (2β/π)²)`. Where φ is beyond
+/// 90°, `C₂ = 0.45 σ²/(σ² + 0.09) (sin α − (2β/π)³)`.
 ///
-/// Arguments and angles as of [`oren_nayar_qualitative`]; `rho` is the reflectance of the facets.
-/// Negative for σ above 36° where light and view graze from opposite sides.
+/// Arguments and angles as for [`oren_nayar_qualitative`]; `rho` is the reflectance of the facets. Negative for σ above
+/// 36° where light and view are at grazing angles from opposite sides.
 #[must_use]
 pub fn oren_nayar_full(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32, rho: Vec3) -> Vec3 {
     let s2 = sigma * sigma;
@@ -54,11 +54,11 @@ pub fn oren_nayar_full(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32, rho: Vec
     let across = cos_lv - cos_l * cos_v;
     let both = sin_alpha * sin_beta;
     let cos_phi = if both > 0.0 { (across / both).clamp(-1.0, 1.0) } else { 0.0 };
-    // 2β/π by its distance from 1, which keeps its digits where both graze.
+    // 2β/π from its distance to 1, which keeps its digits where both angles are grazing.
     let rise = near.asin() * FRAC_2_PI;
     let turned = 1.0 - rise;
-    // C₂ / sin α: the sine is in `across` already. sin α − (2β/π)³ is the difference of what each lacks
-    // of 1, which `across / near` makes finite at the horizon; at the normal `across` vanishes.
+    // C₂ / sin α: the sine is in `across` already. sin α − (2β/π)³ is the difference of their distances from 1, which
+    // `across / near` keeps finite at the horizon; at the normal `across` vanishes.
     let forward = if across < 0.0 {
         let lacking = rise * (1.0 + turned + turned * turned) - far * far / (1.0 + sin_alpha);
         lacking / sin_alpha.max(1e-4)
@@ -75,15 +75,15 @@ pub fn oren_nayar_full(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32, rho: Vec
     once + twice * rho
 }
 
-/// `1/2 − 2/(3π)`: the FON BRDF is divided by 1 + r times this, so that its albedo at grazing is 1.
+/// `1/2 − 2/(3π)`: dividing the FON BRDF by 1 + r times this gives it an albedo of 1 at grazing angles.
 const FON_1: f32 = 0.5 - 2.0 / (3.0 * PI);
 /// `2/3 − 28/(15π)`: the average albedo of the FON BRDF is (1 + r times this) / (1 + r FON_1).
 const FON_2: f32 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
 
-/// The factor of J. Portsmouth, P. Kutz, S. Hill (2024), *EON: A Practical Energy-Preserving Rough Diffuse
-/// BRDF*, on Lambert's diffuse BRDF: Y. Fujii's variant of Oren–Nayar for light reflected once,
-/// `A (1 + r s/t)`, plus what it loses, given back as a lobe
-/// `ρ ⟨E⟩ / (1 − ρ (1 − ⟨E⟩)) · (1 − E(l)) (1 − E(v)) / (1 − ⟨E⟩)`, with its exact albedo E and average ⟨E⟩.
+/// The factor of J. Portsmouth, P. Kutz, S. Hill (2024), *EON: A Practical Energy-Preserving Rough Diffuse BRDF*, on
+/// Lambert's diffuse BRDF: Y. Fujii's variant of Oren–Nayar for single reflection, `A (1 + r s/t)`, plus a lobe that
+/// restores the lost energy, `ρ ⟨E⟩ / (1 − ρ (1 − ⟨E⟩)) · (1 − E(l)) (1 − E(v)) / (1 − ⟨E⟩)`, with its exact albedo E
+/// and average ⟨E⟩.
 ///
 /// `cos_lv` is `L·V`, `roughness` r is 0–1, `rho` the reflectance of the facets.
 #[must_use]
@@ -93,8 +93,8 @@ pub fn eon(cos_l: f32, cos_v: f32, cos_lv: f32, roughness: f32, rho: Vec3) -> Ve
     let stretched = if across > 0.0 { across / cos_l.max(cos_v).max(GRAZING) } else { across };
     let once = a * (1.0 + roughness * stretched);
     let average = a * (1.0 + FON_2 * roughness);
-    // (1 − E(l)) (1 − E(v)) / (1 − ⟨E⟩), where each bracket is A r times what depends on the angle: as
-    // differences of numbers near 1 they would have no digits for small r.
+    // (1 − E(l)) (1 − E(v)) / (1 − ⟨E⟩), where each bracket is A r times a function of the angle: as differences of
+    // numbers near 1 they would have no digits for small r.
     let lost = a * roughness * fon_loss(cos_l) * fon_loss(cos_v) / (FON_1 - FON_2);
     once + rho * average / (1.0 - rho * (1.0 - average)) * lost
 }
@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn burley_at_normal_incidence_is_lambert_and_at_grazing_the_square_of_the_fresnel_factor() {
         assert_eq!(burley(1.0, 1.0, 1.0, 0.3), 1.0);
-        // Retro-reflection at grazing: F_D90² = (1/2 + 2r)².
+        // Retroreflection at grazing angles: F_D90² = (1/2 + 2r)².
         assert!((burley(0.0, 0.0, 1.0, 1.0) - 6.25).abs() < 1e-6);
         assert!((burley(0.0, 0.0, 1.0, 0.0) - 0.25).abs() < 1e-6);
     }
@@ -161,10 +161,10 @@ mod tests {
                 let (c, lv) = (height.sin() as f32, -(2.0 * height).cos() as f32);
                 let got = f64::from(oren_nayar_full(c, c, lv, sigma as f32, Vec3::ONE).x);
                 let expected = published(height, sigma);
-                assert!((got - expected).abs() < 1e-4, "{height} {sigma}: {got} is not {expected}");
+                assert!((got - expected).abs() < 1e-4, "{height} {sigma}: {got} instead of {expected}");
             }
         }
-        // Without what the bracket holds at the horizon.
+        // Without the bracket's limit at the horizon.
         assert!((published(1e-9, 0.6) - published(1e-9, 0.4)).abs() > 0.05);
         assert!(published(1e-9, 0.6) > 0.0);
     }

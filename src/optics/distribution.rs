@@ -1,4 +1,4 @@
-//! Distributions of microfacet normals: how much of the surface faces a direction.
+//! Distributions of microfacet normals: the part of the surface that faces a direction.
 //!
 //! Twin: `assets/shaders/optics/distribution.wgsl`. `h` is the half vector in the local frame (x along the
 //! tangent, z along the normal), `alpha` the roughness along tangent and bitangent, from
@@ -11,8 +11,8 @@ use glam::{Vec2, Vec3};
 
 use std::f32::consts::FRAC_1_PI;
 
-/// The smoothest surface that is calculated: below, a lobe is narrower than the rounding of a half
-/// vector. Smaller roughness counts as this.
+/// The smallest roughness used: below it, a lobe is narrower than the rounding of a half vector. Smaller roughness is
+/// raised to this.
 pub const MINIMUM_ALPHA: f32 = 1e-3;
 
 /// The square of the slope of `h` in units of the roughness, times cos² θ_h.

@@ -1,4 +1,4 @@
-//! Fresnel reflectance: how much of the light a smooth boundary reflects, by angle.
+//! Fresnel reflectance: the fraction of light that a smooth boundary reflects, by angle.
 //!
 //! Twin: `assets/shaders/optics/fresnel.wgsl`. `cos_i` is the cosine between the light and the normal of
 //! the (micro)facet, 0 to 1; every reflectance is 1 at grazing incidence.
@@ -30,7 +30,7 @@ pub fn dielectric(n: f32, cos_i: f32) -> f32 {
     // n² − 1 in factors, which keeps the last digits where n is close to 1.
     let g2 = (n - 1.0) * (n + 1.0) + c * c;
     if g2 <= 0.0 {
-        // Total reflection; for n = 1 at exactly grazing incidence the limit.
+        // Total reflection; for n = 1 at exactly grazing incidence, the limit.
         return 1.0;
     }
     let g = g2.sqrt();
@@ -57,7 +57,7 @@ pub fn conductor(n: f32, k: f32, cos_i: f32) -> f32 {
     // (n + ik)² − sin² θ = t + i·2nk.
     let t = (n - k) * (n + k) - s2;
     let modulus = t.hypot(2.0 * n * k);
-    // a = Re √…: of the two forms the one that does not cancel.
+    // a = Re √…: the form without cancellation.
     let a = if t > 0.0 {
         (0.5 * (modulus + t)).sqrt()
     } else if modulus - t > 0.0 {
@@ -119,10 +119,10 @@ mod tests {
             (89.0, 0.904_184_95),
         ] {
             let f = dielectric(1.5, at(angle));
-            assert!((f - expected).abs() < 1e-5 * expected, "{angle}°: {f} is not {expected}");
+            assert!((f - expected).abs() < 1e-5 * expected, "{angle}°: {f} instead of {expected}");
             assert!((conductor(1.5, 1e-6, at(angle)) - expected).abs() < 1e-4 * expected, "{angle}°, k → 0");
         }
-        // Schlick's approximation is told apart.
+        // Schlick's approximation fails.
         assert!((schlick(Vec3::splat(0.04), at(75.0)).x - 0.253_060_56).abs() > 1e-3);
     }
 

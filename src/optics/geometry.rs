@@ -18,10 +18,9 @@ impl Frame {
     /// The frame in which models are measured: normal +z, tangent +x.
     pub const LOCAL: Self = Self { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
 
-    /// The frame of a surface point with a shading normal and a tangent, which need neither be
-    /// perpendicular nor have length 1: J. Gram and E. Schmidt's `t = T − (N·T) N`, normalised. Where the
-    /// tangent vanishes or runs along the normal (the sine of their angle is below 10⁻⁴), the frame
-    /// [from the normal](Self::from_normal) alone.
+    /// The frame of a surface point with a shading normal and a tangent, which need be neither perpendicular nor of
+    /// length 1: J. Gram and E. Schmidt's `t = T − (N·T) N`, normalised. Where the tangent vanishes or runs along the
+    /// normal (the sine of their angle is below 10⁻⁴), the frame [from the normal](Self::from_normal) alone.
     #[must_use]
     pub fn new(n: Vec3, tangent: Vec3) -> Self {
         let across = tangent - n.dot(tangent) * n;
@@ -48,15 +47,15 @@ impl Frame {
         }
     }
 
-    /// A direction of the room in the local frame: along tangent, bitangent and normal.
+    /// A direction of the room in the local frame: components along tangent, bitangent and normal.
     #[must_use]
     pub fn to_local(&self, d: Vec3) -> Vec3 {
         Vec3::new(self.t.dot(d), self.b.dot(d), self.n.dot(d))
     }
 }
 
-/// The unit vector of spherical angles in degrees, in the local frame: the normal is +z, the tangent
-/// +x. Calculated in 64 bits, so that 90° is not a hair above the surface.
+/// The unit vector of spherical angles in degrees, in the local frame: the normal is +z, the tangent +x. Calculated in
+/// 64 bits, so that 90° is not slightly above the surface.
 #[must_use]
 pub fn direction(theta: f64, phi: f64) -> Vec3 {
     let (sin_theta, cos_theta) = theta.to_radians().sin_cos();
@@ -73,16 +72,16 @@ pub fn mirror(l: Vec3, n: Vec3) -> Vec3 {
     2.0 * n.dot(l) * n - l
 }
 
-/// The half vector `H = (L + V) / |L + V|` (J. Blinn 1977). Where the two are opposite it does not
-/// exist and the zero vector is returned, for which every lobe is zero.
+/// The half vector `H = (L + V) / |L + V|` (J. Blinn 1977). For opposite vectors it does not exist, and the zero vector
+/// is returned, for which every lobe is zero.
 #[must_use]
 pub fn half_vector(l: Vec3, v: Vec3) -> Vec3 {
     (l + v).normalize_or_zero()
 }
 
-/// The slope of the facet that mirrors `l` to `v`: `(H·T, H·B) / (H·N)`. Its squared length is tan² θ_h.
-/// It is made of `L + V` as it is, since tan² θ_h from a cosine, 1/cos² θ_h − 1, would lose its digits where
-/// highlights are. Finite also where the two are opposite.
+/// The slope of the facet that mirrors `l` to `v`: `(H·T, H·B) / (H·N)`. Its squared length is tan² θ_h. It is
+/// calculated from `L + V` directly, since tan² θ_h from a cosine, 1/cos² θ_h − 1, would lose its digits near
+/// highlights. Finite for opposite vectors too.
 #[must_use]
 pub fn half_slope(l: Vec3, v: Vec3, frame: &Frame) -> Vec2 {
     let h = l + v;
@@ -142,7 +141,7 @@ mod tests {
     #[test]
     fn a_frame_turns_its_tangent_onto_the_surface() {
         for (i, n) in directions().enumerate() {
-            // Of any length, leaning to the normal by any angle but the last 0.3°.
+            // Of any length, leaning towards the normal by any angle except the last 0.3°.
             let beside = Frame::from_normal(n).t;
             let lean = 1.57 * (i as f32 / 200.0 - 1.0);
             let f = Frame::new(n, 10f32.powi(i as i32 % 9 - 4) * (lean.cos() * beside + lean.sin() * n));
@@ -160,7 +159,7 @@ mod tests {
                 assert_eq!(Frame::new(n, tangent), Frame::from_normal(n), "{n} {tangent}");
             }
         }
-        // No normal at all, as of a degenerate polygon: finite.
+        // No normal at all, as for a degenerate polygon: finite.
         let f = Frame::new(Vec3::ZERO, Vec3::X);
         assert!(f.t.is_finite() && f.b.is_finite());
     }

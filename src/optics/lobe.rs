@@ -1,8 +1,7 @@
 //! Lobes `cos^n θ` around the mirror direction, accurate for exponents of a million and more.
 //!
-//! A cosine near 1 has no digits left for the angle: 1 − 10⁻⁸ is 1 in f32. So these functions take the
-//! angle by its tangent, whose square is small where the cosine is near 1. All of them are the same when
-//! light and view are exchanged.
+//! A cosine near 1 has no digits left for the angle: 1 − 10⁻⁸ is 1 in f32. So these functions use the tangent of the
+//! angle, whose square is small where the cosine is near 1. All of them are symmetric in light and view.
 //!
 //! Twin: `assets/shaders/optics/lobe.wgsl`.
 
@@ -14,7 +13,7 @@ pub fn power_of_cosine(tan_squared: f32, n: f32) -> f32 {
     if n == 0.0 { 1.0 } else { (-0.5 * n * tan_squared.ln_1p()).exp() }
 }
 
-/// The part of `l + v` across the normal, squared: 0 in the mirror direction.
+/// The part of `l + v` perpendicular to the normal, squared: 0 in the mirror direction.
 fn across_squared(l: Vec3, v: Vec3, n: Vec3) -> f32 {
     let sum = l + v;
     (sum - n.dot(sum) * n).length_squared()
@@ -27,8 +26,8 @@ pub fn half_tangent_squared(l: Vec3, v: Vec3, n: Vec3) -> f32 {
     across_squared(l, v, n) / (along * along).max(1e-30)
 }
 
-/// `tan²` of the angle α between the mirror direction of the light and the view. From 90° on a number
-/// so large that every lobe vanishes.
+/// `tan²` of the angle α between the mirror direction of the light and the view. From 90° on, a number so large that
+/// every lobe vanishes.
 #[must_use]
 pub fn mirror_tangent_squared(l: Vec3, v: Vec3, n: Vec3) -> f32 {
     // |R − V|²/2 = 1 − cos α; the difference along the normal is that of the cosines.
@@ -51,9 +50,9 @@ mod tests {
         {
             let got = f64::from(power_of_cosine((angle.tan() * angle.tan()) as f32, n as f32));
             let expected = angle.cos().powf(n);
-            assert!((got - expected).abs() < 1e-5 * expected, "cos^{n} {angle}: {got} is not {expected}");
+            assert!((got - expected).abs() < 1e-5 * expected, "cos^{n} {angle}: {got} instead of {expected}");
         }
-        // The cosine of 10⁻³ as f32 is off by half its last digit, which a million multiplies.
+        // The cosine of 10⁻³ as f32 is off by half its last digit, which an exponent of a million magnifies.
         let naive = f64::from((1e-3f32).cos().powf(1e6));
         assert!((naive / (1e-3f64).cos().powf(1e6) - 1.0).abs() > 1e-3);
         assert_eq!(power_of_cosine(1e30, 1e18), 0.0);

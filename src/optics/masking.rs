@@ -1,4 +1,4 @@
-//! Shadowing and masking of microfacets: how much of what faces the half vector is both lit and seen.
+//! Shadowing and masking of microfacets: the part of the facets along the half vector that is both lit and seen.
 //!
 //! Twin: `assets/shaders/optics/masking.wgsl`. Every function gives the **visibility**
 //! `V = G / (4 (n·l) (n·v))`, so that a microfacet BRDF is `D V F`: at grazing angles the cosines cancel
@@ -86,7 +86,7 @@ pub fn separable(cos_l: f32, cos_v: f32, lambda_l: f32, lambda_v: f32) -> f32 {
     0.25 / ((cos_l + lambda_l) * (cos_v + lambda_v))
 }
 
-/// What is high is both lit and seen: `G = 1/(1 + Λ(l) + Λ(v))`. `lambda_…` are cos θ · Λ.
+/// Height-correlated: high facets are likely both lit and seen, `G = 1/(1 + Λ(l) + Λ(v))`. `lambda_…` are cos θ · Λ.
 ///
 /// E. Heitz (2014), *Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs*.
 #[must_use]
@@ -117,8 +117,8 @@ mod tests {
         }
     }
 
-    /// The weak white furnace: the light that a viewer gets from facets that are not masked is all that
-    /// there is, `∫ G₁(v) max(0, v·h) D(h) dω = n·v` (E. Heitz 2014).
+    /// The weak white furnace: the viewer receives all the light from unmasked facets, `∫ G₁(v) max(0, v·h) D(h) dω =
+    /// n·v` (E. Heitz 2014).
     fn furnace(v: Vec3, alpha: Vec2, d: fn(Vec3, Vec2) -> f32, lambda: f32) -> f64 {
         let (rows, columns) = (1500, 256);
         let mut sum = 0.0;
@@ -147,7 +147,7 @@ mod tests {
                 assert!((f - 1.0).abs() < 2e-3, "Beckmann {alpha} {theta}: {f}");
             }
         }
-        // The masking of another distribution does not keep it.
+        // The masking of another distribution breaks it.
         let v = Vec3::new(1.2f32.sin(), 0.0, 1.2f32.cos());
         let wrong = furnace(v, Vec2::splat(0.5), ggx, smith_beckmann(v, Vec2::splat(0.5)));
         assert!((wrong - 1.0).abs() > 0.01, "{wrong}");

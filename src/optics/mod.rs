@@ -1,8 +1,7 @@
 //! The vocabulary of every reflection model: pure functions on [`glam`] vectors, no Bevy.
 //!
-//! What shaders need has a twin in `assets/shaders/terms.wgsl` or `assets/shaders/optics/` with the same
-//! function names. The two are
-//! written separately on purpose: they are witnesses of each other.
+//! Functions needed by shaders have a twin in `assets/shaders/terms.wgsl` or `assets/shaders/optics/` with the same
+//! name. The two are written separately on purpose: each checks the other.
 
 pub mod albedo;
 pub mod colour;
@@ -50,7 +49,7 @@ impl Terms {
     }
 }
 
-/// Which terms of the equation are shown: a lesson aid, see each part of `I = I_a + I_d + I_s` alone.
+/// The terms of the equation that are shown: a teaching aid to see each part of `I = I_a + I_d + I_s` alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TermSelection {
     /// The whole equation.
@@ -65,7 +64,7 @@ pub enum TermSelection {
 }
 
 impl TermSelection {
-    /// Every choice, in the order in which they are offered.
+    /// Every choice, in the order of presentation.
     pub const ALL: [Self; 4] = [Self::All, Self::Ambient, Self::Diffuse, Self::Specular];
 
     /// The name on the command line.
@@ -79,7 +78,7 @@ impl TermSelection {
         }
     }
 
-    /// The number that the shader knows it by (`TERM_…` in `lights.wgsl`).
+    /// Its number in shaders (`TERM_…` in `lights.wgsl`).
     #[must_use]
     pub fn code(self) -> u32 {
         match self {

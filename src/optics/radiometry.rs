@@ -1,4 +1,4 @@
-//! How much light arrives: distance and cones (R9).
+//! Attenuation of light: distance and cones (R9).
 
 use std::f64::consts::PI;
 
@@ -15,7 +15,7 @@ pub fn inverse_square(to_light: Vec3) -> f32 {
     1.0 / to_light.length_squared().max(MINIMUM_DISTANCE_SQUARED)
 }
 
-/// The profile of a spotlight: 1 inside, 0 outside, and a smooth edge between.
+/// The profile of a spotlight: 1 inside, 0 outside, and smooth in between.
 ///
 /// `cos_angle` is the cosine between the axis and the ray, `cone_angle` the half angle of the cone in
 /// degrees (0 < a ≤ 90) and `penumbra` (0–1) the fraction of the half angle over which the light
@@ -32,12 +32,12 @@ pub fn cone(cos_angle: f32, cone_angle: f32, penumbra: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The solid angle of all directions, sr: what turns the intensity of a point light (cd) into its
-/// luminous flux (lm), `Φ = 4π I`.
+/// The solid angle of all directions, sr. It converts the intensity of a point light (cd) to its luminous flux (lm), `Φ
+/// = 4π I`.
 pub const SPHERE: f64 = 4.0 * PI;
 
-/// The integral of [`cone`] over all directions, sr: what turns the intensity of a spotlight (cd) into
-/// its luminous flux (lm), `Φ = I ∫ cone dω`.
+/// The integral of [`cone`] over all directions, sr. It converts the intensity of a spotlight (cd) to its luminous flux
+/// (lm), `Φ = I ∫ cone dω`.
 ///
 /// With `c = cos θ` and `dω = 2π dc`, the inside contributes `2π (1 − c_inner)`; over the penumbra the
 /// cubic is `½` on average, whatever its width, so `2π (c_inner − c_outer) / 2` is added. The sum
@@ -87,7 +87,7 @@ mod tests {
         assert!((cone_solid_angle(90.0, 0.0) - 2.0 * PI).abs() < 1e-12);
         assert!((cone_solid_angle(60.0, 0.0) - PI).abs() < 1e-6);
         assert!((SPHERE - 12.566_370_6).abs() < 1e-6);
-        assert!(cone_solid_angle(f32::MIN_POSITIVE, 0.5) > 0.0, "the narrowest cone can be divided by");
+        assert!(cone_solid_angle(f32::MIN_POSITIVE, 0.5) > 0.0, "division by the narrowest cone is safe");
     }
 
     #[test]

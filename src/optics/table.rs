@@ -37,8 +37,8 @@ impl Table {
         (cube && size >= 2 && colours.len() == size.pow(3)).then_some(Self { size, colours })
     }
 
-    /// The colour at a point; coordinates beyond 0 and 1 count as these. Trilinear, as graphics hardware
-    /// filters a texture whose texels stand at the points of the grid.
+    /// The colour at a point; coordinates are clamped to 0 to 1. Trilinear, as graphics hardware filters a texture with
+    /// texels at the points of the grid.
     #[must_use]
     pub fn at(&self, p: Vec3) -> Vec3 {
         let last = self.size - 1;

@@ -45,11 +45,10 @@ pub fn black_body_xyz(kelvin: f64) -> DVec3 {
     (0..=80).map(|i| 380.0 + 5.0 * f64::from(i)).map(|nm| planck(nm) * colour_matching(nm)).sum()
 }
 
-/// The linear Rec. 709 colour of a black body of a temperature in kelvin, clamped to the legal
-/// temperatures.
+/// The linear Rec. 709 colour of a black body of a temperature in kelvin, clamped to the legal range.
 ///
-/// What lies outside the gamut is clamped (blue, below about 1900 K), and the largest channel is 1:
-/// the temperature sets the colour, and the intensity of the light alone how bright it is.
+/// Colours outside the gamut are clamped (blue, below about 1900 K), and the largest channel is 1: the temperature sets
+/// only the colour, and the intensity of the light its brightness.
 #[must_use]
 pub fn black_body(kelvin: f32) -> Vec3 {
     let kelvin = if kelvin.is_nan() { WHITE_TEMPERATURE } else { kelvin };
@@ -142,7 +141,7 @@ mod tests {
     fn the_temperature_of_a_colour_is_found_again() {
         for kelvin in [2000.0, 2700.0, 4000.0, 5600.0, 9000.0] {
             let found = nearest_temperature(black_body_rgb8(kelvin));
-            assert!((found / kelvin - 1.0).abs() < 0.03, "{kelvin} K came back as {found} K");
+            assert!((found / kelvin - 1.0).abs() < 0.03, "{kelvin} K was found as {found} K");
         }
         assert!((nearest_temperature([255; 3]) - WHITE_TEMPERATURE).abs() <= 300.0);
         assert!(nearest_temperature([0; 3]).is_finite());

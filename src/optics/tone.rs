@@ -1,20 +1,19 @@
-//! From scene-referred light to what a display can show: exposure and tone mapping.
+//! From scene-referred light to the range of a display: exposure and tone mapping.
 
 use std::sync::LazyLock;
 
 use super::{colour::luminance, table::Table};
 use glam::{Mat3, Vec3};
 
-/// The brightest light that tone mapping gets, the largest half float: the renderer for GPUs
-/// holds the picture in half floats before its pass of tone mapping. What is brighter counts as this.
+/// The brightest input of tone mapping, the largest half float: the GPU renderer holds the picture in half floats
+/// before its tone mapping pass. Brighter light is clamped to this.
 pub const BRIGHTEST: f32 = 65_504.0;
 
-/// A curve that maps light from 0 to ∞ into the display's 0 to 1. The formulas and tables are those of
-/// the renderer's pass of the same name, so that both renderers agree; input and output are linear
-/// Rec. 709.
+/// A curve that maps light from 0 to ∞ into the display's 0 to 1. The formulas and tables are those of the GPU
+/// renderer's tone mapping, so that both renderers agree; input and output are linear Rec. 709.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ToneMapping {
-    /// No curve: what exceeds 1 is clipped. Values stay comparable, so this is the default.
+    /// No curve: values above 1 are clipped. Values stay comparable, so this is the default.
     #[default]
     None,
     /// `c / (1 + c)` per channel (E. Reinhard, M. Stark, P. Shirley, J. Ferwerda 2002, *Photographic Tone
@@ -36,14 +35,14 @@ pub enum ToneMapping {
     BlenderFilmic,
     /// Khronos PBR Neutral (The Khronos Group 2024, *PBR Neutral Tone Mapping*, by E. Lalish and others).
     ///
-    /// With the smallest channel `x` of `c`, `f = x − 6.25 x²` for `x < 0.08` and `0.04` above takes away
-    /// what a dielectric adds by Fresnel reflection: `c' = c − f`. Where the largest channel `p` of `c'`
-    /// is below `k = 0.76`, that is the answer. Above, `p' = 1 − (1 − k)² / (p + 1 − 2k)` compresses it,
-    /// and `c' p' / p` goes to white `p'` by the fraction `1 − 1 / (0.15 (p − p') + 1)`.
+    /// With the smallest channel `x` of `c`, `f = x − 6.25 x²` for `x < 0.08`, and `0.04` above, subtracts the Fresnel
+    /// reflection of a dielectric: `c' = c − f`. Where the largest channel `p` of `c'` is below `k = 0.76`, that is the
+    /// result. Above, `p' = 1 − (1 − k)² / (p + 1 − 2k)` compresses it, and `c' p' / p` approaches white `p'` by the
+    /// fraction `1 − 1 / (0.15 (p − p') + 1)`.
     KhronosPbrNeutral,
 }
 
-/// What a choice is called and what it does.
+/// The names and description of a choice.
 struct About {
     id: &'static str,
     name: &'static str,
@@ -52,7 +51,7 @@ struct About {
 }
 
 impl ToneMapping {
-    /// Every choice, in the order in which they are offered.
+    /// Every choice, in the order of presentation.
     pub const ALL: [Self; 8] = [
         Self::None,
         Self::Reinhard,
@@ -70,7 +69,7 @@ impl ToneMapping {
                 id: "none",
                 name: "None (clip)",
                 author: "",
-                summary: "No curve: what exceeds 1 is cut off, and numbers stay comparable.",
+                summary: "No curve: values above 1 are clipped, and numbers stay comparable.",
             },
             Self::Reinhard => About {
                 id: "reinhard",
@@ -82,37 +81,37 @@ impl ToneMapping {
                 id: "reinhard_luminance",
                 name: "Reinhard, luminance",
                 author: "E. Reinhard and others 2002",
-                summary: "The same curve on luminance alone: keeps hue and saturation, so bright colours do not pale.",
+                summary: "The same curve on luminance alone: keeps hue and saturation, so bright colours do not desaturate.",
             },
             Self::Aces => About {
                 id: "aces",
                 name: "ACES (fitted)",
                 author: "S. Hill 2017",
-                summary: "A fit of the film industry's reference transform: much contrast, bright colours pale and shift in hue.",
+                summary: "A fit of the film industry's reference transform: high contrast, bright colours desaturate and shift in hue.",
             },
             Self::AgX => About {
                 id: "agx",
                 name: "AgX",
                 author: "T. Sobotka 2022",
-                summary: "Soft contrast over 16.5 EV; bright colours pale gently and hardly shift in hue.",
+                summary: "Soft contrast over 16.5 EV; bright colours desaturate gently and hardly shift in hue.",
             },
             Self::TonyMcMapface => About {
                 id: "tony_mc_mapface",
                 name: "Tony McMapface",
                 author: "T. Stachowiak 2023",
-                summary: "Adds no contrast and stays near the input; compresses brightness as it is perceived, and bright colours pale.",
+                summary: "Adds no contrast and stays near the input; compresses perceived brightness, and bright colours desaturate.",
             },
             Self::BlenderFilmic => About {
                 id: "blender_filmic",
                 name: "Blender Filmic",
                 author: "T. Sobotka 2017",
-                summary: "The curve of Blender 2.79 to 3.6, over 23 EV: low contrast, bright colours pale, some shift in hue.",
+                summary: "The curve of Blender 2.79 to 3.6, over 23 EV: low contrast, bright colours desaturate and shift slightly in hue.",
             },
             Self::KhronosPbrNeutral => About {
                 id: "khronos_pbr_neutral",
                 name: "Khronos PBR Neutral",
                 author: "Khronos Group 2024",
-                summary: "Shows colours up to 0.8 as they are, less the 0.04 of a dielectric's reflection: for goods whose colour must be right.",
+                summary: "Keeps colours up to 0.8, less the 0.04 of a dielectric's reflection: for products whose colour must be right.",
             },
         }
     }
@@ -123,25 +122,25 @@ impl ToneMapping {
         self.about().id
     }
 
-    /// The choice of that name.
+    /// The choice with that name.
     #[must_use]
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|t| t.id() == id)
     }
 
-    /// The name that people read.
+    /// The name shown to people.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.about().name
     }
 
-    /// Who published it, and when; empty for no curve.
+    /// The author and year; empty for no curve.
     #[must_use]
     pub fn author(self) -> &'static str {
         self.about().author
     }
 
-    /// One or two sentences: what it does.
+    /// A description in one or two sentences.
     #[must_use]
     pub fn summary(self) -> &'static str {
         self.about().summary
@@ -180,7 +179,7 @@ static BLENDER_FILMIC: LazyLock<Table> =
 /// A table that is part of the program.
 #[allow(clippy::expect_used)]
 fn table(file: &[u8]) -> Table {
-    Table::from_ktx2(file).expect("the tables in assets/tone are whole; a test reads them")
+    Table::from_ktx2(file).expect("the tables in assets/tone are complete; a test reads them")
 }
 
 /// Numbers from 0 to ∞ on a logarithmic scale around middle grey, 0.18: 0 at `min` EV from it and 1 at
@@ -192,8 +191,8 @@ fn log2_shaper(c: Vec3, min: f32, max: f32) -> Vec3 {
     })
 }
 
-/// AgX: primaries moved inwards, so that pure colours pale when they get bright, a logarithmic scale from
-/// 10 EV below middle grey to 6.5 EV above, and the table.
+/// AgX: primaries moved inwards, so that bright pure colours desaturate, a logarithmic scale from 10 EV below middle
+/// grey to 6.5 EV above, and the table.
 fn agx(c: Vec3) -> Vec3 {
     let inwards = Mat3::from_cols_array(&[
         0.842_479_06,
@@ -284,7 +283,7 @@ mod tests {
             let error = (tone.map(c) - expected).abs().max_element();
             assert!(error < tolerance, "{tone:?} maps {c} to {}", tone.map(c));
         };
-        // Khronos: up to 0.8 only the 0.04 is taken away; black stays, and white is never reached.
+        // Khronos: up to 0.8 only the 0.04 is subtracted; black stays, and white is never reached.
         near(ToneMapping::KhronosPbrNeutral, Vec3::splat(0.5), Vec3::splat(0.46), 1e-6);
         near(ToneMapping::KhronosPbrNeutral, Vec3::new(0.8, 0.5, 0.2), Vec3::new(0.76, 0.46, 0.16), 1e-6);
         // At 0.08 the two pieces meet.

@@ -19,11 +19,11 @@ pub struct Parameter {
     pub help: &'static str,
     /// Type, range and default.
     pub kind: ParameterKind,
-    /// The condition for its use; `None` for always. See [`Parameter::used_when`].
+    /// The condition for its use; `None` if it is always used. See [`Parameter::used_when`].
     pub used_when: Option<UsedWhen>,
 }
 
-/// A condition under which a parameter is used: another one of the model has one of these choices.
+/// A condition for the use of a parameter: another parameter of the model has one of these choices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UsedWhen {
     /// The name of the other parameter.
@@ -44,7 +44,7 @@ pub enum ParameterKind {
         min: f32,
         /// Largest legal value.
         max: f32,
-        /// Value when the scene does not give one.
+        /// The value if the scene gives none.
         default: f32,
     },
     /// A whole number with a lower bound and perhaps an upper one.
@@ -53,29 +53,28 @@ pub enum ParameterKind {
         min: i64,
         /// Largest legal value, if there is one.
         max: Option<i64>,
-        /// The end of a slider when there is no largest value.
+        /// The end of a slider if there is no largest value.
         slider_max: i64,
-        /// Value when the scene does not give one.
+        /// The value if the scene gives none.
         default: i64,
     },
     /// Three sRGB-encoded integers, 0–255.
     Colour {
-        /// Value when the scene does not give one.
+        /// The value if the scene gives none.
         default: [u8; 3],
     },
-    /// Three real numbers, one for each of red, green and blue, in a closed range. Files may give one
-    /// number for all three.
+    /// Three real numbers in a closed range, for red, green and blue. Files may give one number for all three.
     Triple {
         /// Smallest legal value.
         min: f32,
         /// Largest legal value.
         max: f32,
-        /// Value when the scene does not give one.
+        /// The value if the scene gives none.
         default: [f32; 3],
     },
     /// One of several named choices.
     Choice {
-        /// The choices: name in files, name for people.
+        /// The choices: name in files, name in the window.
         options: &'static [(&'static str, &'static str)],
         /// Index of the default.
         default: usize,
@@ -83,14 +82,14 @@ pub enum ParameterKind {
 }
 
 impl Parameter {
-    /// The same parameter, used only while another of the model has one of these choices, and that one is
-    /// used itself. Otherwise its knob is disabled and says why.
+    /// The same parameter, used only if another parameter of the model has one of these choices and is itself used.
+    /// Otherwise its knob is disabled and says why.
     #[must_use]
     pub const fn used_when(self, parameter: &'static str, choices: &'static [&'static str]) -> Self {
         Self { used_when: Some(UsedWhen { parameter, choices }), ..self }
     }
 
-    /// The value when the scene does not give one.
+    /// The value if the scene gives none.
     #[must_use]
     pub fn default_value(&self) -> Value {
         match self.kind {
@@ -148,7 +147,7 @@ impl Parameter {
         }
     }
 
-    /// The WGSL type of the field that carries it.
+    /// The WGSL type of its field.
     #[must_use]
     pub fn wgsl_type(&self) -> &'static str {
         match self.kind {

@@ -3,7 +3,7 @@
 use super::{declaration::Parameter, value::Values};
 use crate::optics::colour::Encoding;
 
-/// The most bytes that the parameters of a model may take.
+/// The most bytes for the parameters of a model.
 pub const BLOCK_BYTES: usize = 256;
 
 /// The fields of the WGSL struct `Parameters` of a model: name, type, byte offset, in the order of

@@ -1,8 +1,8 @@
-//! Parameters of models and lights: one declaration drives JSON, checks, panel knobs, the uniform
-//! layout and `lcm models`.
+//! Parameters of models and lights: one declaration drives JSON, checks, the window's knobs, the uniform layout and
+//! `lcm models`.
 //!
-//! Parameters are shared **by name** across models, so that swapping the model keeps what the user
-//! set. Those that several models use are declared here once.
+//! Models share parameters **by name**, so changing the model keeps the user's settings. Parameters of several models
+//! are declared here once.
 
 mod declaration;
 mod layout;

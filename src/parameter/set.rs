@@ -12,17 +12,17 @@ pub trait ParameterSet: Sized + Send + Sync + 'static {
     fn from_values(values: &Values, encoding: Encoding) -> Self;
 }
 
-/// Declares the struct of a model: its fields are its parameters, each with its declaration. A block
-/// `derived { field: Type = function }` after it adds fields that are calculated once from the others.
+/// Declares the struct of a model: its fields are its parameters, each with its declaration. A block `derived { field:
+/// Type = function }` after it adds fields calculated once from the others.
 ///
 /// ```
 /// use lights_camera_models::{parameters, parameter::{BASE_COLOUR, K_D, ParameterSet}};
 /// parameters! {
 ///     /// A model with two parameters.
 ///     pub struct Matte {
-///         /// What colour it has.
+/// The colour.
 ///         base_colour: colour = BASE_COLOUR,
-///         /// How much it scatters.
+/// The fraction of light that it scatters.
 ///         k_d: number = K_D,
 ///     }
 /// }

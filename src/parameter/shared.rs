@@ -2,7 +2,7 @@
 
 use super::declaration::{Parameter, ParameterKind};
 
-/// The colour of the body of the material, under white light.
+/// The colour of the material under white light.
 pub const BASE_COLOUR: Parameter = Parameter {
     name: "base_colour",
     symbol: "C_b",
@@ -30,7 +30,7 @@ pub const K_A: Parameter = Parameter {
     symbol: "k_a",
     label: "ambient coefficient",
     unit: "",
-    help: "How much of each light's intensity reaches every point regardless of direction; a stand-in for indirect light.",
+    help: "The part of each light's intensity that reaches every point regardless of direction; a stand-in for indirect light.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.1 },
     used_when: None,
 };
@@ -41,7 +41,7 @@ pub const K_D: Parameter = Parameter {
     symbol: "k_d",
     label: "diffuse coefficient",
     unit: "",
-    help: "How much light is scattered evenly in all directions; in the modified Lambert model, how sharply light turns into shadow.",
+    help: "The amount of light scattered evenly in all directions; in the modified Lambert model, the sharpness of the edge between light and shadow.",
     kind: ParameterKind::Number { min: 0.5, max: 1.0, default: 0.8 },
     used_when: None,
 };
@@ -52,7 +52,7 @@ pub const K_S: Parameter = Parameter {
     symbol: "k_s",
     label: "specular coefficient",
     unit: "",
-    help: "How bright the highlight is.",
+    help: "The brightness of the highlight.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
     used_when: None,
 };
@@ -63,7 +63,7 @@ pub const ALPHA: Parameter = Parameter {
     symbol: "α",
     label: "shininess",
     unit: "",
-    help: "The exponent of the highlight: the larger, the smaller and sharper it is.",
+    help: "The exponent of the highlight: larger values make it smaller and sharper.",
     kind: ParameterKind::Integer { min: 0, max: None, slider_max: 512, default: 32 },
     used_when: None,
 };
@@ -74,7 +74,7 @@ pub const IOR: Parameter = Parameter {
     symbol: "n",
     label: "refractive index",
     unit: "",
-    help: "How many times slower light is inside than outside, at 630, 532 and 465 nm. Water 1.33, glass 1.5, diamond 2.4; metals also need an extinction coefficient.",
+    help: "The factor by which light is slower inside than outside, at 630, 532 and 465 nm: water 1.33, glass 1.5, diamond 2.4. Metals also need an extinction coefficient.",
     kind: ParameterKind::Triple { min: 0.01, max: 6.0, default: [1.5; 3] },
     used_when: None,
 };
@@ -85,7 +85,7 @@ pub const EXTINCTION: Parameter = Parameter {
     symbol: "k",
     label: "extinction coefficient",
     unit: "",
-    help: "How fast light dies away inside, at 630, 532 and 465 nm. 0 for glass and water; 2 to 8 for metals, which is why they mirror and hide what is behind them.",
+    help: "The rate at which the material absorbs light, at 630, 532 and 465 nm. 0 for glass and water; 2 to 8 for metals, which makes them opaque and shiny.",
     kind: ParameterKind::Triple { min: 0.0, max: 12.0, default: [0.0; 3] },
     used_when: None,
 };
@@ -96,41 +96,41 @@ pub const ROUGHNESS: Parameter = Parameter {
     symbol: "r",
     label: "roughness",
     unit: "",
-    help: "From 0, a mirror, to 1, a matt surface, in steps that look even. The width of the slopes of the microfacets is its square, α = r².",
+    help: "From 0, a mirror, to 1, a matte surface, in perceptually even steps. The width of the distribution of microfacet slopes is its square, α = r².",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
     used_when: None,
 };
 
-/// The share of metal in the material (Burley 2012).
+/// The fraction of metal in the material (Burley 2012).
 pub const METALLIC: Parameter = Parameter {
     name: "metallic",
     symbol: "m",
     label: "metallic",
     unit: "",
-    help: "1 for a metal: nothing is scattered from inside, and the base colour is the colour of the reflection. 0 for everything else. Values between are mixtures, such as dust on metal.",
+    help: "1 for metals: no diffuse reflection, and the base colour is the colour of the reflection. 0 for everything else. Values in between are mixtures, such as dust on metal.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.0 },
     used_when: None,
 };
 
-/// Reflectance of dielectrics on a scale that looks even (Lagarde and de Rousiers 2014, *Moving
-/// Frostbite to Physically Based Rendering*): `F_0 = 0.16 s²`.
+/// Reflectance of dielectrics on a perceptually even scale (Lagarde and de Rousiers 2014, *Moving Frostbite to
+/// Physically Based Rendering*): `F_0 = 0.16 s²`.
 pub const REFLECTANCE: Parameter = Parameter {
     name: "reflectance",
     symbol: "s",
     label: "reflectance",
     unit: "",
-    help: "How strongly the surface mirrors when seen straight on, where it is not metal: F_0 = 0.16 s². 0.5 gives 4 %, as of plastic and glass; water 0.36, diamond 1.",
+    help: "The reflectance of the non-metallic part at normal incidence: F_0 = 0.16 s². 0.5 gives 4 %, typical of plastic and glass; water 0.36, diamond 1.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
     used_when: None,
 };
 
-/// Roughness along the tangent: root mean square slope, times √2, of the microfacets in that direction.
+/// Roughness along the tangent: √2 times the root mean square slope of the microfacets in that direction.
 pub const ALPHA_X: Parameter = Parameter {
     name: "alpha_x",
     symbol: "α_x",
     label: "roughness along the tangent",
     unit: "",
-    help: "How steep the microfacets are along the brushing: the smaller, the sharper the reflection in that direction.",
+    help: "The steepness of the microfacets along the brushing: smaller values make the reflection sharper in that direction.",
     kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.3 },
     used_when: None,
 };
@@ -141,19 +141,19 @@ pub const ALPHA_Y: Parameter = Parameter {
     symbol: "α_y",
     label: "roughness across the tangent",
     unit: "",
-    help: "How steep the microfacets are across the brushing. Equal to the roughness along it, the surface looks the same from all sides.",
+    help: "The steepness of the microfacets across the brushing. If it equals the roughness along the brushing, the surface is isotropic.",
     kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.3 },
     used_when: None,
 };
 
-/// Standard deviation of the angle of the slopes (Oren, Nayar 1994). Their full equation falls below zero
-/// from 36° on, so the range ends at 35°.
+/// Standard deviation of the slope angles (Oren, Nayar 1994). Their full equation falls below zero from 36° on, so the
+/// range ends at 35°.
 pub const SIGMA: Parameter = Parameter {
     name: "sigma",
     symbol: "σ",
     label: "slope deviation",
     unit: "°",
-    help: "How far the facets of the surface are tilted, as a standard deviation. 0° is smooth; plaster and sand have about 30°.",
+    help: "The tilt of the surface's facets, as a standard deviation. 0° is smooth; plaster and sand have about 30°.",
     kind: ParameterKind::Number { min: 0.0, max: 35.0, default: 20.0 },
     used_when: None,
 };

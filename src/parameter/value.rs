@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::declaration::{Parameter, ParameterKind};
 use crate::optics::colour::Encoding;
 
-/// The value of a parameter, as a scene file holds it.
+/// The value of a parameter, as in a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -36,15 +36,14 @@ impl fmt::Display for Value {
     }
 }
 
-/// The parameters that a scene gives for one object, by name. What is absent has its default; what
-/// the current model does not use is kept.
+/// The parameters given by a scene for one object, by name. Absent ones have their defaults; those not used by the
+/// current model are kept.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Values(pub BTreeMap<Cow<'static, str>, Value>);
 
 impl Values {
-    /// The value of a parameter: the scene's, or the declared default when the scene has none of a
-    /// legal type and range.
+    /// The value of a parameter: the scene's, or the declared default if the scene has none of a legal type and range.
     #[must_use]
     pub fn get(&self, parameter: &Parameter) -> Value {
         match self.0.get(parameter.name) {
@@ -58,7 +57,7 @@ impl Values {
         self.0.insert(name.into(), value);
     }
 
-    /// The parameter as a number for calculation; of three the first.
+    /// The parameter as a number for calculation; of three numbers, the first.
     #[must_use]
     pub fn number(&self, parameter: &Parameter) -> f32 {
         match self.get(parameter) {
@@ -70,8 +69,7 @@ impl Values {
         }
     }
 
-    /// The parameter as a linear colour, or as its three numbers, for calculation; zero when it is
-    /// neither.
+    /// The parameter as a linear colour, or as its three numbers, for calculation; zero if it is neither.
     #[must_use]
     pub fn colour(&self, parameter: &Parameter, encoding: Encoding) -> Vec3 {
         match self.get(parameter) {
@@ -81,7 +79,7 @@ impl Values {
         }
     }
 
-    /// The index of the chosen option; 0 when it is not a choice.
+    /// The index of the chosen option; 0 if it is not a choice.
     #[must_use]
     pub fn choice(&self, parameter: &Parameter) -> u32 {
         match (&parameter.kind, self.get(parameter)) {

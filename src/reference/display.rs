@@ -12,10 +12,9 @@ use crate::{
     scene::Display,
 };
 
-/// Encodes to eight bits without a power per channel, and yet to the very code that
-/// `round(255 · srgb_encode(x))` gives.
+/// Encodes to eight bits without a power per channel, and yet with exactly the result of `round(255 · srgb_encode(x))`.
 struct Encoder {
-    /// The smallest number that each code stands for.
+    /// The smallest number with each code.
     threshold: [f32; 256],
     /// The code of the smallest number that begins with the same bits, from [`FIRST`](Self::FIRST) on.
     start: Vec<u8>,
@@ -24,16 +23,16 @@ struct Encoder {
 static ENCODER: LazyLock<Encoder> = LazyLock::new(Encoder::new);
 
 impl Encoder {
-    /// Bits that are dropped: sign, exponent and seven bits of mantissa remain, so that hardly a slot
-    /// contains more than one threshold.
+    /// Dropped bits: sign, exponent and seven bits of mantissa remain, so that hardly any slot contains more than one
+    /// threshold.
     const SHIFT: u32 = 16;
-    /// The slot of 2⁻¹². Numbers below take the slow path of at most one step.
+    /// The slot of 2⁻¹². Smaller numbers take the slow path of at most one step.
     const FIRST: u32 = ((127 - 12) << 23) >> Self::SHIFT;
 
     fn new() -> Self {
         let mut threshold = [0.0; 256];
         for code in 1..=255u8 {
-            // The inverse function misses the threshold by a few of the last bits at most.
+            // The inverse function misses the threshold by at most a few of the last bits.
             let mut x = srgb_decode((f32::from(code) - 0.5) / 255.0);
             while srgb_encode8(x) >= code {
                 x = x.next_down();
@@ -75,8 +74,7 @@ pub fn encode8(x: f32) -> u8 {
     ENCODER.encode(x)
 }
 
-/// The steps from a pixel of light to a pixel on the display, with what is the same for all pixels
-/// calculated once.
+/// The steps from a pixel of light to a pixel on the display, with common parts calculated once.
 pub(super) struct Developer {
     display: Display,
     exposure: f32,
@@ -98,7 +96,7 @@ impl Developer {
     pub(super) fn develop(&self, pixel: Vec4) -> [u8; 3] {
         let mut c = pixel.truncate() * self.exposure + (1.0 - pixel.w) * self.background;
         if self.display.encoding == Encoding::Off {
-            // Encoding follows and must give back the number itself.
+            // Encoding follows and must return the number itself.
             c = c.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_decode);
         }
         let c = self.display.tone_mapping.map(c);
@@ -123,7 +121,7 @@ mod tests {
                 x = x.next_up();
             }
         }
-        // A wrong twin, thresholds in the middle of the codes' linear values, is told apart.
+        // A wrong twin, with thresholds in the middle of the codes' linear values, is rejected.
         let between =
             |code: u8| 0.5 * (Encoding::Srgb.decode([code; 3]).x + Encoding::Srgb.decode([code - 1; 3]).x);
         assert!((1..=255).any(|code| (between(code) - ENCODER.threshold[usize::from(code)]).abs() > 1e-6));

@@ -1,4 +1,4 @@
-//! The light loop: the sum over all lights, the same for every model.
+//! The light loop: the sum over all lights, common to all models.
 
 use glam::Vec3;
 
@@ -11,8 +11,8 @@ use crate::{
     shading::Lighting,
 };
 
-/// Light of an arbitrary model is kept within these bounds, so that interpolating and adding it gives
-/// no infinity and no NaN.
+/// The light of any model is kept within these bounds, so that interpolating and adding it gives no infinity and no
+/// NaN.
 const BRIGHTEST: f32 = 1e30;
 
 /// All lights of a scene, ready for calculation.
@@ -48,8 +48,8 @@ pub(super) struct LightsOn<'a> {
 
 impl Lighting for LightsOn<'_> {
     fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3 {
-        // An interpolated normal may turn away from a viewer who sees the surface all the same: the viewer
-        // then counts as mirrored in it, or rims would be black.
+        // An interpolated normal may face away from a viewer who still sees the surface: the viewer is then mirrored in
+        // the surface, or rims would be black.
         let eye = (self.lights.observer - position).normalize_or_zero();
         let v = eye - 2.0 * normal.dot(eye).min(0.0) * normal;
         let frame = Frame::new(normal, tangent);
@@ -58,7 +58,7 @@ impl Lighting for LightsOn<'_> {
         for (incident, light) in &self.lights.lights {
             match incident(light, position) {
                 Incident::From { l, intensity } => {
-                    // Outside a cone there is nothing to ask the model.
+                    // Outside a cone there is nothing to calculate.
                     if intensity != 0.0 {
                         let response = self.surface.response(l, v, &frame).select(terms);
                         sum += response * intensity * light.colour;

@@ -1,9 +1,8 @@
 //! The CPU renderer: the picture of a scene from the Rust functions alone.
 //!
-//! It shares no code with the shaders, so that the two are witnesses of each other, and needs neither
-//! a window nor a GPU. It follows the rules of graphics hardware (corners snapped to 1/256
-//! pixel, top-left rule, perspective-correct interpolation, the standard four samples, colour once per
-//! pixel and triangle), so that the two give the same picture up to rounding.
+//! It shares no code with the shaders, so that each checks the other, and needs neither a window nor a GPU. It follows
+//! the rules of graphics hardware (corners snapped to 1/256 pixel, top-left rule, perspective-correct interpolation,
+//! the standard four samples, colour once per pixel and triangle), so that both give the same picture up to rounding.
 //!
 //! ```
 //! use lights_camera_models::{reference, registry::Registry, scene::Scene};
@@ -13,12 +12,12 @@
 //! assert_eq!(rgb.len(), 64 * 36 * 3);
 //! ```
 //!
-//! Kinds of objects, lights, models and shading models are looked up in the registry. A scene that was checked
-//! names only known ones; an object or light of an unknown kind is left out.
+//! Object types, light types and models are looked up in the registry. A checked scene names only known ones; objects
+//! and lights of unknown types are skipped.
 //!
-//! A shading model of [`Stage::Vertex`] or [`Stage::Pixel`] is asked once per vertex, which polygons share: the
-//! face normal, tangent and centre of its [`Corner`] are then the vertex's own. A shading model of
-//! [`Stage::Polygon`] is asked once per polygon, at its centre.
+//! A shading model of [`Stage::Vertex`] or [`Stage::Pixel`] runs once per vertex, which polygons share: the face
+//! normal, tangent and centre of its [`Corner`] are then the vertex's. A shading model of [`Stage::Polygon`] runs once
+//! per polygon, at its centre.
 
 use std::{
     collections::HashMap,
@@ -48,17 +47,16 @@ pub use display::encode8;
 use lighting::Lights;
 use raster::{Placed, Screen, TILE, Tile, Triangle, set_up};
 
-/// What a picture is made of, beside the scene.
+/// The settings of a picture, apart from the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Samples per pixel: 4, the standard positions, or 1, the pixel's centre. Other numbers above 1
-    /// count as 4.
+    /// Samples per pixel: 4, the standard positions, or 1, the pixel's centre. Other numbers above 1 count as 4.
     pub samples: u32,
-    /// Which terms of the equation are calculated.
+    /// The terms of the equation that are calculated.
     pub terms: TermSelection,
 }
 
@@ -88,8 +86,8 @@ impl Picture {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
 
-    /// The picture as a display shows it: exposure, tone mapping, sRGB encoding, eight bits; red,
-    /// green, blue, row by row from the top.
+    /// The picture for a display: exposure, tone mapping, sRGB encoding, eight bits; red, green, blue, row by row from
+    /// the top.
     #[must_use]
     pub fn to_rgb8(&self, display: &Display) -> Vec<u8> {
         let developer = Developer::new(display);
@@ -110,8 +108,8 @@ pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Pictur
     Picture { width: settings.width, height: settings.height, pixels }
 }
 
-/// Renders a scene to what its display settings show: the same bytes as [`render`] and
-/// [`Picture::to_rgb8`], without ever holding the whole picture in floating point.
+/// Renders a scene with its display settings: the same bytes as [`render`] and [`Picture::to_rgb8`], without ever
+/// holding the whole picture in floating point.
 #[must_use]
 pub fn render_rgb8(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<u8> {
     let developer = Developer::new(&scene.display);
@@ -119,7 +117,7 @@ pub fn render_rgb8(scene: &Scene, registry: &Registry, settings: &Settings) -> V
     draw(scene, registry, settings, None, background, |pixel| developer.develop(pixel)).into_flattened()
 }
 
-/// The same, unless it is not done by then.
+/// The same, unless it is not finished by then.
 #[must_use]
 pub fn render_rgb8_until(
     scene: &Scene,
@@ -133,13 +131,13 @@ pub fn render_rgb8_until(
     (Instant::now() < end).then(|| pixels.into_flattened())
 }
 
-/// A mesh with its normals, made once for all objects of its kind and tessellation.
+/// A mesh with its normals, shared by all objects of its type and tessellation.
 struct Prepared {
     mesh: PolygonMesh,
     polygon_normals: Vec<Vec3>,
     polygon_centres: Vec<Vec3>,
     vertex_normals: Vec<Vec3>,
-    /// Those of the polygons and those of the vertices; only anisotropic models need them.
+    /// The tangents of polygons and vertices; only anisotropic models need them.
     tangents: OnceLock<[Vec<Vec3>; 2]>,
     /// Largest distance of a vertex from the origin.
     radius: f32,
@@ -162,7 +160,7 @@ impl Prepared {
     }
 }
 
-/// An object with everything that drawing it needs.
+/// An object with everything needed to draw it.
 struct Draw<'a> {
     object: &'a Object,
     shape: &'a Prepared,
@@ -172,13 +170,13 @@ struct Draw<'a> {
     anisotropic: bool,
 }
 
-/// Polygons that are held at a time: bounds the memory of scenes of any size.
+/// Polygons held at a time: bounds the memory for scenes of any size.
 const POLYGONS_PER_BATCH: usize = 1 << 16;
-/// Vertices or polygons that one task shades at least.
+/// The fewest vertices or polygons that one task shades.
 const SHADED_PER_TASK: usize = 256;
 
-/// Draws a scene: `background` where nothing is, and what `finish` makes of the light elsewhere. What is not done by
-/// `end` is left out.
+/// Draws a scene: `background` where there is no object, and elsewhere the result of `finish` on the light. Anything
+/// not done by `end` is skipped.
 fn draw<T: Copy + Send + Sync>(
     scene: &Scene,
     registry: &Registry,
@@ -257,8 +255,8 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
             .collect();
         let bins = bin(&triangles, &screen);
 
-        // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them
-        // in memory, and laid into the picture when all are.
+        // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them in memory, and
+        // the picture is assembled when all are.
         let finished: Vec<(usize, Vec<T>)> = tiles
             .par_iter_mut()
             .zip(&bins)
@@ -297,13 +295,13 @@ fn origin(tile: usize, screen: &Screen) -> [usize; 2] {
     [(tile % screen.tiles_across()) * TILE, (tile / screen.tiles_across()) * TILE]
 }
 
-/// Under which an object's mesh is kept.
+/// The key of an object's mesh.
 fn key(object: &Object, registry: &Registry) -> Option<(&'static str, u32)> {
     let entry = registry.shape(&object.object_type)?;
     Some((entry.declaration.id, entry.tessellation(object.tessellation)))
 }
 
-/// The meshes that a scene needs, each once.
+/// The meshes of a scene, each once.
 fn prepare(scene: &Scene, registry: &Registry) -> HashMap<(&'static str, u32), Prepared> {
     let mut wanted: Vec<_> = scene.shown().filter_map(|object| key(object, registry)).collect();
     wanted.sort_unstable();
@@ -320,7 +318,7 @@ fn rotation(degrees: Vec3) -> Mat3 {
     Mat3::from_euler(EulerRot::ZYX, r.z, r.y, r.x)
 }
 
-/// The triangles of an object that may be seen, shaded as far as its shading model does at corners.
+/// The triangles of an object that may be visible, shaded as far as its shading model does at corners.
 fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Screen) -> Vec<Triangle> {
     let Draw { object, shape, shading, surface, anisotropic } = draw;
     let mesh = &shape.mesh;
@@ -343,7 +341,7 @@ fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Scree
         .filter(|(_, t)| Placed::may_be_seen(t.map(|c| &placed[c as usize]), screen))
         .collect();
 
-    // What corners carry is calculated once per polygon or once per vertex, and only where needed.
+    // The values of corners are calculated once per polygon or once per vertex, and only where needed.
     let per_polygon = shading.declaration.stage == Stage::Polygon;
     let mut needed: Vec<u32> = if per_polygon {
         visible.iter().map(|(polygon, _)| *polygon).collect()
@@ -395,7 +393,7 @@ fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Scree
     out
 }
 
-/// For each tile the triangles that may touch it, in the order of drawing: object, triangle.
+/// For each tile, the triangles that may touch it, in the order of drawing: object, triangle.
 fn bin(triangles: &[Vec<Triangle>], screen: &Screen) -> Vec<Vec<(u32, u32)>> {
     let mut bins = vec![Vec::new(); screen.tiles()];
     for (object, triangles) in triangles.iter().enumerate() {

@@ -16,7 +16,7 @@ const EXPONENT_U: Parameter = Parameter {
     symbol: "n_u",
     label: "exponent along the tangent",
     unit: "",
-    help: "How sharp the highlight is along the brushing: the larger, the smaller it is in that direction.",
+    help: "The sharpness of the highlight along the brushing: larger values narrow it in that direction.",
     kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 10 },
     used_when: None,
 };
@@ -27,13 +27,13 @@ const EXPONENT_V: Parameter = Parameter {
     symbol: "n_v",
     label: "exponent across the tangent",
     unit: "",
-    help: "How sharp the highlight is across the brushing. Equal to the exponent along it, the surface looks the same from all sides.",
+    help: "The sharpness of the highlight across the brushing. If it equals the exponent along the brushing, the surface is isotropic.",
     kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 200 },
     used_when: None,
 };
 
 parameters! {
-    /// **Ashikhmin–Shirley** — an anisotropic Phong highlight over a base that gives way to it.
+    /// **Ashikhmin–Shirley** — an anisotropic Phong highlight over a diffuse base that dims beneath it.
     ///
     /// ```text
     /// f_d = 28 R_d/(23π) (1 − F_0) (1 − (1 − N·L/2)⁵) (1 − (1 − N·V/2)⁵)
@@ -50,13 +50,13 @@ parameters! {
     /// | `exponent_u` | n_u | – | whole, ≥ 0 | 10 |
     /// | `exponent_v` | n_v | – | whole, ≥ 0 | 200 |
     ///
-    /// Source: M. Ashikhmin, P. Shirley (2000), *An Anisotropic Phong BRDF Model*, journal of graphics tools
-    /// 5(2). The highlight follows Schlick's approximation of the Fresnel equations, so it becomes white
-    /// and strong at grazing angles; the base receives what the highlight leaves. The factor 28/23 makes
-    /// its albedo `R_d (1 − R_s)(1 − (1 − μ/2)⁵)`, close below what the Fresnel factor leaves.
+    /// Source: M. Ashikhmin, P. Shirley (2000), *An Anisotropic Phong BRDF Model*, journal of graphics tools 5(2). The
+    /// highlight follows Schlick's approximation of the Fresnel equations, so it becomes white and strong at grazing
+    /// angles; the base receives the rest of the light. The factor 28/23 makes its albedo `R_d (1 − R_s)(1 − (1 −
+    /// μ/2)⁵)`, close below the limit set by the Fresnel factor.
     ///
     /// Use it for varnished, lacquered and brushed surfaces. It keeps all three laws for all exponents; rough
-    /// highlights lose light, since facets below the horizon are not made up for.
+    /// highlights lose light, since light reflected below the horizon is not compensated.
     pub struct AshikhminShirley {
         /// `R_d`, linear.
         base_colour: colour = BASE_COLOUR,
@@ -78,7 +78,7 @@ impl ReflectionModel for AshikhminShirley {
         family: Family::Classical,
         author: "Ashikhmin, Shirley 2000",
         source: "M. Ashikhmin, P. Shirley (2000), An Anisotropic Phong BRDF Model, journal of graphics tools 5(2), 25–32",
-        summary: "A highlight with a Fresnel factor, stretched where the surface is brushed, over a base that gives way to it: lacquer, polished wood.",
+        summary: "A highlight with a Fresnel factor, stretched on brushed surfaces, over a diffuse base that dims beneath it: lacquer, polished wood.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = 28/23 C_b (1 − F_0) P_L P_V N·L" },
@@ -136,7 +136,7 @@ impl ReflectionModel for AshikhminShirley {
         vec![Readout::of_f0(self.k_s * self.specular_colour)]
     }
 
-    /// F_0 as the colour of the highlight. A metal scatters nothing from inside.
+    /// F_0 as the colour of the highlight. A metal has no diffuse reflection.
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
         let mut values =
             vec![(K_S.name, Value::Number(1.0)), (SPECULAR_COLOUR.name, preset::colour(material.f0))];

@@ -25,10 +25,9 @@ parameters! {
     /// | `k_s` | k_s | – | 0–1 | 0.5 |
     /// | `alpha` | α | – | whole, ≥ 0 | 32 |
     ///
-    /// Source: J. F. Blinn (1977), *Models of Light Reflection for Computer Synthesized Pictures*,
-    /// SIGGRAPH. The same α gives a wider highlight than Phong's (about four times α matches it head
-    /// on), and at grazing angles a narrower one, which is what measured surfaces do. Not reciprocal
-    /// (the lobe is divided by cos θ_i) and not energy conserving.
+    /// Source: J. F. Blinn (1977), *Models of Light Reflection for Computer Synthesized Pictures*, SIGGRAPH. The same α
+    /// gives a wider highlight than Phong's (about four times α matches it head on), and a narrower one at grazing
+    /// angles, as on measured surfaces. Not reciprocal (the lobe is divided by cos θ_i) and not energy conserving.
     pub struct BlinnPhong {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
@@ -52,7 +51,7 @@ impl ReflectionModel for BlinnPhong {
         family: Family::Basic,
         author: "J. F. Blinn 1977",
         source: "J. F. Blinn (1977), Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH '77, 192–198",
-        summary: "Phong with the half vector: cheaper, and its highlights stretch at grazing angles as real ones do.",
+        summary: "Phong with the half vector: cheaper, and its highlights stretch at grazing angles like real ones.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_a + I_d + I_s" },
             EquationPart { term: Term::Ambient, text: "I_a = k_a C_b" },

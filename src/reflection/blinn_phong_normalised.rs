@@ -12,7 +12,7 @@ use crate::{
 };
 
 parameters! {
-    /// **Normalised Blinn–Phong** — Blinn's highlight as a BRDF that keeps account of the light.
+    /// **Normalised Blinn–Phong** — Blinn's highlight as an energy-conserving BRDF.
     ///
     /// ```text
     /// f_r = (1 − k_s C_s) C_b/π + k_s C_s (α + 2)(α + 4)/(8π (2^{−α/2} + α)) (N·H)^α
@@ -26,14 +26,13 @@ parameters! {
     /// | `k_s` | k_s | – | 0–1 | 0.5 |
     /// | `alpha` | α | – | whole, ≥ 0 | 32 |
     ///
-    /// The factor makes the lobe reflect all light that falls on it along the normal, whatever α is; at
-    /// other angles it reflects less. So a sharper highlight is a brighter one, as on real surfaces. Often
-    /// the approximation (α + 8)/8π stands in its place, which is 7 % too large at α = 16. What the lobe
-    /// may reflect, `k_s C_s`, is taken from the diffuse part: light is shared, not added. α = 0 is
-    /// Lambert.
+    /// The factor makes the lobe reflect all light at normal incidence, for every α; at other angles it reflects less.
+    /// So a sharper highlight is a brighter one, as on real surfaces. The common approximation (α + 8)/8π is 7 % too
+    /// large at α = 16. The share of the lobe, `k_s C_s`, is taken from the diffuse part: light is divided, not added.
+    /// α = 0 is Lambert.
     ///
-    /// Use it to see what Blinn–Phong lacks: exchange the two and turn α. Keeps all laws; at grazing
-    /// angles it loses light, where real surfaces reflect more.
+    /// Use it to see what Blinn–Phong lacks: switch between the two and turn α. Keeps all laws; at grazing angles it
+    /// loses light, where real surfaces reflect more.
     ///
     /// Source: the lobe is J. F. Blinn's (1977), *Models of Light Reflection for Computer Synthesized
     /// Pictures*; the exact factor is derived in F. Giesen (2009), *Phong Normalization Factor
@@ -57,7 +56,7 @@ impl ReflectionModel for BlinnPhongNormalised {
         family: Family::Classical,
         author: "Blinn 1977, Giesen 2009",
         source: "J. F. Blinn (1977), Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH '77; normalised as in F. Giesen (2009), Phong Normalization Factor Derivation",
-        summary: "Blinn–Phong that never makes light: sharper highlights are brighter, and what they take the diffuse part lacks.",
+        summary: "Blinn–Phong that conserves energy: sharper highlights are brighter, and their light is taken from the diffuse part.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s C_s) C_b max(0, N·L)" },

@@ -22,18 +22,18 @@ parameters! {
     /// | `roughness` | r | – | 0–1 | 0.5 |
     ///
     /// Source: B. Burley (2012), *Physically-Based Shading at Disney*, SIGGRAPH course *Practical Physically-Based
-    /// Shading in Film and Game Production*. An empirical fit to measured materials: light that enters a
-    /// smooth surface at grazing angles is weakened by the Fresnel factor on the way in and out, F_90 = 1/2;
-    /// rough surfaces send it back at grazing angles, up to F_90 = 5/2.
+    /// Shading in Film and Game Production*. An empirical fit to measured materials: at grazing angles, the Fresnel
+    /// factor weakens light on its way into and out of a smooth surface, F_90 = 1/2; rough surfaces reflect it back, up
+    /// to F_90 = 5/2.
     ///
-    /// Use it as the base under a highlight, in looks matched to production renderers. Reciprocal and
-    /// non-negative. Not energy conserving: the fit ignores the sum (r = 1, white: E = 1.380 at cos θ = 0.1).
+    /// Use it as the base under a highlight, for looks matched to production renderers. Reciprocal and non-negative.
+    /// Not energy conserving: the fit does not bound the albedo (r = 1, white: E = 1.380 at cos θ = 0.1).
     pub struct BurleyDiffuse {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
         /// `r`.
         roughness: number = Parameter {
-            help: "From 0, a smooth surface whose edge darkens, to 1, a rough one whose edge shines back the light.",
+            help: "From 0, a smooth surface with a dark edge, to 1, a rough one whose edge reflects light back.",
             ..ROUGHNESS
         },
     }

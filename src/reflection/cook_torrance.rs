@@ -18,13 +18,13 @@ use crate::{
     shader::wgsl,
 };
 
-/// The share of the specular part; the diffuse part has the rest.
+/// The share of the specular part; the rest is diffuse.
 pub(super) const SPECULAR_WEIGHT: Parameter = Parameter {
     name: "specular_weight",
     symbol: "s",
     label: "specular share",
     unit: "",
-    help: "How much of the surface mirrors; the rest scatters. 1 for metals, about 0.1 to 0.5 for plastics and paints.",
+    help: "The specular fraction of the surface; the rest is diffuse. 1 for metals, about 0.1 to 0.5 for plastics and paints.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
     used_when: None,
 };
@@ -34,14 +34,14 @@ const SLOPE: Parameter = Parameter {
     symbol: "m",
     label: "slope of the facets",
     unit: "",
-    help: "Root mean square slope of the microfacets: the smaller, the sharper the highlight. 0.2 is shiny, 0.6 nearly matt.",
+    help: "Root mean square slope of the microfacets: smaller values sharpen the highlight. 0.2 is shiny, 0.6 nearly matte.",
     kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.2 },
     used_when: None,
 };
 
 parameters! {
-    /// **Cook–Torrance** — microfacets with Beckmann's distribution, and the exact Fresnel equations, which
-    /// give metals their colour.
+    /// **Cook–Torrance** — microfacets with Beckmann's distribution, and the exact Fresnel equations, which give metals
+    /// their colour.
     ///
     /// ```text
     /// f_r = (1 − s) C_b/π + s D F G / (4 (N·L)(N·V))
@@ -61,20 +61,19 @@ parameters! {
     /// Source: R. L. Cook, K. E. Torrance (1982), *A Reflectance Model for Computer Graphics*, ACM
     /// Transactions on Graphics 1(1), 7–24. The paper's R_d is C_b, its d is 1 − s.
     ///
-    /// **The factor 4.** The paper prints `R_s = F D G / (π (N·L)(N·V))` and a D without 1/π. With D
-    /// normalised, `∫ D cos θ_h dω = 1`, that is four times the form above. The Jacobian of the half vector,
-    /// `dω_h = dω_l / (4 L·H)`, demands the 4; with the π a perfect mirror would give back four times the
-    /// light. Here the form that belongs to a normalised D is calculated, so values of programs that follow
-    /// the print must be divided by 4.
+    /// **The factor 4.** The paper prints `R_s = F D G / (π (N·L)(N·V))` and a D without 1/π. With D normalised, `∫ D
+    /// cos θ_h dω = 1`, that is four times the form above. The Jacobian of the half vector, `dω_h = dω_l / (4 L·H)`,
+    /// demands the 4; with the π, a perfect mirror would reflect four times the incident light. The form here is the
+    /// one for a normalised D, so values of programs that follow the printed form must be divided by 4.
     ///
-    /// **When to use it**: metals from their measured n and k, plastics with a coloured body and a white
-    /// highlight; to see a highlight shift its colour towards white at grazing angles. Against
-    /// `torrance_sparrow` the distribution is one of slopes; against GGX it has short tails, so highlights
-    /// end more sharply than on most real surfaces.
+    /// **When to use it**: for metals with measured n and k, and for plastics with a coloured body and a white
+    /// highlight; to see a highlight shift towards white at grazing angles. Unlike that of `torrance_sparrow`, its
+    /// distribution is one of slopes; compared with GGX it has short tails, so highlights end more sharply than on most
+    /// real surfaces.
     ///
-    /// **Laws**: all three hold. The V-shaped cavities mask no more and no less than a surface with these
-    /// normals can, and s shares the light between the two parts. Light that strikes several facets is lost,
-    /// so rough metals are too dark.
+    /// **Laws**: all three hold. The masking of the V-shaped cavities is consistent with the distribution of normals,
+    /// and s divides the light between the two parts. Light that strikes several facets is lost, so rough metals are
+    /// too dark.
     pub struct CookTorrance {
         /// `n`.
         ior: triple = IOR,
@@ -96,7 +95,7 @@ impl ReflectionModel for CookTorrance {
         family: Family::Microfacet,
         author: "R. L. Cook, K. E. Torrance 1982",
         source: "R. L. Cook, K. E. Torrance (1982), A Reflectance Model for Computer Graphics, ACM Transactions on Graphics 1(1), 7–24",
-        summary: "Microfacets with exact Fresnel equations: metals get the colour that their measured n and k give, and highlights whiten at grazing angles.",
+        summary: "Microfacets with exact Fresnel equations: metals get their colour from measured n and k, and highlights whiten at grazing angles.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − s) C_b (N·L)" },
@@ -115,12 +114,12 @@ impl ReflectionModel for CookTorrance {
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        // Below the surface, or so grazing that the quotients would leave the range of f32.
+        // Below the surface, or at such a grazing angle that the quotients would leave the range of f32.
         if cos_l.min(cos_v) < 1e-9 {
             return Terms::default();
         }
         let h = half_vector(l, v);
-        // L·H, and H in a frame whose x axis it leans to: both without cancellation.
+        // L·H, and H in a frame with x along its tangential part: both without cancellation.
         let cos_d = 0.5 * (l + v).length();
         let local = Vec3::new(frame.n.cross(h).length(), 0.0, frame.n.dot(h));
         let d = beckmann(local, Vec2::splat(self.slope));
@@ -142,8 +141,7 @@ impl ReflectionModel for CookTorrance {
     }
 }
 
-/// n and k; a metal scatters nothing from inside. How much a dielectric scatters is a matter of its
-/// pigments, so that stays.
+/// n and k; a metal has no diffuse reflection. That of a dielectric depends on its pigments, so it stays.
 pub(super) fn conductor_preset(material: &Measured) -> Vec<(&'static str, Value)> {
     let mut values = preset::conductor(material);
     if material.metal {

@@ -7,15 +7,15 @@ use crate::shader::Source;
 pub struct Declaration {
     /// The name in scene files: lower case, underscores.
     pub id: &'static str,
-    /// The name that people read.
+    /// The name shown to people.
     pub name: &'static str,
-    /// The family under which choosers list it.
+    /// Its family in lists of models.
     pub family: Family,
-    /// Author and year, short: "B. T. Phong 1975".
+    /// Author and year, in short: "B. T. Phong 1975".
     pub author: &'static str,
-    /// Author, year, title, where published.
+    /// Author, year, title and place of publication.
     pub source: &'static str,
-    /// Its purpose and its look, one or two sentences.
+    /// Its purpose and look, in one or two sentences.
     pub summary: &'static str,
     /// The equation, one part per term so that the window can colour them.
     pub equation: &'static [EquationPart],
@@ -33,10 +33,10 @@ pub struct Declaration {
 /// The response of a model to uniform light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Ambient {
-    /// By a formula of its own: [`ambient_response`](super::ReflectionModel::ambient_response) and its twin in WGSL.
+    /// A formula: [`ambient_response`](super::ReflectionModel::ambient_response) and its twin in WGSL.
     Formula,
-    /// By its directional albedo `E(v) = ∫ f_r cos θ dω`, which is calculated from the response. The
-    /// model writes no ambient function, neither in Rust nor in WGSL.
+    /// Its directional albedo `E(v) = ∫ f_r cos θ dω`, calculated from the response. The model has no ambient function,
+    /// neither in Rust nor in WGSL.
     Albedo,
 }
 
@@ -44,7 +44,7 @@ pub enum Ambient {
 /// subscript and `^x` a superscript; braces group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EquationPart {
-    /// The term that it belongs to: decides its colour.
+    /// Its term, which decides its colour.
     pub term: Term,
     /// The mathematics.
     pub text: &'static str,
@@ -76,12 +76,12 @@ pub enum Family {
     Microfacet,
     /// The practical standard.
     Standard,
-    /// Models that a user wrote.
+    /// Models written by users.
     Custom,
 }
 
 impl Family {
-    /// The heading in choosers.
+    /// The heading in lists of models.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -95,8 +95,7 @@ impl Family {
     }
 }
 
-/// The physical laws that a model claims. Tests assert each where it is claimed and its violation
-/// where it is not.
+/// The physical laws that a model claims to keep. Tests assert each claimed law, and the violation of each other one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Laws {
     /// `f_r(l, v) = f_r(v, l)` (Helmholtz).
@@ -108,7 +107,7 @@ pub struct Laws {
 }
 
 impl Laws {
-    /// The laws with their names, kept or not.
+    /// The laws with their names, and true for those kept.
     #[must_use]
     pub fn list(self) -> [(&'static str, bool); 3] {
         [

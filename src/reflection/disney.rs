@@ -37,49 +37,49 @@ const SUBSURFACE: Parameter = fraction(
     "s_s",
     "subsurface",
     0.0,
-    "From 0, light scattered at the surface, to 1, an impression of light that has travelled below it: flatter, as skin, wax or marble look from afar.",
+    "From 0, light scattered at the surface, to 1, an approximation of subsurface scattering: flatter shading, like skin, wax or marble seen from afar.",
 );
 const SPECULAR: Parameter = fraction(
     "specular",
     "s",
     "specular",
     0.5,
-    "How strongly the surface mirrors when seen straight on, where it is not metal: F_0 = 0.08 s. 0.5 gives 4 %, as of plastic and glass.",
+    "The reflectance of the non-metallic part at normal incidence: F_0 = 0.08 s. 0.5 gives 4 %, typical of plastic and glass.",
 );
 const SPECULAR_TINT: Parameter = fraction(
     "specular_tint",
     "s_t",
     "specular tint",
     0.0,
-    "How much the reflection takes the hue of the base colour where the surface is not metal. Not physical; for effect.",
+    "The amount by which non-metallic reflection takes the hue of the base colour. Not physical; for effect.",
 );
 const ANISOTROPIC: Parameter = fraction(
     "anisotropic",
     "a",
     "anisotropic",
     0.0,
-    "From 0, the same all around, to 1, highlights drawn out along the tangent, as on brushed metal: α_x ten times α_y.",
+    "From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal: α_x is ten times α_y.",
 );
 const SHEEN: Parameter = fraction(
     "sheen",
     "h",
     "sheen",
     0.0,
-    "A bright rim at grazing angles, as fibres of cloth scatter it. Adds light.",
+    "A bright rim at grazing angles, as from the fibres of cloth. Adds light.",
 );
 const SHEEN_TINT: Parameter = fraction(
     "sheen_tint",
     "h_t",
     "sheen tint",
     0.5,
-    "How much the sheen takes the hue of the base colour: 0 is white.",
+    "The amount by which the sheen takes the hue of the base colour: 0 is white.",
 );
 const CLEARCOAT: Parameter = fraction(
     "clearcoat",
     "c",
     "clear coat",
     0.0,
-    "How strong a second, colourless layer of lacquer reflects (refractive index 1.5, a quarter of its strength at most). Adds light.",
+    "The strength of a second, colourless layer of lacquer (refractive index 1.5, at most a quarter of its full reflection). Adds light.",
 );
 const CLEARCOAT_GLOSS: Parameter = fraction(
     "clearcoat_gloss",
@@ -90,8 +90,8 @@ const CLEARCOAT_GLOSS: Parameter = fraction(
 );
 
 parameters! {
-    /// **Disney** — B. Burley's "principled" model: few parameters, all from 0 to 1, that artists understand,
-    /// every combination plausible.
+    /// **Disney** — B. Burley's "principled" model: few intuitive parameters, all from 0 to 1, every combination
+    /// plausible.
     ///
     /// ```text
     /// f_r = (1 − m) (((1 − s_s) f_d + s_s f_s) C_b/π + h F_H C_h) + D_s F_s G_s + c/4 D_r F_r G_r
@@ -121,20 +121,19 @@ parameters! {
     /// | `clearcoat` | c | – | 0–1 | 0 |
     /// | `clearcoat_gloss` | c_g | – | 0–1 | 1 |
     ///
-    /// Source: B. Burley (2012), *Physically-Based Shading at Disney*, SIGGRAPH course; details that the notes
-    /// leave open as in Disney's BRDF Explorer: the luminance 0.3 R + 0.6 G + 0.1 B, the factor 1.25 that keeps
-    /// the albedo of the subsurface term, which flattens after P. Hanrahan and W. Krueger (1993). The notes let
-    /// G see (1/2 + r/2)² in place of r; the Explorer's program uses r², as does this model (B. Burley 2015,
-    /// *Extending the Disney BRDF to a BSDF*, dropped the change too). The quotient
-    /// `G/(4 (N·L)(N·V))` of other models is what is called G here.
+    /// Source: B. Burley (2012), *Physically-Based Shading at Disney*, SIGGRAPH course. Details that the notes leave
+    /// open follow Disney's BRDF Explorer: the luminance 0.3 R + 0.6 G + 0.1 B, the factor 1.25 that keeps the albedo
+    /// of the subsurface term, which is flattened after P. Hanrahan and W. Krueger (1993). The notes use (1/2 + r/2)²
+    /// instead of r in G; the Explorer's program uses r², as does this model (B. Burley 2015, *Extending the Disney
+    /// BRDF to a BSDF*, dropped the change too). G here is the quotient `G/(4 (N·L)(N·V))` of other models.
     ///
-    /// **When to use it**: for cloth (sheen), car paint (clear coat), brushed metal (anisotropic), skin from
-    /// afar (subsurface). With these at 0 it is close to `metallic_roughness` but for the diffuse part, which
-    /// brightens towards the rim of rough objects and darkens on smooth ones, as measured materials do.
+    /// **When to use it**: for cloth (sheen), car paint (clear coat), brushed metal (anisotropic), skin from afar
+    /// (subsurface). With these at 0 it is close to `metallic_roughness` except for the diffuse part, which brightens
+    /// towards the rim of rough objects and darkens on smooth ones, like measured materials.
     ///
-    /// **Laws**: reciprocal and not negative. Energy is not conserved: the diffuse part of a rough surface
-    /// alone gives back up to 1.4 times the light at grazing angles, and highlight, sheen and coat are added
-    /// without taking from what lies below. Plausible pictures were the aim.
+    /// **Laws**: reciprocal and non-negative. Energy is not conserved: the diffuse part of a rough surface alone
+    /// reflects up to 1.4 times the light at grazing angles, and highlight, sheen and coat are added without reducing
+    /// the layers below. The aim was plausible pictures.
     pub struct Disney {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
@@ -195,7 +194,7 @@ impl ReflectionModel for Disney {
         family: Family::Standard,
         author: "B. Burley 2012",
         source: "B. Burley (2012), Physically-Based Shading at Disney, SIGGRAPH course Practical Physically Based Shading in Film and Game Production",
-        summary: "Everything an artist may want from 0 to 1: cloth by sheen, car paint by a clear coat, brushed metal by anisotropy, skin by a touch of subsurface.",
+        summary: "Intuitive parameters from 0 to 1: sheen for cloth, clear coat for car paint, anisotropy for brushed metal, a touch of subsurface for skin.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − m)(f C_b + π h F_H C_h)(N·L)" },
@@ -225,7 +224,7 @@ impl ReflectionModel for Disney {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));
         let (cos_l, cos_v) = (l.z, v.z);
-        // Below the surface, or so grazing that the quotients would leave the range of f32.
+        // Below the surface, or at such a grazing angle that the quotients would leave the range of f32.
         if cos_l.min(cos_v) < 1e-9 {
             return Terms::default();
         }

@@ -1,5 +1,4 @@
-//! Models that do not come to an end: nothing can stop a GPU, but the interpreter stops itself, so the CPU is asked
-//! first.
+//! Endless models: nothing can stop a GPU, but the interpreter stops itself, so the CPU tries a model first.
 
 use glam::Vec3;
 use thiserror::Error;
@@ -13,15 +12,15 @@ use crate::{
 /// A function of this model runs too long.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
-    "{0} was not run on the GPU: on the CPU, which interprets it, a function runs too long; a loop may have no end"
+    "{0} was not run on the GPU: on the CPU, which interprets it, a function runs too long; a loop may be endless"
 )]
 pub struct Endless(pub &'static str);
 
-/// So many pairs of a batch are asked on the CPU first.
+/// The number of pairs of a batch that the CPU tries first.
 const SAMPLE: usize = 32;
 
-/// True if a model with these values comes to an end, as far as a few directions tell: nothing can stop a GPU, but
-/// the interpreter stops itself. Models that are not interpreted do.
+/// Fails if a model with these values runs too long for some of a few directions: nothing can stop a GPU, but the
+/// interpreter stops itself. Built-in models always pass.
 ///
 /// # Errors
 /// [`Endless`].

@@ -22,7 +22,7 @@ use crate::{
     parameter::{Parameter, Value, Values, pack},
 };
 
-/// A registered model, as the rest of the program knows it.
+/// A registered model, in the form used by the rest of the program.
 #[derive(Clone)]
 pub struct ModelEntry {
     /// Name, source, laws, equation, shader.
@@ -40,19 +40,19 @@ pub struct ModelEntry {
 
 /// The state of a model whose WGSL the CPU interprets.
 pub(crate) trait Interpreted: Send + Sync {
-    /// The reason why the CPU cannot run the model, or could not when it last tried.
+    /// The reason why the CPU cannot run the model, or could not at the last attempt.
     fn trouble(&self) -> Option<String>;
     /// True if a function ran too long.
     fn runs_too_long(&self) -> bool;
 }
 
-/// Makes a surface of parameters.
+/// Creates a surface from parameters.
 pub(crate) type Instantiate = Arc<dyn Fn(&Values, Encoding) -> Arc<dyn Surface> + Send + Sync>;
 
 /// The specular lobe whose albedo the shader of a model reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lobe {
-    /// It reads none.
+    /// None.
     None,
     /// The lobe of the model itself.
     Own,
@@ -60,7 +60,7 @@ pub(crate) enum Lobe {
     Of(&'static str),
 }
 
-/// The number of surfaces with curves that are kept.
+/// The number of surfaces with curves to keep.
 const KEPT: usize = 1024;
 
 impl ModelEntry {
@@ -98,15 +98,15 @@ impl ModelEntry {
         Arc::as_ptr(&self.kept) as usize
     }
 
-    /// The reason why the CPU cannot run the model, if it cannot: it interprets the WGSL of custom models, but not
-    /// every construct. The GPU runs them all the same. A function that does not end shows only when it is run.
+    /// The reason why the CPU cannot run the model, if any: it interprets the WGSL of custom models, but not every
+    /// construct, while the GPU runs them all. An endless function shows only when it runs.
     #[must_use]
     pub fn not_on_cpu(&self) -> Option<String> {
         self.on_cpu.as_ref().and_then(|on_cpu| on_cpu.trouble())
     }
 
-    /// True if the CPU interprets the model and found a function that does not end. On the GPU it would not end
-    /// either, and nothing could stop it there.
+    /// True if the CPU interprets the model and found an endless function. It would be endless on the GPU too, and
+    /// nothing could stop it there.
     #[must_use]
     pub fn runs_too_long(&self) -> bool {
         self.on_cpu.as_ref().is_some_and(|on_cpu| on_cpu.runs_too_long())
@@ -118,13 +118,13 @@ impl ModelEntry {
         self.on_cpu.is_some()
     }
 
-    /// True if the model has a lobe of its own whose albedo its shader reads.
+    /// True if the model has a specular lobe whose albedo its shader reads.
     #[must_use]
     pub fn has_lobe(&self) -> bool {
         self.lobe == Lobe::Own
     }
 
-    /// The id of the model whose lobe the shader reads the albedo of.
+    /// The id of the model whose lobe albedo the shader reads.
     #[must_use]
     pub fn lobe_of(&self) -> Option<&'static str> {
         match self.lobe {
@@ -153,7 +153,7 @@ impl ModelEntry {
         kept.entry(key).or_insert(surface).clone()
     }
 
-    /// True if the row of an object holds a curve beside the parameters.
+    /// True if the row of an object has a curve beside the parameters.
     #[must_use]
     pub fn has_curve(&self) -> bool {
         self.lobe != Lobe::None || self.declaration.ambient == Ambient::Albedo
@@ -166,8 +166,8 @@ impl ModelEntry {
     }
 
     /// The row of an object in the table that the shader reads, laid out as the WGSL struct `Row` (see
-    /// [`row_struct`](crate::registry::compose::row_struct)): the parameters, and for models that have
-    /// one the curve. Its colours are zero unless `uniform_light`: the scene has uniform light.
+    /// [`row_struct`](crate::registry::compose::row_struct)): the parameters, and the curve for models that have one.
+    /// Its colours are zero unless `uniform_light`: the scene has uniform light.
     #[must_use]
     pub fn row(&self, values: &Values, encoding: Encoding, uniform_light: bool) -> Vec<u8> {
         let mut row = pack(self.parameters, values, encoding);
@@ -179,14 +179,14 @@ impl ModelEntry {
         row
     }
 
-    /// The parameter of that name, if the model uses it.
+    /// The parameter with that name, if the model uses it.
     #[must_use]
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|p| p.name == name)
     }
 }
 
-/// Puts a curve behind the parameters of a row.
+/// Writes a curve after the parameters of a row.
 pub(crate) fn append_curve(
     row: &mut Vec<u8>,
     harmonics: usize,

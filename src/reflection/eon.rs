@@ -9,7 +9,7 @@ use crate::{
 };
 
 parameters! {
-    /// **EON** — energy-preserving Oren–Nayar: rough and matt, and no light is lost.
+    /// **EON** — energy-preserving Oren–Nayar: rough and matte, without losing light.
     ///
     /// ```text
     /// f_r = C_b/π A (1 + r s/t) + ρ_m/π (1 − E(L)) (1 − E(V)) / (1 − ⟨E⟩)
@@ -24,20 +24,20 @@ parameters! {
     /// | `base_colour` | C_b | sRGB | 0–255 | white |
     /// | `roughness` | r | – | 0–1 | 0.5 |
     ///
-    /// Source: J. Portsmouth, P. Kutz, S. Hill (2024), *EON: A Practical Energy-Preserving Rough Diffuse BRDF*,
-    /// arXiv 2410.18026; Journal of Computer Graphics Techniques 14(1), 2025. The first term is Y. Fujii's
-    /// variant of Oren–Nayar, whose albedo E has a closed form; the second gives back what that lacks, once
-    /// more coloured by every further reflection, so rough surfaces are not darker but more saturated.
-    /// The exact E is used, not the authors' polynomial.
+    /// Source: J. Portsmouth, P. Kutz, S. Hill (2024), *EON: A Practical Energy-Preserving Rough Diffuse BRDF*, arXiv
+    /// 2410.18026; Journal of Computer Graphics Techniques 14(1), 2025. The first term is Y. Fujii's variant of
+    /// Oren–Nayar, whose albedo E has a closed form; the second restores the lost light, coloured again by each further
+    /// reflection, so rough surfaces are not darker but more saturated. It uses the exact E, not the authors'
+    /// polynomial.
     ///
-    /// Use it wherever Oren–Nayar was used. At r = 0 it is Lambert. It keeps all three laws; a white surface
-    /// reflects exactly what arrives (E = 1), whatever its roughness.
+    /// Use it instead of Oren–Nayar. At r = 0 it is Lambert. It keeps all three laws; a white surface reflects exactly
+    /// the incident light (E = 1), whatever its roughness.
     pub struct Eon {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
         /// `r`.
         roughness: number = Parameter {
-            help: "From 0, matt and smooth as in Lambert's law, to 1, matt and very rough: flatter shading, darker towards the side that faces away from the light.",
+            help: "From 0, matte and smooth as in Lambert's law, to 1, matte and very rough: flatter shading, darker on the side facing away from the light.",
             ..ROUGHNESS
         },
     }
@@ -50,7 +50,7 @@ impl ReflectionModel for Eon {
         family: Family::Diffuse,
         author: "Portsmouth, Kutz, Hill 2024",
         source: "J. Portsmouth, P. Kutz, S. Hill (2024), EON: A Practical Energy-Preserving Rough Diffuse BRDF, arXiv 2410.18026; Journal of Computer Graphics Techniques 14(1), 2025",
-        summary: "Energy-preserving Oren–Nayar: flat and rough without growing dark. A white surface reflects exactly what arrives.",
+        summary: "Energy-preserving Oren–Nayar: flat and rough without darkening. A white surface reflects exactly the incident light.",
         equation: &[
             EquationPart {
                 term: Term::Diffuse,

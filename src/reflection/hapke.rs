@@ -16,7 +16,7 @@ const SINGLE_SCATTERING_ALBEDO: Parameter = Parameter {
     symbol: "w",
     label: "single-scattering albedo",
     unit: "",
-    help: "The fraction of light that one grain scatters and does not swallow; times the base colour for red, green and blue. The Moon's dark plains about 0.2, snow nearly 1.",
+    help: "The fraction of light that a grain scatters rather than absorbs; multiplied by the base colour for red, green and blue. About 0.2 for the Moon's dark plains, nearly 1 for snow.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.52 },
     used_when: None,
 };
@@ -27,7 +27,7 @@ const GRAIN_ASYMMETRY: Parameter = Parameter {
     symbol: "b",
     label: "asymmetry of grains",
     unit: "",
-    help: "How narrow the lobes are into which one grain scatters: 0 is evenly in all directions.",
+    help: "The narrowness of the lobes into which a grain scatters: 0 is even in all directions.",
     kind: ParameterKind::Number { min: 0.0, max: 0.9, default: 0.213 },
     used_when: None,
 };
@@ -38,7 +38,7 @@ const BACKSCATTER: Parameter = Parameter {
     symbol: "c",
     label: "backscattering",
     unit: "",
-    help: "1: grains scatter back to the light, as rough opaque ones do; −1: onward, as clear ones do.",
+    help: "1: grains scatter back to the light, like rough opaque ones; −1: forward, like clear ones.",
     kind: ParameterKind::Number { min: -1.0, max: 1.0, default: 1.0 },
     used_when: None,
 };
@@ -49,7 +49,7 @@ const OPPOSITION_AMPLITUDE: Parameter = Parameter {
     symbol: "B_0",
     label: "opposition surge",
     unit: "",
-    help: "How much brighter once-scattered light is with the light behind the observer, where every grain hides its own shadow.",
+    help: "The increase of single scattering when the light is behind the observer, where every grain hides its own shadow.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 1.0 },
     used_when: None,
 };
@@ -71,13 +71,13 @@ const MEAN_SLOPE: Parameter = Parameter {
     symbol: "θ_m",
     label: "mean slope",
     unit: "°",
-    help: "How rugged the ground is at scales above that of the grains: the mean slope of its faces, which shade and hide each other.",
+    help: "The ruggedness of the ground at scales larger than the grains: the mean slope of its faces, which shadow and hide each other.",
     kind: ParameterKind::Number { min: 0.0, max: 45.0, default: 30.0 },
     used_when: None,
 };
 
 parameters! {
-    /// **Hapke** — the ground of moons and planets: grains that scatter, shadows between them, slopes.
+    /// **Hapke** — the surfaces of moons and planets: scattering grains, shadows between them, slopes.
     ///
     /// ```text
     /// f_r = w/4π · μ_l/(μ_l + μ_v) · [(1 + B) P + H(μ_l) H(μ_v) − 1] · S/cos θ_i      w ← w C_b
@@ -87,10 +87,9 @@ parameters! {
     /// B = B_0/(1 + tan(g/2)/h)
     /// ```
     ///
-    /// g is the angle between light and view (0: light behind the observer). Single scattering is exact
-    /// for the phase function P, a double Henyey–Greenstein lobe, and grows by the opposition surge B;
-    /// multiple scattering is that of evenly scattering grains, with Chandrasekhar's H in Hapke's
-    /// approximation of 1981.
+    /// g is the angle between light and view (0: light behind the observer). Single scattering is exact for the phase
+    /// function P, a double Henyey–Greenstein lobe, and increased by the opposition surge B; multiple scattering is
+    /// that of isotropically scattering grains, with Chandrasekhar's H in Hapke's approximation of 1981.
     ///
     /// Slopes of mean θ̄ (1984) replace the cosines by effective ones μ_l, μ_v and add the shadowing S.
     /// With θ the smaller of the angles of light and view, Θ the larger, ψ the azimuth between them,
@@ -113,10 +112,9 @@ parameters! {
     /// | `opposition_width` | h | – | 0.001–1 | 0.05 |
     /// | `mean_slope` | θ̄ | degrees | 0–45 | 30 |
     ///
-    /// Use it for regolith, dust, snow, soil; b = B_0 = θ̄ = 0 and a small w is Lommel–Seeliger. The
-    /// radiance factor I/F of planetary science is the response. Reciprocal; not energy conserving for w
-    /// near 1: the approximate H alone gives up to 1.04, and grains that scatter backwards more, since
-    /// the multiple scattering takes no account of P.
+    /// Use it for regolith, dust, snow, soil; with b = B_0 = θ̄ = 0 and a small w it is Lommel–Seeliger. The radiance
+    /// factor I/F of planetary science is the response. Reciprocal; not energy conserving for w near 1: the approximate
+    /// H alone gives up to 1.04, and backscattering grains give more, since the multiple scattering ignores P.
     ///
     /// Source: B. Hapke (1981), *Bidirectional Reflectance Spectroscopy 1. Theory*, Journal of Geophysical
     /// Research 86(B4), 3039–3054; (1984), *3. Correction for Macroscopic Roughness*, Icarus 59, 41–59;
@@ -144,7 +142,7 @@ parameters! {
 /// Guards denominators that reach 0 at the normal, at the horizon or at θ̄ = 0.
 const TINY: f32 = 1e-10;
 
-/// A direction on the slopes: what the correction for roughness asks of one of light and view.
+/// A direction on the slopes: the quantities of the roughness correction for the light or the view.
 struct Slanted {
     cosine: f32,
     /// `tan θ̄ sin x`.
@@ -169,9 +167,8 @@ impl Slanted {
     }
 }
 
-/// The effective cosines of light and view in either order, and their product times `S/(cos θ_i μ_l)`:
-/// how slopes of that mean tangent change what a level surface reflects. The same when light and view are
-/// exchanged.
+/// The effective cosines of light and view in either order, and their product times `S/(cos θ_i μ_l)`: the effect of
+/// slopes of that mean tangent on the reflection of a level surface. Symmetric in light and view.
 fn roughen(l: Vec3, v: Vec3, n: Vec3, tangent: f32) -> (f32, f32, f32) {
     let (cos_l, cos_v) = (n.dot(l), n.dot(v));
     let (across_l, across_v) = (l - cos_l * n, v - cos_v * n);
@@ -180,7 +177,7 @@ fn roughen(l: Vec3, v: Vec3, n: Vec3, tangent: f32) -> (f32, f32, f32) {
     let view = Slanted::new(cos_v, across_v.length(), tangent);
     let (steep, flat) = if cos_l >= cos_v { (light, view) } else { (view, light) };
 
-    // sin and cos of ψ/2 from the unit tangents; along the normal there is no azimuth, nor does it count.
+    // sin and cos of ψ/2 from the unit tangents; along the normal the azimuth is undefined and irrelevant.
     let (t_l, t_v) = (across_l.normalize_or_zero(), across_v.normalize_or_zero());
     let (sin, cos) = if t_l == Vec3::ZERO || t_v == Vec3::ZERO {
         (0.0, 1.0)
@@ -188,8 +185,8 @@ fn roughen(l: Vec3, v: Vec3, n: Vec3, tangent: f32) -> (f32, f32, f32) {
         (0.5 * (t_l - t_v).length(), 0.5 * (t_l + t_v).length())
     };
 
-    // The published brackets, with cos ψ = 1 − 2 sin² (ψ/2) and the difference of the two E₂ written so
-    // that nothing cancels at the horizon.
+    // The published brackets, with cos ψ = 1 − 2 sin² (ψ/2) and the difference of the two E₂ written without
+    // cancellation at the horizon.
     let spread = (steep.cosine - flat.cosine) * (steep.cosine + flat.cosine)
         / (steep.rise * flat.rise / tangent.max(TINY)).powi(2).max(TINY * TINY);
     let difference = -flat.e2 * (-spread / PI).exp_m1();

@@ -19,8 +19,8 @@ parameters! {
     /// |---|---|---|---|---|
     /// | `base_colour` | C_b | sRGB | 0–255 | white |
     ///
-    /// Source: J. H. Lambert (1760), *Photometria sive de mensura et gradibus luminis, colorum et
-    /// umbrae*. Keeps every law: it is the measure for all others. Paper and plaster come close.
+    /// Source: J. H. Lambert (1760), *Photometria sive de mensura et gradibus luminis, colorum et umbrae*. Keeps every
+    /// law: the reference for all others. Paper and plaster come close.
     pub struct Lambert {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
@@ -34,7 +34,7 @@ impl ReflectionModel for Lambert {
         family: Family::Basic,
         author: "J. H. Lambert 1760",
         source: "J. H. Lambert (1760), Photometria sive de mensura et gradibus luminis, colorum et umbrae",
-        summary: "The ideal matte surface: equally bright from every side. The measure for all others.",
+        summary: "The ideal matte surface: equally bright from every direction. The reference for all others.",
         equation: &[EquationPart { term: Term::Diffuse, text: "I_d = max(0, N·L) C_b" }],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Formula,

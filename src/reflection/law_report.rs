@@ -1,4 +1,4 @@
-//! The findings about the laws of a model as people read them, and as data.
+//! The findings about the laws of a model, as text and as data.
 
 use std::fmt;
 
@@ -10,53 +10,53 @@ use super::{
     laws::{Case, Effort, Extreme, Findings},
 };
 
-/// What was found about a model.
+/// The findings about a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LawReport {
     /// The id of the model.
     pub model: String,
-    /// How many responses were looked at.
+    /// The number of responses examined.
     pub responses: usize,
-    /// How many of them are NaN or infinite.
+    /// The number of NaN or infinite ones among them.
     pub not_finite: usize,
-    /// Where the first of those was found.
+    /// The place of the first of those.
     pub first_not_finite: Vec<String>,
     /// The laws.
     pub laws: Vec<LawVerdict>,
 }
 
-/// What became of a law.
+/// The findings about a law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LawVerdict {
     /// Its name.
     pub law: String,
-    /// The model claims to keep it.
+    /// True if the model claims to keep it.
     pub claimed: bool,
-    /// It was not found broken.
+    /// True if no violation was found.
     pub kept: bool,
-    /// What it was judged by: `largest directional albedo`.
+    /// The quantity that it was judged by: `largest directional albedo`.
     pub measure: String,
-    /// How large that is.
+    /// Its value.
     pub size: String,
-    /// Where that was found: directions in degrees, and the parameters as `--set` takes them.
+    /// The place of that value: directions in degrees, and the parameters in the syntax of `--set`.
     pub at: Vec<String>,
 }
 
 impl LawVerdict {
-    /// What is said of it. Where some values are no numbers nothing is kept, but what is broken is broken.
+    /// The verdict. If some values are not numbers, no law counts as kept, but a violation is still a violation.
     fn verdict(&self, finite: bool) -> &'static str {
         match (self.claimed, self.kept) {
-            (_, true) if !finite => "cannot be judged: some values are no numbers",
+            (_, true) if !finite => "cannot be judged: some values are NaN or infinite",
             (true, true) => "claimed and kept",
             (true, false) => "claimed and BROKEN",
-            (false, true) => "not claimed and not found broken: claim it?",
+            (false, true) => "not claimed, but no violation found: claim it?",
             (false, false) => "not claimed and broken",
         }
     }
 }
 
 impl LawReport {
-    /// What an examination found.
+    /// The findings of an examination.
     #[must_use]
     pub fn new(model: &ModelEntry, findings: &Findings) -> Self {
         let evidence = [
@@ -101,7 +101,7 @@ impl LawReport {
         self.laws.iter().filter(|law| law.claimed && !law.kept).map(|law| law.law.as_str()).collect()
     }
 
-    /// What is said of a law.
+    /// The verdict on a law.
     #[must_use]
     pub fn verdict(&self, law: &LawVerdict) -> &'static str {
         law.verdict(self.is_finite())
@@ -133,7 +133,7 @@ impl fmt::Display for LawReport {
     }
 }
 
-/// A number with as many digits as say something.
+/// A number with its significant digits.
 fn number(v: f32) -> String {
     if v == 0.0 {
         "0".to_owned()
@@ -144,7 +144,7 @@ fn number(v: f32) -> String {
     }
 }
 
-/// Where something was found: directions in degrees, and the parameters as `--set` takes them.
+/// A place: directions in degrees, and the parameters in the syntax of `--set`.
 fn place(model: &ModelEntry, case: Option<&Case>) -> Vec<String> {
     let Some(case) = case else { return Vec::new() };
     let angles = |d: Vec3| {
@@ -174,7 +174,7 @@ mod tests {
         findings.albedo.size = 2.0;
         let text = report(&findings);
         assert!(!text.contains("kept"), "{text}");
-        assert_eq!(text.matches("cannot be judged: some values are no numbers").count(), 2, "{text}");
+        assert_eq!(text.matches("cannot be judged: some values are NaN or infinite").count(), 2, "{text}");
         assert!(text.contains("energy conserving: claimed and BROKEN"), "{text}");
         assert_eq!(LawReport::new(lambert, &findings).broken(), ["energy conserving"]);
     }

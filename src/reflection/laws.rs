@@ -1,6 +1,6 @@
-//! Trying to find the laws of a model broken: over random directions and legal parameters, the same ones in
-//! every run, and at the ends of all ranges. Tests judge the built-in models by it on the CPU, `lcm models check`
-//! any model on the GPU.
+//! A search for violations of a model's laws: over random directions and legal parameters, the same ones in every run,
+//! and at the ends of all ranges. Tests judge the built-in models by it on the CPU, `lcm models check` judges any model
+//! on the GPU.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -12,17 +12,17 @@ use crate::{
     parameter::{Parameter, ParameterKind, Value, Values},
 };
 
-/// The largest relative difference between there and back that rounding may make.
+/// The largest relative difference between both directions attributed to rounding.
 pub const RECIPROCITY_TOLERANCE: f32 = 2e-3;
-/// The largest directional albedo that the quadrature may make of 1.
+/// The largest directional albedo that the quadrature may return for 1.
 pub const LARGEST_ALBEDO: f32 = 1.01;
-/// How far rounding may take a response below 0.
+/// The lowest response below 0 attributed to rounding.
 pub const NEGATIVE_TOLERANCE: f32 = 1e-6;
 /// Steps of the quadrature of an albedo along tangent and bitangent.
 pub const COARSE: usize = 48;
-/// The same where the coarse one finds nearly 1 or more, so that its error is no verdict.
+/// The same where the coarse one finds nearly 1 or more, so its error matters.
 pub const FINE: usize = 160;
-/// From this albedo on the finer quadrature is asked.
+/// The finer quadrature is used from this albedo on.
 pub const NEARLY_ALL: f32 = 0.98;
 
 /// A small generator of random numbers: the same ones in every run (G. Marsaglia 2003, xorshift).
@@ -30,7 +30,7 @@ pub const NEARLY_ALL: f32 = 0.98;
 pub struct Random(pub u64);
 
 impl Random {
-    /// A number from 0 up to, but not, 1.
+    /// A number from 0 (inclusive) to 1 (exclusive).
     pub fn unit(&mut self) -> f32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -45,11 +45,11 @@ impl Random {
         Vec3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z)
     }
 
-    /// A unit vector on the outer side, up to grazing.
+    /// A unit vector on the outer side, down to grazing angles.
     pub fn above(&mut self, frame: &Frame) -> Vec3 {
         let d = self.direction();
         let d = if d.dot(frame.n) < 0.0 { -d } else { d };
-        // Every fourth close to grazing.
+        // Every fourth near grazing.
         let tilt = if self.unit() < 0.25 { self.unit() * 0.05 } else { 1.0 };
         let flat = d - d.dot(frame.n) * frame.n;
         (flat + tilt * d.dot(frame.n) * frame.n).normalize_or(frame.n)
@@ -107,7 +107,7 @@ impl Random {
     }
 }
 
-/// The smallest or largest value of a parameter; of choices any.
+/// The smallest or largest value of a parameter; any value of a choice.
 fn end(parameter: &Parameter, high: bool, random: &mut Random) -> Value {
     match parameter.kind {
         ParameterKind::Number { min, max, .. } => Value::Number(if high { max } else { min }),
@@ -120,13 +120,13 @@ fn end(parameter: &Parameter, high: bool, random: &mut Random) -> Value {
     }
 }
 
-/// White, and every number at its smallest.
+/// White, and every number at its minimum.
 #[must_use]
 pub fn least(model: &ModelEntry) -> Values {
     ends(model, false)
 }
 
-/// White, and every number at its largest.
+/// White, and every number at its maximum.
 fn most(model: &ModelEntry) -> Values {
     ends(model, true)
 }
@@ -141,8 +141,8 @@ fn ends(model: &ModelEntry, high: bool) -> Values {
     values
 }
 
-/// How far a BRDF there and back differ, relative to the larger of the two; differences of what is dark do not
-/// count. 0 where a cosine is so small that rounding decides.
+/// The difference of a BRDF with both directions exchanged, relative to the larger value; differences of dark values do
+/// not count. 0 where a cosine is so small that rounding decides.
 #[must_use]
 pub fn reciprocity_error(there: Terms, back: Terms, l: Vec3, v: Vec3, frame: &Frame) -> f32 {
     if frame.n.dot(l) < 0.01 || frame.n.dot(v) < 0.01 {
@@ -159,19 +159,19 @@ pub fn smallest(terms: &Terms) -> f32 {
     terms.ambient.min_element().min(terms.diffuse.min_element()).min(terms.specular.min_element())
 }
 
-/// True if a response has neither NaN nor infinity in it.
+/// True if a response has neither NaN nor infinity.
 #[must_use]
 pub fn is_finite(terms: &Terms) -> bool {
     terms.ambient.is_finite() && terms.diffuse.is_finite() && terms.specular.is_finite()
 }
 
-/// Directions to the light with weights, so that the weighted sum of the responses is the directional albedo for
-/// a view: `∫ f_r cos θ dω` over the slopes of the facets that mirror `v` to `l`, by the midpoint rule with `rows`
-/// steps along the tangent and as many along the bitangent.
+/// Directions to the light with weights, such that the weighted sum of the responses is the directional albedo for a
+/// view: `∫ f_r cos θ dω` over the slopes of the facets that mirror `v` to `l`, by the midpoint rule with `rows` steps
+/// along the tangent and as many along the bitangent.
 #[must_use]
 pub fn albedo_directions(v: Vec3, frame: &Frame, rows: usize) -> Vec<(Vec3, f32)> {
-    // Slopes are spaced as u³/(1 − u²), so that lobes that are narrow in one direction or both are
-    // resolved: those of all models lie around the slope 0.
+    // Slopes are spaced as u³/(1 − u²), which resolves lobes that are narrow in one direction or both: those of all
+    // models are centred at slope 0.
     let steps: Vec<_> = (0..rows)
         .map(|i| {
             let u = 2.0 * (i as f32 + 0.5) / rows as f32 - 1.0;
@@ -195,7 +195,7 @@ pub fn albedo_directions(v: Vec3, frame: &Frame, rows: usize) -> Vec<(Vec3, f32)
     directions
 }
 
-/// The directional albedo of the channel that has most, from the responses in [`albedo_directions`].
+/// The largest directional albedo of any channel, from the responses in [`albedo_directions`].
 #[must_use]
 pub fn albedo(directions: &[(Vec3, f32)], responses: impl IntoIterator<Item = Terms>) -> f32 {
     let weighted =
@@ -203,23 +203,23 @@ pub fn albedo(directions: &[(Vec3, f32)], responses: impl IntoIterator<Item = Te
     weighted.sum::<Vec3>().max_element()
 }
 
-/// Where something was found, in the local frame (normal +z, tangent +x).
+/// The place of a finding, in the local frame (normal +z, tangent +x).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Case {
     /// The parameters.
     pub values: Values,
-    /// To the light; none for integrals over it.
+    /// To the light; `None` for integrals over it.
     pub l: Option<Vec3>,
     /// To the viewer.
     pub v: Vec3,
 }
 
-/// The furthest that was found.
+/// The most extreme value found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Extreme {
-    /// How far.
+    /// The value.
     pub size: f32,
-    /// Where; nowhere if nothing could be compared.
+    /// Its place; `None` if nothing could be compared.
     pub case: Option<Case>,
 }
 
@@ -231,7 +231,7 @@ impl Extreme {
     }
 }
 
-/// How much is tried.
+/// The extent of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
     /// Sets of parameters.
@@ -246,25 +246,25 @@ impl Default for Effort {
     }
 }
 
-/// What was found of a model.
+/// The findings about a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
-    /// The largest relative difference between there and back.
+    /// The largest relative difference after exchanging light and view.
     pub reciprocity: Extreme,
     /// The largest directional albedo.
     pub albedo: Extreme,
     /// The smallest number in a response.
     pub smallest: Extreme,
-    /// How many responses there were.
+    /// The number of responses.
     pub responses: usize,
-    /// How many of them have NaN or infinity in them.
+    /// The number of those with NaN or infinity.
     pub not_finite: usize,
     /// The first of those.
     pub first_not_finite: Option<Case>,
 }
 
 impl Findings {
-    /// The laws that were not found broken.
+    /// The laws without a violation.
     #[must_use]
     pub fn kept(&self) -> Laws {
         Laws {
@@ -275,8 +275,8 @@ impl Findings {
     }
 }
 
-/// Tries to find the laws of a model broken. `ask` answers with the responses to pairs of directions (to the
-/// light, to the viewer) in the local frame.
+/// Searches for violations of a model's laws. `ask` returns the responses to pairs of directions (to the light, to the
+/// viewer) in the local frame.
 ///
 /// # Errors
 /// Those of `ask`.
@@ -301,7 +301,7 @@ pub fn examine<E>(
     Ok(findings)
 }
 
-/// Responses in any directions, and there and back.
+/// Responses in any directions, and with light and view exchanged.
 fn compare<E>(
     values: &Values,
     pairs: usize,

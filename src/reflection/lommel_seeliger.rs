@@ -9,7 +9,7 @@ use crate::{
 };
 
 parameters! {
-    /// **Lommel–Seeliger** — light that is scattered once in a deep, dark powder.
+    /// **Lommel–Seeliger** — single scattering in a deep, dark powder.
     ///
     /// ```text
     /// f_r = C_b/2π · 1/(cos θ_i + cos θ_r)
@@ -20,15 +20,13 @@ parameters! {
     /// |---|---|---|---|---|
     /// | `base_colour` | C_b | sRGB | 0–255 | white |
     ///
-    /// Light and view each die away exponentially inside the powder; the sum over all depths of what is
-    /// scattered once is 1/(cos θ_i + cos θ_r). For particles of single-scattering albedo w, which scatter
-    /// evenly, f_r = w/4π · 1/(cos θ_i + cos θ_r): here w = 2 C_b, the normalisation under which white
-    /// reflects everything at grazing angles. The directional albedo is
-    /// E(μ) = C_b (1 − μ ln(1 + 1/μ)), from 0.31 C_b straight on to C_b. By coincidence the same BRDF is
-    /// that of GGX microfacets with α = 1, height-correlated masking and F = 1.
+    /// Light and view are each attenuated exponentially inside the powder; the single scattering summed over all depths
+    /// is 1/(cos θ_i + cos θ_r). For isotropically scattering particles of single-scattering albedo w, f_r = w/4π ·
+    /// 1/(cos θ_i + cos θ_r): here w = 2 C_b, the normalisation under which white reflects everything at grazing
+    /// angles. The directional albedo is E(μ) = C_b (1 − μ ln(1 + 1/μ)), from 0.31 C_b at normal incidence to C_b. By
+    /// coincidence, GGX microfacets with α = 1, height-correlated masking and F = 1 have the same BRDF.
     ///
-    /// Use it for the Moon: lit from behind the observer every point of a ball is equally bright. Keeps
-    /// all laws.
+    /// Use it for the Moon: lit from behind the observer, every point of a ball is equally bright. Keeps all laws.
     ///
     /// Source: H. Seeliger (1888), *Zur Photometrie zerstreut reflectirender Substanzen*,
     /// Sitzungsberichte der Bayerischen Akademie der Wissenschaften 18; E. Lommel (1889), *Die Photometrie

@@ -19,8 +19,8 @@ use crate::{
 };
 
 parameters! {
-    /// **Metallic–roughness** — the material of today's engines and of glTF 2.0: GGX, height-correlated Smith
-    /// masking, Schlick's Fresnel term, and four parameters that an artist can guess.
+    /// **Metallic–roughness** — the material of today's engines and of glTF 2.0: GGX, height-correlated Smith masking,
+    /// Schlick's Fresnel term, and four intuitive parameters.
     ///
     /// ```text
     /// f_r = (1 − F)(1 − m) C_b/π + D F G / (4 (N·L)(N·V))
@@ -41,18 +41,18 @@ parameters! {
     /// Group (2021), *glTF 2.0 Specification*, appendix B; R. Guy, M. Agopian (2018), *Physically Based
     /// Rendering in Filament*. α is at least 0.001, below which a lobe is narrower than the rounding of H.
     ///
-    /// **The diffuse part** is glTF's: Lambert's, times 1 − F at the facet that mirrors L to V. Filament and
-    /// Unreal leave that factor out, which costs less and makes still more light; it is kept here because
-    /// glTF is the published standard and because a body under a mirror must darken. F is taken for each
-    /// channel; the specification's is white for what is not metal, so there the two are the same.
+    /// **The diffuse part** is glTF's: Lambert's, times 1 − F at the facet that mirrors L to V. Filament and Unreal
+    /// omit that factor, which is cheaper but gains still more light; it is kept here because glTF is the published
+    /// standard and because a body under a mirror must darken. F is calculated per channel; the specification's is
+    /// white for non-metals, where the two agree.
     ///
-    /// **When to use it**: for anything, first: it is what most programs exchange, and measured metals need
-    /// only their colour at normal incidence. Where that colour does not tell the whole story (the dip of
-    /// gold before grazing, n and k) `cook_torrance` or `microfacet` tell more.
+    /// **When to use it**: first, for anything: most programs exchange it, and measured metals need only their colour
+    /// at normal incidence. Where that colour is not enough (the dip of gold before grazing angles, n and k), use
+    /// `cook_torrance` or `microfacet`.
     ///
-    /// **Laws**: reciprocal and not negative. Energy is not conserved: F of one facet stands in for all that
-    /// the rough surface reflects, so a smooth white dielectric seen at a grazing angle gives back up to
-    /// twice the light. Metals do conserve it, and lose what several facets would reflect in turn.
+    /// **Laws**: reciprocal and non-negative. Energy is not conserved: F of one facet stands for the whole reflection
+    /// of the rough surface, so a smooth white dielectric seen at a grazing angle reflects up to twice the light.
+    /// Metals do conserve it, and lose the light of multiple reflections.
     pub struct MetallicRoughness {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
@@ -83,7 +83,7 @@ impl ReflectionModel for MetallicRoughness {
         family: Family::Standard,
         author: "B. Karis 2013; glTF 2.0",
         source: "B. Karis (2013), Real Shading in Unreal Engine 4, SIGGRAPH course; Khronos Group (2021), glTF 2.0 Specification, appendix B",
-        summary: "The material of today's engines and of glTF: base colour, metallic, roughness, reflectance. Start here for anything real.",
+        summary: "The material of today's engines and of glTF: base colour, metallic, roughness, reflectance. Start here for any real material.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − F)(1 − m) C_b (N·L)" },
@@ -103,12 +103,12 @@ impl ReflectionModel for MetallicRoughness {
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        // Below the surface, or so grazing that the quotients would leave the range of f32.
+        // Below the surface, or at such a grazing angle that the quotients would leave the range of f32.
         if cos_l.min(cos_v) < 1e-9 {
             return Terms::default();
         }
-        // Only angles to the normal matter, so each vector stands in a frame whose x axis it leans to. Half
-        // vector: by the cross product, since 1 − (N·H)² would cancel where the lobe is narrow.
+        // Only angles to the normal matter, so each vector is in a frame with x along its tangential part. Half vector
+        // by the cross product, since 1 − (N·H)² would cancel where the lobe is narrow.
         let leaning = |cosine: f32| Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
         let h = half_vector(l, v);
         let cos_d = 0.5 * (l + v).length();

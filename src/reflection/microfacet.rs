@@ -24,7 +24,7 @@ const DISTRIBUTION: Parameter = Parameter {
     symbol: "D",
     label: "distribution",
     unit: "",
-    help: "How many microfacets face each direction: the shape of the highlight. With t = tan θ_h / α and c = cos θ_h: Blinn–Phong D = (n + 2)/(2π) cⁿ, n = 2/α² − 2; Beckmann D = exp(−t²)/(π α² c⁴); GGX D = 1/(π α² c⁴ (1 + t²)²), with longer tails; GTR has γ in place of the 2 and chooses its tails.",
+    help: "The distribution of microfacet normals: the shape of the highlight. With t = tan θ_h / α and c = cos θ_h: Blinn–Phong D = (n + 2)/(2π) cⁿ, n = 2/α² − 2; Beckmann D = exp(−t²)/(π α² c⁴); GGX D = 1/(π α² c⁴ (1 + t²)²), with longer tails; GTR has γ in place of the 2 and chooses its tails.",
     kind: ParameterKind::Choice {
         options: &[("blinn_phong", "Blinn–Phong"), ("beckmann", "Beckmann"), ("ggx", "GGX"), ("gtr", "GTR")],
         default: 2,
@@ -37,7 +37,7 @@ const GAMMA: Parameter = Parameter {
     symbol: "γ",
     label: "exponent of GTR",
     unit: "",
-    help: "How fast the tails of the GTR distribution fall: 2 is GGX, 1 is Berry's with longer tails.",
+    help: "The falloff of the tails of the GTR distribution: 2 is GGX, 1 is Berry's distribution with longer tails.",
     kind: ParameterKind::Number { min: 1.0, max: 10.0, default: 2.0 },
     used_when: None,
 };
@@ -47,7 +47,7 @@ const MASKING: Parameter = Parameter {
     symbol: "G",
     label: "masking",
     unit: "",
-    help: "How microfacets hide each other from light and viewer. Implicit: G = (N·L)(N·V); V-cavities: min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H)); Neumann: (N·L)(N·V)/max(N·L, N·V); Kelemen: (N·L)(N·V)/(V·H)²; Smith's terms follow from the distribution: separable 1/((1 + Λ(L))(1 + Λ(V))), height-correlated 1/(1 + Λ(L) + Λ(V)), and Schlick's approximation to them.",
+    help: "The shadowing of microfacets from the light, and their masking from the viewer, by each other. Implicit: G = (N·L)(N·V); V-cavities: min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H)); Neumann: (N·L)(N·V)/max(N·L, N·V); Kelemen: (N·L)(N·V)/(V·H)²; Smith's terms follow from the distribution: separable 1/((1 + Λ(L))(1 + Λ(V))), height-correlated 1/(1 + Λ(L) + Λ(V)), and Schlick's approximation to them.",
     kind: ParameterKind::Choice {
         options: &[
             ("implicit", "Implicit"),
@@ -68,7 +68,7 @@ const FRESNEL: Parameter = Parameter {
     symbol: "F",
     label: "Fresnel term",
     unit: "",
-    help: "How much a microfacet reflects by angle: everything; Schlick's F = F₀ + (1 − F₀)(1 − V·H)⁵ with F₀ from n and k; or the exact equations of dielectrics (n) or conductors (n and k).",
+    help: "The reflectance of a microfacet by angle: everything; Schlick's F = F₀ + (1 − F₀)(1 − V·H)⁵ with F₀ from n and k; or the exact equations of dielectrics (n) or conductors (n and k).",
     kind: ParameterKind::Choice {
         options: &[
             ("none", "None (F = 1)"),
@@ -86,7 +86,7 @@ const DIFFUSE: Parameter = Parameter {
     symbol: "f_d",
     label: "diffuse base",
     unit: "",
-    help: "What lies below the reflecting surface: nothing, or a body that scatters the light that enters.",
+    help: "The material below the reflecting surface: none, or a body that scatters the light entering it.",
     kind: ParameterKind::Choice {
         options: &[
             ("none", "None"),
@@ -125,10 +125,9 @@ parameters! {
     /// Turquin:     f_ms = f_s · F_0 (1 − E(v))/E(v)
     /// ```
     ///
-    /// E is the directional albedo of the lobe with F = 1 (calculated from the very D and G that are
-    /// chosen, its mean over the azimuth), E_avg and F_avg are cosine-weighted means. d is 1 for Lambert, Burley's
-    /// factor at roughness √α, or Oren and Nayar's qualitative factor at σ = α/√2, the slope angle of the
-    /// same microfacets.
+    /// E is the directional albedo of the lobe with F = 1 (calculated from the chosen D and G, as a mean over the
+    /// azimuth); E_avg and F_avg are cosine-weighted means. d is 1 for Lambert, Burley's factor at roughness √α, or
+    /// Oren and Nayar's qualitative factor at σ = α/√2, the slope angle of the same microfacets.
     ///
     /// | parameter | symbol | unit | range | default |
     /// |---|---|---|---|---|
@@ -143,21 +142,19 @@ parameters! {
     /// | `diffuse` | f_d | – | `none`, `lambert`, `burley`, `oren_nayar`; not used with `fresnel` `none`, which reflects everything | `lambert` |
     /// | `multiple_scattering` | f_ms | – | `none`, `kulla_conty`, `turquin` | `none` |
     ///
-    /// Sources: the form is that of K. E. Torrance, E. M. Sparrow (1967), *Theory for Off-Specular
-    /// Reflection from Roughened Surfaces*, and R. L. Cook, K. E. Torrance (1982), *A Reflectance Model for
-    /// Computer Graphics*; the factors name theirs in [`distribution`], [`masking`] and
-    /// [`fresnel`](crate::optics::fresnel). C. Kulla, A. Conty (2017), *Revisiting Physically Based Shading at
-    /// Imageworks*, with the square of F_avg, since what leaves after the second bounce was reflected twice
-    /// (S. Hill 2018, *A Multi-Faceted Exploration*); E. Turquin (2019), *Practical Multiple Scattering
-    /// Compensation for Microfacet Models*.
+    /// Sources: the form is that of K. E. Torrance, E. M. Sparrow (1967), *Theory for Off-Specular Reflection from
+    /// Roughened Surfaces*, and R. L. Cook, K. E. Torrance (1982), *A Reflectance Model for Computer Graphics*; the
+    /// factors name theirs in [`distribution`], [`masking`] and [`fresnel`](crate::optics::fresnel). C. Kulla, A. Conty
+    /// (2017), *Revisiting Physically Based Shading at Imageworks*, with the square of F_avg, since light leaving after
+    /// the second bounce was reflected twice (S. Hill 2018, *A Multi-Faceted Exploration*); E. Turquin (2019),
+    /// *Practical Multiple Scattering Compensation for Microfacet Models*.
     ///
-    /// Use it to take a model apart: exchange one factor and see what changes. Smith's masking for the
-    /// Blinn–Phong distribution is that of Beckmann with the same α (B. Walter et al. 2007), for GTR that
-    /// of GGX (B. Burley 2012). Not declared reciprocal, since Turquin's factor depends on the viewer
-    /// only; not energy conserving, since some settings are not: Kelemen's and Neumann's masking, Burley's base,
-    /// and the masking of one distribution with another (Blinn–Phong at α = 1 makes a quarter more light at grazing
-    /// angles). GGX and Beckmann with Smith's masking, without Turquin's factor and Burley's base, keep both
-    /// laws.
+    /// Use it to take a model apart: exchange one factor and see what changes. Smith's masking for the Blinn–Phong
+    /// distribution is that of Beckmann with the same α (B. Walter et al. 2007), for GTR that of GGX (B. Burley 2012).
+    /// Not declared reciprocal, since Turquin's factor depends on the viewer only; not energy conserving, since some
+    /// settings are not: Kelemen's and Neumann's masking, Burley's base, and the masking of one distribution with
+    /// another (Blinn–Phong at α = 1 gains a quarter more light at grazing angles). GGX and Beckmann with Smith's
+    /// masking, without Turquin's factor and Burley's base, keep both laws.
     pub struct Microfacet {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR.used_when("diffuse", &["lambert", "burley", "oren_nayar"]),
@@ -188,8 +185,7 @@ parameters! {
     }
 }
 
-/// Nodes and weights of Gauss and Legendre's rule on [0, 1] with eight points, the upper half: it is
-/// symmetric about ½.
+/// Upper half of the nodes and weights of the eight-point Gauss–Legendre rule on [0, 1], which is symmetric about ½.
 const GAUSS: [(f32, f32); 4] = [
     (0.591_717_3, 0.181_341_89),
     (0.762_766_2, 0.156_853_32),

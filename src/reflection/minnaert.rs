@@ -14,13 +14,13 @@ const LIMB_DARKENING: Parameter = Parameter {
     symbol: "k",
     label: "limb darkening",
     unit: "",
-    help: "1 is Lambert. Below 1 the rim of a ball brightens: at 0.5 the full moon is a flat disc. Above 1 it darkens, as on velvet lit from the front.",
+    help: "1 is Lambert. Below 1 the rim of a ball brightens: at 0.5 the full moon is a flat disc. Above 1 the rim darkens, as on velvet lit from the front.",
     kind: ParameterKind::Number { min: 0.5, max: 2.0, default: 0.6 },
     used_when: None,
 };
 
-/// The smallest cosine that is raised to a power, within 0.06° of the horizon: for k < 1 the formula has no
-/// bound there, and rounding would decide how bright a rim is.
+/// The lower bound of cosines raised to a power, within 0.06° of the horizon: for k < 1 the formula is unbounded there,
+/// and rounding would decide the brightness of a rim.
 const RIM: f32 = 1e-3;
 
 parameters! {
@@ -36,13 +36,12 @@ parameters! {
     /// | `base_colour` | C_b | sRGB | 0–255 | white |
     /// | `limb_darkening` | k | – | 0.5–2 | 0.6 |
     ///
-    /// Minnaert asked which powers of the two cosines are reciprocal. The factor (k + 1)/2π makes the
-    /// directional albedo E(μ) = C_b μ^{k − 1}: all light at normal incidence for white. Cosines below 0.001
-    /// are raised as 0.001, so that rims stay finite.
+    /// Minnaert sought the reciprocal powers of the two cosines. The factor (k + 1)/2π makes the directional albedo
+    /// E(μ) = C_b μ^{k − 1}: all light at normal incidence for white. Cosines below 0.001 count as 0.001, so that rims
+    /// stay finite.
     ///
-    /// Use it for moons and planets without an atmosphere (k between 0.5 and 1) and to see that one
-    /// exponent turns a ball into a disc. Reciprocal; not energy conserving for k < 1, where E grows
-    /// towards grazing angles.
+    /// Use it for moons and planets without an atmosphere (k between 0.5 and 1), and to see one exponent turn a ball
+    /// into a disc. Reciprocal; not energy conserving for k < 1, where E grows towards grazing angles.
     ///
     /// Source: M. Minnaert (1941), *The Reciprocity Principle in Lunar Photometry*, Astrophysical Journal
     /// 93, 403–410.
@@ -61,7 +60,7 @@ impl ReflectionModel for Minnaert {
         family: Family::Classical,
         author: "M. Minnaert 1941",
         source: "M. Minnaert (1941), The Reciprocity Principle in Lunar Photometry, Astrophysical Journal 93, 403–410",
-        summary: "A power of both cosines: from a moon that looks like a flat disc to cloth with dark edges.",
+        summary: "Powers of both cosines: from a moon that looks like a flat disc to cloth with dark edges.",
         equation: &[EquationPart {
             term: Term::Diffuse, text: "I_d = C_b (k + 1)/2 (N·L)^k (N·V)^{k − 1}"
         }],

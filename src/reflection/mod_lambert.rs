@@ -8,8 +8,8 @@ use crate::{
     shader::wgsl,
 };
 
-/// The exponent of the wrapped cosine. The CA writes a square and also says that `k_d = 1` equals
-/// Lambert, which is true of exponent 1 only; hence a parameter.
+/// The exponent of the wrapped cosine. The CA writes a square and also says that `k_d = 1` equals Lambert, which is
+/// true only of exponent 1; hence a parameter.
 const WRAP_EXPONENT: Parameter = Parameter {
     name: "wrap_exponent",
     symbol: "p",
@@ -33,10 +33,9 @@ parameters! {
     /// | `k_d` | k_d | – | 0.5–1 | 0.8 |
     /// | `wrap_exponent` | p | – | 1–4 | 2 |
     ///
-    /// `N·L` is not clamped, the bracket is, before it is raised to the power. Source: CA IM2; the
-    /// half-Lambert case is J. Mitchell, M. McTaggart, C. Green (2006), *Shading in Valve's Source
-    /// Engine*. Breaks energy conservation and reciprocity: the part of the surface that faces away
-    /// from the light receives none, and yet shines.
+    /// `N·L` is not clamped; the bracket is, before it is raised to the power. Source: CA IM2; the half-Lambert case is
+    /// J. Mitchell, M. McTaggart, C. Green (2006), *Shading in Valve's Source Engine*. Breaks energy conservation and
+    /// reciprocity: the part of the surface facing away from the light receives none, and yet shines.
     pub struct ModLambert {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
@@ -54,7 +53,7 @@ impl ReflectionModel for ModLambert {
         family: Family::Basic,
         author: "Mitchell, McTaggart, Green 2006",
         source: "J. Mitchell, M. McTaggart, C. Green (2006), Shading in Valve's Source Engine, SIGGRAPH course; as generalised in CA IM2",
-        summary: "Diffuse wrap: softens the edge of the shadow and lights what faces away. Half-Lambert at k_d = 0.5.",
+        summary: "Diffuse wrap: softens the edge of the shadow and lights the far side. Half-Lambert at k_d = 0.5.",
         equation: &[EquationPart {
             term: Term::Diffuse, text: "I_d = max(0, (N·L) k_d + (1 − k_d))^p C_b"
         }],

@@ -8,8 +8,7 @@ use crate::{
     parameter::{ParameterSet, Value},
 };
 
-/// A reflection model. The implementing struct holds its parameters
-/// (see [`parameters!`](crate::parameters)).
+/// A reflection model. The implementing struct holds its parameters (see [`parameters!`](crate::parameters)).
 pub trait ReflectionModel: ParameterSet + Copy {
     /// Name, source, laws, equation, shader.
     const DECLARATION: Declaration;
@@ -18,8 +17,8 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// `lobe_albedo(mu)` and `average_lobe_albedo()`.
     const LOBE: bool = false;
 
-    /// The response `π f_r(l, v) cos θ_i` to a light of unit intensity, in terms; or, for the models
-    /// of the CA, their formula as published. Finite for all unit vectors and legal parameters.
+    /// The response `π f_r(l, v) cos θ_i` to a light of unit intensity, by term; for the models of the CA, their
+    /// formula as published. Finite for all unit vectors and legal parameters.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
 
     /// The response to uniform light of 1 lx, for models that declare [`Ambient::Formula`](super::Ambient::Formula); not called for others.
@@ -27,20 +26,20 @@ pub trait ReflectionModel: ParameterSet + Copy {
         Vec3::ZERO
     }
 
-    /// The albedo of the specular lobe alone with F = 1, for models that compensate multiple scattering
-    /// and set [`LOBE`](Self::LOBE). A model keeps it as a derived field (see
-    /// [`parameters!`](crate::parameters)); the shader is handed the same numbers.
+    /// The albedo of the specular lobe alone with F = 1, for models that compensate multiple scattering and set
+    /// [`LOBE`](Self::LOBE). A model keeps it as a derived field (see [`parameters!`](crate::parameters)); the shader
+    /// receives the same numbers.
     fn lobe(&self) -> Option<LobeAlbedo> {
         None
     }
 
-    /// Values derived from the parameters that help to read them: the reflectance at normal incidence, the
-    /// same roughness on another scale.
+    /// Values derived from the parameters to help interpret them: the reflectance at normal incidence, the same
+    /// roughness on another scale.
     fn readouts(&self) -> Vec<Readout> {
         Vec::new()
     }
 
-    /// The parameters that make the surface a measured material; none if the model cannot be it.
+    /// The parameters that turn the surface into a measured material; `None` if the model cannot represent it.
     fn preset(_material: &Measured) -> Vec<(&'static str, Value)> {
         Vec::new()
     }

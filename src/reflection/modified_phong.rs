@@ -26,9 +26,9 @@ parameters! {
     /// | `k_s` | k_s | – | 0–1 | 0.5 |
     /// | `alpha` | α | – | whole, ≥ 0 | 32 |
     ///
-    /// Lewis saw that Phong's lobe is reciprocal once it is not divided by cos θ_i, that is, once the
-    /// whole of the response has the factor N·L; (α + 2)/2π makes it reflect all light at normal
-    /// incidence. His condition k_d + k_s ≤ 1 holds here by k_d = (1 − k_s C_s) C_b. α = 0 is Lambert.
+    /// Lewis noted that Phong's lobe is reciprocal if it is not divided by cos θ_i, that is, if the whole response has
+    /// the factor N·L; (α + 2)/2π makes it reflect all light at normal incidence. His condition k_d + k_s ≤ 1 holds
+    /// here since k_d = (1 − k_s C_s) C_b. α = 0 is Lambert.
     ///
     /// Use it as the reciprocal twin of Phong. Keeps all laws. At grazing angles half of the lobe lies
     /// below the surface and is lost, so metals look too dark there.
@@ -55,7 +55,7 @@ impl ReflectionModel for ModifiedPhong {
         family: Family::Classical,
         author: "Lewis 1993, Lafortune & Willems 1994",
         source: "R. R. Lewis (1993), Making Shaders More Physically Plausible, Eurographics Workshop on Rendering; E. P. Lafortune, Y. D. Willems (1994), Using the Modified Phong Reflectance Model for Physically Based Rendering, Report CW 197, KU Leuven",
-        summary: "Phong made reciprocal and energy conserving. Its highlight fades towards grazing angles, where that of real surfaces grows.",
+        summary: "Phong made reciprocal and energy conserving. Its highlight fades towards grazing angles, where real ones grow.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s C_s) C_b max(0, N·L)" },

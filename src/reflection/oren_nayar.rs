@@ -11,13 +11,13 @@ use crate::{
     shader::wgsl,
 };
 
-/// Which of the two equations of the paper.
+/// The choice between the two equations of the paper.
 const OREN_NAYAR_FORM: Parameter = Parameter {
     name: "oren_nayar_form",
     symbol: "",
     label: "form",
     unit: "",
-    help: "The full equation of the paper, with light that facets pass to each other, or its short form, which most programs use.",
+    help: "The full equation of the paper, with interreflection between facets, or its short form, which most programs use.",
     kind: ParameterKind::Choice {
         options: &[("full", "full, with interreflection"), ("qualitative", "qualitative")],
         default: 0,
@@ -44,14 +44,13 @@ parameters! {
     /// | `oren_nayar_form` | – | – | `full`, `qualitative` | `full` |
     ///
     /// Source: M. Oren, S. K. Nayar (1994), *Generalization of Lambert's Reflectance Model*, SIGGRAPH '94.
-    /// The surface is made of long V-shaped grooves with Lambertian walls, which mask and shadow each other;
-    /// σ is the standard deviation of the angle of the walls. The equations are fits to integrals over all
-    /// grooves. Walls that face the light are seen from where the light comes from, so a sphere looks flat,
-    /// as bright at its edge as in its middle.
+    /// The surface consists of long V-shaped grooves with Lambertian walls, which mask and shadow each other; σ is the
+    /// standard deviation of the angle of the walls. The equations are fits to integrals over all grooves. From near
+    /// the light, the viewer sees mostly the lit walls, so a sphere looks flat, as bright at its edge as in its middle.
     ///
-    /// Use it for matt rough materials. At σ = 0 it is Lambert. Reciprocal and, up to σ = 35°, where the range
-    /// ends, non-negative. Not energy conserving: the fit of the full form gives more than arrives at small
-    /// σ (σ = 0.2 rad, white: E = 1.0255 at cos θ = 0.1), while large σ lose light.
+    /// Use it for rough matte materials. At σ = 0 it is Lambert. Reciprocal and, up to σ = 35°, where the range ends,
+    /// non-negative. Not energy conserving: the fit of the full form reflects more than it receives at small σ (σ = 0.2
+    /// rad, white: E = 1.0255 at cos θ = 0.1), while large σ lose light.
     pub struct OrenNayar {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
@@ -69,7 +68,7 @@ impl ReflectionModel for OrenNayar {
         family: Family::Diffuse,
         author: "Oren, Nayar 1994",
         source: "M. Oren, S. K. Nayar (1994), Generalization of Lambert's Reflectance Model, SIGGRAPH '94, 239–246",
-        summary: "Rough matt surfaces such as plaster and the moon: they shine back to where the light comes from, so spheres look flat.",
+        summary: "Rough matte surfaces such as plaster and the moon: they reflect light back towards its source, so spheres look flat.",
         equation: &[
             EquationPart { term: Term::Diffuse, text: "I_d = C_b N·L S" },
             EquationPart {

@@ -1,8 +1,8 @@
 //! Measured materials: optical constants from which models set their parameters.
 //!
-//! A model that can be a measured material returns from
-//! [`ReflectionModel::preset`](super::ReflectionModel::preset) what one of the functions here gives,
-//! perhaps with more: [`conductor`], [`base_colour_metallic`], [`colour`].
+//! A model that can represent measured materials returns from
+//! [`ReflectionModel::preset`](super::ReflectionModel::preset) the result of one of the functions here, perhaps with
+//! additions: [`conductor`], [`base_colour_metallic`], [`colour`].
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
@@ -14,14 +14,14 @@ use crate::{
     parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, REFLECTANCE, Value},
 };
 
-/// A material whose refractive index was measured.
+/// A material with a measured refractive index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     /// The name in files: lower case, underscores.
     pub id: &'static str,
-    /// The name that people read.
+    /// The name shown to people.
     pub name: &'static str,
-    /// True if it is a metal: opaque, its colour is that of its reflection.
+    /// True for a metal: opaque, with the colour of its reflection.
     pub metal: bool,
     /// Refractive index n at 630, 532 and 465 nm.
     pub n: [f32; 3],
@@ -29,14 +29,14 @@ pub struct Measured {
     pub k: [f32; 3],
     /// Unpolarised reflectance at normal incidence, linear sRGB under D65, clamped to [0, 1].
     pub f0: Vec3,
-    /// Who measured it, where published.
+    /// The source of the measurement and its publication.
     pub source: &'static str,
 }
 
 const CONSTANTS: &str = include_str!("../../assets/data/optical_constants.csv");
 const SOURCES: &str = include_str!("../../assets/data/optical_constants_sources.json");
 
-/// What the second file says of a row of the first.
+/// The second file's data about a row of the first.
 #[derive(Deserialize)]
 struct Origin {
     name: &'static str,
@@ -44,12 +44,11 @@ struct Origin {
     source: &'static str,
 }
 
-/// Every measured material, metals first, each group by name. `assets/data/README.md` says where the
-/// numbers come from.
+/// Every measured material, metals first, each group by name. `assets/data/README.md` names the sources of the numbers.
 #[must_use]
 pub fn all() -> &'static [Measured] {
     static ALL: LazyLock<Vec<Measured>> = LazyLock::new(|| {
-        // A row that cannot be read is left out; a test sees to it that there is none.
+        // An unreadable row is skipped; a test ensures that there is none.
         let mut all: Vec<_> = read(CONSTANTS, SOURCES).into_iter().flatten().collect();
         all.sort_by_key(|m| (!m.metal, m.name));
         all
@@ -57,7 +56,7 @@ pub fn all() -> &'static [Measured] {
     &ALL
 }
 
-/// The material of that id.
+/// The material with that id.
 #[must_use]
 pub fn by_id(id: &str) -> Option<&'static Measured> {
     all().iter().find(|m| m.id == id)
@@ -88,18 +87,18 @@ fn read(constants: &'static str, sources: &'static str) -> Vec<Option<Measured>>
     lines.map(row).collect()
 }
 
-/// For models with the Fresnel equations of conductors: [`IOR`] and [`EXTINCTION`]. Dielectrics get
-/// k = 0, since their real one (10⁻⁸) changes nothing at the surface.
+/// For models with the Fresnel equations of conductors: [`IOR`] and [`EXTINCTION`]. Dielectrics get k = 0, since their
+/// real one (10⁻⁸) makes no difference at the surface.
 #[must_use]
 pub fn conductor(material: &Measured) -> Vec<(&'static str, Value)> {
     let k = if material.metal { material.k } else { [0.0; 3] };
     vec![(IOR.name, Value::Triple(material.n)), (EXTINCTION.name, Value::Triple(k))]
 }
 
-/// For models with base colour and metalness. A metal gets its reflectance at normal incidence as
-/// [`BASE_COLOUR`] and [`METALLIC`] 1. Anything else gets [`METALLIC`] 0 and the [`REFLECTANCE`] s of
-/// `F_0 = 0.16 s²`, by luminance, at most 1 (diamond's 17 % become 16 %); its base colour stays, since
-/// that is a matter of the paint, not of the refractive index.
+/// For models with base colour and metalness. A metal gets its reflectance at normal incidence as [`BASE_COLOUR`] and
+/// [`METALLIC`] 1. Anything else gets [`METALLIC`] 0 and the [`REFLECTANCE`] s of `F_0 = 0.16 s²`, by luminance, at
+/// most 1 (diamond's 17 % become 16 %); its base colour stays, since that depends on pigments, not on the refractive
+/// index.
 #[must_use]
 pub fn base_colour_metallic(material: &Measured) -> Vec<(&'static str, Value)> {
     if material.metal {
@@ -110,7 +109,7 @@ pub fn base_colour_metallic(material: &Measured) -> Vec<(&'static str, Value)> {
     }
 }
 
-/// What makes a model with these parameters a measured material, judged by their names: for models from files.
+/// The settings of a measured material for a model with these parameters, judged by their names: for custom models.
 #[must_use]
 pub(super) fn by_names(parameters: &[Parameter]) -> fn(&Measured) -> Vec<(&'static str, Value)> {
     let has = |wanted: &[&Parameter]| wanted.iter().all(|w| parameters.iter().any(|p| p == *w));
@@ -123,8 +122,8 @@ pub(super) fn by_names(parameters: &[Parameter]) -> fn(&Measured) -> Vec<(&'stat
     }
 }
 
-/// A number as the value of a parameter that ends at 1, with as many digits as a knob shows, so that the
-/// value shown is the value.
+/// A number as the value of a parameter that ends at 1, with as many digits as a knob shows, so that the displayed
+/// value is the value.
 #[must_use]
 pub fn fraction(v: f32) -> Value {
     Value::Number((v.min(1.0) * 1e4).round() / 1e4)
@@ -159,7 +158,7 @@ mod tests {
         ids.sort_unstable();
         ids.dedup();
         assert_eq!(ids.len(), all().len(), "each id once");
-        // A row with a hole, or of nobody, is noticed.
+        // A row with a gap, or without a source, is noticed.
         assert_eq!(read("name,n630\ngold,0.2", SOURCES), [None]);
     }
 
@@ -167,10 +166,10 @@ mod tests {
     fn every_material_is_what_it_is_called() {
         for m in all() {
             assert!(m.f0.cmple(Vec3::ONE).all() && m.f0.cmpgt(Vec3::ZERO).all(), "{}", m.name);
-            // Author, year in brackets, title, where: three commas at the least.
+            // Author, year in brackets, title, publication: three commas at least.
             let year = m.source.split_once(" (").and_then(|(_, rest)| rest.get(..4)?.parse::<u32>().ok());
             assert!(year.is_some_and(|y| (1900..2030).contains(&y)), "{}", m.source);
-            // Dielectrics let light in: what they absorb within a wavelength is nothing.
+            // Dielectrics are transparent: absorption within a wavelength is negligible.
             let dark = m.k.iter().all(|k| *k > 0.01);
             assert!(if m.metal { dark } else { m.k.iter().all(|k| *k < 1e-6) }, "{}", m.name);
             // The colour is near the reflectance at the three wavelengths; saturated ones lie further off.

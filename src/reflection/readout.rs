@@ -24,7 +24,7 @@ impl Readout {
         Self {
             symbol: "F_0",
             label: "reflectance at normal incidence",
-            help: "How much of the light the surface mirrors when seen straight on, in red, green and blue.",
+            help: "The fraction of light that the surface reflects at normal incidence, in red, green and blue.",
             value: ReadoutValue::Reflectance(f0),
         }
     }
@@ -35,13 +35,13 @@ impl Readout {
         Self {
             symbol: "α",
             label: "width of the highlight",
-            help: "The width of the slopes of the microfacets, on the scale of GGX and Beckmann; the square of the perceptual roughness.",
+            help: "The width of the distribution of microfacet slopes, on the scale of GGX and Beckmann; the square of the perceptual roughness.",
             value: ReadoutValue::Number(alpha),
         }
     }
 
-    /// The width of the highlight on the scales of the microfacet models, from the exponent of the
-    /// Blinn–Phong lobe that is as sharp; see [`equivalence`].
+    /// The width of the highlight on the scales of the microfacet models, from the exponent of the equally sharp
+    /// Blinn–Phong lobe; see [`equivalence`].
     #[must_use]
     pub fn of_exponent(exponent: f32) -> Vec<Self> {
         let alpha = equivalence::alpha_of_exponent(exponent);
@@ -49,13 +49,13 @@ impl Readout {
             Self {
                 symbol: "α_GGX",
                 label: "equivalent GGX α",
-                help: "The width of the GGX or Beckmann distribution that is as sharp as this highlight: √(2/(n + 2)) for Blinn–Phong's exponent n, and Phong's n counts as 4n, since H turns half as far as R.",
+                help: "The width of the GGX or Beckmann distribution as sharp as this highlight: √(2/(n + 2)) for Blinn–Phong's exponent n; Phong's n counts as 4n, since H turns half as far as R.",
                 value: ReadoutValue::Number(alpha),
             },
             Self {
                 symbol: "r",
                 label: "equivalent roughness",
-                help: "The roughness of metallic-roughness models that is as sharp as this highlight: the root of the width, r² = α.",
+                help: "The roughness of metallic–roughness models with an equally sharp highlight: the square root of the width, r² = α.",
                 value: ReadoutValue::Number(equivalence::roughness_of_alpha(alpha)),
             },
         ]

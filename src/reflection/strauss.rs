@@ -19,7 +19,7 @@ const SMOOTHNESS: Parameter = Parameter {
     symbol: "s",
     label: "smoothness",
     unit: "",
-    help: "0 is dull, 1 is a mirror. It sharpens the highlight and takes light from the diffuse part: both follow from the one number.",
+    help: "0 is dull, 1 is a mirror. One number sharpens the highlight and darkens the diffuse part.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.6 },
     used_when: None,
 };
@@ -30,7 +30,7 @@ const TRANSPARENCY: Parameter = Parameter {
     symbol: "t",
     label: "transparency",
     unit: "",
-    help: "The share of the light that would pass through and is lost here: what lies behind is not shown.",
+    help: "The fraction of light that would pass through and is lost here: nothing is visible behind the surface.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.0 },
     used_when: None,
 };
@@ -39,13 +39,13 @@ const TRANSPARENCY: Parameter = Parameter {
 const K_F: f32 = 1.12;
 /// Shape of G, the stand-in for masking, as published.
 const K_G: f32 = 1.01;
-/// How much even dull surfaces mirror at grazing angles, as published.
+/// The reflection of even dull surfaces at grazing angles, as published.
 const K_J: f32 = 0.1;
 /// The largest exponent of the highlight, in place of infinity at s = 1.
 const SHARPEST: f32 = 30_000.0;
 
 parameters! {
-    /// **Strauss** — few knobs that mean something to an animator.
+    /// **Strauss** — few parameters that mean something to an animator.
     ///
     /// ```text
     /// I_d = r_d (1 − m s) C_b max(0, N·L)             r_d = (1 − s³)(1 − t)
@@ -67,14 +67,13 @@ parameters! {
     /// | `metallic` | m | – | 0–1 | 0 |
     /// | `transparency` | t | – | 0–1 | 0 |
     ///
-    /// Published as a colour per unit of light, not as a BRDF, so the formula is taken as the response
-    /// as it is: the highlight has no factor N·L. It is the ancestor of today's smoothness and
-    /// metalness. Use it next to the metallic–roughness model to see which ideas are older.
+    /// Published as a colour per unit of light, not as a BRDF, so the formula serves as the response unchanged: the
+    /// highlight has no factor N·L. It is the ancestor of today's smoothness and metalness. Compare it with the
+    /// metallic–roughness model to see which ideas are older.
     ///
-    /// Not reciprocal, since F asks for the angle of the light alone and the highlight is in effect
-    /// divided by N·L. Energy is conserved but for dull surfaces (s < 0.15), which reflect up to 0.5 %
-    /// too much: the part k_j comes on top. The highlight of smooth surfaces loses light, for its
-    /// brightness does not grow as it narrows.
+    /// Not reciprocal, since F depends only on the angle of the light and the highlight is in effect divided by N·L.
+    /// Energy is conserved except for dull surfaces (s < 0.15), which reflect up to 0.5 % too much: the part k_j is
+    /// added on top. The highlight of smooth surfaces loses light, because its brightness does not grow as it narrows.
     ///
     /// Source: P. S. Strauss (1990), *A Realistic Lighting Model for Computer Animators*, IEEE Computer
     /// Graphics and Applications 10(6), 56–64.
@@ -90,20 +89,20 @@ parameters! {
     }
 }
 
-/// The angle of a direction above the surface, in right angles: 1 − x of the published functions. Taken
-/// from the side that is exact near the horizon, where F and G are steep.
+/// The angle of a direction above the surface, in right angles: 1 − x of the published functions. Measured from the
+/// horizon, near which it is exact and F and G are steep.
 fn elevation(cosine: f32, d: Vec3, n: Vec3) -> f32 {
     FRAC_2_PI * cosine.atan2((d - cosine * n).length())
 }
 
-/// F(x) of x = 1 − `elevation`, multiplied out so that nothing cancels.
+/// F(x) of x = 1 − `elevation`, multiplied out to avoid cancellation.
 fn strauss_fresnel(elevation: f32) -> f32 {
     let (x, e) = (1.0 - elevation, K_F - 1.0);
     let q = e / (e + elevation);
     x * (2.0 * K_F - x) * q * q / (K_F * K_F - e * e)
 }
 
-/// G(x) of x = 1 − `elevation`, multiplied out so that nothing cancels.
+/// G(x) of x = 1 − `elevation`, multiplied out to avoid cancellation.
 fn strauss_masking(elevation: f32) -> f32 {
     let e = K_G - 1.0;
     let q = K_G / (e + elevation);
@@ -117,7 +116,7 @@ impl ReflectionModel for Strauss {
         family: Family::Classical,
         author: "P. S. Strauss 1990",
         source: "P. S. Strauss (1990), A Realistic Lighting Model for Computer Animators, IEEE Computer Graphics and Applications 10(6), 56–64",
-        summary: "Smoothness and metalness instead of coefficients: the first model with the knobs of today.",
+        summary: "Smoothness and metalness instead of coefficients: the first model with today's parameters.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart {
@@ -158,7 +157,7 @@ impl ReflectionModel for Strauss {
         }
     }
 
-    /// Metals only: how much the surface mirrors follows from its smoothness, not from the material.
+    /// Metals only: the specular share follows from the smoothness, not from the material.
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {
         if material.metal { preset::base_colour_metallic(material) } else { Vec::new() }
     }

@@ -16,7 +16,7 @@ pub trait Surface: Send + Sync {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
     /// The response to uniform light of 1 lx, by formula or by albedo.
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
-    /// The directional albedo over the view, of models that declare [`Ambient::Albedo`].
+    /// The directional albedo over the view, for models that declare [`Ambient::Albedo`].
     fn curve(&self) -> Option<AlbedoCurve>;
     /// See [`ReflectionModel::lobe`].
     fn lobe(&self) -> Option<LobeAlbedo>;
@@ -57,7 +57,7 @@ impl<M: ReflectionModel> Surface for M {
     }
 }
 
-/// A model that calculates its curve once, at the first call, and answers by it: for pictures.
+/// A model that calculates its curve once, at the first call, and then uses it: for pictures.
 pub(super) struct Instance<M> {
     pub(super) model: M,
     pub(super) curve: OnceLock<Option<AlbedoCurve>>,
@@ -95,7 +95,7 @@ pub fn brdf(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
     brdf_of(surface.response(l, v, frame), l, v, frame)
 }
 
-/// The BRDF `f_r` in sr⁻¹ that belongs to a response; see [`brdf`].
+/// The BRDF `f_r` in sr⁻¹ of a response; see [`brdf`].
 #[must_use]
 pub fn brdf_of(response: Terms, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
     let cos_i = frame.n.dot(l);

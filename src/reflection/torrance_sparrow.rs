@@ -23,14 +23,14 @@ const FACET_SPREAD: Parameter = Parameter {
     symbol: "β",
     label: "spread of the facets",
     unit: "°",
-    help: "The angle from the normal at which facets have become rarer by the factor e: the smaller, the sharper the highlight. 5° is shiny, 30° nearly matt.",
+    help: "The angle from the normal at which facets are rarer by the factor e: smaller values sharpen the highlight. 5° is shiny, 30° nearly matte.",
     kind: ParameterKind::Number { min: 0.1, max: 60.0, default: 12.0 },
     used_when: None,
 };
 
 parameters! {
-    /// **Torrance–Sparrow** — the first model of small mirrors: facets whose angles follow a Gaussian, in
-    /// V-shaped cavities, with the exact Fresnel equations, over a Lambertian part.
+    /// **Torrance–Sparrow** — the first microfacet model: facets with Gaussian angles, in V-shaped cavities, with the
+    /// exact Fresnel equations, over a Lambertian part.
     ///
     /// ```text
     /// f_r = (1 − s) C_b/π + s D F G / (4 (N·L)(N·V))
@@ -47,19 +47,17 @@ parameters! {
     /// | `base_colour` | C_b | sRGB | 0–255 | white |
     /// | `specular_weight` | s | – | 0–1 | 0.5 |
     ///
-    /// Source: K. E. Torrance, E. M. Sparrow (1967), *Theory for Off-Specular Reflection from Roughened
-    /// Surfaces*, Journal of the Optical Society of America 57(9), 1105–1114. The paper writes the Gaussian
-    /// of the facet's angle with c in 1/degree (0.05 there is β = 20° here), and leaves two factors free, one
-    /// for each part, to be fitted. Here the distribution is normalised by c²/π, and s shares the light
-    /// between the parts, so that nothing is made.
+    /// Source: K. E. Torrance, E. M. Sparrow (1967), *Theory for Off-Specular Reflection from Roughened Surfaces*,
+    /// Journal of the Optical Society of America 57(9), 1105–1114. The paper writes the Gaussian of the facet's angle
+    /// with c in 1/degree (0.05 there is β = 20° here), and leaves two factors free, one for each part, to be fitted.
+    /// Here the distribution is normalised by c²/π, and s divides the light between the parts, so no light is gained.
     ///
-    /// **The norm** c²/π is exact for narrow lobes, where the sine of an angle is the angle. Of wide ones
-    /// `∫ D cos θ_h dω` is less than 1: 0.97 at β = 12°, 0.84 at 30°; such surfaces are too dark, never too
-    /// bright.
+    /// **The norm** c²/π is exact for narrow lobes, where the sine of an angle is the angle. For wide ones `∫ D cos θ_h
+    /// dω` is less than 1: 0.97 at β = 12°, 0.84 at 30°; such surfaces are too dark, never too bright.
     ///
-    /// **When to use it**: to see what was new in 1967. At grazing light the highlight is brightest not in
-    /// the mirror direction but beyond, because F rises there and G falls only later: the off-specular peak
-    /// that the paper set out to explain.
+    /// **When to use it**: to see what was new in 1967. Under grazing light the highlight is brightest not in the
+    /// mirror direction but beyond it, because F rises there and G falls only later: the off-specular peak that the
+    /// paper set out to explain.
     ///
     /// **Laws**: all three hold.
     pub struct TorranceSparrow {
@@ -93,7 +91,7 @@ impl ReflectionModel for TorranceSparrow {
         family: Family::Microfacet,
         author: "K. E. Torrance, E. M. Sparrow 1967",
         source: "K. E. Torrance, E. M. Sparrow (1967), Theory for Off-Specular Reflection from Roughened Surfaces, Journal of the Optical Society of America 57(9), 1105–1114",
-        summary: "The first model of small mirrors: explains why at grazing light the highlight is brightest beyond the mirror direction.",
+        summary: "The first microfacet model: explains why, under grazing light, the highlight is brightest beyond the mirror direction.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − s) C_b (N·L)" },
@@ -112,7 +110,7 @@ impl ReflectionModel for TorranceSparrow {
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        // Below the surface, or so grazing that the quotients would leave the range of f32.
+        // Below the surface, or at such a grazing angle that the quotients would leave the range of f32.
         if cos_l.min(cos_v) < 1e-9 {
             return Terms::default();
         }

@@ -1,16 +1,16 @@
-//! The parameters of a model that the chosen options use.
+//! The parameters of a model used by its chosen options.
 
 use crate::parameter::{Parameter, ParameterKind, UsedWhen, Values};
 
-/// The condition of a parameter that does not hold, with the parameter that it is about. A parameter that
-/// depends on one without effect has none itself.
+/// The unmet condition of a parameter, with the parameter that it concerns. A parameter that depends on an unused one
+/// is itself unused.
 fn unmet<'a>(
     parameters: &'a [Parameter],
     parameter: &'a Parameter,
     values: &Values,
 ) -> Option<(UsedWhen, &'a Parameter)> {
     let mut here = parameter;
-    // No chain is longer, unless it is a circle.
+    // No chain is longer, unless it is circular.
     for _ in parameters {
         let condition = here.used_when?;
         let other = parameters.iter().find(|p| p.name == condition.parameter)?;
@@ -24,7 +24,7 @@ fn unmet<'a>(
     None
 }
 
-/// The reason for which a parameter has no effect at present, without a full stop; `None` if it has one.
+/// The reason why a parameter has no effect at present, without a full stop; `None` if it has one.
 ///
 /// ```
 /// use lights_camera_models::{parameter::Values, reflection::usage, registry::Registry};
@@ -36,11 +36,11 @@ fn unmet<'a>(
 /// ```
 #[must_use]
 pub fn unused(parameters: &[Parameter], parameter: &Parameter, values: &Values) -> Option<String> {
-    /// More choices are not listed.
+    /// Further choices are not listed.
     const FEW: usize = 2;
     let (condition, other) = unmet(parameters, parameter, values)?;
     let ParameterKind::Choice { options, .. } = &other.kind else { return None };
-    // A name that has a comma of its own would be taken for two.
+    // A name with a comma would look like two.
     let quoted =
         |name: &str| if name.contains([',', '(']) { format!("“{name}”") } else { name.to_owned() };
     let chosen = quoted(options[values.choice(other) as usize].1);
@@ -58,21 +58,21 @@ pub fn unused(parameters: &[Parameter], parameter: &Parameter, values: &Values) 
     Some(format!("Not used with {chosen}: only {} {verb} {what}", users.join(" and ")))
 }
 
-/// The error in a condition, as a rule: the other parameter must be a choice of the same model, the choices
-/// its own, and no circle may close.
+/// The error in a condition, as a rule: the other parameter must be a choice of the same model, the choices must exist,
+/// and no circle may close.
 #[must_use]
 pub fn problem(parameters: &[Parameter], parameter: &Parameter) -> Option<String> {
     let condition = parameter.used_when?;
     let name = condition.parameter;
     let Some(other) = parameters.iter().find(|p| p.name == name) else {
-        return Some(format!("it must name a parameter of this model, and \"{name}\" is none"));
+        return Some(format!("it must name a parameter of this model, and there is no \"{name}\""));
     };
     let ParameterKind::Choice { options, .. } = &other.kind else {
-        return Some(format!("it must name a parameter whose type is choice, and \"{name}\" has another"));
+        return Some(format!("it must name a parameter of type choice, and \"{name}\" has another type"));
     };
     if let Some(unknown) = condition.choices.iter().find(|c| options.iter().all(|(id, _)| id != *c)) {
         let known: Vec<_> = options.iter().map(|(id, _)| format!("\"{id}\"")).collect();
-        return Some(format!("\"{unknown}\" is no choice of {name}, which has {}", known.join(", ")));
+        return Some(format!("\"{unknown}\" is not a choice of {name}, which has {}", known.join(", ")));
     }
     let mut here = other;
     for _ in parameters {
@@ -122,7 +122,7 @@ mod tests {
         out
     }
 
-    /// Legal values that differ from one.
+    /// Legal values that differ from the given one.
     fn others(p: &Parameter, now: &Value) -> Vec<Value> {
         let candidates = match &p.kind {
             ParameterKind::Number { min, max, .. } => {
@@ -142,7 +142,7 @@ mod tests {
         candidates.into_iter().filter(|v| v != now && p.allows(v)).collect()
     }
 
-    /// The model with its defaults, and with each choice and each two of them that are not too costly.
+    /// The model with its defaults, and with each choice and each pair of choices that is not too costly.
     fn settings(model: &ModelEntry) -> Vec<Values> {
         let choices: Vec<(&Parameter, &str)> = model
             .parameters
@@ -244,15 +244,15 @@ mod tests {
             kind: ParameterKind::Choice { options: &[("a", "A"), ("b", "B")], default: 0 },
             ..BASE_COLOUR
         };
-        let told = |condition: (&'static str, &'static [&'static str])| {
+        let problem_of = |condition: (&'static str, &'static [&'static str])| {
             let list = [choice("one"), choice("two").used_when(condition.0, condition.1), BASE_COLOUR];
             problem(&list, &list[1]).unwrap_or_default()
         };
-        assert_eq!(told(("one", &["a"])), "");
-        assert!(told(("three", &["a"])).contains("\"three\" is none"));
-        assert!(told(("base_colour", &["a"])).contains("has another"));
-        assert!(told(("one", &["c"])).contains("\"c\" is no choice of one, which has \"a\", \"b\""));
-        assert!(told(("two", &["a"])).contains("must not depend on two"));
+        assert_eq!(problem_of(("one", &["a"])), "");
+        assert!(problem_of(("three", &["a"])).contains("there is no \"three\""));
+        assert!(problem_of(("base_colour", &["a"])).contains("has another type"));
+        assert!(problem_of(("one", &["c"])).contains("\"c\" is not a choice of one, which has \"a\", \"b\""));
+        assert!(problem_of(("two", &["a"])).contains("must not depend on two"));
         let circle = [choice("one").used_when("two", &["a"]), choice("two").used_when("one", &["a"])];
         assert!(problem(&circle, &circle[0]).is_some_and(|p| p.contains("must not depend on two")));
         assert_eq!(unused(&circle, &circle[0], &Values::default()), None, "and it ends");

@@ -8,13 +8,13 @@ use crate::{
     shader::wgsl,
 };
 
-/// How the lobe is divided by the cosines of light and view.
+/// The division of the lobe by the cosines of light and view.
 const WARD_FORM: Parameter = Parameter {
     name: "ward_form",
     symbol: "",
     label: "form",
     unit: "",
-    help: "As Ward published it, the highlight fades at grazing angles; Dür's division by both cosines brightens it there, beyond what arrives.",
+    help: "As published by Ward, the highlight fades at grazing angles; Dür's division by both cosines brightens it there, beyond the incident light.",
     kind: ParameterKind::Choice { options: &[("ward", "Ward 1992"), ("duer", "Dür 2006")], default: 0 },
     used_when: None,
 };
@@ -37,16 +37,16 @@ parameters! {
     /// | `alpha_y` | α_y | – | 0.001–1 | 0.3 |
     /// | `ward_form` | – | – | `ward`, `duer` | `ward` |
     ///
-    /// Source: G. J. Ward (1992), *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH '92; the other
-    /// form: A. Dür (2006), *An Improved Normalization for the Ward Reflectance Model*, journal of graphics
-    /// tools 11(1). x and y are the slopes of the facet that mirrors L to V, so x² + y² = tan² θ_h; α_x and α_y
-    /// are their root mean squares, times √2. Ward chose the constants so that few numbers, read off a
-    /// measurement, suffice; he asks for ρ_d + ρ_s ≤ 1, which the sharing by k_s grants.
+    /// Source: G. J. Ward (1992), *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH '92; the other form: A. Dür
+    /// (2006), *An Improved Normalization for the Ward Reflectance Model*, journal of graphics tools 11(1). x and y are
+    /// the slopes of the facet that mirrors L to V, so x² + y² = tan² θ_h; α_x and α_y are their root mean squares,
+    /// times √2. Ward chose the constants so that few numbers, read off a measurement, suffice; he requires ρ_d + ρ_s ≤
+    /// 1, which the division by k_s ensures.
     ///
-    /// Use it for brushed metal and varnished wood, and to compare with the models that mended it. It has
-    /// no Fresnel factor and no masking. Reciprocal. Not energy conserving: near grazing view, Ward's form
-    /// grows like 1/√cos θ, beyond 1 on anisotropic surfaces, and loses light elsewhere; Dür's is right
-    /// for small α (E = 1) and grows like 1/cos θ near grazing (α = 0.3: E = 1.161 at cos θ = 0.1).
+    /// Use it for brushed metal and varnished wood, and to compare with its corrected successors. It has no Fresnel
+    /// factor and no masking. Reciprocal. Not energy conserving: for a grazing view, Ward's form grows like 1/√cos θ,
+    /// beyond 1 on anisotropic surfaces, and loses light elsewhere; Dür's is right for small α (E = 1) and grows like
+    /// 1/cos θ near grazing angles (α = 0.3: E = 1.161 at cos θ = 0.1).
     pub struct Ward {
         /// `C_b`, linear.
         base_colour: colour = BASE_COLOUR,
@@ -70,7 +70,7 @@ impl ReflectionModel for Ward {
         family: Family::Classical,
         author: "G. J. Ward 1992",
         source: "G. J. Ward (1992), Measuring and Modeling Anisotropic Reflection, SIGGRAPH '92, 265–272; A. Dür (2006), An Improved Normalization for the Ward Reflectance Model, journal of graphics tools 11(1), 51–59",
-        summary: "A Gaussian highlight made to fit measurements, stretched where the surface is brushed. Dür's form keeps small highlights whole and makes light at grazing angles.",
+        summary: "A Gaussian highlight made to fit measurements, stretched on brushed surfaces. Dür's form conserves the light of small highlights and gains light at grazing angles.",
         equation: &[
             EquationPart { term: Term::Total, text: "I = I_d + I_s" },
             EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s) C_b N·L" },

@@ -281,10 +281,11 @@ mod tests {
                 ("reflection/lambert.wgsl", "#import \"a.wgsl\""),
                 ("reflection/a.wgsl", "#import \"lambert.wgsl\"")
             ]),
-            "reflection/a.wgsl:1:1: the files import each other in a circle: reflection/lambert.wgsl → reflection/a.wgsl → reflection/lambert.wgsl"
+            "reflection/a.wgsl:1:1: circular import: reflection/lambert.wgsl → reflection/a.wgsl → reflection/lambert.wgsl"
         );
         assert!(
-            problem(&[("terms.wgsl", "#import \"terms.wgsl\"")]).contains("circle: terms.wgsl → terms.wgsl")
+            problem(&[("terms.wgsl", "#import \"terms.wgsl\"")])
+                .contains("circular import: terms.wgsl → terms.wgsl")
         );
         assert!(problem(&[("terms.wgsl", "#import \"../../x.wgsl\"")]).contains("leads out"));
         assert!(problem(&[("terms.wgsl", "#define_import_path a")]).contains("no import path"));

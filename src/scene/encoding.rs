@@ -1,12 +1,12 @@
-//! From bytes to text: UTF-8, or what the bytes are instead.
+//! From bytes to text: UTF-8, or a guess at the encoding.
 
 use super::error::LoadError;
 use crate::text::place::Lines;
 
-/// The text of the bytes, or what they are instead.
+/// The text of the bytes, or a guess at their encoding.
 pub(super) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadError> {
     let not_text = |at: usize, what: String| {
-        // Everything before the first wrong byte is text.
+        // Everything before the first wrong byte is valid text.
         let before = std::str::from_utf8(&bytes[..at]).unwrap_or_default();
         LoadError::NotUtf8 { name: name.to_owned(), place: Lines::new(before).place(at), what }
     };
@@ -40,7 +40,7 @@ pub(super) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadErr
         let at = e.valid_up_to();
         let byte = bytes.get(at).copied().unwrap_or_default();
         if e.error_len().is_none() {
-            return not_text(at, "the file ends within a character; it seems to be cut off".to_owned());
+            return not_text(at, "the file ends within a character; it seems to be truncated".to_owned());
         }
         let binary = bytes.iter().take(1000).filter(|b| **b < 9).count() > 0;
         let guess = if binary {
@@ -48,6 +48,6 @@ pub(super) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadErr
         } else {
             "the file may be Latin-1 or Windows-1252; save it as UTF-8"
         };
-        not_text(at, format!("there is the byte {byte:#04X}; {guess}"))
+        not_text(at, format!("unexpected byte {byte:#04X}; {guess}"))
     })
 }

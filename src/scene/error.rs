@@ -1,4 +1,4 @@
-//! What can be wrong with a scene, and how it is said: file, line, column, path, value, rule.
+//! Errors of a scene and their messages: file, line, column, path, value, rule.
 
 use std::{fmt, io, path::Path as FilePath};
 
@@ -11,17 +11,16 @@ pub use crate::text::{
     place::Place,
 };
 
-/// One thing that is wrong with a scene.
+/// One problem of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// Where in the file, if the scene came from one.
+    /// Its position in the file, if the scene came from one.
     pub place: Option<Place>,
-    /// Where in the scene.
+    /// Its path in the scene.
     pub path: Path,
-    /// The value as it is written, if a value breaks a rule.
+    /// The value as written, if a value breaks a rule.
     pub found: Option<String>,
-    /// The rule that it breaks, as the end of "k_d is 0.2, but …"; without a value the whole predicate:
-    /// "is missing; …".
+    /// The broken rule, as the end of "k_d is 0.2, but …"; without a value the whole predicate: "is missing; …".
     pub rule: String,
 }
 
@@ -32,7 +31,7 @@ impl Problem {
         Self { place: None, path, found: Some(found.to_string()), rule: rule.into() }
     }
 
-    /// Something that is not about a value: a missing field, an unknown key.
+    /// A problem without a value: a missing field, an unknown key.
     #[must_use]
     pub fn about(path: Path, predicate: impl Into<String>) -> Self {
         Self { place: None, path, found: None, rule: predicate.into() }
@@ -64,7 +63,7 @@ impl fmt::Display for Problem {
 
 impl Serialize for Problem {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        /// What programs read.
+        /// The problem for programs.
         #[derive(Serialize)]
         struct Record<'a> {
             line: Option<usize>,
@@ -84,16 +83,16 @@ impl Serialize for Problem {
     }
 }
 
-/// Why a scene could not be read. [`fmt::Display`] gives one line per problem, each with the name of
-/// the file.
+/// The reason why a scene could not be read. [`fmt::Display`] gives one line per problem, each with the name of the
+/// file.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// There is no such file.
-    #[error("{name}: there is no such file{}", .hint.as_deref().unwrap_or(""))]
+    #[error("{name}: file not found{}", .hint.as_deref().unwrap_or(""))]
     NotFound {
         /// The file.
         name: String,
-        /// What there is instead.
+        /// Similar files that exist.
         hint: Option<String>,
     },
     /// The path leads to a folder.
@@ -101,25 +100,25 @@ pub enum LoadError {
     Folder {
         /// The folder.
         name: String,
-        /// Which scenes are in it.
+        /// The scenes in it.
         hint: Option<String>,
     },
-    /// The path leads to something that is neither file nor folder.
+    /// The path leads to something other than a file or folder.
     #[error("{name} is {kind}; a scene is a single JSON file, or comes from standard input with -")]
     NoFile {
-        /// What was named.
+        /// The name given.
         name: String,
-        /// What it is.
+        /// The kind of thing it is.
         kind: Kind,
     },
-    /// The operating system does not let this user read it.
+    /// The user has no permission to read it.
     #[error("{name}: no permission to read this file")]
     PermissionDenied {
         /// The file.
         name: String,
     },
-    /// Larger than any scene can be.
-    #[error("{name} is larger than {} MiB, which no scene is; it was not read", MAX_FILE_BYTES >> 20)]
+    /// Larger than any legal scene.
+    #[error("{name} is larger than {} MiB, the most allowed for a scene; it was not read", MAX_FILE_BYTES >> 20)]
     TooLarge {
         /// The file.
         name: String,
@@ -129,7 +128,7 @@ pub enum LoadError {
     Io {
         /// The file.
         name: String,
-        /// What the system says.
+        /// The reason given by the system.
         source: io::Error,
     },
     /// Nothing but white space.
@@ -143,9 +142,9 @@ pub enum LoadError {
     NotUtf8 {
         /// The file.
         name: String,
-        /// Where the first wrong byte is.
+        /// The position of the first wrong byte.
         place: Place,
-        /// What it is, as far as one can tell.
+        /// Its probable cause.
         what: String,
     },
     /// Not JSON.
@@ -153,12 +152,12 @@ pub enum LoadError {
     Syntax {
         /// The file.
         name: String,
-        /// Where reading stopped.
+        /// The position where reading stopped.
         place: Place,
-        /// What was expected.
+        /// The expectation there.
         what: String,
     },
-    /// JSON, but not a valid scene. Every problem is here, in the order of the file.
+    /// JSON, but not a valid scene. With every problem, in the order of the file.
     #[error("{}", lines(.name, .problems))]
     Invalid {
         /// The file.
@@ -166,7 +165,7 @@ pub enum LoadError {
         /// At least one.
         problems: Vec<Problem>,
     },
-    /// Parts are missing for which there are defaults, and these were declined (R3).
+    /// Parts with defaults are missing, and the defaults were declined (R3).
     #[error("{name}:{} {}", .missing.iter().find_map(|m| m.place).map_or_else(String::new, |p| format!("{p}:")), declined(.missing))]
     Missing {
         /// The file.
@@ -177,7 +176,7 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    /// An error of the operating system while a file was opened or read.
+    /// An error of the operating system on opening or reading a file.
     #[must_use]
     pub fn from_io(path: &FilePath, name: &str, source: io::Error) -> Self {
         let name = name.to_owned();
@@ -189,7 +188,7 @@ impl LoadError {
         }
     }
 
-    /// The error that a file could not be read.
+    /// The error for a file that could not be read.
     #[must_use]
     pub fn from_file(path: &FilePath, error: FileError) -> Self {
         let name = path.display().to_string();
@@ -209,7 +208,7 @@ impl LoadError {
             Self::Missing { missing, .. } => return missing.iter().map(Missing::problem).collect(),
             Self::NotUtf8 { place, what, .. } => (Some(*place), format!("is not UTF-8 text: {what}")),
             Self::Syntax { place, what, .. } => (Some(*place), format!("is not JSON: {what}")),
-            Self::NotFound { .. } => (None, "could not be read: there is no such file".to_owned()),
+            Self::NotFound { .. } => (None, "could not be read: file not found".to_owned()),
             Self::Folder { .. } => (None, "could not be read: it is a folder".to_owned()),
             Self::NoFile { kind, .. } => (None, format!("could not be read: it is {kind}")),
             Self::PermissionDenied { .. } => (None, "could not be read: no permission".to_owned()),
@@ -230,17 +229,17 @@ fn lines(name: &str, problems: &[Problem]) -> String {
     problems.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// What is missing and how to say yes.
+/// The missing parts and the flags that answer.
 fn declined(missing: &[Missing]) -> String {
     let parts: Vec<_> = missing.iter().map(ToString::to_string).collect();
     let verb = if missing.len() == 1 { "is" } else { "are" };
     format!(
-        "{} {verb} missing; --use-defaults takes the defaults, --no-defaults refuses them",
+        "{} {verb} missing; --use-defaults accepts the defaults, --no-defaults rejects them",
         crate::text::listed(&parts, "and")
     )
 }
 
-/// ". Did you mean scenes/room.json?" if a file with a similar name is there.
+/// ". Did you mean scenes/room.json?" if there is a file with a similar name.
 fn similar_file(path: &FilePath) -> Option<String> {
     let wanted = path.file_name()?.to_str()?.to_lowercase();
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(FilePath::new("."));

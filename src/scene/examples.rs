@@ -1,4 +1,4 @@
-//! The shipped scenes, within the program, so that it needs no folder beside it.
+//! The shipped scenes, built into the program, so that it needs no folder beside it.
 
 use std::sync::LazyLock;
 
@@ -14,13 +14,13 @@ use crate::registry::Registry;
 /// A shipped scene.
 #[derive(Clone, Debug)]
 pub struct Example {
-    /// The name of its file in the folder `scenes`.
+    /// Its file name in the folder `scenes`.
     pub file: &'static str,
     /// The text of the file.
     pub text: &'static str,
     /// The name of the scene.
     pub name: String,
-    /// What it shows.
+    /// One line: its content.
     pub description: String,
 }
 
@@ -66,7 +66,7 @@ impl Example {
     /// The scene itself.
     ///
     /// # Errors
-    /// [`LoadError`], if the registry lacks what the scene names.
+    /// [`LoadError`] if the registry lacks a model or type in the scene.
     pub fn scene(&self, registry: &Registry) -> Result<Scene, LoadError> {
         load::from_text(self.text, self.file, registry, Defaults::Use).map(|loaded| loaded.scene)
     }

@@ -1,7 +1,7 @@
-//! The scene file as types: what the writer writes and what [`schema`](super::schema) describes.
+//! The scene file as types: written by the writer and described by [`schema`](super::schema).
 //!
-//! The fields stand in the order in which they are written: that of the CA. Documentation comments
-//! here are what editors show while a scene file is edited.
+//! The fields are in the order of writing: that of the CA. The documentation comments here are shown by editors of
+//! scene files.
 
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
@@ -17,43 +17,43 @@ use crate::{
 #[serde(deny_unknown_fields)]
 #[schemars(title = "Scene of Lights, Camera, Models!")]
 pub(super) struct SceneFile<'a> {
-    /// Where the JSON Schema of scene files is, so that editors complete and check this file.
+    /// Address of the JSON Schema of scene files, with which editors complete and check this file.
     #[serde(rename = "$schema", skip_serializing_if = "Option::is_none")]
     schema: Option<&'a str>,
-    /// What the scene is called.
+    /// Name of the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<&'a str>,
-    /// One line: what the scene shows.
+    /// Description of the scene, one line.
     #[serde(skip_serializing_if = "Option::is_none")]
     description: Option<&'a str>,
-    /// The extent of the room in metres. One corner is the origin; x goes right, y up, z to the front.
+    /// Extent of the room in metres. One corner is the origin; x points right, y up, z to the front.
     scene_size: SizeFile,
-    /// How light leaves the surface of every object that names no model itself.
+    /// Reflection model: the equation for how light leaves a surface. For every object without an override.
     reflection_model: &'a str,
-    /// Where the reflection model is calculated, for every object that names no shading model itself.
+    /// Shading model: where on the surface the reflection model is evaluated. For every object without an override.
     shading_model: &'a str,
     /// The lights, 1 to 256.
     lights: Vec<LightFile<'a>>,
-    /// The eye.
+    /// Observer: the camera of the scene.
     observer: ObserverFile,
     /// The objects, 1 to 10 000.
     objects: Vec<ObjectFile<'a>>,
-    /// How the light in the picture is shown.
+    /// Conversion of light to the picture on the display.
     #[serde(skip_serializing_if = "Option::is_none")]
     display: Option<DisplayFile>,
 }
 
-/// The extent of the room in metres.
+/// Extent of the room in metres.
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct SizeFile {
-    /// Bounds y, metres.
+    /// Limit of y, metres.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100, "default" = 10))]
     height: f32,
-    /// Bounds x, metres.
+    /// Limit of x, metres.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100, "default" = 10))]
     width: f32,
-    /// Bounds z, metres.
+    /// Limit of z, metres.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100, "default" = 10))]
     depth: f32,
 }
@@ -62,38 +62,37 @@ struct SizeFile {
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct LightFile<'a> {
-    /// The light type.
+    /// Light type.
     #[serde(rename = "type")]
     light_type: &'a str,
-    /// What you call it.
+    /// Name of the light.
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<&'a str>,
-    /// False switches it off.
+    /// False if switched off.
     #[schemars(extend("default" = true))]
     #[serde(skip_serializing_if = "Option::is_none")]
     enabled: Option<bool>,
-    /// Where it stands: [x, y, z] in metres, inside the room, not where the observer or an object is.
+    /// Position: [x, y, z] in metres, inside the room, not at the position of the observer or an object.
     #[serde(skip_serializing_if = "Option::is_none")]
     position: Option<[f32; 3]>,
-    /// Where it shines: [x, y, z], of any length.
+    /// Direction in which it shines: [x, y, z], of any length.
     #[serde(skip_serializing_if = "Option::is_none")]
     direction: Option<[f32; 3]>,
-    /// Its colour: [red, green, blue], whole numbers from 0 to 255, sRGB. Not beside `colour_temperature`.
+    /// Colour: [red, green, blue], whole numbers from 0 to 255, sRGB. Conflicts with `colour_temperature`.
     #[schemars(extend("default" = [255, 255, 255]))]
     #[serde(skip_serializing_if = "Option::is_none")]
     colour: Option<[u8; 3]>,
-    /// Its colour as that of a black body of this temperature, kelvin: a candle has 1900, a light bulb
-    /// 2700, white is 6500. Not beside `colour`. How bright the light is does not change.
+    /// Colour temperature in kelvin: the colour of a black body of this temperature. A candle has 1900, a light bulb
+    /// 2700, white is 6500. The brightness stays the same. Conflicts with `colour`.
     #[schemars(range(min = 1000, max = 40000))]
     #[serde(skip_serializing_if = "Option::is_none")]
     colour_temperature: Option<f32>,
-    /// How bright it is: candela for lights with a position, lux for the others. Not beside
-    /// `luminous_flux`.
+    /// Intensity: candela for lights with a position, lux for the others. Conflicts with `luminous_flux`.
     #[schemars(range(min = 0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     intensity: Option<f32>,
-    /// How much light it sends out in all directions together, lumen, as printed on light bulbs. Not
-    /// beside `intensity`.
+    /// Luminous flux in lumen: the light sent out in all directions together, as printed on light bulbs. Conflicts with
+    /// `intensity`.
     #[schemars(range(min = 0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     luminous_flux: Option<f32>,
@@ -102,15 +101,15 @@ struct LightFile<'a> {
     parameters: Ordered<'a>,
 }
 
-/// The eye.
+/// The observer: the camera of the scene.
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ObserverFile {
-    /// Where the eye is: [x, y, z] in metres, inside the room, not where a light or an object is.
+    /// Position: [x, y, z] in metres, inside the room, not at the position of a light or an object.
     position: [f32; 3],
-    /// Where it looks: [x, y, z], of any length.
+    /// Direction of view: [x, y, z], of any length.
     direction: [f32; 3],
-    /// The vertical field of view, degrees.
+    /// Vertical field of view, degrees.
     #[schemars(range(min = 1, max = 170), extend("default" = 45))]
     #[serde(skip_serializing_if = "Option::is_none")]
     field_of_view: Option<f32>,
@@ -120,47 +119,47 @@ struct ObserverFile {
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ObjectFile<'a> {
-    /// The object type.
+    /// Object type.
     #[serde(rename = "type")]
     object_type: &'a str,
-    /// What you call it.
+    /// Name of the object.
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<&'a str>,
-    /// False hides it.
+    /// False if hidden.
     #[schemars(extend("default" = true))]
     #[serde(skip_serializing_if = "Option::is_none")]
     visible: Option<bool>,
-    /// Where its centre is: [x, y, z] in metres, inside the room, not where a light or the observer is.
+    /// Position of the centre: [x, y, z] in metres, inside the room, not at the position of a light or the observer.
     position: [f32; 3],
-    /// Its largest extent, metres.
+    /// Largest extent, metres.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1_000_000_000, "default" = 2))]
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<f32>,
-    /// How it is turned: degrees about x, then y, then z.
+    /// Rotation in degrees about x, then y, then z.
     #[schemars(extend("default" = [0, 0, 0]))]
     #[serde(skip_serializing_if = "Option::is_none")]
     rotation: Option<[f32; 3]>,
-    /// How finely it is cut into polygons.
+    /// Tessellation: how finely the shape is divided into polygons.
     #[serde(skip_serializing_if = "Option::is_none")]
     tessellation: Option<u32>,
-    /// Its own reflection model instead of the scene's.
+    /// Override of the scene's reflection model.
     #[serde(skip_serializing_if = "Option::is_none")]
     reflection_model: Option<&'a str>,
-    /// Its own shading model instead of the scene's.
+    /// Override of the scene's shading model.
     #[serde(skip_serializing_if = "Option::is_none")]
     shading_model: Option<&'a str>,
-    /// The parameters of the reflection model, by name. One material serves every model: what the
-    /// current model does not use is kept for the others.
+    /// Parameters of the reflection model, by name. One material serves every model: values not used by the current
+    /// model are kept for the others.
     #[schemars(with = "Option<serde_json::Map<String, serde_json::Value>>")]
     #[serde(skip_serializing_if = "Ordered::is_empty")]
     material: Ordered<'a>,
 }
 
-/// How the light in the picture is shown.
+/// Conversion of light to the picture on the display.
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct DisplayFile {
-    /// The curve from light to display.
+    /// Tone mapping: the curve from light to display.
     #[schemars(extend("default" = "none"))]
     #[serde(skip_serializing_if = "Option::is_none")]
     tone_mapping: Option<&'static str>,
@@ -168,18 +167,18 @@ struct DisplayFile {
     #[schemars(range(min = -16, max = 16), extend("default" = 0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     exposure: Option<f32>,
-    /// `srgb`: colours are decoded before and encoded after the calculation. `off`: neither, which is
-    /// wrong on purpose, to see the difference.
+    /// `srgb`: colours are decoded before and encoded after the calculation. `off`: neither; deliberately wrong, for
+    /// comparison.
     #[schemars(extend("default" = "srgb"))]
     #[serde(skip_serializing_if = "Option::is_none")]
     encoding: Option<&'static str>,
 }
 
-/// Parameters in the order in which they are declared.
+/// Parameters in the order of their declarations.
 struct Ordered<'a>(Vec<(&'a str, &'a Value)>);
 
 impl<'a> Ordered<'a> {
-    /// The values in the order of the declarations; what is not declared stands last.
+    /// The values in the order of the declarations; undeclared ones come last.
     fn new(values: &'a Values, declared: impl Iterator<Item = &'static Parameter>) -> Self {
         let mut ordered = Vec::with_capacity(values.0.len());
         for p in declared {
@@ -209,8 +208,8 @@ impl Serialize for Ordered<'_> {
 }
 
 impl<'a> SceneFile<'a> {
-    /// The file of a scene. Fields that a scene always has are always written; those that are absent
-    /// or as the default is, are not.
+    /// The file of a scene. Fields that every scene has are always written; absent fields and fields equal to the
+    /// default are not.
     pub(super) fn new(scene: &'a Scene, schema: Option<&'a str>, registry: &Registry) -> Self {
         let SceneSize { height, width, depth } = scene.scene_size;
         let declared: Vec<_> = registry.material_parameters().collect();

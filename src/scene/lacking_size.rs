@@ -1,5 +1,5 @@
-//! A scene without `scene_size` whose parts lie outside the default room: the missing size is the problem, not
-//! each of the positions.
+//! A scene without `scene_size` with parts outside the default room: the missing size is the problem, not each of the
+//! positions.
 
 use glam::Vec3;
 
@@ -9,7 +9,7 @@ use super::{
     load::Missing,
 };
 
-/// An extent of the room: its key, and how it is read from a position and a size.
+/// An extent of the room: its key, and its value in a position and a size.
 type Axis = (&'static str, fn(Vec3) -> f32, fn(&mut SceneSize) -> &mut f32);
 
 /// In the order of the file.
@@ -19,8 +19,8 @@ const AXES: [Axis; 3] = [
     ("depth", |p| p.z, |size| &mut size.depth),
 ];
 
-/// Puts the missing size in the place of problems with positions that are due to it. Positions that no size would
-/// mend stay, and say that the size is a default.
+/// Replaces problems of positions caused by the missing size by that one problem. Positions that no size would fix
+/// stay, with a remark that the size is a default.
 pub(super) fn explain(problems: Vec<Problem>, scene: &Scene, missing: &[Missing]) -> Vec<Problem> {
     let room = Path::root().key("scene_size");
     let lacks = |axis: &'static str| missing.iter().find(|m| m.path == room || m.path == room.key(axis));
@@ -32,7 +32,7 @@ pub(super) fn explain(problems: Vec<Problem>, scene: &Scene, missing: &[Missing]
     for ((_, _, extent), _) in &lacking {
         *extent(&mut largest) = MAX_DIMENSION;
     }
-    // The size that would do.
+    // The size that would suffice.
     let mut enough = assumed;
     let mut beyond = Vec::new();
     let mut rest = Vec::new();
@@ -80,7 +80,7 @@ pub(super) fn explain(problems: Vec<Problem>, scene: &Scene, missing: &[Missing]
     rest
 }
 
-/// The position that a problem is about, if it is about one.
+/// The position with the problem, if it is one of a position.
 fn position(scene: &Scene, path: &Path) -> Option<Vec3> {
     match path.segments() {
         [Segment::Key(list), Segment::Index(i), Segment::Key(key)] if key == "position" => match &**list {

@@ -7,7 +7,7 @@ use serde_json::ser::Formatter;
 
 use crate::text::json::{self, Ast, STRICT};
 
-/// Compact JSON with the shortest numbers that are read back exactly, and whole ones without `.0`.
+/// Compact JSON with the shortest numbers that are read back exactly, and whole numbers without `.0`.
 pub(super) struct ShortNumbers;
 
 impl Formatter for ShortNumbers {
@@ -20,10 +20,10 @@ impl Formatter for ShortNumbers {
     }
 }
 
-/// Lines are not longer than this, where they can be broken.
+/// The longest line, if it can be broken.
 const LINE_WIDTH: usize = 110;
 
-/// Lays JSON out: what fits on a line stands on one, lists of objects have a line per entry at least.
+/// Lays JSON out: anything that fits on a line stays on one; lists of objects have at least one line per entry.
 pub(super) fn pretty(compact: &str) -> Option<String> {
     let value = json::parse(compact, &STRICT).ok()??;
     let mut out = String::with_capacity(2 * compact.len());
@@ -36,7 +36,7 @@ pub(super) fn pretty(compact: &str) -> Option<String> {
 fn lay_out(value: &Ast, text: &str, depth: usize, column: usize, out: &mut String) {
     let has_objects =
         matches!(value, Ast::Array(a) if a.elements.iter().any(|e| matches!(e, Ast::Object(_))));
-    // One place for the comma that may follow.
+    // Room for the comma that may follow.
     if depth > 0 && !has_objects && column + width(value, text) < LINE_WIDTH {
         return lay_flat(value, text, out);
     }
@@ -77,7 +77,7 @@ fn lay_out(value: &Ast, text: &str, depth: usize, column: usize, out: &mut Strin
     }
 }
 
-/// The name of a property as it is written, in quotes.
+/// The name of a property as written, in quotes.
 fn name_text<'t>(property: &jsonc_parser::ast::ObjectProp, text: &'t str) -> &'t str {
     property.name.text(text)
 }

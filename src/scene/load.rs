@@ -1,5 +1,5 @@
-//! Reading scene files: from bytes on disk to a checked [`Scene`], with an error for everything that
-//! can be wrong (R2, R5, R6) and a question for what is missing (R3).
+//! Reading scene files: from bytes on disk to a checked [`Scene`], with an error for everything that can be wrong (R2,
+//! R5, R6) and a question about missing parts (R3).
 
 use std::{
     collections::BTreeSet,
@@ -18,32 +18,32 @@ use super::{
 };
 use crate::{files, registry::Registry, text::place::Lines};
 
-/// Larger files are refused before they are read. The largest legal scene, with every parameter of
-/// 10 000 objects given, is less than a tenth of this.
+/// Larger files are refused before they are read. The largest legal scene, with every parameter of 10 000 objects
+/// given, is less than a tenth of this.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
 /// The name of standard input in messages.
 pub const STDIN: &str = "standard input";
 
-/// What happens when scene size, reflection model or shading model are missing (R3).
+/// The treatment of a missing scene size, reflection model or shading model (R3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Defaults {
-    /// The caller asks: [`Loaded::missing`] says which, and the scene has the defaults already.
+    /// The caller asks: [`Loaded::missing`] lists them, and the scene has the defaults already.
     #[default]
     Ask,
-    /// They are used without asking. [`Loaded::missing`] still says which.
+    /// They are used without asking. [`Loaded::missing`] still lists them.
     Use,
-    /// It is an error that names the ways to say yes.
+    /// They are an error, which names the flags that accept them.
     Refuse,
 }
 
-/// A part that is missing and for which there is a default.
+/// A missing part with a default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing {
-    /// Which one: `scene_size`, `scene_size.depth`, `reflection_model`, `shading_model`.
+    /// Its path: `scene_size`, `scene_size.depth`, `reflection_model`, `shading_model`.
     pub path: Path,
-    /// The default, as people read it: `lambert`, `10 × 10 × 10 m`.
+    /// The default as shown to people: `lambert`, `10 × 10 × 10 m`.
     pub default: String,
-    /// Where in the file it belongs: the beginning of the object that lacks it.
+    /// Its place in the file: the beginning of the object that lacks it.
     pub place: Option<Place>,
 }
 
@@ -57,12 +57,12 @@ impl Missing {
     /// The same as a problem.
     #[must_use]
     pub fn problem(&self) -> Problem {
-        let predicate = format!("is missing; --use-defaults takes the default, {}", self.default);
+        let predicate = format!("is missing; --use-defaults accepts the default, {}", self.default);
         Problem { place: self.place, ..Problem::about(self.path.clone(), predicate) }
     }
 }
 
-/// The state of a file, to notice that someone else changed it: its length and a hash of its content.
+/// The state of a file, to notice changes by others: its length and a hash of its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Stamp {
     length: u64,
@@ -79,7 +79,7 @@ impl Stamp {
     }
 }
 
-/// A scene that was read: valid, but for the answer to what is [`missing`](Self::missing).
+/// A scene that was read: valid, apart from the question about [`missing`](Self::missing) parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// The scene, with defaults where parts are missing.
@@ -98,7 +98,7 @@ pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<
     from_bytes(&bytes(path)?, &path.display().to_string(), registry, defaults)
 }
 
-/// Reads the content of what a command line names: a file, or a stream such as `/dev/stdin`.
+/// Reads the content of a path from the command line: a file, or a stream such as `/dev/stdin`.
 ///
 /// # Errors
 /// [`LoadError`]; its text names it as `path` does.
@@ -106,10 +106,10 @@ pub fn input_bytes(path: &FilePath) -> Result<Vec<u8>, LoadError> {
     files::read_input(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e))
 }
 
-/// Reads the content of a scene file, whatever it is.
+/// Reads the content of a scene file, valid or not.
 ///
 /// # Errors
-/// [`LoadError`] when it is no regular file, too large, or cannot be read.
+/// [`LoadError`] if it is not a regular file, too large, or cannot be read.
 pub fn bytes(path: &FilePath) -> Result<Vec<u8>, LoadError> {
     files::read(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e))
 }
@@ -127,8 +127,7 @@ pub fn reader(
     from_bytes(&all_of(from, name)?, name, registry, defaults)
 }
 
-/// The ids of the reflection models that a scene names, whether they are known or not and whatever else is wrong
-/// with it; none of what is not JSON.
+/// The ids of the reflection models that a scene names, known or not, even in an invalid scene; none if it is not JSON.
 #[must_use]
 pub fn models_named(bytes: &[u8], registry: &Registry) -> BTreeSet<String> {
     let text = decode(bytes, "").ok().filter(|text| check_syntax(text).is_ok());
@@ -138,11 +137,11 @@ pub fn models_named(bytes: &[u8], registry: &Registry) -> BTreeSet<String> {
 /// Reads the content of a stream, which can be read once.
 ///
 /// # Errors
-/// [`LoadError`] when it is too large for a scene, or cannot be read.
+/// [`LoadError`] if it is too large for a scene, or cannot be read.
 pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
     let failed = |source| LoadError::Io { name: name.to_owned(), source };
     let mut bytes = Vec::new();
-    // A stream does not say how long it is.
+    // A stream does not report its length.
     from.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { name: name.to_owned() });
@@ -150,7 +149,7 @@ pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
     Ok(bytes)
 }
 
-/// Reads a scene from the content of a file; `name` is what messages call it.
+/// Reads a scene from the content of a file; `name` is its name in messages.
 ///
 /// # Errors
 /// [`LoadError`].

@@ -1,8 +1,8 @@
-//! The scene: a value (R13), and one way to make it, JSON.
+//! The scene: a value (R13), usually read from JSON.
 //!
-//! [`Scene`] is what everything else works on: the loader makes it, [`render::entities`](crate::render::entities) turns it into entities,
-//! the panels edit it, the CPU renderer draws it. Angles are degrees, lengths metres, colours
-//! sRGB-encoded integers: the values as users write them.
+//! [`Scene`] is the basis of everything else: the loader creates it, [`render::entities`](crate::render::entities)
+//! turns it into entities, the panels edit it, the CPU renderer draws it. Angles are degrees, lengths metres, colours
+//! sRGB-encoded integers: the values as written by users.
 
 use crate::{
     light::{Incident, LightEntry, LightRecord},
@@ -37,29 +37,29 @@ mod syntax;
 pub const MAX_DIMENSION: f32 = 100.0;
 /// Default extent in every direction, metres (CA `DEF_HEIGHT`, `DEF_WIDTH`, `DEF_DEPTH`).
 pub const DEFAULT_DIMENSION: f32 = 10.0;
-/// The reflection model that is offered when a scene names none (CA `DEF_LIGHT`).
+/// The reflection model offered if a scene names none (CA `DEF_LIGHT`).
 pub const DEFAULT_REFLECTION_MODEL: &str = "lambert";
-/// The shading model that is offered when a scene names none (CA `DEF_SHADE`).
+/// The shading model offered if a scene names none (CA `DEF_SHADE`).
 pub const DEFAULT_SHADING_MODEL: &str = "gouraud";
 /// The most objects that a scene may have.
 pub const MAX_OBJECTS: usize = 10_000;
-/// Object size when a scene gives none, metres.
+/// Object size if a scene gives none, metres.
 pub const DEFAULT_SIZE: f32 = 2.0;
-/// Vertical field of view when a scene gives none, degrees.
+/// Vertical field of view if a scene gives none, degrees.
 pub const DEFAULT_FIELD_OF_VIEW: f32 = 45.0;
 
-/// A scene, valid or not: checking is [`check`]'s work.
+/// A scene, valid or not: checking is the task of [`check`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// What the scene is called, for lists and window titles.
+    /// The name, for lists and window titles.
     pub name: Option<String>,
-    /// One line: what the scene shows.
+    /// One line: the content of the scene.
     pub description: Option<String>,
     /// The room.
     pub scene_size: SceneSize,
-    /// Id of the reflection model of every object that names none itself.
+    /// Id of the reflection model of every object without an override.
     pub reflection_model: String,
-    /// Id of the shading model of every object that names none itself.
+    /// Id of the shading model of every object without an override.
     pub shading_model: String,
     /// The lights, 1 to 256.
     pub lights: Vec<Light>,
@@ -67,7 +67,7 @@ pub struct Scene {
     pub observer: Observer,
     /// The objects, 1 to 10 000.
     pub objects: Vec<Object>,
-    /// How the light in the picture is shown.
+    /// Conversion of light to the picture on the display.
     pub display: Display,
 }
 
@@ -108,32 +108,32 @@ impl Default for SceneSize {
 pub struct Light {
     /// Id of the light type.
     pub light_type: String,
-    /// What the user calls it.
+    /// The user's name for it.
     pub name: Option<String>,
-    /// False while it is switched off.
+    /// False while switched off.
     pub enabled: bool,
-    /// Where it stands; `None` for types without a position.
+    /// Position; `None` for types without one.
     pub position: Option<Vec3>,
-    /// Where it shines, not normalised; `None` for types without a direction.
+    /// Direction, not normalised; `None` for types without one.
     pub direction: Option<Vec3>,
-    /// Colour, where there is no [`colour_temperature`](Self::colour_temperature).
+    /// Colour, if there is no [`colour_temperature`](Self::colour_temperature).
     pub colour: [u8; 3],
     /// Colour temperature in kelvin, instead of the colour.
     pub colour_temperature: Option<f32>,
-    /// Intensity in the unit of the type, where there is no [`luminous_flux`](Self::luminous_flux).
+    /// Intensity in the unit of the type, if there is no [`luminous_flux`](Self::luminous_flux).
     pub intensity: f32,
     /// Luminous flux in lumen, instead of the intensity; `None` for types without a flux.
     pub luminous_flux: Option<f32>,
-    /// Further parameters that the type declares; absent ones have their defaults.
+    /// Further parameters declared by the type; absent ones have their defaults.
     pub parameters: Values,
 }
 
 /// The observer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observer {
-    /// Where the eye is.
+    /// Position of the eye.
     pub position: Vec3,
-    /// Where it looks, not normalised.
+    /// Direction of view, not normalised.
     pub direction: Vec3,
     /// Vertical field of view in degrees.
     pub field_of_view: f32,
@@ -144,34 +144,34 @@ pub struct Observer {
 pub struct Object {
     /// Id of the object type.
     pub object_type: String,
-    /// What the user calls it.
+    /// The user's name for it.
     pub name: Option<String>,
-    /// False while it is hidden.
+    /// False while hidden.
     pub visible: bool,
-    /// Where its centre is.
+    /// Position of its centre.
     pub position: Vec3,
     /// Largest extent in metres.
     pub size: f32,
     /// Euler angles XYZ in degrees (extrinsic order: about x first, then y, then z of the room).
     pub rotation: Vec3,
-    /// How finely it is cut; `None` for the type's default.
+    /// Tessellation; `None` for the type's default.
     pub tessellation: Option<u32>,
-    /// Id of its own reflection model, if it has one.
+    /// Id of the reflection model that overrides the scene's, if any.
     pub reflection_model: Option<String>,
-    /// Id of its own shading model, if it has one.
+    /// Id of the shading model that overrides the scene's, if any.
     pub shading_model: Option<String>,
     /// Parameters by name, of this model and of any other.
     pub material: Values,
 }
 
-/// How the light in the picture is shown.
+/// Conversion of light to the picture on the display.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Display {
     /// The curve from light to display.
     pub tone_mapping: ToneMapping,
     /// Exposure in EV: the picture is multiplied by `2^EV`.
     pub exposure: f32,
-    /// True if colours are decoded and encoded.
+    /// Decoding and encoding of colours.
     pub encoding: Encoding,
 }
 
@@ -194,7 +194,7 @@ impl Default for Light {
 }
 
 impl Light {
-    /// The intensity in the unit of its type, whichever way it is given.
+    /// The intensity in the unit of its type, however it is given.
     #[must_use]
     pub fn intensity_as(&self, entry: &LightEntry) -> f32 {
         match self.luminous_flux.zip(entry.solid_angle(&self.parameters)) {
@@ -204,31 +204,31 @@ impl Light {
         }
     }
 
-    /// The colour for calculation, whichever way it is given.
+    /// The colour for calculation, however it is given.
     #[must_use]
     pub fn colour_under(&self, encoding: Encoding) -> Vec3 {
         match (self.colour_temperature, encoding) {
             (None, _) => encoding.decode(self.colour),
             (Some(kelvin), Encoding::Srgb) => temperature::black_body(kelvin),
-            // Gamma-naive: the numbers that a picker of colours would show are taken as they are.
+            // Gamma-naive: the numbers of a colour picker are used unchanged.
             (Some(kelvin), Encoding::Off) => temperature::black_body(kelvin).map(srgb_encode),
         }
     }
 
-    /// The colour in sRGB, whichever way it is given.
+    /// The colour in sRGB, however it is given.
     #[must_use]
     pub fn rgb8(&self) -> [u8; 3] {
         self.colour_temperature.map_or(self.colour, temperature::black_body_rgb8)
     }
 
-    /// Makes it a light of another type: gains and loses position, direction and parameters as that
-    /// type has them. Intensity or luminous flux is kept, unless the new type measures in another unit.
+    /// Changes its type: position, direction and parameters are added or removed as the new type requires. Intensity or
+    /// luminous flux is kept, unless the new type has another unit.
     pub fn set_type(&mut self, to: &LightEntry, registry: &Registry, room: SceneSize) {
         let new = to.declaration;
         let flux = self.luminous_flux.filter(|_| to.has_flux());
         self.intensity = match registry.light(&self.light_type) {
             Some(old) if flux.is_none() && old.declaration.unit == new.unit => self.intensity_as(old),
-            // 20 cd and 20 lx are worlds apart: another unit starts from its own default.
+            // 20 cd and 20 lx are very different: a new unit starts from its default.
             _ => new.default_intensity,
         };
         self.luminous_flux = flux;
@@ -294,37 +294,37 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// The ids of the reflection models that the scene names, each once.
+    /// The ids of the reflection models named by the scene, each once.
     #[must_use]
     pub fn models(&self) -> BTreeSet<&str> {
         let own = self.objects.iter().filter_map(|o| o.reflection_model.as_deref());
         own.chain([self.reflection_model.as_str()]).collect()
     }
 
-    /// The lights that shine.
+    /// The lights that are on.
     pub fn shining(&self) -> impl Iterator<Item = &Light> {
         self.lights.iter().filter(|light| light.enabled)
     }
 
-    /// The objects that can be seen.
+    /// The visible objects.
     pub fn shown(&self) -> impl Iterator<Item = &Object> {
         self.objects.iter().filter(|object| object.visible)
     }
 
-    /// The reflection model of an object: its own, or the scene's.
+    /// The reflection model of an object: its override, or the scene's.
     #[must_use]
     pub fn model_of<'a>(&'a self, object: &'a Object) -> &'a str {
         object.reflection_model.as_deref().unwrap_or(&self.reflection_model)
     }
 
-    /// The shading model of an object: its own, or the scene's.
+    /// The shading model of an object: its override, or the scene's.
     #[must_use]
     pub fn shading_model_of<'a>(&'a self, object: &'a Object) -> &'a str {
         object.shading_model.as_deref().unwrap_or(&self.shading_model)
     }
 }
 
-/// A light of the scene as calculation sees it. A light of an unknown type gives no light.
+/// A light of the scene for calculation. A light of an unknown type gives no light.
 #[must_use]
 pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRecord {
     let Some((kind, entry)) = registry.light_index(&light.light_type).zip(registry.light(&light.light_type))
@@ -341,7 +341,7 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
     }
 }
 
-/// True if some light of a scene shines from everywhere alike, so that albedos are asked for.
+/// True if some light of a scene is uniform, so that albedos are needed.
 #[must_use]
 pub fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
     scene.shining().any(|light| {

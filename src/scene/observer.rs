@@ -4,11 +4,11 @@ use glam::{Mat3, Mat4, Quat, Vec3};
 
 use super::Observer;
 
-/// Distance of the near plane from the eye, metres. What is nearer is cut away.
+/// Distance of the near plane from the eye, metres. Anything nearer is clipped.
 pub const NEAR: f32 = 0.01;
 
-/// The orientation of a camera that looks along `direction` with y up: columns right, up, backward
-/// (cameras look along −z). Straight up or down, where y gives no up, the room's −z is up.
+/// The orientation of a camera that looks along `direction` with y up: columns right, up, backward (cameras look along
+/// −z). Straight up or down, where y gives no up direction, it is the room's −z.
 #[must_use]
 pub fn orientation(direction: Vec3) -> Mat3 {
     let backward = -direction.normalize_or(Vec3::NEG_Z);
@@ -31,7 +31,7 @@ pub fn clip_from_room(observer: &Observer, aspect: f32) -> Mat4 {
     Mat4::perspective_infinite_reverse_rh(observer.field_of_view.to_radians(), aspect, NEAR) * view
 }
 
-/// Width/height of the pictures that scenes are composed for.
+/// Width/height for which scenes are composed.
 pub const WIDE: f32 = 16.0 / 9.0;
 
 /// The vertical field of view in radians of a picture of the given width/height.

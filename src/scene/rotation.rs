@@ -1,4 +1,4 @@
-//! Rotations as scenes give them: Euler angles in degrees.
+//! Rotations in scenes: Euler angles in degrees.
 
 use glam::{EulerRot, Quat, Vec3};
 
@@ -31,7 +31,7 @@ mod tests {
     fn euler_angles_and_rotations_are_inverse() {
         for degrees in [Vec3::ZERO, Vec3::new(10.0, 20.0, 30.0), Vec3::new(-70.0, 45.0, 170.0)] {
             let back = euler_degrees(rotation(degrees));
-            assert!((back - degrees).length() < 1e-3, "{degrees} came back as {back}");
+            assert!((back - degrees).length() < 1e-3, "{degrees} became {back}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Writing scene files: readable, in one order, and never half.
+//! Writing scene files: readable, in one order, and all or nothing.
 
 use std::{
     fs, io,
@@ -21,21 +21,21 @@ use crate::{
     registry::Registry,
 };
 
-/// What the writer expects to find where it writes.
+/// The state that the writer expects at its destination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// Nothing: a new file.
     Nothing,
-    /// What was read or written last.
+    /// The content that was read or written last.
     Unchanged(Stamp),
-    /// Anything: the user was asked.
+    /// Anything: the user has agreed.
     Anything,
 }
 
-/// Why a scene could not be written. Nothing is changed then: the old file is still there, whole.
+/// The reason why a scene could not be written. Nothing is changed then: the old file is still there, complete.
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
-    /// The scene breaks rules, so that it could not be read again.
+    /// The scene breaks rules, so it could not be read again.
     #[error("{} was not written: the scene has problems:\n{}", .path.display(), lines(.problems))]
     Invalid {
         /// The file.
@@ -43,13 +43,13 @@ pub enum SaveError {
         /// At least one.
         problems: Vec<Problem>,
     },
-    /// A new file was to be written where there is one.
-    #[error("{} exists already; it was not overwritten", .path.display())]
+    /// A new file was requested, but one exists.
+    #[error("{} already exists; it was not overwritten", .path.display())]
     Exists {
         /// The file.
         path: PathBuf,
     },
-    /// Someone else wrote the file since it was read.
+    /// Another program wrote the file since it was read.
     #[error("{} changed on disk since it was read; it was not overwritten", .path.display())]
     Changed {
         /// The file.
@@ -68,17 +68,17 @@ pub enum SaveError {
         path: PathBuf,
     },
     /// The path leads to a folder.
-    #[error("{} is a folder; name a file", .path.display())]
+    #[error("{} is a folder; choose a file name", .path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
     },
-    /// The path leads to something that is neither file nor folder.
-    #[error("{} was not written: it is {kind}, and a scene is saved to a file", .path.display())]
+    /// The path leads to something other than a file or folder.
+    #[error("{} was not written: it is {kind}, not a regular file", .path.display())]
     NoFile {
-        /// What was named.
+        /// The path given.
         path: PathBuf,
-        /// What it is.
+        /// The kind of thing it is.
         kind: Kind,
     },
     /// The folder of the file does not exist.
@@ -94,7 +94,7 @@ pub enum SaveError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The reason given by the system.
         source: io::Error,
     },
 }
@@ -103,8 +103,8 @@ fn lines(problems: &[Problem]) -> String {
     problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
-/// The text of a scene file: the sections in the order of the CA, short values on one line, numbers
-/// as short as they can be read back exactly. `schema` is what `$schema` says, if anything.
+/// The text of a scene file: the sections in the order of the CA, short values on one line, numbers as short as they
+/// can be read back exactly. `schema` is the value of `$schema`, if any.
 ///
 /// Only valid scenes can be read back; [`write()`] checks, this function does not.
 #[must_use]
@@ -152,7 +152,7 @@ pub fn write(
     if expected == Expected::Nothing {
         draft.create().map_err(failed)?;
     } else {
-        // Look again: between the first look and here lies the writing.
+        // Check again: writing took time.
         on_disk(&target, path, expected)?;
         draft.replace().map_err(failed)?;
     }
@@ -173,12 +173,12 @@ impl SaveError {
     }
 }
 
-/// What is worth keeping of the file that is overwritten, beside what belongs to any file.
+/// The parts of an existing file to keep, beside those that any file has.
 struct Old {
     schema: Option<String>,
 }
 
-/// Looks at what is there and compares it with what is expected.
+/// Examines the destination and compares it with the expectation.
 fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Old>, SaveError> {
     let shown = || path.to_owned();
     let io = |source| SaveError::Io { path: shown(), source };
@@ -204,7 +204,7 @@ fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Old>
     }
     let bytes = match files::read(target, MAX_FILE_BYTES) {
         Ok(bytes) => bytes,
-        // No scene, whatever it is.
+        // Not a scene.
         Err(FileError::TooLarge(_)) => Vec::new(),
         Err(error) => return Err(SaveError::from_file(path, error)),
     };
@@ -216,9 +216,9 @@ fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Old>
     Ok(Some(Old { schema: schema_of(&bytes) }))
 }
 
-/// What the `$schema` of a scene file says.
+/// The `$schema` of a scene file.
 fn schema_of(bytes: &[u8]) -> Option<String> {
-    /// All that is of interest here.
+    /// The only key needed here.
     #[derive(serde::Deserialize)]
     struct Head {
         #[serde(rename = "$schema")]

@@ -1,5 +1,4 @@
-//! The JSON Schema of scene files, for editors: the types of `format` plus what the
-//! registry knows.
+//! The JSON Schema of scene files, for editors: the types of `format` plus the contents of the registry.
 
 use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile, read::keys};
 use crate::{
@@ -13,13 +12,13 @@ use crate::{
 use schemars::{SchemaGenerator, generate::SchemaSettings};
 use serde_json::{Map, Value as Json, json};
 
-/// The file name of the schema beside the shipped scenes; what their `$schema` says.
+/// The file name of the schema beside the shipped scenes, as in their `$schema`.
 pub const FILE_NAME: &str = "scene.schema.json";
 
 /// The JSON Schema (draft 2020-12) of scene files.
 ///
-/// A schema can say less than [`check`](super::check): it knows nothing of the size of the room that a
-/// position must be in, nor of things that coincide.
+/// A schema can express less than [`check`](super::check): neither positions within the size of the room nor coincident
+/// parts.
 #[must_use]
 pub fn schema(registry: &Registry) -> Json {
     let settings = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);
@@ -48,13 +47,13 @@ pub fn schema(registry: &Registry) -> Json {
     schema
 }
 
-/// The schema as it is shipped and printed, with a line break at the end.
+/// The schema as shipped and printed, with a final line break.
 #[must_use]
 pub fn text(registry: &Registry) -> String {
     format!("{:#}\n", schema(registry))
 }
 
-/// Optional fields may be absent, but not `null`; and the formats of numbers are ours alone.
+/// Optional fields may be absent, but not `null`; and the formats of numbers are internal.
 fn tidy(schema: &mut Json) {
     match schema {
         Json::Object(map) => {
@@ -78,7 +77,7 @@ fn tidy(schema: &mut Json) {
             if map.get("format").is_some_and(Json::is_string) {
                 map.remove("format");
             }
-            // Documentation comments are wrapped where the source is; editors wrap by themselves.
+            // Documentation comments are wrapped in the source; editors wrap by themselves.
             if let Some(Json::String(text)) = map.get_mut("description") {
                 *text = text.replace('\n', " ");
             }
@@ -91,17 +90,17 @@ fn tidy(schema: &mut Json) {
 
 /// One of several ids; editors show the names and summaries beside them.
 fn choose<'a>(field: &mut Json, choices: impl Iterator<Item = (&'a str, &'a str, &'a str)>) {
-    let (mut ids, mut told) = (Vec::new(), Vec::new());
+    let (mut ids, mut descriptions) = (Vec::new(), Vec::new());
     for (id, name, summary) in choices {
         ids.push(Json::from(id));
-        told.push(Json::from(if summary.is_empty() {
+        descriptions.push(Json::from(if summary.is_empty() {
             name.to_owned()
         } else {
             format!("{name}: {summary}")
         }));
     }
     field["enum"] = ids.into();
-    field["enumDescriptions"] = told.into();
+    field["enumDescriptions"] = descriptions.into();
 }
 
 /// A position: inside the largest legal room.
@@ -110,7 +109,7 @@ fn place(field: &mut Json) {
     field["items"]["maximum"] = number(MAX_DIMENSION);
 }
 
-/// The lights: one variant per type, told apart by `type`.
+/// The lights: one variant per type, distinguished by `type`.
 fn lights(list: &mut Json, registry: &Registry) {
     list["minItems"] = 1.into();
     list["maxItems"] = MAX_LIGHTS.into();
@@ -142,7 +141,7 @@ fn lights(list: &mut Json, registry: &Registry) {
             properties.insert("luminous_flux".to_owned(), false.into());
         }
         let intensity = json!({
-            "description": format!("How bright it is, {}.", if d.unit == "cd" { "candela (cd)" } else { "lux (lx)" }),
+            "description": format!("Intensity, {}.", if d.unit == "cd" { "candela (cd)" } else { "lux (lx)" }),
             "default": number(d.default_intensity),
         });
         properties.insert("intensity".to_owned(), intensity);

@@ -1,11 +1,11 @@
-//! What is not JSON: where, what was expected there, and the commonest slips by name.
+//! Syntax errors of JSON: their place, the expectation there, and the most common slips by name.
 
 use serde::{Deserialize as _, de::IgnoredAny};
 
-/// JSON may be nested this deep. Scenes need four levels.
+/// The deepest nesting of JSON. Scenes need four levels.
 const MAX_DEPTH: usize = 64;
 
-/// Strict JSON, or the byte where it is not and what was expected there.
+/// Strict JSON, or the first wrong byte and the expectation there.
 pub(super) fn check_syntax(text: &str) -> Result<(), (usize, String)> {
     let mut json = serde_json::Deserializer::from_str(text);
     let strict = IgnoredAny::deserialize(&mut json).and_then(|_| json.end());
@@ -16,7 +16,7 @@ pub(super) fn check_syntax(text: &str) -> Result<(), (usize, String)> {
     }
 }
 
-/// Where nesting exceeds [`MAX_DEPTH`], in text that is JSON.
+/// The place where nesting exceeds [`MAX_DEPTH`], in text that is JSON.
 fn too_deep(text: &str) -> Option<usize> {
     let (mut depth, mut in_text, mut escaped) = (0usize, false, false);
     for (at, byte) in text.bytes().enumerate() {
@@ -38,7 +38,7 @@ fn too_deep(text: &str) -> Option<usize> {
     None
 }
 
-/// What was expected, and a hint where the mistake is a common one.
+/// The expectation, and a hint for common mistakes.
 fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
     if error.is_eof() {
         let said = error.to_string();
@@ -46,7 +46,7 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
             .into_iter()
             .find(|(theirs, _)| said.contains(theirs))
             .map_or("where a value was expected".to_owned(), |(_, ours)| format!("within {ours}"));
-        return (text.len(), format!("the file ends {within}; it seems to be cut off"));
+        return (text.len(), format!("the file ends {within}; it seems to be truncated"));
     }
     let line_start: usize =
         text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
@@ -56,7 +56,7 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
     }
     let rest = &text[at..];
     let found = rest.chars().next();
-    // The word that the place is within: NaN, -Infinity, 0x1F, .5, 'text'.
+    // The word around the place: NaN, -Infinity, 0x1F, .5, 'text'.
     let part_of_word = |c: char| c.is_alphanumeric() || "+-._".contains(c);
     let start = text[..at].char_indices().rev().take_while(|(_, c)| part_of_word(*c)).last();
     let start = start.map_or(at, |(i, _)| i);
@@ -69,16 +69,16 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
     let is_value = said != "key must be a string";
 
     let what = if rest.starts_with("//") || rest.starts_with("/*") || found == Some('#') {
-        "comments are not part of JSON; take them out, or write a \"description\"".to_owned()
+        "comments are not part of JSON; remove them, or write a \"description\"".to_owned()
     } else if found == Some('\'') {
-        "text and keys stand in double quotes (\"), not in single ones (')".to_owned()
+        "text and keys need double quotes (\"), not single ones (')".to_owned()
     } else if matches!(found, Some('“' | '”' | '„')) {
-        "text and keys stand in straight double quotes (\"), not in typographic ones".to_owned()
+        "text and keys need straight double quotes (\"), not typographic ones".to_owned()
     } else if matches!(found, Some('}' | ']')) && before == Some(',') {
-        "there is a comma after the last entry; take it out".to_owned()
+        "there is a comma after the last entry; remove it".to_owned()
     } else if is_value && matches!(lower.as_str(), "nan" | "inf" | "infinity") {
         at = start;
-        format!("{word} is not a number that JSON has; write a finite number")
+        format!("{word} is not a number in JSON; write a finite number")
     } else if is_value && matches!(lower.as_str(), "true" | "false" | "null" | "none" | "undefined") {
         at = start;
         format!("{word} is not JSON; true, false and null are written in lower case")
@@ -101,15 +101,14 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
             "trailing characters" => {
                 format!("expected the end of the file after the scene, not {}", shown(found, word))
             }
-            "invalid number" => format!("{} is not a number as JSON writes them", shown(found, word)),
+            "invalid number" => format!("{} is not a number in JSON", shown(found, word)),
             "expected ident" => {
                 at = start;
-                format!("{word} is not JSON; only true, false and null stand without quotes")
+                format!("{word} is not JSON; only true, false and null have no quotes")
             }
             s if s.starts_with("control character") => {
                 at += rest.find(char::is_control).unwrap_or_default();
-                "a line break or control character within a text; end the text with \" or write \\n"
-                    .to_owned()
+                "a line break or control character in a text; end the text with \" or write \\n".to_owned()
             }
             s if s.starts_with("expected") => format!("{s}, not {}", shown(found, word)),
             s => s.to_owned(),
@@ -118,7 +117,7 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
     (at, what)
 }
 
-/// What is at a place, for a message.
+/// The text at a place, for a message.
 fn shown(found: Option<char>, word: &str) -> String {
     match found {
         _ if word.chars().count() > 1 => crate::text::shortened(word),
@@ -139,26 +138,26 @@ mod tests {
     #[test]
     fn syntax_errors_say_where_and_what_was_expected() {
         for (text, place, expected) in [
-            ("{\"a\": 1", "1:8", "the file ends within an object; it seems to be cut off"),
+            ("{\"a\": 1", "1:8", "the file ends within an object; it seems to be truncated"),
             ("[1, 2", "1:6", "the file ends within a list"),
             ("{\"a\": \"x", "1:9", "the file ends within a text"),
             ("{\"a\":", "1:6", "the file ends where a value was expected"),
             ("{\"a\": 1,}", "1:9", "comma after the last entry"),
             ("[1,\n]", "2:1", "comma after the last entry"),
-            ("{\"a\": NaN}", "1:7", "NaN is not a number that JSON has"),
-            ("{\"a\": -Infinity}", "1:7", "-Infinity is not a number that JSON has"),
-            ("{\"a\": Infinity}", "1:7", "Infinity is not a number that JSON has"),
+            ("{\"a\": NaN}", "1:7", "NaN is not a number in JSON"),
+            ("{\"a\": -Infinity}", "1:7", "-Infinity is not a number in JSON"),
+            ("{\"a\": Infinity}", "1:7", "Infinity is not a number in JSON"),
             ("{\"a\": True}", "1:7", "lower case"),
             ("{\"a\": nul}", "1:7", "nul is not JSON"),
             ("{\"a\": .5}", "1:7", "numbers begin with a digit"),
             ("{\"a\": -.5}", "1:7", "numbers begin with a digit"),
             ("{\"a\": +5}", "1:7", "no plus sign"),
             ("{\"a\": 0x1F}", "1:7", "decimal"),
-            ("{\"a\": 01}", "1:8", "not a number as JSON"),
+            ("{\"a\": 01}", "1:8", "is not a number in JSON"),
             ("{\"a\": 1 \"b\": 2}", "1:9", "expected `,` or `}`"),
             ("{\"a\" 1}", "1:6", "expected `:`"),
             ("{a: 1}", "1:2", "expected a key in double quotes"),
-            ("{'a': 1}", "1:2", "not in single ones"),
+            ("{'a': 1}", "1:2", "not single ones"),
             ("{\"a\": 1} x", "1:10", "expected the end of the file"),
             ("{ // size\n}", "1:3", "comments"),
             ("{\"a\": \"x\ny\"}", "1:9", "line break"),

@@ -1,4 +1,4 @@
-//! Checking composed sources with naga, and telling authors in their own file's terms what is wrong.
+//! Checking composed sources with naga, and reporting problems in terms of the author's own file.
 
 use std::fmt;
 
@@ -10,10 +10,10 @@ use naga::{
 
 use super::{compose::Composed, field, limits, pitfall};
 
-/// What is wrong with a shader, located in the author's file.
+/// A problem of a shader, located in the author's file.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ShaderProblem {
-    /// Path below the folder of the shaders; of custom models, `models/` and the name of the file.
+    /// Path below the folder of shaders; for custom models, `models/` and the file name.
     pub file: String,
     /// Line in that file, from 1.
     pub line: usize,
@@ -21,7 +21,7 @@ pub struct ShaderProblem {
     pub column: usize,
     /// The line itself.
     pub source: String,
-    /// What is wrong.
+    /// The problem.
     pub message: String,
 }
 
@@ -63,7 +63,7 @@ pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     }
     limits::check_text(composed)?;
     limits::on_stack(|| parsed(composed)).unwrap_or_else(|| {
-        let what = "the shader cannot be checked: the parser fails on it; the last change is the cause";
+        let what = "the shader cannot be checked: the parser crashes on it; the last change is the cause";
         Err(locate(composed, None, what.to_owned()))
     })
 }
@@ -84,8 +84,7 @@ fn parsed(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     }
 }
 
-/// What the validator says in full: the outermost message only says that some function is invalid, the
-/// innermost says why.
+/// The validator's message in full: the outermost part only says that some function is invalid, the innermost says why.
 pub(crate) fn reason(error: &dyn std::error::Error) -> String {
     let mut message = error.to_string();
     let mut source = error.source();
@@ -96,7 +95,7 @@ pub(crate) fn reason(error: &dyn std::error::Error) -> String {
     message
 }
 
-/// Line and column of the first span that is one: naga may list some that point nowhere.
+/// Line and column of the first valid span: naga may list some that point nowhere.
 fn place(composed: &Composed, spans: impl Iterator<Item = naga::Span>) -> Option<(usize, usize)> {
     spans.into_iter().find(naga::Span::is_defined).map(|span| {
         let location = span.location(&composed.text);
@@ -104,7 +103,7 @@ fn place(composed: &Composed, spans: impl Iterator<Item = naga::Span>) -> Option
     })
 }
 
-/// A problem at a line and column of the composed text, told in terms of the author's file.
+/// A problem at a line and column of the composed text, in terms of the author's file.
 pub(crate) fn locate(
     composed: &Composed,
     place: Option<(usize, usize)>,
@@ -129,8 +128,7 @@ pub(crate) fn locate(
     })
 }
 
-/// The byte offsets of the members of a struct in a module, by name; `None` when there is no such
-/// struct.
+/// The byte offsets of the members of a struct in a module, by name; `None` if there is no such struct.
 #[must_use]
 pub fn struct_layout(module: &Module, name: &str) -> Option<Vec<(String, usize)>> {
     module.types.iter().find_map(|(_, ty)| match &ty.inner {
@@ -176,7 +174,7 @@ mod tests {
         };
         assert_eq!(struct_layout(&module, "Light"), Some(owned(&LIGHT_LAYOUT)));
         assert_eq!(struct_layout(&module, "Illumination"), Some(owned(&ILLUMINATION_LAYOUT)));
-        // The wrong twin: without the padding that vec3 wants, the layouts differ.
+        // The wrong twin: without the padding required by vec3, the layouts differ.
         let packed = wgsl::parse_str("struct Light { position: vec3<f32>, kind: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, parameters: vec4<f32> }")
             .expect("valid WGSL");
         assert_ne!(struct_layout(&packed, "Light"), Some(owned(&LIGHT_LAYOUT)));

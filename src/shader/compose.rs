@@ -1,8 +1,8 @@
 //! Joining shader sources: pure text to text. A [`LineMap`] leads from a line of the composed text back to the
 //! author's file.
 //!
-//! Any file may ask for another one of the author's: the line `#import "noise.wgsl"` puts that file, named from
-//! the folder of the file that asks, before it, once in a composed source however often it is asked for.
+//! Any file may import another one of the author's: the line `#import "noise.wgsl"`, with a path relative to the
+//! importing file's folder, puts that file before it, once per composed source however often it is imported.
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashSet},
@@ -28,7 +28,7 @@ pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
 pub const LIGHTS: Source = wgsl!("lights.wgsl");
 /// The light loop.
 pub const LOOP: Source = wgsl!("loop.wgsl");
-/// What goes into and out of a shading model.
+/// The inputs and outputs of a shading model.
 pub const SHADING: Source = wgsl!("shading.wgsl");
 /// The wrapper for the renderer: bindings and entry points.
 pub const WRAPPER: Source = wgsl!("wrapper.wgsl");
@@ -36,8 +36,7 @@ pub const WRAPPER: Source = wgsl!("wrapper.wgsl");
 /// The entry point that evaluates a model alone.
 pub const EVALUATE: Source = wgsl!("evaluate.wgsl");
 
-/// Where the text of a source comes from: edited copies by path, else the built-in one. Copies are cheap:
-/// they share the texts.
+/// The texts of sources: edited copies by path, otherwise the built-in ones. Cloning is cheap: clones share the texts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sources {
     edited: BTreeMap<String, Arc<str>>,
@@ -61,7 +60,7 @@ impl Sources {
         self.edited.insert(path.into(), text.into());
     }
 
-    /// Goes back to the built-in text of a path.
+    /// Restores the built-in text of a path.
     pub fn forget(&mut self, path: &str) {
         self.edited.remove(path);
     }
@@ -71,7 +70,7 @@ impl Sources {
         self.edited.keys().map(String::as_str)
     }
 
-    /// Takes over the edited text of a path, or that it has none.
+    /// Copies the edited text of a path, or its absence.
     pub fn copy_from(&mut self, other: &Self, path: &str) {
         match other.edited.get(path) {
             Some(text) => self.edit(path, text.clone()),
@@ -88,15 +87,14 @@ pub struct LineMap {
 }
 
 impl LineMap {
-    /// The file and line (from 1) that a line (from 1) of the composed text came from.
+    /// The file and line (from 1) from which a line (from 1) of the composed text came.
     #[must_use]
     pub fn locate(&self, line: usize) -> Option<(&str, usize)> {
         let (first, path) = self.pieces.iter().rev().find(|(first, _)| *first <= line)?;
         Some((path, line - first + 1))
     }
 
-    /// The files that the composed text was made of, in the order of need. What is generated stands in
-    /// parentheses.
+    /// The files of the composed text, in the order of need. Generated ones are in parentheses.
     pub fn files(&self) -> impl Iterator<Item = &str> {
         self.pieces.iter().map(|(_, path)| path.as_str())
     }
@@ -113,9 +111,9 @@ impl LineMap {
 pub struct Composed {
     /// The WGSL text.
     pub text: String,
-    /// Where each line came from.
+    /// The origin of each line.
     pub map: LineMap,
-    /// The files that were asked for by `#import`, found or not: when one changes, so does this.
+    /// The files named by `#import`, found or not: when one changes, so does this.
     pub imports: BTreeSet<String>,
     /// The first `#import` that could not be followed.
     pub problem: Option<Box<ShaderProblem>>,
@@ -128,7 +126,7 @@ impl Composed {
         self.map.has(path) || self.imports.contains(path)
     }
 
-    /// The first line (from 1) of the file that has most of the text.
+    /// The first line (from 1) of the file that contributes most of the text.
     #[must_use]
     pub fn longest_file(&self) -> Option<usize> {
         let mut sizes = vec![0; self.map.pieces.len()];
@@ -152,7 +150,7 @@ pub(crate) struct Composer<'a> {
     /// The source so far.
     pub(crate) composed: Composed,
     lines: usize,
-    /// The files that are being put in: the one that was asked for last stands last.
+    /// The files being added, the most recent import last.
     open: Vec<String>,
     done: HashSet<String>,
 }
@@ -162,7 +160,7 @@ impl<'a> Composer<'a> {
         Self { sources, composed: Composed::default(), lines: 0, open: Vec::new(), done: HashSet::new() }
     }
 
-    /// Puts in a source, after the files that it asks for.
+    /// Adds a source, after its imports.
     pub(crate) fn source(&mut self, source: &Source) {
         let text = self.sources.text(source);
         if text != source.text {
@@ -171,7 +169,7 @@ impl<'a> Composer<'a> {
         self.file(source.path, text);
     }
 
-    /// Complains of what would swallow the file behind.
+    /// Reports anything that would swallow the next file.
     fn check_end(&mut self, path: &str, text: &str) {
         if let Some((at, what)) = super::limits::unfinished(text) {
             let problem = || Box::new(ShaderProblem::at(path, text, at, what));
@@ -193,7 +191,7 @@ impl<'a> Composer<'a> {
                     path,
                     i + 1,
                     line,
-                    "files of the lab have no import path: leave this line out, and write `#import \"file.wgsl\"` where the file is needed",
+                    "files here have no import path: remove this line, and write `#import \"file.wgsl\"` where the file is needed",
                 ),
                 None => {}
             }
@@ -204,26 +202,16 @@ impl<'a> Composer<'a> {
         self.push(path, &own);
     }
 
-    /// Puts in the file that a line asks for, unless it is there already.
+    /// Adds the file that a line imports, unless it is there already.
     fn import(&mut self, from: &str, at: usize, line: &str, name: &str) {
         let Some(path) = beside(from, name) else {
-            return self.complain(
-                from,
-                at,
-                line,
-                &format!("`{name}` leads out of the folder of the shaders"),
-            );
+            return self.complain(from, at, line, &format!("`{name}` leads out of the folder of shaders"));
         };
         self.composed.imports.insert(path.clone());
         if let Some(first) = self.open.iter().position(|open| *open == path) {
             let mut round: Vec<_> = self.open[first..].to_vec();
             round.push(path);
-            return self.complain(
-                from,
-                at,
-                line,
-                &format!("the files import each other in a circle: {}", round.join(" → ")),
-            );
+            return self.complain(from, at, line, &format!("circular import: {}", round.join(" → ")));
         }
         if !self.done.insert(path.clone()) {
             return;
@@ -235,7 +223,7 @@ impl<'a> Composer<'a> {
                     at,
                     line,
                     &format!(
-                        "with this file the shader has more than {} bytes, which are all that are allowed",
+                        "with this file the shader exceeds the limit of {} bytes",
                         super::limits::LIMITS.bytes
                     ),
                 ),
@@ -260,7 +248,7 @@ impl<'a> Composer<'a> {
         });
     }
 
-    /// Puts in a text as it is.
+    /// Adds a text unchanged.
     pub(crate) fn push(&mut self, path: &str, text: &str) {
         self.composed.map.pieces.push((self.lines + 1, path.to_owned()));
         self.composed.text.push_str(text);
@@ -272,19 +260,19 @@ impl<'a> Composer<'a> {
     }
 }
 
-/// The file that a line `#import "file.wgsl"` asks for. Imports without quotation marks are modules of Bevy.
+/// The file named by a line `#import "file.wgsl"`. Imports without quotation marks are modules of Bevy.
 fn import_of(line: &str) -> Option<&str> {
     let rest = line.trim().strip_prefix("#import")?.trim_start().strip_prefix('"')?;
     let (name, rest) = rest.split_once('"')?;
     (rest.trim().is_empty() || rest.trim().starts_with("//") || rest.trim() == ";").then_some(name)
 }
 
-/// The paths of the files that a text asks for by `#import`; `path` is its own.
+/// The paths of the files that a text imports; `path` is its own.
 pub(crate) fn imports_of<'a>(path: &'a str, text: &'a str) -> impl Iterator<Item = String> + 'a {
     text.lines().filter_map(import_of).filter_map(move |name| beside(path, name))
 }
 
-/// The path of a file that another one names, from the folder of that one; none if it leads out.
+/// The path of a file named by another one, relative to the folder of that one; `None` if it leads out.
 fn beside(from: &str, name: &str) -> Option<String> {
     let mut parts: Vec<_> = from.split('/').collect();
     parts.pop();
@@ -300,8 +288,8 @@ fn beside(from: &str, name: &str) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join("/"))
 }
 
-/// The WGSL struct `Parameters` of a model. A model without parameters gets an unused field, since
-/// WGSL has no empty structs.
+/// The WGSL struct `Parameters` of a model. A model without parameters gets an unused field, since WGSL has no empty
+/// structs.
 #[must_use]
 pub fn parameter_struct(parameters: &[parameter::Parameter]) -> String {
     let mut text = String::from("struct Parameters {\n");

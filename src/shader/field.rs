@@ -1,9 +1,9 @@
-//! Fields that the parameters of a model do not have, told with the name that was meant.
+//! Messages about parameters that a model does not have, with the name probably meant.
 
 use crate::text::{listed, nearest};
 
-/// What to say instead of the compiler's message about a field of the parameters: `m.base_color`. None for other
-/// messages. The place is a line of the text, and a byte in it from 1.
+/// A clearer message for the compiler's about a field of the parameters: `m.base_color`. `None` for other messages. The
+/// place is a line of the text, and a byte in it from 1.
 pub(super) fn explain(text: &str, line: &str, column: usize, message: &str) -> Option<String> {
     let field = message.strip_prefix("invalid field accessor `")?.strip_suffix('`')?;
     let word = |c: char| c.is_alphanumeric() || c == '_';

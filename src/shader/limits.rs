@@ -1,12 +1,12 @@
-//! Limits on what users write, so that a short file neither ends nor freezes the program.
+//! Limits on users' shaders, so that a short file neither crashes nor freezes the program.
 //!
-//! What parses, checks and compiles shaders calls itself as deep as they are nested, writes out every call and
-//! lays out every array; none of it has limits of its own, and a stack that overflows ends the process. So a text
-//! is looked at before it is parsed ([`check_text`]) and a module before it is checked ([`check_module`]), let
-//! alone given to a driver. Everything here takes time in proportion to the length of the text.
+//! Parsers, validators and compilers of shaders recurse as deep as the code is nested, inline every call and lay out
+//! every array, without limits of their own, and a stack overflow ends the process. So a text is checked before it is
+//! parsed ([`check_text`]), and a module before it is validated ([`check_module`]) or given to a driver. All of this
+//! takes time proportional to the length of the text.
 //!
-//! The numbers: threads of Bevy and of rayon have stacks of 2 MiB, on which naga 29 and naga_oil 0.22 go at least
-//! four times as deep as is allowed here (the test `hostile` tries it); what is shipped stays five times below.
+//! The numbers: threads of Bevy and of rayon have stacks of 2 MiB, on which naga 29 and naga_oil 0.22 can recurse at
+//! least four times as deep as allowed here (the test `hostile` tries it); the shipped shaders stay five times below.
 
 use std::thread;
 
@@ -25,47 +25,47 @@ mod token;
 
 pub use closed::{is_empty, unfinished};
 
-/// What may be written.
+/// Limits on a shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// The longest composed text, bytes. The preprocessor has 21 bits for a place in it.
     pub bytes: usize,
-    /// The most words and signs of a composed text.
+    /// The most tokens of a composed text.
     pub tokens: usize,
     /// The most statements of a composed text.
     pub statements: usize,
     /// The most declarations of a composed text: functions, constants, types, variables.
     pub declarations: usize,
-    /// How many brackets may stand one in the other, those of template lists too.
+    /// The deepest nesting of brackets, including template lists.
     pub nesting: usize,
-    /// How many operators, calls and brackets may lie on one way through an expression.
+    /// The most operators, calls and brackets on one path through an expression.
     pub depth: usize,
-    /// How many blocks may stand one in the other; each `else if` is one in the one before.
+    /// The deepest nesting of blocks; each `else if` counts as nested in the one before.
     pub blocks: usize,
     /// The most values of `case` in a switch.
     pub cases: usize,
-    /// How many declarations may use each other in a chain.
+    /// The longest chain of declarations that use each other.
     pub chain: usize,
     /// The most elements of an array.
     pub elements: u64,
-    /// The most words that a constant or a type may stand for when all is written out that it is made of.
+    /// The most words of a constant or a type when everything in it is expanded.
     pub expansion: u64,
-    /// The largest value or variable, bytes. Software Vulkan takes time by the square: ten seconds for this much.
+    /// The largest value or variable, bytes. Software Vulkan takes quadratic time: ten seconds for this much.
     pub value_bytes: u32,
-    /// The most bytes of variables that a function may have, with all that it calls, and that a module may have; and the
-    /// same for constants.
+    /// The most bytes of variables of a function, including the functions it calls, and of a module; and the same for
+    /// constants.
     pub variable_bytes: u64,
     /// The most expressions of a function.
     pub expressions: usize,
-    /// How many expressions may stand one on the other, through `let` as well.
+    /// The longest chain of expressions that use each other, through `let` as well.
     pub values: usize,
-    /// The most steps of a function when every call is written out, as drivers do.
+    /// The most steps of a function with all calls inlined, as drivers do.
     pub steps: u64,
-    /// How many loops may stand one in the other.
+    /// The deepest nesting of loops.
     pub loops: usize,
 }
 
-/// What may be written in models and other shaders of the lab.
+/// The limits for models and other shaders of the laboratory.
 pub const LIMITS: Limits = Limits {
     bytes: 1 << 20,
     tokens: 100_000,
@@ -86,13 +86,13 @@ pub const LIMITS: Limits = Limits {
     loops: 16,
 };
 
-/// The stack for parsing and checking what is within the limits, bytes: twice what threads of Bevy have.
+/// The stack for parsing and checking anything within the limits, bytes: twice that of Bevy's threads.
 const STACK: usize = 4 << 20;
 
 /// Checks a composed text before it is parsed.
 ///
 /// # Errors
-/// What goes beyond a limit, in terms of the author's file.
+/// Anything beyond a limit, in terms of the author's file.
 pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
     let text = &composed.text;
     let line_of = |at: usize| text.as_bytes()[..at].iter().filter(|b| **b == b'\n').count() + 1;
@@ -105,19 +105,19 @@ pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
             let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
             locate(composed, Some((line_of(at), at - start + 1)), what)
         }
-        // The longest file is most of it.
+        // The longest file makes up most of it.
         text::Refusal::Whole(what) => locate(composed, composed.longest_file().map(|line| (line, 1)), what),
     })
 }
 
-/// Finds the first thing in a module that goes beyond a limit: where, and what. The module need not be valid.
+/// The first thing in a module that exceeds a limit: its place, and the message. The module need not be valid.
 #[must_use]
 pub fn check_module(module: &Module) -> Option<(Span, String)> {
     module::check(module, &LIMITS).err()
 }
 
-/// Calls a function on a stack that is large enough for what is within the limits; none if it panics, or if there is
-/// no memory for a stack.
+/// Calls a function on a stack large enough for anything within the limits; `None` if it panics, or if there is no
+/// memory for the stack.
 pub(super) fn on_stack<T: Send>(call: impl FnOnce() -> T + Send) -> Option<T> {
     thread::scope(|scope| {
         let thread = thread::Builder::new().name("shader".to_owned()).stack_size(STACK);
@@ -164,7 +164,7 @@ mod tests {
         }
     }
 
-    /// All texts that the shipped models are drawn and evaluated with.
+    /// All texts of the shipped models, for drawing and for evaluation.
     fn shipped() -> Vec<(String, Composed)> {
         let mut registry = Registry::builtin();
         for (name, text) in crate::library::assets::EXAMPLES {

@@ -1,5 +1,4 @@
-//! Shader sources: text in, text out; composing, checking, trying, and exchanging them while they are on the
-//! picture.
+//! Shader sources: text in, text out; composing, checking, interpreting.
 
 pub mod check;
 pub mod compose;
@@ -11,12 +10,12 @@ pub mod report;
 pub mod slim;
 pub mod whole;
 
-/// The WGSL source of one file under `assets/shaders/`, with the copy that is built in.
+/// The WGSL source of one file under `assets/shaders/`, with its built-in copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source {
-    /// Path below `assets/shaders/`, e.g. `reflection/phong.wgsl`; what messages name.
+    /// Path below `assets/shaders/`, such as `reflection/phong.wgsl`; its name in messages.
     pub path: &'static str,
-    /// The text as it was when the program was built.
+    /// The text at build time.
     pub text: &'static str,
 }
 

@@ -1,5 +1,4 @@
-//! Mistakes that WGSL allows and a picture does not survive: loops without end and divisions by a
-//! constant zero.
+//! Errors allowed by WGSL but fatal to a picture: endless loops and divisions by a constant zero.
 
 use std::{
     cell::RefCell,
@@ -11,7 +10,7 @@ use naga::{
     UnaryOperator,
 };
 
-/// The first such mistake in a module: where, and what.
+/// The first such error in a module: its place, and the message.
 #[must_use]
 pub fn find(module: &Module) -> Option<(Span, String)> {
     let functions = module.functions.iter().map(|(_, function)| function);
@@ -21,19 +20,19 @@ pub fn find(module: &Module) -> Option<(Span, String)> {
     })
 }
 
-/// Where a loop can be left, and what that depends on.
+/// The exits of a loop, and their conditions.
 #[derive(Default)]
 struct Exits {
     /// It can be left at some place.
     some: bool,
-    /// It can be left at a place that another round may reach even if this one does not.
+    /// It has an exit that another iteration may reach even if this one does not.
     changing: bool,
 }
 
-/// What a place in a loop depends on.
+/// The conditions of a place in a loop.
 #[derive(Clone, Copy)]
 struct Path {
-    /// True if some condition on the way to it may be another one in the next round, or there is none.
+    /// True if some condition on the way to it may differ in the next iteration, or there is none.
     changing: bool,
     conditional: bool,
     /// True if `break` here leaves the loop, and not a `switch` in it.
@@ -59,12 +58,12 @@ impl Search<'_> {
         })
     }
 
-    /// True if an expression is zero, or a vector with a zero, whatever the parameters are.
+    /// True if an expression is zero, or a vector with a zero, for all parameters.
     fn is_zero(&self, handle: Handle<Expression>) -> bool {
         is_zero(&self.function.expressions, handle, self.module)
     }
 
-    /// The truth of a condition that is always the same.
+    /// The truth of a constant condition.
     fn always(&self, condition: Handle<Expression>) -> Option<bool> {
         let (mut at, mut negated) = (condition, false);
         while let Expression::Unary { op: UnaryOperator::LogicalNot, expr } = self.function.expressions[at] {
@@ -82,7 +81,7 @@ impl Search<'_> {
         }
     }
 
-    /// The first loop that has no end.
+    /// The first endless loop.
     fn endless_loop(&self, block: &Block) -> Option<(Span, String)> {
         block.span_iter().find_map(|(statement, span)| match statement {
             Statement::Block(inner) => self.endless_loop(inner),
@@ -109,7 +108,7 @@ impl Search<'_> {
                 if !exits.changing {
                     return Some((
                         *span,
-                        "this loop ends in its first round or never: nothing that its condition reads changes in it"
+                        "this loop ends in its first iteration or never: nothing in its condition changes"
                             .to_owned(),
                     ));
                 }
@@ -119,7 +118,7 @@ impl Search<'_> {
         })
     }
 
-    /// Collects the places where a loop can be left from a block in it.
+    /// Collects the exits of a loop from a block in it.
     fn exits(&self, block: &Block, path: Path, written: &Written, exits: &mut Exits) {
         for statement in block {
             match statement {
@@ -154,7 +153,7 @@ impl Search<'_> {
                     };
                     cases.iter().for_each(|case| self.exits(&case.body, inner, written, exits));
                 }
-                // Leaving the function leaves this loop too, from an inner loop as well.
+                // Leaving the function leaves this loop too, even from an inner loop.
                 Statement::Loop { body, continuing, .. } => {
                     let inner = Path { changing: true, conditional: true, breaks: false };
                     self.exits(body, inner, written, exits);
@@ -165,9 +164,8 @@ impl Search<'_> {
         }
     }
 
-    /// True if an expression may have another value in the next round of a loop that writes to these variables.
-    /// Values that are used twice are looked at once: a chain of sums of a value with itself would double the work
-    /// with each.
+    /// True if an expression may have another value in the next iteration of a loop that writes to these variables.
+    /// Values used twice are examined once: a chain of sums of a value with itself would double the work each time.
     fn may_change(&self, handle: Handle<Expression>, written: &Written) -> bool {
         if let Some(known) = written.known.borrow().get(&handle) {
             return *known;
@@ -213,12 +211,12 @@ impl Search<'_> {
             Expression::Math { arg, arg1, arg2, arg3, .. } => {
                 change(arg) || [arg1, arg2, arg3].into_iter().flatten().any(change)
             }
-            // What a function or the hardware answers may be another thing next time.
+            // The answer of a function or the hardware may differ next time.
             _ => true,
         }
     }
 
-    /// The variables that some blocks write to.
+    /// The variables written by some blocks.
     fn written(&self, blocks: &[&Block]) -> Written {
         let mut written = Written::default();
         blocks.iter().for_each(|block| self.collect_written(block, &mut written));
@@ -243,7 +241,7 @@ impl Search<'_> {
                 Statement::Store { pointer, .. } => self.note(*pointer, written),
                 Statement::Call { arguments, .. } => {
                     arguments.iter().for_each(|argument| self.note(*argument, written));
-                    // A function may write to any variable of the module.
+                    // A function may write to any module variable.
                     written.globals.extend(self.module.global_variables.iter().map(|(h, _)| h));
                 }
                 Statement::Emit(_)
@@ -256,7 +254,7 @@ impl Search<'_> {
         }
     }
 
-    /// Notes the variable that a pointer points into; values that are no pointers are passed over.
+    /// Notes the variable that a pointer points into; other values are ignored.
     fn note(&self, pointer: Handle<Expression>, written: &mut Written) {
         match &self.function.expressions[pointer] {
             Expression::LocalVariable(variable) => {
@@ -277,9 +275,9 @@ impl Search<'_> {
 struct Written {
     locals: HashSet<Handle<LocalVariable>>,
     globals: HashSet<Handle<GlobalVariable>>,
-    /// Statements that are not looked into: they may write anywhere.
+    /// Statements that are not examined: they may write anywhere.
     anything: bool,
-    /// What was found of values, see [`Search::may_change`].
+    /// The findings on values, see [`Search::may_change`].
     known: RefCell<HashMap<Handle<Expression>, bool>>,
 }
 
@@ -349,7 +347,7 @@ mod tests {
             "var i = 0u; loop { if i > s.n { break; } if i > n { return x; } }",
             "var i = 0u; loop { let y = i; continuing { break if y > 3u; } }",
         ] {
-            assert!(in_function(body).contains("first round or never"), "{body}: {}", in_function(body));
+            assert!(in_function(body).contains("first iteration or never"), "{body}: {}", in_function(body));
         }
     }
 

@@ -1,26 +1,25 @@
-//! Problems with shaders as people read them: the message, file, line and column, the line itself and a caret
-//! below the character that is meant.
+//! Problems with shaders as shown to people: the message, file, line and column, the line itself and a caret below the
+//! character in question.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
 use super::check::ShaderProblem;
 use crate::files::printable;
 
-/// A problem as several lines of plain text. `file` is how the reader calls the file: its path on disk where it
-/// has one.
+/// A problem as several lines of plain text. `file` is the reader's name for the file: its path on disk if it has one.
 #[must_use]
 pub fn annotated(problem: &ShaderProblem, file: &str) -> String {
     rendered(problem, file, &Renderer::plain())
 }
 
-/// The same in the colours of a terminal.
+/// The same in terminal colours.
 #[must_use]
 pub fn coloured(problem: &ShaderProblem, file: &str) -> String {
     rendered(problem, file, &Renderer::styled())
 }
 
 fn rendered(problem: &ShaderProblem, file: &str, renderer: &Renderer) -> String {
-    // The renderer makes the message and the source fit for a terminal, but for controls beyond ASCII.
+    // The annotation crate escapes control characters only in ASCII.
     let fit = |text: &str| text.replace(|c: char| c.is_control() && !c.is_ascii(), "\u{fffd}");
     let (source, message) = (fit(&problem.source), fit(&problem.message));
     let mut characters = source.char_indices().skip(problem.column.saturating_sub(1));

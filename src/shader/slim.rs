@@ -1,11 +1,11 @@
-//! Texts without what costs the composer time: comments, indentation, and lines.
+//! Texts without the parts that cost the composer time: comments, indentation, and lines.
 
-/// A text that means the same without comments and indentation, and with few lines, each of which costs the composer
-/// time. Places in it are not those of the text.
+/// An equivalent text without comments and indentation, and with few lines, each of which costs the composer time.
+/// Places in it differ from those in the original.
 #[must_use]
 pub fn slim(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    // An import in braces may go on in the next lines.
+    // An import in braces may continue on the next lines.
     let mut importing = false;
     for line in without_comments(text).lines().map(str::trim_end).filter(|line| !line.is_empty()) {
         let directive = line.starts_with('#');
@@ -25,12 +25,12 @@ pub fn slim(text: &str) -> String {
 /// A text without comments and indentation; lines stay where they are.
 fn without_comments(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    // How many `/*` are open: they nest.
+    // The number of open `/*`: they nest.
     let mut depth = 0_usize;
     for line in text.lines() {
         let line = line.trim();
         let bytes = line.as_bytes();
-        // The first byte that is not put out yet, and the one that is looked at.
+        // The first byte not yet written, and the one being examined.
         let (mut from, mut at) = (0, 0);
         while at < bytes.len() {
             match (depth, bytes[at], bytes.get(at + 1)) {
@@ -38,7 +38,7 @@ fn without_comments(text: &str) -> String {
                 (_, b'/', Some(b'*')) => {
                     if depth == 0 {
                         out.push_str(&line[from..at]);
-                        // What stands before and behind stays apart.
+                        // The texts on both sides stay separate.
                         out.push(' ');
                     }
                     depth += 1;

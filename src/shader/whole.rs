@@ -1,12 +1,12 @@
-//! Checking composed sources that draw, wrapper included, without a renderer: what the wrapper imports from Bevy
-//! is replaced by functions that look the same to those who call them.
+//! Checking composed sources that draw, wrapper included, without a renderer: the wrapper's imports from Bevy are
+//! replaced by functions with the same signatures.
 
 use super::{
     check::{ShaderProblem, validate},
     compose::Composed,
 };
 
-/// What the wrapper imports, and what stands in for it.
+/// The wrapper's imports, and their stand-ins.
 const IMPORTS: &[(&str, &str)] = &[
     (
         "bevy_pbr::mesh_functions",
@@ -27,8 +27,8 @@ var<private> view: BevyView;
     ),
 ];
 
-/// Checks a source that draws; `faces` as for shading models that calculate per polygon. What uses more of Bevy than the
-/// wrapper that is shipped cannot be judged here and passes.
+/// Checks a source that draws; `faces` as for shading models that calculate per polygon. A source that uses more of
+/// Bevy than the shipped wrapper cannot be judged here and passes.
 ///
 /// # Errors
 /// The first problem, located in the author's file.
@@ -36,7 +36,7 @@ pub fn validate_drawing(composed: &Composed, faces: bool) -> Result<(), Box<Shad
     judged(composed, faces).unwrap_or(Ok(()))
 }
 
-/// As [`validate_drawing`]; none for what cannot be judged here.
+/// As [`validate_drawing`]; `None` if it cannot be judged here.
 pub fn judged(composed: &Composed, faces: bool) -> Option<Result<(), Box<ShaderProblem>>> {
     if let Some(problem) = &composed.problem {
         return Some(Err(problem.clone()));
@@ -45,11 +45,11 @@ pub fn judged(composed: &Composed, faces: bool) -> Option<Result<(), Box<ShaderP
     Some(validate(&Composed { text, ..composed.clone() }).map(drop))
 }
 
-/// The text without what a preprocessor is needed for; places stay the same.
+/// The text without preprocessor directives; places stay the same.
 pub(super) fn standing_alone(text: &str, faces: bool) -> Option<String> {
     let mut out = String::with_capacity(text.len() + 512);
     let mut stand_ins = String::new();
-    // For each open condition whether its lines count.
+    // For each open condition, true if its lines count.
     let mut conditions: Vec<bool> = Vec::new();
     for line in text.lines() {
         let directive = line.trim();

@@ -6,8 +6,9 @@ use crate::shader::wgsl;
 /// **Derivative shading**: the normal of the triangle from screen-space derivatives of the position,
 /// colour calculated per pixel (LC3).
 ///
-/// On the GPU the normal is `normalize(dpdy(P) × dpdx(P))`; within a plane triangle that is the exact
-/// triangle normal, which the CPU renderer uses. Needs no normals in the mesh; tangents are interpolated. Looks faceted like
+/// On the GPU the normal is `normalize(dpdy(P) × dpdx(P))`; within a plane triangle that is the exact triangle normal,
+/// which the CPU renderer uses. Needs no normals in the mesh; tangents are interpolated. Looks faceted like flat
+/// shading, but the light varies within each facet.
 /// flat shading, but the light varies within each facet.
 #[derive(Clone, Copy, Debug)]
 pub struct Derivative;

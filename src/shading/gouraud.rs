@@ -5,8 +5,8 @@ use crate::shader::wgsl;
 
 /// **Gouraud shading**: colour calculated at the vertices, interpolated between them (DD9).
 ///
-/// Source: H. Gouraud (1971), *Continuous Shading of Curved Surfaces*. Smooth and cheap; a highlight
-/// that falls between the vertices is missed.
+/// Source: H. Gouraud (1971), *Continuous Shading of Curved Surfaces*. Smooth and cheap; misses highlights that fall
+/// between the vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct Gouraud;
 

@@ -21,13 +21,13 @@ pub use flat::Flat;
 pub use gouraud::Gouraud;
 pub use phong::PhongShading;
 
-/// Takes shading models one after the other.
+/// Receives shading models one after the other.
 pub trait Take {
-    /// Takes the next one.
+    /// Receives the next one.
     fn take<T: ShadingModel>(&mut self);
 }
 
-/// The built-in shading models, in the order in which choosers list them. The one list.
+/// The built-in shading models, in the order of all lists: the one list.
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Flat>();
     to.take::<Gouraud>();
@@ -58,22 +58,22 @@ impl Stage {
     }
 }
 
-/// What a shading model is called, where it comes from and what it needs.
+/// The name, source and needs of a shading model.
 #[derive(Debug)]
 pub struct Declaration {
     /// The name in scene files.
     pub id: &'static str,
-    /// The name that people read.
+    /// The name shown to people.
     pub name: &'static str,
     /// Author and year.
     pub author: &'static str,
-    /// Author, year, title, where published.
+    /// Author, year, title and place of publication.
     pub source: &'static str,
-    /// What it does and what to look for, one or two sentences.
+    /// Its method and what to look for, in one or two sentences.
     pub summary: &'static str,
     /// The stage that evaluates the reflection model.
     pub stage: Stage,
-    /// The key that chooses it in the window.
+    /// The key that selects it in the window.
     pub key: char,
     /// The twin in WGSL: `fn shade_vertex` and `fn shade_pixel`.
     pub wgsl: Source,
@@ -90,12 +90,12 @@ pub trait Lighting {
 /// One corner of a polygon, in room coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
-    /// Where it is.
+    /// The position.
     pub position: Vec3,
     /// The vertex normal, DD9.
     pub normal: Vec3,
-    /// The tangent of the vertex: the direction in which the surface is brushed. Zero where it has none,
-    /// and in the CPU renderer under models that are not anisotropic.
+    /// The tangent of the vertex: the direction in which the surface is brushed. Zero if there is none, and in the CPU
+    /// renderer for isotropic models.
     pub tangent: Vec3,
     /// The normal of the polygon, DD8.
     pub face_normal: Vec3,
@@ -105,7 +105,7 @@ pub struct Corner {
     pub face_centre: Vec3,
 }
 
-/// What goes from the corners to the pixels, interpolated with perspective correction.
+/// The values passed from the corners to the pixels, interpolated with perspective correction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Varying {
     /// Position in the room.
@@ -118,13 +118,13 @@ pub struct Varying {
     pub colour: Vec3,
 }
 
-/// A shading model: where the light loop is asked, with which normal and tangent.
+/// A shading model: the points at which the light loop runs, with their normals and tangents.
 pub trait ShadingModel: Send + Sync + 'static {
     /// Name, source, stage, shader.
     const DECLARATION: Declaration;
 
-    /// What is calculated at a corner of a polygon. For [`Stage::Polygon`] the result must be the same
-    /// at all corners of one polygon but for `position`.
+    /// The values calculated at a corner of a polygon. For [`Stage::Polygon`] they must be the same at all corners of
+    /// one polygon except for `position`.
     fn vertex(lighting: &dyn Lighting, corner: &Corner) -> Varying;
 
     /// The colour of a pixel; `face_normal` is the exact normal of the **triangle** that covers it.

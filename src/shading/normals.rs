@@ -1,13 +1,12 @@
-//! Surface normals from polygons (R7): DD8 for polygons, DD9 for vertices; and tangents likewise.
+//! Surface normals from polygons (R7): DD8 for polygons, DD9 for vertices; tangents likewise.
 
 use glam::Vec3;
 
 /// The unit normal of a polygon whose corners run counter-clockwise seen from outside (CA DD8:
 /// `n = (P × Q)/|P × Q|` for two tangents P, Q).
 ///
-/// For triangles P and Q are two edges; for quadrilaterals they are the diagonals, which gives the
-/// area-weighted mean of both ways to cut a quadrilateral that is not plane (M. Newell). Zero for
-/// degenerate polygons.
+/// For triangles P and Q are two edges; for quadrilaterals they are the diagonals, which gives the area-weighted mean
+/// of both ways to split a non-planar quadrilateral (M. Newell). Zero for degenerate polygons.
 #[must_use]
 pub fn polygon_normal(corners: &[Vec3]) -> Vec3 {
     // Newell's sum over the edges, taken about the first corner; equals the two cases above.
@@ -25,9 +24,8 @@ pub fn polygon_centre(corners: &[Vec3]) -> Vec3 {
     corners.iter().sum::<Vec3>() / corners.len().max(1) as f32
 }
 
-/// Vertex normals: the normalised **unweighted** mean of the normals of all polygons that share the
-/// vertex (CA DD9: `n_v = Σ n_i / |Σ n_i|`). Degenerate polygons do not count; a vertex of no polygon
-/// gets zero.
+/// Vertex normals: the normalised **unweighted** mean of the normals of all polygons that share the vertex (CA DD9:
+/// `n_v = Σ n_i / |Σ n_i|`). Degenerate polygons do not count; a vertex without polygons gets zero.
 #[must_use]
 pub fn vertex_normals<'a>(
     vertex_count: usize,
@@ -44,9 +42,9 @@ pub fn vertex_normals<'a>(
     sums.into_iter().map(Vec3::normalize_or_zero).collect()
 }
 
-/// The unit tangent of a polygon with a unit normal that is brushed along a direction, which need not
-/// lie in its plane. Where that direction is zero or along the normal, the polygon is brushed
-/// horizontally, `y × n`; where it lies level itself, along x.
+/// The unit tangent of a polygon with a unit normal, brushed along a direction that need not lie in its plane. Where
+/// that direction is zero or along the normal, the polygon is brushed horizontally, `y × n`; where the polygon is
+/// itself horizontal, along x.
 #[must_use]
 pub fn polygon_tangent(brushed: Vec3, normal: Vec3) -> Vec3 {
     [brushed, Vec3::Y.cross(normal), Vec3::X]
@@ -57,14 +55,13 @@ pub fn polygon_tangent(brushed: Vec3, normal: Vec3) -> Vec3 {
         .map_or(Vec3::ZERO, Vec3::normalize_or_zero)
 }
 
-/// How short the tangent of a vertex is whose polygons are brushed in different directions.
+/// The length of a vertex tangent between polygons brushed in different directions.
 const DISPUTED: f32 = 1e-3;
 
-/// Vertex tangents: the normalised unweighted mean of the tangents of all polygons that share the
-/// vertex, as [`vertex_normals`] does for normals. Zero where they cancel: at a pole, around which they
-/// run. Short where they are at right angles or worse, as at an edge between two faces that are brushed
-/// differently: interpolated, such a tangent leaves the direction to the other corners, so that each
-/// face is brushed alike up to the edge.
+/// Vertex tangents: the normalised unweighted mean of the tangents of all polygons that share the vertex, as
+/// [`vertex_normals`] does for normals. Zero where they cancel: at a pole, around which they run. Short where they are
+/// at right angles or more, as at an edge between two faces brushed differently: interpolated, such a tangent yields to
+/// those of the other corners, so that each face is brushed uniformly up to the edge.
 #[must_use]
 pub fn vertex_tangents<'a>(
     vertex_count: usize,
@@ -117,11 +114,11 @@ mod tests {
 
     #[test]
     fn vertex_normals_are_the_unweighted_mean() {
-        // Two polygons of very different size meet at vertex 0: the mean must not care.
+        // Two polygons of very different size meet at vertex 0: the mean must not depend on it.
         let normals = vertex_normals(2, [(&[0u32, 1][..], Vec3::X), (&[0u32][..], Vec3::Y)]);
         let diagonal = (Vec3::X + Vec3::Y).normalize();
         assert!((normals[0] - diagonal).length() < 1e-6);
-        // The wrong twin, a mean weighted 1:9 by area, must be told apart.
+        // The wrong twin, a mean weighted 1:9 by area, must be rejected.
         assert!((normals[0] - (Vec3::X + 9.0 * Vec3::Y).normalize()).length() > 0.1);
         assert_eq!(normals[1], Vec3::X);
     }

@@ -6,9 +6,9 @@ use super::{Declaration, ObjectType, PolygonMesh, mesh::Polygon};
 
 /// **Cube** of edge 1, each face cut into n × n squares.
 ///
-/// Vertices on edges and corners belong to two and three faces at once, so their normals (DD9) point
-/// between the faces: Gouraud and Phong shading round the outermost row of squares off.
-/// The faces are brushed horizontally, top and bottom along x.
+/// Vertices on edges and corners belong to two and three faces at once, so their normals (DD9) point between the faces:
+/// Gouraud and Phong shading round off the outermost row of squares. The faces are brushed horizontally, top and bottom
+/// along x.
 #[derive(Clone, Copy, Debug)]
 pub struct Cube;
 
@@ -26,7 +26,7 @@ impl ObjectType for Cube {
     fn mesh(tessellation: u32) -> PolygonMesh {
         let n = tessellation.max(1);
         let mut mesh = PolygonMesh::default();
-        // Vertices are known by their place on a lattice, so neighbouring faces find each other's.
+        // Vertices are identified by their place on a lattice, so neighbouring faces share them.
         let mut known: HashMap<UVec3, u32> = HashMap::new();
         for axis in 0..3 {
             for high in [false, true] {
@@ -40,7 +40,7 @@ impl ObjectType for Cube {
                         (mesh.positions.len() - 1) as u32
                     })
                 };
-                // Along x where that lies in the face, so that most neighbours agree; else horizontally.
+                // Along x where that lies in the face, so that most neighbours agree; otherwise horizontally.
                 let along = if axis == 0 { Vec3::ZERO } else { Vec3::X };
                 let mut squares = Vec::with_capacity((n * n) as usize);
                 for u in 0..n {
@@ -93,7 +93,7 @@ mod tests {
             let expected = if n.x.abs() > 0.5 { Vec3::Y.cross(n) } else { Vec3::X };
             assert!((mesh.polygon_tangents()[i] - expected).length() < 1e-5);
             let corners = mesh.polygons[i].corners();
-            // In the middle of both triangles, also of those that have no vertex within the face.
+            // In the middle of both triangles, including those without a vertex inside the face.
             for triangle in mesh.polygons[i].triangles() {
                 let mean: Vec3 = triangle.iter().map(|&c| vertices[corners[c] as usize]).sum();
                 assert!((polygon_tangent(mean, n) - expected).length() < 0.01, "{mean} {n}");

@@ -6,11 +6,10 @@ use crate::shading::normals::{
     polygon_centre, polygon_normal, polygon_tangent, vertex_normals, vertex_tangents,
 };
 
-/// Vertices and convex polygons of three or four corners, with the normals and tangents that the shading
-/// shading models need.
+/// Vertices and convex polygons of three or four corners, with the normals and tangents that shading models need.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PolygonMesh {
-    /// The vertices; each place of a surface occurs once.
+    /// The vertices; each point of a surface occurs once.
     pub positions: Vec<Vec3>,
     /// Corners of each polygon, counter-clockwise seen from outside.
     pub polygons: Vec<Polygon>,
@@ -31,7 +30,7 @@ impl Polygon {
         Self { corners: [a, b, c, c], count: 3, brushed: Vec3::ZERO }
     }
 
-    /// A quadrilateral; where neighbouring corners are the same vertex (at a pole) a triangle.
+    /// A quadrilateral; a triangle if neighbouring corners are the same vertex (at a pole).
     #[must_use]
     pub fn quad(a: u32, b: u32, c: u32, d: u32) -> Self {
         let mut corners = [0; 4];
@@ -48,8 +47,8 @@ impl Polygon {
         Self { corners, count: count as u8, brushed: Vec3::ZERO }
     }
 
-    /// The polygon, brushed along a direction, which matters to anisotropic models. One that is given
-    /// none is brushed horizontally.
+    /// The polygon, brushed along a direction, which matters to anisotropic models. Without one, it is brushed
+    /// horizontally.
     #[must_use]
     pub const fn brushed(self, direction: Vec3) -> Self {
         Self { brushed: direction, ..self }
@@ -131,7 +130,7 @@ impl PolygonMesh {
         )
     }
 
-    /// Brushes every polygon as a lathe would that turns the shape about an axis through the origin.
+    /// Brushes every polygon as on a lathe that turns the shape about an axis through the origin.
     pub fn turn_on_lathe(&mut self, axis: Vec3) {
         let centres = self.polygon_centres();
         for (polygon, centre) in self.polygons.iter_mut().zip(centres) {
@@ -139,13 +138,13 @@ impl PolygonMesh {
         }
     }
 
-    /// Appends a surface made of loops of vertices, one row after the other, with a quadrilateral
-    /// between each four neighbours. Seen from outside, rows follow each other downward and each goes
-    /// from left to right. A row of one point is a pole, where triangles meet. With `ring` the last row
-    /// is joined to the first. The polygons are brushed along the rows.
+    /// Appends a surface made of loops of vertices, one row after the other, with a quadrilateral between each four
+    /// neighbours. Seen from outside, rows follow each other downwards and each runs from left to right. A row of one
+    /// point is a pole, where triangles meet. With `ring` the last row is joined to the first. The polygons are brushed
+    /// along the rows.
     ///
     /// # Panics
-    /// If rows that are not poles differ in length, or a row is empty: a mistake of the shape's author.
+    /// If rows other than poles differ in length, or a row is empty: an error of the shape's author.
     pub fn append_loops(&mut self, rows: &[Vec<Vec3>], ring: bool) {
         let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
         let mut starts = Vec::with_capacity(rows.len());

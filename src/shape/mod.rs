@@ -1,4 +1,4 @@
-//! Object types: what is lit.
+//! Object types: the shapes of objects.
 //!
 //! **To add one**: write `shape/x.rs` and add its name to [`register_builtin`].
 
@@ -17,13 +17,13 @@ pub use sphere::Sphere;
 pub use teapot::Teapot;
 pub use torus::Torus;
 
-/// Takes object types one after the other.
+/// Receives object types one after the other.
 pub trait Take {
-    /// Takes the next one.
+    /// Receives the next one.
     fn take<T: ObjectType>(&mut self);
 }
 
-/// The built-in object types, in the order in which choosers list them. The one list.
+/// The built-in object types, in the order of all lists: the one list.
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Sphere>();
     to.take::<Cube>();
@@ -31,33 +31,33 @@ pub fn register_builtin(to: &mut impl Take) {
     to.take::<Teapot>();
 }
 
-/// What an object type is called and how finely it can be cut.
+/// The name and the legal tessellations of an object type.
 #[derive(Debug)]
 pub struct Declaration {
     /// The name in scene files.
     pub id: &'static str,
-    /// The name that people read.
+    /// The name shown to people.
     pub name: &'static str,
-    /// One sentence: what it is and what it shows.
+    /// One sentence: its shape and its use.
     pub summary: &'static str,
     /// A glyph for lists.
     pub glyph: &'static str,
-    /// What the number of the tessellation counts.
+    /// The meaning of the tessellation number.
     pub tessellation_help: &'static str,
     /// The legal tessellations.
     pub tessellation: RangeInclusive<u32>,
-    /// The tessellation when the scene does not give one.
+    /// The tessellation if the scene gives none.
     pub default_tessellation: u32,
 }
 
-/// An object type: makes a mesh of polygons whose largest extent is 1, centred on the origin.
+/// An object type: creates a mesh of polygons whose largest extent is 1, centred on the origin.
 pub trait ObjectType: Send + Sync + 'static {
     /// Name and tessellation.
     const DECLARATION: Declaration;
 
-    /// The mesh for a legal tessellation. Vertices that coincide are shared, since vertex normals are
-    /// means over shared vertices (DD9); corners run counter-clockwise seen from outside. Polygons are brushed horizontally unless
-    /// the shape says otherwise; see [`Polygon::brushed`](mesh::Polygon::brushed).
+    /// The mesh for a legal tessellation. Coincident vertices are shared, since vertex normals are means over shared
+    /// vertices (DD9); corners run counter-clockwise seen from outside. Polygons are brushed horizontally unless the
+    /// shape sets another direction; see [`Polygon::brushed`](mesh::Polygon::brushed).
     fn mesh(tessellation: u32) -> PolygonMesh;
 }
 
@@ -76,15 +76,14 @@ impl ShapeEntry {
         Self { declaration: const { &T::DECLARATION }, mesh: T::mesh }
     }
 
-    /// The tessellation that an object gets: what it asks for, brought into the legal range, or the
-    /// default.
+    /// The tessellation of an object: the requested one, clamped to the legal range, or the default.
     #[must_use]
     pub fn tessellation(&self, wanted: Option<u32>) -> u32 {
         let range = &self.declaration.tessellation;
         wanted.unwrap_or(self.declaration.default_tessellation).clamp(*range.start(), *range.end())
     }
 
-    /// The mesh for a tessellation, brought into the legal range.
+    /// The mesh for a tessellation, clamped to the legal range.
     #[must_use]
     pub fn mesh(&self, tessellation: u32) -> PolygonMesh {
         (self.mesh)(self.tessellation(Some(tessellation)))
@@ -174,7 +173,7 @@ mod tests {
             let behind = mesh.polygons.iter().zip(&faces).filter(|(polygon, face)| {
                 polygon.corners().iter().any(|&c| vertices[c as usize].dot(**face) <= 0.0)
             });
-            // The lip of a teapot cut very coarsely folds over within one polygon.
+            // The lip of a very coarse teapot folds over within one polygon.
             let allowed = if d.id == "teapot" && tessellation == 2 { 16 } else { 0 };
             let count = behind.count();
             assert!(count <= allowed, "{} {tessellation}: {count}", d.id);
@@ -205,7 +204,7 @@ mod tests {
             for (t, n) in mesh.polygon_tangents().into_iter().zip(mesh.polygon_normals()) {
                 assert!((t.length() - 1.0).abs() < 1e-4 && t.dot(n).abs() < 1e-4, "{case}: {t} {n}");
             }
-            // The lip of a teapot cut very coarsely folds over, and its vertices with it.
+            // The lip of a very coarse teapot folds over, with its vertices.
             if d.id == "teapot" && tessellation == 2 {
                 continue;
             }
@@ -215,7 +214,8 @@ mod tests {
                 let length = t.length();
                 poles += u32::from(length == 0.0);
                 disputed += u32::from(length > 0.0 && length < 0.5);
-                // At edges of the cube they lean out of the vertex' own plane, or stand on it; nowhere else.
+                // At edges of the cube they are tilted against the vertex's plane, or perpendicular to it; nowhere
+                // else.
                 let lean = if d.id == "cube" { 1.001 } else { 0.15 };
                 assert!(t.dot(n).abs() <= lean * length, "{case}: {t} {n}");
                 assert!([0.0, 1e-3, 1.0].iter().any(|l| (length - l).abs() <= 1e-4 * l), "{case}: {t}");
@@ -224,7 +224,7 @@ mod tests {
             let expected = match d.id {
                 // All edges but the four along x.
                 "cube" => (0, 8 * n),
-                // Four vertices around: their polygons look to four sides.
+                // Four vertices around: their polygons face four sides.
                 "sphere" => (2, if n == 2 { 4 } else { 0 }),
                 "teapot" => (2, 0),
                 _ => (0, 0),

@@ -6,9 +6,8 @@ use super::{Declaration, ObjectType, PolygonMesh};
 
 /// **Sphere**, cut along parallels and meridians; its poles lie on the y axis.
 ///
-/// All vertices lie on the sphere of diameter 1, so the polygons cut the corners: the finer the
-/// tessellation, the closer the vertex normals (DD9) come to the position divided by the radius. It is
-/// brushed along the parallels.
+/// All vertices lie on the sphere of diameter 1, so the polygons cut the corners: the finer the tessellation, the
+/// closer the vertex normals (DD9) come to the position divided by the radius. It is brushed along the parallels.
 #[derive(Clone, Copy, Debug)]
 pub struct Sphere;
 
@@ -16,7 +15,7 @@ impl ObjectType for Sphere {
     const DECLARATION: Declaration = Declaration {
         id: "sphere",
         name: "Sphere",
-        summary: "Has every normal once: shows a whole reflection model at one glance.",
+        summary: "Has every normal once: shows a whole reflection model at a glance.",
         glyph: "●",
         tessellation_help: "Bands from pole to pole; twice as many segments go around.",
         tessellation: 2..=256,

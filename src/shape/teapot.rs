@@ -2,9 +2,9 @@ use glam::{Vec2, Vec3};
 
 use super::{Declaration, ObjectType, PolygonMesh};
 
-/// **Teapot**: the teapot of M. Newell (1975), *The Utilization of Procedure Models in Digital Image
-/// Synthesis*, University of Utah; lower by the factor 1/1.3 than the pot on his table, as it has been
-/// drawn since J. Blinn, and with the bottom that the original did not have.
+/// **Teapot**: the teapot of M. Newell (1975), *The Utilization of Procedure Models in Digital Image Synthesis*,
+/// University of Utah; lower by the factor 1/1.3 than the pot on his table, as usual since J. Blinn, and with the
+/// bottom that the original lacked.
 ///
 /// All 32 bicubic Bézier patches with Newell's numbers: rim 4, body 8, lid 8, bottom 4, handle 4,
 /// spout 4. y is up and the spout points along +x. It is tessellated from the patches; within each
@@ -95,8 +95,8 @@ fn bernstein(t: f32) -> [f32; 4] {
     [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t]
 }
 
-/// The rows of a chain of patches over control rows: for each step along the chain the control row
-/// that the four around it blend to. The first of each further patch is the last of the one before.
+/// The rows of a chain of patches over control rows: for each step along the chain, the blend of four control rows. The
+/// first row of each further patch is the last of the one before.
 fn along<R, B>(rows: &[R], steps: usize, blend: impl Fn(&[R], [f32; 4]) -> B) -> Vec<B> {
     let patches = rows.len() / 3;
     (0..=patches * steps)
@@ -248,7 +248,7 @@ mod tests {
             let around = Vec3::Y.cross(*centre - axis).normalize();
             assert!(tangent.dot(around) > 0.98, "{tangent} {around}");
         }
-        // Around a tube the tangents come back: they add up to little.
+        // Around a tube the tangents nearly cancel.
         for start in [24 * n * n, 28 * n * n] {
             for row in 0..2 * n {
                 let from = start + row * 2 * n;

@@ -9,8 +9,8 @@ const RING_RADIUS: f32 = 0.35;
 /// Radius of the tube. Ring and tube together make the outer radius 0.5.
 const TUBE_RADIUS: f32 = 0.15;
 
-/// **Torus** that stands upright: the ring lies in the xy plane, its axis is z, so that the default
-/// observer looks through the hole. It is brushed around the ring.
+/// **Torus**, standing upright: the ring lies in the xy plane with its axis along z, so the default observer looks
+/// through the hole. It is brushed around the ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Torus;
 
@@ -58,7 +58,7 @@ mod tests {
             .iter()
             .zip(normals)
             .map(|(p, n)| {
-                // The way from the nearest point of the ring's circle.
+                // The offset from the nearest point of the ring's circle.
                 let ring = RING_RADIUS * p.with_z(0.0).normalize();
                 ((*p - ring).normalize() - n).length()
             })

@@ -17,7 +17,7 @@ pub struct Measurement {
     pub theta_i: f32,
     /// Between viewer and normal.
     pub theta_o: f32,
-    /// Between the azimuths of light and viewer; 180 is the side of the mirror direction.
+    /// Between the azimuths of light and viewer; 180 is the mirror direction's side.
     pub delta_phi: f32,
     /// The azimuth of the light.
     pub phi_i: f32,
@@ -25,7 +25,7 @@ pub struct Measurement {
     pub f: [f64; 3],
 }
 
-/// The measured values of a paint, none if there is no such paint.
+/// The measured values of a paint; none for an unknown paint.
 #[must_use]
 pub fn paint(id: &str) -> Vec<Measurement> {
     let row = |line: &str| {
@@ -54,7 +54,7 @@ pub fn brightest(paint: &[Measurement]) -> usize {
     (0..3).max_by(|a, b| sum(*a).total_cmp(&sum(*b))).unwrap_or(0)
 }
 
-/// Measured values in one band as samples for fitting; values that are not positive are left out.
+/// Measured values in one band as samples for fitting; non-positive values are skipped.
 #[must_use]
 pub fn samples(paint: &[Measurement], band: usize, keep: impl Fn(&Measurement) -> bool) -> Vec<Sample> {
     paint
@@ -68,8 +68,8 @@ pub fn samples(paint: &[Measurement], band: usize, keep: impl Fn(&Measurement) -
         .collect()
 }
 
-/// **The model of the shifted gamma distribution**, with the parameters that its authors fitted to a
-/// material of the MERL database. A fit, not a measurement.
+/// **The model of the shifted gamma distribution**, with the parameters fitted by its authors to a material of the MERL
+/// database. A fit, not a measurement.
 ///
 /// ```text
 /// f = (ρ_d + ρ_s F(v·h) G(l) G(v) D(h) / ((n·l) (n·v))) / π
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(brightest(&paint("krylon_blue")), 2);
         assert_eq!(brightest(&paint("garnet_red")), 0);
         assert_eq!(Sgd::all().len(), 100);
-        // What is not positive has no logarithm.
+        // Non-positive values have no logarithm.
         let all = paint("krylon_blue");
         assert!(samples(&all, 0, |_| true).iter().all(|s| s.value > 0.0));
     }
@@ -188,6 +188,6 @@ mod tests {
         assert!((wrong[0] / expected[0] - 1.0).abs() > 1e-3);
     }
 
-    /// From a script of its own with the equations above.
+    /// From a separate script with the equations above.
     const TEFLON: [f64; 3] = [0.113510815, 0.113223260, 0.110613911];
 }

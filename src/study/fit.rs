@@ -1,15 +1,15 @@
 //! Fitting a reflection model to reflectance data.
 //!
-//! Every model is fitted with the same three numbers: `f = d/π + s · lobe(l, v; w)`, a diffuse
-//! reflectance d, a scale s of the model's own specular lobe, and the width w of that lobe. What is
-//! made small is the root mean square of `ln f − ln f_data`, which counts a factor alike whether the
-//! value is large or small; the same measure as J. Löw, J. Kronander, A. Ynnerman, J. Unger (2012), *BRDF
-//! Models for Accurate and Efficient Rendering of Glossy Surfaces*, without their weights.
+//! Every model is fitted with the same three numbers: `f = d/π + s · lobe(l, v; w)`, a diffuse reflectance d, a scale s
+//! of the model's own specular lobe, and the width w of that lobe. The fit minimises the root mean square of `ln f − ln
+//! f_data`, which weighs relative errors equally for large and small values; the same measure as J. Löw, J. Kronander,
+//! A. Ynnerman, J. Unger (2012), *BRDF Models for Accurate and Efficient Rendering of Glossy Surfaces*, without their
+//! weights.
 //!
-//! For each width the two scales are found by the method of K. Levenberg (1944), *A Method for the Solution
-//! of Certain Non-Linear Problems in Least Squares*, in their logarithms, so that they stay positive. The
-//! width is found by trying a row of widths and narrowing the best interval by the golden section (J. Kiefer
-//! 1953, *Sequential Minimax Search for a Maximum*).
+//! For each width the two scales are found by the method of K. Levenberg (1944), *A Method for the Solution of Certain
+//! Non-Linear Problems in Least Squares*, in their logarithms, so that they stay positive. The width is found by trying
+//! a series of widths and narrowing the best interval by golden-section search (J. Kiefer 1953, *Sequential Minimax
+//! Search for a Maximum*).
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -44,7 +44,7 @@ fn model(diffuse: f64, specular: f64, lobe: f64) -> f64 {
     diffuse * FRAC_1_PI + specular * lobe
 }
 
-/// The smallest value whose logarithm is taken.
+/// The smallest value for logarithms.
 const FLOOR: f64 = 1e-12;
 
 /// Root mean square of `ln f − ln f_data`.
@@ -189,7 +189,7 @@ mod tests {
             let found = fit(&samples, (0.01, 1.0), lobe);
             assert!(found.error < 2e-3, "{found:?}");
             for (name, a, b) in [("d", found.diffuse, d), ("s", found.specular, s), ("w", found.width, w)] {
-                assert!((a / b - 1.0).abs() < 0.02, "{name}: {a} is not {b}");
+                assert!((a / b - 1.0).abs() < 0.02, "{name}: {a} instead of {b}");
             }
             // The lobe of another distribution does not fit as well: the error notices.
             let beckmann = |width: f64, samples: &[Sample]| {

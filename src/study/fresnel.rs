@@ -22,7 +22,7 @@ use crate::{
 const SCENE: &str = include_str!("../../scenes/fresnel_effect.json");
 /// Angles of the table, degrees.
 const ANGLES: [f64; 5] = [0.0, 45.0, 60.0, 75.0, 85.0];
-/// Measured materials: id, what to call it.
+/// Measured materials: id and name.
 const MATERIALS: [(&str, &str); 6] = [
     ("water", "Water"),
     ("n_bk7", "Glass (N-BK7)"),
@@ -31,14 +31,14 @@ const MATERIALS: [(&str, &str); 6] = [
     ("gold", "Gold"),
     ("aluminium", "Aluminium"),
 ];
-/// Blinn–Phong as wide and, seen straight on, as bright as glass of this α: n = 2/α² − 2 and
-/// k_s = F₀/(4 α²). The shipped scene has the same.
+/// Blinn–Phong with the width of this α and, at normal incidence, the brightness of glass: n = 2/α² − 2 and k_s = F₀/(4
+/// α²). The shipped scene has the same.
 const ALPHA: f64 = 0.15;
 const EXPONENT: i64 = 87;
 const K_S: f64 = 0.444;
 
 fn cosine(degrees: f64) -> f32 {
-    // The cosine of 90° is zero, not a little less.
+    // The cosine of 90° is exactly zero.
     degrees.to_radians().cos().max(0.0) as f32
 }
 
@@ -66,7 +66,7 @@ fn worst(material: &Measured) -> (f64, f64) {
         .unwrap_or_default()
 }
 
-/// The angle and the value of the least reflectance, if that is not at normal incidence.
+/// The angle and the value of the lowest reflectance, if that is not at normal incidence.
 fn dip(material: &Measured) -> Option<(f64, f64)> {
     (0..=90)
         .map(|a| (f64::from(a), exact(material, f64::from(a))))
@@ -74,8 +74,8 @@ fn dip(material: &Measured) -> Option<(f64, f64)> {
         .filter(|least| least.0 > 0.0)
 }
 
-/// Mean luminance of the brightest hundredth of the pixels that objects cover fully. One pixel alone would
-/// depend on where the samples lie.
+/// Mean luminance of the brightest hundredth of the pixels that objects cover fully. A single pixel would depend on the
+/// sample positions.
 fn brightest(picture: &Picture) -> f64 {
     let mut all: Vec<f64> =
         picture.pixels.iter().filter(|p| p.w > 0.999).map(|p| f64::from(luminance(p.truncate()))).collect();
@@ -151,7 +151,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         &svg(&reflectance)?,
         &html! {
             "Reflectance of smooth boundaries for unpolarised light at 532 nm, from measured optical constants. Solid: the exact "
-            "equations. Dashed: Schlick’s approximation from the same F₀. Dotted: what a constant specular coefficient says of glass."
+            "equations. Dashed: Schlick’s approximation from the same F₀. Dotted: a constant specular coefficient for glass."
         },
     );
     let table = lab.table(
@@ -163,7 +163,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         &rows,
     );
 
-    // The same of the lobes that the models make.
+    // The same for the models' lobes.
     let mut settings =
         vec![choice("fresnel", "dielectric"), choice("diffuse", "none"), ("ior", Value::Triple([1.5; 3]))];
     settings.extend(alpha(ALPHA));
@@ -225,7 +225,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let relative = lab.figure(
         &svg(&relative)?,
         &html! {
-            "How much of uniform light the whole specular lobe reflects (its directional albedo, without the diffuse part), relative to the view "
+            "Fraction of uniform light that the specular lobe reflects (its directional albedo, without the diffuse part), relative to the view "
             "along the normal. Glass, n = 1.5. Each curve is relative to its own value at 0° and therefore starts at 1, whatever " (words("k_s")) " is. Logarithmic axis."
         },
     );
@@ -268,7 +268,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     );
     let ratio = |p: [f64; 2]| p[1] / p[0];
     let picture_table = lab.table(
-        &html! { "Mean of the brightest 1\u{a0}% of the pixels that objects cover in the pictures above (luminance, linear, 1 is display white), with the lamp in front alone and the lamps behind alone." },
+        &html! { "Mean of the brightest 1\u{a0}% of the pixels covered by objects in the pictures above (luminance, linear, 1 is display white), with the lamp in front alone and the lamps behind alone." },
         &["Model", "lamp in front", "lamps behind", "behind / front"],
         &both
             .iter()
@@ -305,7 +305,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             span { "F₀ = ((n − 1)² + k²) / ((n + 1)² + k²)." }
         }
         p {
-            "Blinn–Phong has a specular coefficient " (words("k_s")) " in the place of F, which is the same at all angles. The optical constants are measurements "
+            "Blinn–Phong has a specular coefficient " (words("k_s")) " in the place of F, equal at all angles. The optical constants are measurements "
             "collected by refractiveindex.info. To compare whole models and not only this factor, the directional albedo of the specular lobe is integrated "
             "numerically for glass: a GGX microfacet lobe of α = " (ALPHA) " with the exact equations, against a Blinn–Phong lobe of the same width and height at "
             "normal incidence (n = " (EXPONENT) ", " (words("k_s")) " = F₀/(4α²) = " (K_S) ")."

@@ -1,4 +1,4 @@
-//! Phenomenon 2: no surface sends out more light than arrives.
+//! Phenomenon 2: no surface sends out more light than it receives.
 
 use glam::Vec3;
 use maud::html;
@@ -16,20 +16,20 @@ use crate::{
 };
 
 const SCENE: &str = include_str!("../../scenes/white_furnace.json");
-/// Directions from which light comes in the furnace of lamps: as many as a scene can have.
+/// Directions of light in the furnace of lamps: as many as a scene can have.
 const LAMPS: u16 = 256;
-/// Exponents that are tried for the largest albedo. It falls as the highlight becomes narrower, so that it is
-/// enough to start at the smallest legal one.
+/// Exponents tried for the largest albedo. It falls as the highlight narrows, so it is enough to start at the smallest
+/// legal one.
 const EXPONENTS: [i64; 6] = [0, 1, 2, 4, 8, 16];
-/// A model that is further from 1 than this loses or gains.
+/// A model further from 1 than this loses or gains light.
 const TOLERANCE: f64 = 0.01;
 
-/// A white surface: what to call it, model, settings.
+/// A white surface: name, model, settings.
 struct White {
     name: &'static str,
     id: &'static str,
     settings: Vec<Setting>,
-    /// True if all light should come back: nothing absorbs or transmits any.
+    /// True if it should return all light: nothing absorbs or transmits any.
     whole: bool,
 }
 
@@ -110,7 +110,7 @@ fn verdict(least: f64, most: f64) -> &'static str {
     }
 }
 
-/// The picture before a white wall: the wall is uniform light of half the display's white.
+/// The picture in front of a white wall: the wall is uniform light of half the display's white.
 fn before_white(picture: &Picture) -> Vec<u8> {
     picture
         .pixels
@@ -122,8 +122,8 @@ fn before_white(picture: &Picture) -> Vec<u8> {
         .collect()
 }
 
-/// Lamps in even directions (a Fibonacci lattice) that together make uniform light of 1 lx: a Lambertian
-/// surface that meets them answers with its base colour.
+/// Lamps in even directions (a Fibonacci lattice) that together make uniform light of 1 lx: a Lambertian surface under
+/// them has its base colour.
 fn lamps() -> Vec<Light> {
     let golden = std::f32::consts::PI * (3.0 - 5f32.sqrt());
     (0..LAMPS)
@@ -135,7 +135,7 @@ fn lamps() -> Vec<Light> {
                 light_type: "directional".to_owned(),
                 position: None,
                 direction: Some(Vec3::new(r * c, y, r * s)),
-                // Radiance 1/π from 4π sr, by the response's factor π.
+                // Radiance 1/π from 4π sr, times the response's factor π.
                 intensity: 4.0 / f32::from(LAMPS),
                 ..Light::default()
             }
@@ -232,7 +232,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let uniform = lab.render(&scene, "", TermSelection::All, size);
     let mut lit: Scene = scene.clone();
     lit.lights = lamps();
-    // All light has a direction here, so nothing stands for light that has none.
+    // All light has a direction here, so nothing replaces light without one.
     lit.objects.iter_mut().for_each(|o| o.material.set("k_a", Value::Number(0.0)));
     let lamps = lab.render(&lit, "", TermSelection::All, size);
     let names: Vec<&str> = scene.objects.iter().map(|o| o.name.as_deref().unwrap_or_default()).collect();
@@ -241,15 +241,15 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let shown = lab.figure(
         &html! {
             div .wide {
-                (pictures(&[(strip(&uniform, "White spheres in ambient light before a white wall")?, "")]))
-                (pictures(&[(strip(&lamps, "White spheres in the light of 256 lamps before a white wall")?, "")]))
+                (pictures(&[(strip(&uniform, "White spheres in ambient light in front of a white wall")?, "")]))
+                (pictures(&[(strip(&lamps, "White spheres in the light of 256 lamps in front of a white wall")?, "")]))
                 (labels)
             }
         },
         &html! {
-            "White spheres before a white wall in uniform light. Above: one ambient light of 1 lx, as in scene " code { "white_furnace.json" } ". Below: the same light from "
-            (LAMPS) " lamps in even directions, so that each model answers by its equation for directed light. The display shows the wall at half its range, so that spheres "
-            "can be seen to be brighter. A sphere that conserves energy vanishes; faint specks on its outline are points where the normal, interpolated across a facet of the mesh, turns away from the viewer."
+            "White spheres in front of a white wall in uniform light. Above: one ambient light of 1 lx, as in scene " code { "white_furnace.json" } ". Below: the same light from "
+            (LAMPS) " lamps in even directions, so that each model answers by its equation for directed light. The display shows the wall at half its range, so that brighter spheres "
+            "are visible. A sphere that conserves energy vanishes; faint specks on its outline are points where the normal, interpolated across a facet of the mesh, faces away from the viewer."
         },
     );
     let mut from_pictures = Table::new("furnace_pictures", "object,ambient_mean,lamps_mean,lamps_max");
@@ -282,7 +282,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let single = range("GGX α = 0.8, F = 1");
     let compensated = range("… with Kulla–Conty");
     let k_a = find("Blinn–Phong, defaults").map_or(f64::NAN, |c| c.2);
-    // Rounded up, so that the sentence holds.
+    // Rounded up, so that the sentence is true.
     let off = (1000.0 * (compensated.0 - 1.0).abs().max((compensated.1 - 1.0).abs())).ceil() / 1000.0;
     let kept = |(least, most): (f64, f64)| verdict(least, most) == "conserves";
     let confirmed = blinn.1 > 1.0 + TOLERANCE && kept(compensated);
@@ -313,19 +313,19 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     );
     let body = html! {
         h3 { "Question" }
-        p { "Light cannot leave a passive surface in greater amount than it arrives. Which models respect this, and which lose light without reason?" }
+        p { "A passive surface cannot send out more light than it receives. Which models respect this, and which lose light without reason?" }
         h3 { "Method" }
         p { "The measure is the directional albedo," }
         p .equation { span { "E(v) = ∫ f(l, v) (n · l) dl," } }
         p {
             "integrated adaptively to 10⁻⁴ by " code { "optics::albedo::directional" } " (which " code { "lcm albedo" } " prints). Every surface is white: base and specular colours are 1. "
-            "The Phong family stands in the table with n = 8; it gains most with a wide highlight, so the largest albedo that legal exponents give is searched from n = 0 to 16, at 0° and 60°. "
+            "The Phong family has n = 8 in the table; it gains most with a wide highlight, so the largest albedo for legal exponents is searched from n = 0 to 16, at 0° and 60°. "
             "Models that share energy between a diffuse and a specular part are set to an even share. GGX is tested with F = 1, a mirror that absorbs nothing, and α = 0.8, where light bounces several times between "
-            "facets; the compensations of Kulla and Conty (2017) and of Turquin (2019) return what the plain model leaves out."
+            "facets; the compensations of Kulla and Conty (2017) and of Turquin (2019) return the light that the plain model loses."
         }
         p {
-            "The white furnace shows the same in pictures. In uniform light a white object must look like the wall behind it. The ambient light of the program is such light. Physically based models "
-            "answer to it by their directional albedo; the Phong family by a coefficient of its own, " (words("k_a")) ". So that this does not decide the matter, the furnace is also built from "
+            "The white furnace shows the same in pictures. In uniform light a white object must look like the wall behind it. The program's ambient light is uniform. Physically based models "
+            "answer to it by their directional albedo; the Phong family by its coefficient  " (words("k_a")) ". For a fair test, the furnace is also built from "
             (LAMPS) " lamps around the objects."
         }
         h3 { "Results" }
@@ -338,7 +338,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             p {
                 @if blinn.1 > 1.0 + TOLERANCE || phong.1 > 1.0 + TOLERANCE {
                     "With " (words("k_d")) " = " (words("k_s")) " = 1 and n = 8, Blinn–Phong reflects up to " (fixed(blinn.1, 2)) " and Phong up to " (fixed(phong.1, 2)) " times the light that arrives. "
-                    "The most that legal parameters give is " (fixed(blinn_most.0, 2)) " (n = " (blinn_most.1) ") and " (fixed(phong_most.0, 2)) " (n = " (phong_most.1) "). Nothing in their equations ties the highlight to the diffuse part. "
+                    "The maximum for legal parameters is " (fixed(blinn_most.0, 2)) " (n = " (blinn_most.1) ") and " (fixed(phong_most.0, 2)) " (n = " (phong_most.1) "). Nothing in their equations ties the highlight to the diffuse part. "
                     "With its defaults Blinn–Phong stays below 1, but answers to uniform light with " (fixed(k_a, 2)) ", which has no relation to its albedo: in the furnace it is dark."
                 } @else {
                     "In these settings neither Phong nor Blinn–Phong exceeds 1."
@@ -358,18 +358,18 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
                 @if gaining.is_empty() {
                     "None of the other models gains. "
                 } @else {
-                    "Being physically motivated is no guarantee. More than arrives is also sent out by: " (words(&gaining.join("; "))) ". "
+                    "A physical motivation is no guarantee. These also send out more than they receive: " (words(&gaining.join("; "))) ". "
                 }
             }
             p {
-                "The table says “loses” of two kinds. "
+                "The table says “loses” for two reasons. "
                 @if incomplete.is_empty() {
-                    "Of the rows whose settings leave nothing that could absorb, none loses. "
+                    "Of the rows whose settings absorb nothing, none loses. "
                 } @else {
-                    "These should return all light, since nothing in their settings absorbs: " (words(&incomplete.join("; "))) ". What is missing is a fault of the model. "
+                    "These should return all light, since nothing in their settings absorbs: " (words(&incomplete.join("; "))) ". The loss is a fault of the model. "
                 }
                 @if !others.is_empty() {
-                    "The others make no such promise: their settings divide the light between coefficients or by a Fresnel term, or their equations leave out light that bounces between facets. They are " (words(&others.join("; "))) "."
+                    "The others do not claim to conserve all light: their settings divide the light between coefficients or by a Fresnel term, or their equations leave out light that bounces between facets. They are " (words(&others.join("; "))) "."
                 }
             }
         }

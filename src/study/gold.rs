@@ -17,7 +17,7 @@ use crate::{
 };
 
 const SCENE: &str = include_str!("../../scenes/gold_three_lights.json");
-/// Exponents that are tried.
+/// The exponents tried.
 const EXPONENTS: [i64; 20] = [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64, 96];
 
 /// Parameters of Blinn–Phong: linear colours of the diffuse part (k_d = 1) and of the highlight (k_s = 1).
@@ -29,7 +29,7 @@ struct Blinn {
 }
 
 impl Blinn {
-    /// Channels that stand at the upper bound of the fit.
+    /// Channels at the upper bound of the fit.
     fn bounds(&self) -> Vec<String> {
         let mut all = Vec::new();
         for (part, colour) in [("diffuse", self.diffuse), ("specular", self.specular)] {
@@ -57,7 +57,7 @@ impl Blinn {
     }
 }
 
-/// The numbers d and s from 0 to 1 that make `Σ (d a + s b − y)²` smallest, and that sum.
+/// The numbers d and s from 0 to 1 that minimise `Σ (d a + s b − y)²`, and that sum.
 fn bounded(a: &[f64], b: &[f64], y: &[f64]) -> (f64, f64, f64) {
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
     let (aa, ab, bb, ay, by, yy) = (dot(a, a), dot(a, b), dot(b, b), dot(a, y), dot(b, y), dot(y, y));
@@ -84,7 +84,7 @@ fn channel(picture: &Picture, c: usize) -> Vec<f64> {
     picture.pixels.iter().map(|p| f64::from(p[c])).collect()
 }
 
-/// Blinn–Phong's parameters that come closest to a picture, in linear light.
+/// Blinn–Phong's parameters closest to a picture, in linear light.
 fn tune(lab: &Lab, scene: &Scene, wanted: &Picture, size: (u32, u32)) -> Blinn {
     let with = |exponent: i64, terms: TermSelection| {
         let mut scene = scene.clone();
@@ -112,8 +112,8 @@ fn tune(lab: &Lab, scene: &Scene, wanted: &Picture, size: (u32, u32)) -> Blinn {
         .map_or(Blinn { diffuse: Vec3::ONE, specular: Vec3::ONE, exponent: 1 }, |best| best.0)
 }
 
-/// The distance of a picture from the wanted one: root mean square of the difference over that of the wanted
-/// one, mean of the channels; and the mean brightness relative to the wanted one.
+/// The distance of a picture from the reference: root mean square of the difference over that of the reference, mean of
+/// the channels; and the mean brightness relative to the reference.
 fn distance(picture: &Picture, wanted: &Picture) -> (f64, f64) {
     let mut rms = 0.0;
     for c in 0..3 {
@@ -125,7 +125,7 @@ fn distance(picture: &Picture, wanted: &Picture) -> (f64, f64) {
     (rms, mean(picture) / mean(wanted).max(1e-12))
 }
 
-/// The scene of one object of the shipped one under its own light.
+/// The shipped scene with only one of its objects, under that object's light.
 fn case(scene: &Scene, i: usize) -> Scene {
     let mut scene = scene.clone();
     scene.objects = vec![scene.objects.swap_remove(i)];
@@ -163,7 +163,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         lab.render(&scene, "blinn_phong", TermSelection::All, size)
     };
     let kept: Vec<Picture> = cases.iter().map(|(_, _, scene)| with(lab, scene, &tuned[0])).collect();
-    // What a picture under a lamp leaves open: the answer to uniform light.
+    // The open question after a picture under a lamp: the answer to uniform light.
     let open = {
         let mut scene = cases[3].2.clone();
         scene.objects.iter_mut().for_each(|o| {
@@ -210,10 +210,10 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let table = lab.table(
         &html! {
             "Difference of the Blinn–Phong picture from the physically based one: root mean square difference in linear light as a share of the picture’s own root mean square (mean of three channels), and mean brightness. "
-            "“Tuned anew” is the same after fitting Blinn–Phong under that very light. Light D reaches Blinn–Phong through " (words("k_a")) " alone, which a fit under a lamp leaves undetermined: "
+            "“Retuned” is the same after fitting Blinn–Phong under that light itself. Light D reaches Blinn–Phong through " (words("k_a")) " alone, which a fit under a lamp leaves undetermined: "
             "the brightness is given for " (words("k_a")) " = 0 and 1. Nothing is tuned under D (–): only the product of " (words("k_a")) " and the diffuse colour answers there, and it can be given any colour."
         },
-        &["Light", "RMS, tuned under A", "brightness", "RMS, tuned anew"],
+        &["Light", "RMS, tuned under A", "brightness", "RMS, retuned"],
         &cases
             .iter()
             .enumerate()
@@ -245,7 +245,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         parameters.row(&[id], &numbers);
     }
     let parameter_table = lab.table(
-        &html! { "The parameters of Blinn–Phong that come closest to the same gold under each light: linear diffuse and specular colour (red, green, blue) and exponent. One material should have one row." },
+        &html! { "The parameters of Blinn–Phong closest to the same gold under each light: linear diffuse and specular colour (red, green, blue) and exponent. One material should have one row." },
         &["Tuned under", "diffuse colour", "specular colour", "n"],
         &cases
             .iter()
@@ -256,7 +256,7 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             .collect::<Vec<_>>(),
     );
 
-    // The same question to measured paints, where no model is the reference.
+    // The same question for measured paints, where no model is the reference.
     let mut transfer = Table::new("gold_paints", "paint,model,error_fitted_below_30,error_at_60_and_70");
     let mut rows = Vec::new();
     let mut moved: Vec<(&str, f64)> = Vec::new();
@@ -301,14 +301,14 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         h3 { "Method" }
         p {
             "A teapot of gold is rendered with GGX microfacets, α = 0.5, and the exact Fresnel equations for the optical constants that Johnson and Christy (1972) measured at 630, 532 and 465 nm. "
-            "Nothing in it is set by eye but the roughness. Blinn–Phong is then tuned to that picture under light A, as an artist would do, but by least squares: the diffuse and the "
-            "specular colour, each from 0 to 1 per channel, and the exponent that make the mean square difference in linear light smallest. The ambient coefficient " (words("k_a")) " has no part in this picture and stays 0. With these parameters it is rendered under three other lights and compared again."
+            "Only the roughness is set by eye. Blinn–Phong is then tuned to that picture under light A, as an artist would do, but by least squares: the diffuse and the "
+            "specular colour, each from 0 to 1 per channel, and the exponent that minimise the mean square difference in linear light. The ambient coefficient " (words("k_a")) " has no part in this picture and stays 0. With these parameters it is rendered under three other lights and compared again."
         }
         p {
-            "Both models are linear in the light. A change of intensity or colour alone must therefore leave the relative difference as it is; light B is this control. Light C changes the direction, light D the extent of the light."
+            "Both models are linear in the light. A change of intensity or colour alone must therefore leave the relative difference unchanged; light B is this control. Light C changes the direction, light D the extent of the light."
         }
         p {
-            "Because the physically based picture is the reference here, the comparison cannot tell whether it is right. The last table therefore asks measured paints: parameters fitted to light near the normal have to predict light from the side."
+            "Because the physically based picture is the reference here, the comparison cannot tell whether it is right. The last table therefore uses measured paints: parameters fitted to light near the normal have to predict light from the side."
         }
         h3 { "Results" }
         (figure)
@@ -319,14 +319,14 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         div .conclusion {
             p {
                 @if control {
-                    "The control holds: under B the difference is " (fixed(100.0 * distances[1].0, 1)) "\u{a0}%, as under A (" (fixed(100.0 * distances[0].0, 1)) "\u{a0}%). Intensity and colour of the light are not what Blinn–Phong’s parameters depend on. "
+                    "The control holds: under B the difference is " (fixed(100.0 * distances[1].0, 1)) "\u{a0}%, as under A (" (fixed(100.0 * distances[0].0, 1)) "\u{a0}%). Blinn–Phong’s parameters do not depend on intensity and colour of the light. "
                 } @else {
                     "The control fails: under B the difference is " (fixed(100.0 * distances[1].0, 1)) "\u{a0}% instead of " (fixed(100.0 * distances[0].0, 1)) "\u{a0}%, which is not expected of linear models. "
                 }
                 @if rises > 1.5 {
-                    "The direction is. Under C the difference is " (fixed(100.0 * distances[2].0, 1)) "\u{a0}%, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) "\u{a0}% of the brightness. "
-                    "Tuning anew under C leaves " (fixed(100.0 * again[2], 1)) "\u{a0}%, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
-                    @if !bounds.is_empty() { " Some of these stand at the bound of the fit, 1: " (bounds.join(", ")) "." }
+                    "They do depend on its direction. Under C the difference is " (fixed(100.0 * distances[2].0, 1)) "\u{a0}%, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) "\u{a0}% of the brightness. "
+                    "Retuning under C leaves " (fixed(100.0 * again[2], 1)) "\u{a0}%, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
+                    @if !bounds.is_empty() { " Some of these are at the bound of the fit, 1: " (bounds.join(", ")) "." }
                 } @else {
                     "Under C the difference is " (fixed(100.0 * distances[2].0, 0)) "\u{a0}%, only " (fixed(rises, 1)) " times as large."
                 }
@@ -363,7 +363,7 @@ mod tests {
         let mix = |d: f64, s: f64| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| d * a + s * b).collect() };
         let (d, s, rest) = bounded(&a, &b, &mix(0.3, 0.8));
         assert!((d - 0.3).abs() < 1e-9 && (s - 0.8).abs() < 1e-9 && rest.abs() < 1e-9);
-        // More than is allowed: the bound, and the best of the other.
+        // Beyond the allowed range: the bound, and the best value of the other.
         let y = mix(0.3, 1.7);
         let (d, s, rest) = bounded(&a, &b, &y);
         assert_eq!(s, 1.0);

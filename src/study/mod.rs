@@ -1,8 +1,8 @@
 //! The study: a report, with numbers, plots and pictures, of four phenomena that physically based models
 //! reproduce and Blinn–Phong does not.
 //!
-//! It is the chapter of results that E. James (2022), *Physically Based Shading Models in Real-time
-//! Rendering*, asks for. Every sentence of a conclusion that depends on a number is chosen by that number.
+//! It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
+//! Every sentence of a conclusion that depends on a number is chosen by that number.
 
 use std::{fmt::Write as _, fs, io, path::Path, sync::Arc};
 
@@ -32,30 +32,30 @@ mod lobe;
 pub mod plot;
 mod report;
 
-/// The number of steps that [`run`] reports.
+/// The number of steps reported by [`run`].
 pub const STEPS: u64 = 5;
 
-/// The name of the report in its folder.
+/// The file name of the report in its folder.
 pub const PAGE: &str = "index.html";
 
 /// True if a folder holds a report of this program.
 #[must_use]
 pub fn is_report(folder: &Path) -> bool {
-    /// It says so near its beginning.
+    /// The mark is near its beginning.
     const HEAD: u64 = 4096;
     let start = files::read_start(&folder.join(PAGE), HEAD).unwrap_or_default();
     let mark = format!("<meta name=\"generator\" content=\"{}", report::GENERATOR);
     String::from_utf8_lossy(&start).contains(&mark)
 }
 
-/// A failure of a study: something that it needs is missing.
+/// A failure of a study: something it needs is missing.
 #[derive(Debug, Error)]
 pub enum StudyError {
     /// A model that is not registered.
     #[error("there is no reflection model {0}")]
     NoModel(String),
-    /// A setting that a model does not have or does not allow.
-    #[error("{model} does not take {name} = {value}")]
+    /// A setting that a model lacks or does not allow.
+    #[error("{model} does not accept {name} = {value}")]
     NoSetting {
         /// The model.
         model: String,
@@ -64,7 +64,7 @@ pub enum StudyError {
         /// The value.
         value: String,
     },
-    /// Data that the program ships and cannot read.
+    /// Shipped data that cannot be read.
     #[error("{0}")]
     Data(String),
     /// A plot or picture that could not be drawn.
@@ -75,14 +75,14 @@ pub enum StudyError {
 /// The extent of a study.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Settings {
-    /// Small pictures and a tenth of the materials: to try that everything works.
+    /// Small pictures and a tenth of the materials, for a quick trial.
     pub quick: bool,
 }
 
 /// A table of raw numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// The name of its file, without ending.
+    /// Its file name, without extension.
     pub name: &'static str,
     /// As CSV.
     pub csv: String,
@@ -117,18 +117,18 @@ struct Chapter {
 /// The report and its numbers.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// The report: one HTML page that needs nothing else.
+    /// The report: one self-contained HTML page.
     pub html: String,
-    /// The numbers that it rests on.
+    /// The numbers behind it.
     pub tables: Vec<Table>,
 }
 
 impl Study {
-    /// Writes `index.html` and the tables into a folder, which is made if need be. Each file appears
-    /// complete or not at all.
+    /// Writes `index.html` and the tables into a folder, which is created if necessary. Each file appears complete or
+    /// not at all.
     ///
     /// # Errors
-    /// If the folder cannot be made or a file not be written.
+    /// If the folder cannot be created or a file cannot be written.
     pub fn write(&self, folder: &Path) -> io::Result<()> {
         fs::create_dir_all(folder)?;
         let put = |name: &str, text: &str| files::write(&folder.join(name), text.as_bytes());
@@ -185,7 +185,7 @@ impl Lab<'_> {
         Ok(model.instantiate(&values, Encoding::Srgb))
     }
 
-    /// A scene that the program ships.
+    /// A scene shipped with the program.
     fn scene(&self, text: &str) -> Result<Scene, StudyError> {
         load::from_text(text, "a shipped scene", self.registry, Defaults::Refuse)
             .map(|loaded| loaded.scene)
@@ -237,7 +237,7 @@ impl Lab<'_> {
     }
 }
 
-/// Text with subscripts: `k_d` has one letter below the line.
+/// Text with subscripts: in `k_d` the d is a subscript.
 fn words(text: &str) -> Markup {
     let mut parts = text.split('_');
     html! {
@@ -280,7 +280,7 @@ fn image(rgb8: &[u8], (width, height): (u32, u32), alt: &str) -> Result<Markup, 
     })
 }
 
-/// Pictures side by side, each with a few words below.
+/// Pictures side by side, each with a short caption.
 fn pictures(all: &[(Markup, &str)]) -> Markup {
     html! {
         div .pictures style=(format!("--columns:{}", all.len().min(3))) {
@@ -311,7 +311,7 @@ fn albedo_at(surface: &dyn Surface, degrees: f64) -> (f64, f64) {
     (all.y, specular.y)
 }
 
-/// A number with that many decimals and a true minus sign.
+/// A number with a given number of decimals and a true minus sign.
 fn fixed(x: f64, digits: usize) -> String {
     format!("{x:.digits$}").replace('-', "−")
 }
@@ -325,7 +325,7 @@ fn percent(x: f64) -> String {
 /// Runs the study. `tell` is called [`STEPS`] times with the name of the next step.
 ///
 /// # Errors
-/// If a model, a scene or data of the program is not what the study expects.
+/// If a model, a scene or data of the program does not match the study's expectations.
 pub fn run(registry: &Registry, settings: Settings, tell: &dyn Fn(&str)) -> Result<Study, StudyError> {
     let mut lab = Lab { registry, settings, figures: 0, tables: 0 };
     tell("Fresnel effect");

@@ -1,19 +1,19 @@
 //! Plots as SVG.
 //!
-//! Series differ in colour (M. Okabe, K. Ito 2008, *Color Universal Design*), in dash and in marker, so that
-//! they can be told apart without colour. Text and axes are drawn in a colour that the page replaces by its
-//! own, so that plots follow light and dark pages.
+//! Series differ in colour (M. Okabe, K. Ito 2008, *Color Universal Design*), in dash and in marker, so they remain
+//! distinguishable without colour. Text and axes use a colour that the page replaces by its own, so plots follow light
+//! and dark pages.
 
 use plotters::{
     prelude::*,
     style::text_anchor::{HPos, Pos, VPos},
 };
 
-/// Stands for the page's colour of text.
+/// A stand-in for the page's text colour.
 pub const INK: RGBColor = RGBColor(1, 2, 3);
-/// Stands for the page's colour of thin lines.
+/// A stand-in for the page's colour of thin lines.
 pub const GRID: RGBColor = RGBColor(4, 5, 6);
-/// Okabe and Ito's colours but yellow, which is too light on white; black is [`INK`].
+/// Okabe and Ito's colours except yellow, which is too light on white; black is [`INK`].
 const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -35,7 +35,7 @@ pub struct Axis {
     pub to: f64,
     /// True if it is logarithmic.
     pub log: bool,
-    /// About how many labels.
+    /// The approximate number of labels.
     pub ticks: usize,
 }
 
@@ -76,7 +76,7 @@ pub struct Series {
     pub name: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
-    /// Its colour, counted from 0; 6 is that of the text.
+    /// Its colour, counted from 0; 6 is the text colour.
     pub colour: usize,
     /// The line between them.
     pub line: Line,
@@ -87,7 +87,7 @@ pub struct Series {
 /// A plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
-    /// Its content, for those who cannot see it.
+    /// Its content, for screen readers.
     pub title: String,
     /// The horizontal axis.
     pub x: Axis,

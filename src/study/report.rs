@@ -1,4 +1,4 @@
-//! The page that holds the chapters.
+//! The page with the chapters.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -11,8 +11,8 @@ pub(super) const GENERATOR: &str = "Lights, Camera, Models! ";
 
 const STYLE: &str = include_str!("report.css");
 
-/// A date as people write it, from days since 1970: H. Hinnant (2013), *chrono-Compatible Low-Level Date
-/// Algorithms*, `civil_from_days`.
+/// A date in words, from days since 1970: H. Hinnant (2013), *chrono-Compatible Low-Level Date Algorithms*,
+/// `civil_from_days`.
 fn date(days: i64) -> String {
     let z = days + 719_468;
     let era = z.div_euclid(146_097);
@@ -45,24 +45,21 @@ fn today() -> String {
     date((seconds / 86_400) as i64)
 }
 
-/// Words that the text uses, explained.
+/// Terms of the text, with explanations.
 const GLOSSARY: &[(&str, &str)] = &[
     (
         "BRDF",
-        "bidirectional reflectance distribution function, f(l, v): how much of the light that arrives from direction l leaves towards v, per steradian (sr⁻¹).",
+        "bidirectional reflectance distribution function, f(l, v): the fraction of the light arriving from direction l that leaves towards v, per steradian (sr⁻¹).",
     ),
     (
         "Directional albedo",
-        "E(v) = ∫ f(l, v) cos θ dl: the fraction of uniform light that is sent towards v. For a reciprocal BRDF it is also the fraction of a beam from v that is reflected at all. A passive surface has E ≤ 1.",
+        "E(v) = ∫ f(l, v) cos θ dl: the fraction of uniform light reflected towards v. For a reciprocal BRDF it is also the fraction of a beam from v that is reflected. A passive surface has E ≤ 1.",
     ),
     (
         "Fresnel reflectance",
         "the fraction of light that a smooth boundary between two media reflects. It follows from the refractive index n and, for metals, the extinction coefficient k.",
     ),
-    (
-        "Lobe",
-        "the part of a BRDF that is concentrated about the mirror direction, which is seen as the highlight.",
-    ),
+    ("Lobe", "the part of a BRDF concentrated about the mirror direction, visible as the highlight."),
     (
         "Microfacet model",
         "a BRDF made of a distribution D of tiny mirrors (Beckmann, GGX), their masking G and their Fresnel reflectance F: f = D G F / (4 (n·l)(n·v)).",
@@ -70,11 +67,11 @@ const GLOSSARY: &[(&str, &str)] = &[
     ("Reciprocity", "f(l, v) = f(v, l): light and viewer can be exchanged."),
     (
         "Roughness α",
-        "the width of the distribution of microfacets; about the typical slope of the surface. Blinn–Phong's exponent n is as sharp as α = √(2/(n + 2)).",
+        "the width of the distribution of microfacets; roughly the typical slope of the surface. Blinn–Phong's exponent n is as sharp as α = √(2/(n + 2)).",
     ),
     (
         "White furnace",
-        "a test: in uniform light, a surface that absorbs nothing cannot be told from its surroundings.",
+        "a test: in uniform light, a surface that absorbs nothing is indistinguishable from its surroundings.",
     ),
     (
         "MERL",
@@ -86,7 +83,7 @@ const GLOSSARY: &[(&str, &str)] = &[
     ),
     (
         "Levenberg’s method",
-        "a way to find the parameters that make a sum of squares smallest (K. Levenberg 1944): steps of the Gauss–Newton method, shortened until the sum falls.",
+        "a way to find the parameters that minimise a sum of squares (K. Levenberg 1944): steps of the Gauss–Newton method, shortened until the sum falls.",
     ),
     (
         "Log error",
@@ -161,7 +158,7 @@ fn summary(chapters: &[Chapter], shown: usize) -> Markup {
             h2 { "Summary" }
             p {
                 "E. James (2022) asks how physically based shading makes frames more photorealistic than the Blinn–Phong "
-                "shading that it replaced. To answer without appeal to taste, that report proposes to look for physical "
+                "shading that it replaced. To answer independently of taste, that report proposes to look for physical "
                 "phenomena that one kind of model reproduces and the other does not. It ends before its results. This "
                 "study supplies them: four phenomena, each with a question, a method, pictures of the same scene under both "
                 "kinds of model, measurements, and a conclusion."
@@ -189,9 +186,9 @@ fn summary(chapters: &[Chapter], shown: usize) -> Markup {
             }
             p {
                 "Pictures are calculated by the program’s CPU renderer with four samples per pixel and shading per pixel. "
-                "It shares no code with the shaders of the GPU, and tests hold the two to the same picture. "
+                "It shares no code with the shaders of the GPU, and tests compare the pictures of both. "
                 "Numbers taken from pictures are linear light, before the display’s encoding. There are no shadows and no light "
-                "from one object to another: what is compared is the reflection at a surface alone. Raw numbers lie beside "
+                "from one object to another: the comparison covers only the reflection at a surface. Raw numbers lie beside "
                 "this page as CSV files."
             }
         }
@@ -211,7 +208,7 @@ fn count(n: usize) -> &'static str {
 fn discussion(chapters: &[Chapter], shown: usize) -> Markup {
     html! {
         section #discussion {
-            h2 { "5. What the phenomena say together" }
+            h2 { "5. The phenomena together" }
             p {
                 @if shown == chapters.len() {
                     "In all four cases the difference lies in the equations and not in taste: it has a sign and a size. "
@@ -227,10 +224,10 @@ fn discussion(chapters: &[Chapter], shown: usize) -> Markup {
                 }
             }
             p {
-                "The answer to the question of the thesis is therefore: physically based shading is more photorealistic "
+                "The answer to the thesis's question is therefore: physically based shading is more photorealistic "
                 "in the sense that a surface keeps behaving like one surface when the viewer or the light moves. A single "
                 "frame from a single direction can often be matched by Blinn–Phong, as phenomenon 3 does on purpose; the "
-                "match need not survive the change. Physically based is no seal of quality either: phenomenon 2 lists which of these models "
+                "match need not survive the change. “Physically based” does not guarantee quality either: phenomenon 2 lists which of these models "
                 "lose or gain light, and phenomenon 4 the errors that remain after the best fit."
             }
             h3 { "Limits" }
@@ -241,7 +238,7 @@ fn discussion(chapters: &[Chapter], shown: usize) -> Markup {
                 li { "The 100 MERL materials enter as published fits of another model (SGD), not as measurements. A model that resembles SGD has an advantage. The three Cornell paints are measurements, but only three." }
                 li { "Two interference paints of the Cornell set (Cayman, Mystique) are left out: their colour changes with angle, which no model here describes." }
                 li { "Error measures weigh. The log error counts dim directions as much as bright ones; a measure in linear light would stress the peak of the highlight." }
-                li { "No test with people was made. That a difference is large in numbers does not say how much a viewer minds it." }
+                li { "No user study was made. A numerically large difference need not disturb a viewer." }
             }
         }
     }

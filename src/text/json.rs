@@ -1,8 +1,8 @@
-//! Reading JSON by hand, with a path and a byte for everything that is wrong: scenes and the declarations of custom
-//! models are read alike.
+//! Reading JSON by hand, with a path and a byte offset for everything that is wrong. Scenes and the declarations of
+//! custom models are read alike.
 //!
-//! A [`Cursor`] stands at a value and knows the way to it; a [`Reader`] is asked for the value of a type, and reports
-//! what has another type, with its path, itself and the rule.
+//! A [`Cursor`] stands at a value and knows the way to it; a [`Reader`] returns the value as a type, and reports a
+//! value of another type with its path, itself and the rule.
 
 use jsonc_parser::{CollectOptions, ParseOptions, common::Ranged, parse_to_ast};
 
@@ -30,14 +30,13 @@ pub const STRICT: ParseOptions = ParseOptions {
 
 /// The value in a text, if there is one.
 ///
-/// # Errors
-/// The byte where the text is not JSON, and what is wrong there.
+/// The byte at which the text stops being JSON, and the reason.
 pub fn parse<'a>(text: &'a str, options: &ParseOptions) -> Result<Option<Ast<'a>>, (usize, String)> {
     let parsed = parse_to_ast(text, &CollectOptions::default(), options);
     parsed.map(|p| p.value).map_err(|e| (e.range().start, e.kind().to_string()))
 }
 
-/// A value, and the way to it. The path is made when it is asked for: most values are right, and there may be many.
+/// A value, and the way to it. The path is built on demand: most values are right, and there may be many.
 #[derive(Clone, Copy)]
 pub struct Cursor<'p, 'a> {
     /// The value.
@@ -70,7 +69,7 @@ impl<'p, 'a> Cursor<'p, 'a> {
         }
     }
 
-    /// Another value, which messages call as this one.
+    /// Another value, under this one's name in messages.
     #[must_use]
     pub fn holding(self, value: &'p Ast<'a>) -> Self {
         Self { value, ..self }
@@ -100,7 +99,7 @@ impl<'p, 'a> Cursor<'p, 'a> {
         }
     }
 
-    /// The whole number. `32.0` and `3.2e1` are whole: JSON does not tell them from `32`.
+    /// The whole number. `32.0` and `3.2e1` are whole: JSON does not distinguish them from `32`.
     #[must_use]
     pub fn integer(&self) -> Option<i64> {
         let Ast::NumberLit(number) = self.value else { return None };
@@ -129,7 +128,7 @@ impl<'p, 'a> Cursor<'p, 'a> {
         }
     }
 
-    /// The first value under a key as it is written.
+    /// The first value under a key, as spelled in the text.
     #[must_use]
     pub fn get(&'p self, key: &'static str) -> Option<Self> {
         let property = self.properties()?.iter().find(|p| p.name.as_str() == key)?;
@@ -145,13 +144,13 @@ pub struct Fields<'p, 'a> {
 }
 
 impl<'a> Fields<'_, 'a> {
-    /// The value of a field, if it is given.
+    /// The value of a field, if given.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<Cursor<'_, 'a>> {
         self.iter().find(|(k, _)| *k == key).map(|(_, value)| value)
     }
 
-    /// The fields that are given, in the order of the text.
+    /// The given fields, in the order of the text.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, Cursor<'_, 'a>)> {
         self.fields.iter().map(|(k, p)| (*k, Cursor { value: &p.value, way: Way::Key(&self.of, k) }))
     }
@@ -163,12 +162,12 @@ impl<'a> Fields<'_, 'a> {
     }
 }
 
-/// A reader of one kind of text. Values that break a rule are reported and `None`.
+/// A reader of one kind of text. Values that break a rule are reported, and `None` is returned.
 pub trait Reader {
     /// The text that is read.
     fn text(&self) -> &str;
 
-    /// Records a problem at a byte: a value as it is written and the rule that it breaks, or a whole predicate.
+    /// Records a problem at a byte: a value as written and the rule that it breaks, or a whole predicate.
     fn report(&mut self, at: usize, path: Path, found: Option<String>, rule: &str);
 
     /// True if so much is wrong that unknown keys need not be listed any more.
@@ -176,15 +175,15 @@ pub trait Reader {
         false
     }
 
-    /// The end of the message that a key is given twice.
+    /// The end of the message about a key given twice.
     fn twice(&self, _first: &ObjectProp, _again: &ObjectProp) -> String {
         String::new()
     }
 
-    /// The end of the message that a key is not known: the nearest known key, for example.
+    /// The end of the message about an unknown key: the nearest known key, for example.
     fn hint(&mut self, written: &str, known: &[&'static str], what: &str) -> String;
 
-    /// A value as messages show it.
+    /// A value as shown in messages.
     fn shown(&self, value: &Ast) -> String {
         describe(value, self.text())
     }
@@ -200,7 +199,7 @@ pub trait Reader {
         self.report(fields.of.start(), fields.path(key), None, &format!("is missing; {why}"));
     }
 
-    /// The fields of an object. Reports what is not an object, unknown keys, and keys given twice.
+    /// The fields of an object. Reports a value that is no object, unknown keys, and keys given twice.
     fn fields<'p, 'a>(
         &mut self,
         of: Cursor<'p, 'a>,
@@ -245,7 +244,7 @@ pub trait Reader {
         })
     }
 
-    /// Yes or no, or the default where it is not given.
+    /// A boolean, or the default if the field is missing.
     fn flag(&mut self, fields: &Fields, key: &str, default: bool, rule: &str) -> bool {
         match fields.get(key) {
             None => default,
@@ -258,14 +257,14 @@ pub trait Reader {
     }
 }
 
-/// A key as it is known: `color` is read as `colour`, `base_color` as `base_colour`.
+/// A known key in its standard spelling: `color` is read as `colour`, `base_color` as `base_colour`.
 #[must_use]
 pub fn canonical<'k>(written: &str, known: &[&'k str]) -> Option<&'k str> {
     let find = |key: &str| known.iter().find(|k| **k == key).copied();
     find(written).or_else(|| written.contains("color").then(|| find(&written.replace("color", "colour")))?)
 }
 
-/// A value as it is written, if it is short, and what it is otherwise.
+/// A value as written if it is short, and otherwise its type.
 #[must_use]
 pub fn describe(value: &Ast, text: &str) -> String {
     match value {
@@ -284,7 +283,7 @@ pub fn describe(value: &Ast, text: &str) -> String {
     }
 }
 
-/// The byte and the value of a path; if the value is missing, the byte of what lacks it.
+/// The byte and the value of a path; if the value is missing, the byte of the object that lacks it.
 #[must_use]
 pub fn locate<'b, 'a>(root: &'b Ast<'a>, path: &Path) -> (usize, Option<&'b Ast<'a>>) {
     let mut value = root;
@@ -305,7 +304,7 @@ pub fn locate<'b, 'a>(root: &'b Ast<'a>, path: &Path) -> (usize, Option<&'b Ast<
     (value.start(), Some(value))
 }
 
-/// The end of the message that a key is not known: the nearest one, or all that there are.
+/// The end of the message about an unknown key: the nearest known key, or a list of all.
 #[must_use]
 pub fn nearest_key<'k>(
     written: &str,

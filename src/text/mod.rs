@@ -1,4 +1,4 @@
-//! Words for people, and JSON whose values know where they stand.
+//! Words for messages, and JSON whose values know their place.
 
 pub mod json;
 pub mod path;

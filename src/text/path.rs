@@ -15,7 +15,7 @@ pub enum Segment {
     Index(usize),
 }
 
-/// The way to a value from the outermost one: `objects[0].material.k_d`. Empty for that itself.
+/// The way to a value from the outermost one: `objects[0].material.k_d`. Empty for the outermost value itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Path(Vec<Segment>);
 
@@ -51,7 +51,7 @@ impl Path {
         &self.0
     }
 
-    /// Every path on the way to this one, the outermost value and this one among them.
+    /// Every path on the way to this one, including the outermost value and this one.
     pub fn ancestors(&self) -> impl Iterator<Item = Self> + '_ {
         (0..=self.0.len()).map(|n| Self(self.0[..n].to_vec()))
     }

@@ -19,11 +19,11 @@ impl fmt::Display for Place {
     }
 }
 
-/// Finds lines and columns. Built once per text; a look-up is fast even in a text of one huge line.
+/// Finds lines and columns. Built once per text; lookups are fast even in a text of one huge line.
 pub struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
-    /// How many characters there are before each block of [`BLOCK`] bytes.
+    /// The number of characters before each block of [`BLOCK`] bytes.
     characters: Vec<usize>,
 }
 
@@ -49,7 +49,7 @@ impl<'a> Lines<'a> {
         Self { text, starts, characters }
     }
 
-    /// How many characters begin before a byte.
+    /// The number of characters that begin before a byte.
     fn characters_before(&self, at: usize) -> usize {
         let block = (at / BLOCK).min(self.characters.len().saturating_sub(1));
         let counted = self.characters.get(block).copied().unwrap_or_default();
@@ -66,7 +66,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// How many characters begin in a piece of UTF-8.
+/// The number of characters that begin in a piece of UTF-8.
 fn starting(bytes: &[u8]) -> usize {
     bytes.iter().filter(|b| (**b & 0xC0) != 0x80).count()
 }

@@ -1,4 +1,4 @@
-//! Words for people: lists, numbers, quotations, the nearest spelling.
+//! Words for messages: lists, numbers, quotations, the nearest spelling.
 
 use serde_json::Value as Json;
 
@@ -15,21 +15,21 @@ pub fn listed(items: &[impl AsRef<str>], conjunction: &str) -> String {
     }
 }
 
-/// The target whose spelling is nearest to what was written, if any is near. Each candidate is a
-/// spelling and what it stands for.
+/// The target whose spelling is nearest to the written one, if any is near. Each candidate is a spelling and its
+/// target.
 #[must_use]
 pub fn nearest<'a>(written: &str, candidates: impl Iterator<Item = (&'a str, &'a str)>) -> Option<&'a str> {
     // Names are short; comparing a book with each of them would take forever.
     if written.len() > 64 {
         return None;
     }
-    // Case and separators are the commonest slips: sceneSize, scene-size.
+    // Case and separators are the most common slips: sceneSize, scene-size.
     let plain = |s: &str| s.to_lowercase().replace(['_', '-', ' '], "");
     let wanted = plain(written);
     let distance = |candidate: &str| {
         let candidate = plain(candidate);
         let edits = strsim::damerau_levenshtein(&wanted, &candidate);
-        // A third of the letters may differ: more is another word.
+        // A third of the letters may differ; beyond that it is another word.
         let letters = candidate.chars().count().max(wanted.chars().count());
         (edits <= (letters + 1) / 3).then_some(edits)
     };
@@ -58,7 +58,7 @@ pub fn quoted(text: &str) -> String {
 /// The beginning of a text that is too long for a message, on one line.
 #[must_use]
 pub fn shortened(text: &str) -> String {
-    /// The most characters that still read well within a sentence.
+    /// The most characters that read well within a sentence.
     const LONGEST: usize = 60;
     let flat = |c: char| if c.is_control() { ' ' } else { c };
     match text.char_indices().nth(LONGEST) {
@@ -73,7 +73,7 @@ pub fn plural(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
 
-/// The number that a person would write: 0.1, and not its nearest 32-bit neighbour in 64 bits.
+/// The number as a person would write it: 0.1, and not its nearest 32-bit neighbour in 64 bits.
 #[must_use]
 pub fn number(v: f32) -> Json {
     if v.fract() == 0.0 && v.abs() < 1e9 {

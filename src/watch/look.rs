@@ -1,4 +1,4 @@
-//! Looking at folders: which files there are, and where to listen for changes of them.
+//! Looking at folders: the files in them, and the places to listen for changes.
 
 use std::{
     collections::{HashMap, HashSet},
@@ -8,22 +8,22 @@ use std::{
     time::SystemTime,
 };
 
-/// Links that lead to links are followed so far.
+/// The longest chain of links that is followed.
 const MAX_LINKS: usize = 16;
-/// Folders in folders are followed so deep.
+/// The deepest nesting of folders that is followed.
 const MAX_DEPTH: usize = 32;
 
-/// The state of a file, as far as it can be told without reading it.
+/// The state of a file, as far as it is known without reading it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Print {
     length: u64,
     modified: Option<SystemTime>,
-    /// Tells a file from another one that takes its place.
+    /// Distinguishes a file from another one that takes its place.
     number: u64,
 }
 
 impl Print {
-    /// The state of a file; `None` when there is none.
+    /// The state of a file; `None` if there is none.
     pub(crate) fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok()?;
         (!metadata.is_dir()).then(|| Self::from_metadata(&metadata))
@@ -38,19 +38,19 @@ impl Print {
     }
 }
 
-/// Where a change is of interest.
+/// A place where a change matters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     /// The folder, without links in its path.
     pub(super) folder: PathBuf,
     /// The name in it; `None` for every name.
     pub(super) name: Option<OsString>,
-    /// What the file is called in reports, or the folder of the files; `None` where a change only means
-    /// that everything must be looked at again.
+    /// The name of the file in reports, or of the files' folder; `None` where a change only means that everything must
+    /// be looked at again.
     pub(super) shown: Option<PathBuf>,
 }
 
-/// What was found.
+/// The result of a look.
 #[derive(Default)]
 pub(super) struct Found {
     pub(super) files: HashMap<PathBuf, Print>,
@@ -65,7 +65,7 @@ pub(super) fn file(path: &Path) -> Found {
     found
 }
 
-/// Looks at a folder and what lies below.
+/// Looks at a folder and everything below it.
 pub(super) fn folder(path: &Path) -> Found {
     let mut found = Found::default();
     trace(path, None, &mut found.places, 0);
@@ -73,8 +73,8 @@ pub(super) fn folder(path: &Path) -> Found {
     found
 }
 
-/// Follows a path name by name and lists where it can come to lead elsewhere: where the first name is
-/// missing, at every link, and at its end if that is a file.
+/// Follows a path name by name and lists the places where a change could make it lead elsewhere: at the first missing
+/// name, at every link, and at its end if that is a file.
 fn trace(path: &Path, shown: Option<&Path>, places: &mut Vec<Place>, links: usize) {
     let Ok(absolute) = std::path::absolute(path) else { return };
     let mut at = PathBuf::new();
@@ -87,7 +87,7 @@ fn trace(path: &Path, shown: Option<&Path>, places: &mut Vec<Place>, links: usiz
         let is_link = metadata.as_ref().is_ok_and(Metadata::is_symlink);
         let is_last = names.peek().is_none();
         let shown = shown.filter(|_| is_last);
-        // A folder tells by itself when it is moved, on Linux.
+        // On Linux a folder reports its own move.
         let is_end = is_last && (shown.is_some() || cfg!(not(target_os = "linux")));
         if is_link || is_end || metadata.is_err() {
             let Some(folder) = fs::canonicalize(&parent).ok().filter(|f| f.is_dir()) else { return };
@@ -107,7 +107,7 @@ fn trace(path: &Path, shown: Option<&Path>, places: &mut Vec<Place>, links: usiz
 
 fn walk(shown: &Path, found: &mut Found, seen: &mut HashSet<PathBuf>, depth: usize) {
     let Ok(folder) = fs::canonicalize(shown) else { return };
-    // Links may lead in circles.
+    // Links may form a circle.
     if depth > MAX_DEPTH || !folder.is_dir() || !seen.insert(folder.clone()) {
         return;
     }
@@ -130,15 +130,15 @@ fn walk(shown: &Path, found: &mut Found, seen: &mut HashSet<PathBuf>, depth: usi
     }
 }
 
-/// True if a name looks like what editors and tools leave for a moment or as a backup, or is hidden.
+/// True if the name looks like a temporary or backup file of an editor or tool, or is hidden.
 pub(super) fn is_temporary(name: &OsStr) -> bool {
     let name = name.to_string_lossy();
     let extension = Path::new(&*name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    // What `sed -i` writes.
+    // The temporary files of `sed -i`.
     let is_seds = name
         .strip_prefix("sed")
         .is_some_and(|rest| rest.chars().count() == 6 && rest.chars().all(|c| c.is_ascii_alphanumeric()));
-    // Vim tries whether it may write with 4913, or a greater number when that is taken.
+    // Vim tests for write permission with 4913, or a greater number if that is taken.
     let is_vims = name.len() >= 4 && name.chars().all(|c| c.is_ascii_digit());
     name.starts_with('.')
         || name.ends_with('~')

@@ -1,4 +1,4 @@
-//! What the operating system's news and refusals mean.
+//! The meaning of the operating system's events and refusals.
 
 use std::io;
 
@@ -7,14 +7,14 @@ use notify::{
     event::{AccessKind, AccessMode},
 };
 
-/// True if news are only about reading.
+/// True if an event only reports reading.
 pub(super) fn is_reading(kind: EventKind) -> bool {
     matches!(kind, EventKind::Access(access) if access != AccessKind::Close(AccessMode::Write))
 }
 
-/// Why the system does not watch, and what helps.
+/// The reason why the system does not watch, and the remedy.
 pub(super) fn reason(error: &notify::Error) -> String {
-    /// "Too many open files", which is what Linux says of its limit of inotify instances.
+    /// "Too many open files", Linux's error at its limit of inotify instances.
     const EMFILE: i32 = 24;
     match &error.kind {
         ErrorKind::MaxFilesWatch => {
@@ -28,7 +28,7 @@ pub(super) fn reason(error: &notify::Error) -> String {
     }
 }
 
-/// True if a folder could not be watched because it is no longer there.
+/// True if a folder could not be watched because it no longer exists.
 pub(super) fn is_absent(error: &notify::Error) -> bool {
     match &error.kind {
         ErrorKind::PathNotFound => true,

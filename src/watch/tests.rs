@@ -1,4 +1,4 @@
-//! What editors do, with real files.
+//! The ways in which editors save, with real files.
 #![allow(clippy::unwrap_used)]
 
 use std::{fs, fs::File, io, io::Write as _, process::Command, sync::mpsc::RecvTimeoutError};

@@ -1,5 +1,4 @@
-//! Directional albedo: the curves that pictures use, the quadrature on both machines, closed forms, and
-//! the white furnace.
+//! Directional albedo: the curves used in pictures, the quadrature on CPU and GPU, closed forms, and the white furnace.
 
 use std::f32::consts::PI;
 
@@ -49,7 +48,7 @@ parameters! {
     pub struct Patchwork {
         /// Of the Lambertian part.
         base_colour: colour = BASE_COLOUR,
-        /// How much of the surface is the lobe.
+        /// The fraction of the lobe.
         share: number = SHARE,
         /// Roughness.
         alpha_x: number = ALPHA_X,
@@ -57,8 +56,8 @@ parameters! {
 }
 
 parameters! {
-    /// A brushed GGX lobe that reflects everything, with what it loses to multiple scattering given back
-    /// (C. Kulla, A. Conty 2017).
+    /// A brushed GGX lobe that reflects everything, with compensation for multiple scattering (C. Kulla, A. Conty
+    /// 2017).
     pub struct Brushed {
         /// Roughness along the tangent.
         alpha_x: number = ALPHA_X,
@@ -66,7 +65,7 @@ parameters! {
         alpha_y: number = ALPHA_Y,
     }
     derived {
-        /// What the lobe alone reflects.
+        /// The reflection of the lobe alone.
         lobe: LobeAlbedo = |this: &Self| {
             let (x, y) = (this.alpha_x, this.alpha_y);
             LobeAlbedo::anisotropic(|l, v| ggx(l, v, &Frame::LOCAL, x, y))
@@ -86,7 +85,7 @@ fn ggx(l: Vec3, v: Vec3, frame: &Frame, alpha_x: f32, alpha_y: f32) -> f32 {
     let s = (h.x / a).powi(2) + (h.y / b).powi(2) + h.z * h.z;
     let d = 1.0 / (PI * a * b * s * s);
     let root = |w: Vec3| ((a * w.x).powi(2) + (b * w.y).powi(2) + w.z * w.z).sqrt();
-    // G/(4 n·l n·v) without a division by what may vanish.
+    // G/(4 n·l n·v) without a division by values that may vanish.
     let visibility = 0.5 / (v.z * root(l) + l.z * root(v));
     PI * d * visibility * l.z
 }
@@ -236,7 +235,7 @@ fn rows_lie_where_rust_puts_them() {
         assert_eq!(at(mean - 16), nodes[harmonics - 1][15].x);
         let lobe = surface.lobe().unwrap_or_default();
         assert_eq!((at(curve + 12), at(mean)), (lobe.nodes[0], lobe.average()));
-        // Without uniform light the colours are left out, the lobe stays.
+        // Without uniform light the colours are skipped, the lobe stays.
         let dark = model.row(&Values::default(), Encoding::Srgb, false);
         assert_eq!(dark.len(), row.len());
         assert_eq!(dark[curve..curve + 12], [0; 12]);
@@ -277,7 +276,7 @@ fn curve_and_quadrature_agree_on_both_machines() {
         assert!(machines < 1e-4, "{id} {numbers:?}: CPU and GPU differ by {machines}");
         assert!(curve < tolerance, "{id} {numbers:?}: the curve is {curve} off");
     }
-    // The wrong twins: another roughness, and an anisotropic surface taken for isotropic.
+    // The wrong twins: another roughness, and an anisotropic surface treated as isotropic.
     let model = registry.model("patchwork").unwrap();
     let surface = model.instantiate(&values(&[("alpha_x", 0.31)]), Encoding::Srgb);
     let v = view(0.25, 0.0);
@@ -484,7 +483,7 @@ fn every_shape_vanishes_in_a_white_furnace_to_its_silhouette() {
                 for (name, value) in settings {
                     scene.objects[0].material.set(*name, value.clone());
                 }
-                // Interpolated normals turn away from the viewer there, most of all on the cube.
+                // Interpolated normals face away from the viewer there, most of all on the cube.
                 let off = furthest(&scene);
                 let case = format!("{model} × {} × {}", shape.declaration.id, shading.declaration.id);
                 assert!(off < tolerance, "{case}: {off}");

@@ -14,7 +14,7 @@ use serde_json::Value as Json;
 
 use crate::support::{Run, lcm_in, root};
 
-/// A folder to work in, with an empty folder `models`.
+/// A folder for the test, with an empty folder `models`.
 fn workplace() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("models")).unwrap();
@@ -56,7 +56,7 @@ fn a_new_model_is_written_listed_evaluated_and_checked() {
     assert!(made.err.contains("`lcm models check velvet_rim --models made/here`"), "{}", made.err);
     let again = run(at, "models new velvet_rim --models made/here", "");
     assert_eq!(again.status, Some(4));
-    assert!(again.err.contains("velvet_rim.wgsl is there already; it was left alone"), "{}", again.err);
+    assert!(again.err.contains("velvet_rim.wgsl already exists and was kept"), "{}", again.err);
 
     let table = run(at, "models --models made/here", "").out;
     assert!(
@@ -103,7 +103,7 @@ fn a_broken_claim_is_found_with_numbers_and_a_kept_one_that_nobody_makes_too() {
     let kept = run(folder.path(), "models check half --models models", "");
     assert_eq!(kept.status, Some(0));
     assert!(
-        kept.out.contains("energy conserving: not claimed and not found broken: claim it?"),
+        kept.out.contains("energy conserving: not claimed, but no violation found: claim it?"),
         "{}",
         kept.out
     );
@@ -146,7 +146,7 @@ fn a_model_is_duplicated_to_a_file() {
             assert!((a / b - 1.0).abs() < 1e-4, "{on}: {original}{copy}");
         }
     }
-    // A copy of the copy, under a name.
+    // A copy of the copy, with a given name.
     let again = run(folder.path(), "models duplicate microfacet_copy other --models models", "");
     assert_eq!(again.out.trim(), "models/other.wgsl", "{}", again.err);
     let table = run(folder.path(), "models --models models", "").out;
@@ -193,11 +193,11 @@ fn what_the_cpu_does_not_know_is_said_and_the_graphics_card_does_it() {
         let said = run(command, input);
         assert_eq!(said.status, Some(3), "{command}: {}", said.err);
         let expected = "table cannot be run on the CPU, which interprets custom models: ";
-        assert!(said.err.contains(expected) && said.err.contains("with --on gpu"), "{}", said.err);
+        assert!(said.err.contains(expected) && said.err.contains("; use --on gpu"), "{}", said.err);
         assert_eq!(run(&format!("{command} --on gpu"), input).status, Some(0));
     }
     let said = run("render --reflection table --size 8x8 --renderer cpu -o x.png", "");
-    assert!(said.status == Some(3) && said.err.contains("with --renderer gpu"), "{}", said.err);
+    assert!(said.status == Some(3) && said.err.contains("; use --renderer gpu"), "{}", said.err);
     assert!(!folder.path().join("x.png").exists());
     let drawn = run("render --reflection table --size 8x8 -o x.png", "");
     assert_eq!(drawn.status, Some(0), "{}", drawn.err);
@@ -218,7 +218,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
         &model("helped(cos_l)").replace("*/\n", "*/\n#import \"helper.wgsl\"\n"),
     );
     fs::write(folder.path().join("models/notes.txt"), "no model").unwrap();
-    // The list is of declarations, and that of the bad one is right.
+    // The list is of declarations, and that of the broken model is right.
     let listed = run(folder.path(), "models --models models", "");
     assert_eq!((listed.status, listed.err.as_str()), (Some(0), ""));
     for id in ["good", "helped_model", "bad"] {
@@ -249,12 +249,12 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
     let bad = render("bad");
     assert_eq!(bad.status, Some(2));
     assert!(
-        bad.err.contains("bad\", but the file of that custom model has a mistake: models/bad.wgsl:4:"),
+        bad.err.contains("bad\", but the file of that custom model has an error: models/bad.wgsl:4:"),
         "{}",
         bad.err
     );
     let gone = render("gone");
-    assert!(gone.err.contains("among the custom models there is no models/gone.wgsl"), "{}", gone.err);
+    assert!(gone.err.contains("the folder of custom models has no models/gone.wgsl"), "{}", gone.err);
     assert_eq!(render("helped_model").status, Some(0));
 
     let scene = fs::read_to_string(root().join("scenes/default.json")).unwrap();
@@ -263,7 +263,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
     let checked = run(folder.path(), "check bad.json --models models", "");
     assert_eq!(checked.status, Some(1));
     assert!(
-        checked.err.contains("the file of that custom model has a mistake: models/bad.wgsl:4:"),
+        checked.err.contains("the file of that custom model has an error: models/bad.wgsl:4:"),
         "{}",
         checked.err
     );
@@ -271,7 +271,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
     assert_eq!(run(folder.path(), "check good.json --models models", "").status, Some(0));
     let refused = run(folder.path(), "check good.json --models elsewhere", "");
     assert!(
-        refused.status == Some(2) && refused.err.contains("elsewhere, but there is no such folder"),
+        refused.status == Some(2) && refused.err.contains("there is no folder elsewhere for --models"),
         "{}",
         refused.err
     );
@@ -289,7 +289,7 @@ fn shaders_are_exported_edited_and_used() {
     let text = fs::read_to_string(&lambert).unwrap();
     assert_eq!(text, fs::read_to_string(root().join("assets/shaders/reflection/lambert.wgsl")).unwrap());
     assert!(at.join("mine/models/gooch.wgsl").is_file());
-    // The exported files are the built-in ones, and give the same numbers.
+    // The exported files equal the built-in ones, and give the same numbers.
     let value = |arguments: &str| run(at, arguments, ANGLES).out;
     let original = value("evaluate lambert --on gpu");
     assert_eq!(value("evaluate lambert --on gpu --assets mine"), original);
@@ -298,21 +298,21 @@ fn shaders_are_exported_edited_and_used() {
     let edited = value("evaluate lambert --on gpu --assets mine");
     let number = |text: &str| text.lines().nth(1).unwrap().split(',').nth(4).unwrap().parse::<f32>().unwrap();
     assert!((number(&edited) / number(&original) - 0.5).abs() < 1e-6, "{edited}");
-    // The CPU renderer is Rust; that it does not follow is said where it matters.
+    // The CPU renderer is Rust; a message says that it ignores edits.
     let said = |arguments: &str| run(at, &format!("render --size 8x8 --assets mine {arguments}"), "").err;
-    let told = "the CPU renderer does not follow the edited reflection/lambert.wgsl; --renderer gpu does";
+    let told = "the CPU renderer ignores the edited reflection/lambert.wgsl; --renderer gpu uses the edits";
     assert!(said("--renderer cpu --reflection lambert").contains(told));
     assert!(!said("--renderer cpu --reflection phong").contains("follow"));
     assert!(!said("--renderer gpu --reflection lambert").contains("follow"));
     assert_eq!(said("--renderer cpu --reflection lambert --quiet"), "");
-    // What was edited is left alone, and what is missing comes back.
+    // Edited files are kept, and missing files come back.
     fs::remove_file(at.join("mine/shaders/loop.wgsl")).unwrap();
     let again = run(at, "assets export mine", "");
     assert_eq!(again.out.trim(), Path::new("mine/shaders/loop.wgsl").display().to_string());
     assert!(
-        again.err.contains(
-            "mine/shaders/reflection/lambert.wgsl differs from the built-in one; it was left alone"
-        ),
+        again
+            .err
+            .contains("mine/shaders/reflection/lambert.wgsl differs from the built-in file and was kept"),
         "{}",
         again.err
     );
@@ -362,7 +362,7 @@ fn a_broken_shader_is_an_error_where_it_is_used() {
     fs::write(at.join("mine/shaders/lights.wgsl"), b"// \xff").unwrap();
     let said = run(at, "evaluate phong --assets mine", ANGLES);
     assert!(said.status == Some(1) && said.err.contains("mine/shaders/lights.wgsl:1:4"), "{}", said.err);
-    assert!(said.err.contains("this is not UTF-8 text"), "{}", said.err);
+    assert!(said.err.contains("the byte 0xff is not UTF-8"), "{}", said.err);
 }
 
 #[test]

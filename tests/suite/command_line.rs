@@ -1,4 +1,4 @@
-//! The command line as users see it: output, messages, exit status.
+//! The command line as seen by users: output, messages, exit status.
 
 use std::{
     fs,
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::support::{Run, changed, command_in, full_scene, lcm, lcm_in, root};
 
-/// Asserts the status and one line on standard error that contains a text.
+/// Asserts the status and one line on standard error with a given text.
 fn refused(run: &Run, status: i32, expected: &str) {
     assert_eq!(run.status, Some(status), "{}", run.err);
     assert!(run.err.contains(expected), "{}\nnot: {expected}", run.err);
@@ -24,7 +24,7 @@ fn help_and_version_are_results() {
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
         assert!(!run.out.is_empty());
     }
-    assert!(lcm(&["--help"], "").out.contains("Exit status: 0 done"));
+    assert!(lcm(&["--help"], "").out.contains("Exit status: 0 success"));
 }
 
 #[test]
@@ -45,11 +45,11 @@ fn wrong_usage_has_status_2() {
         (&["render", "--exposure", "-17"], "the exposure must be between -16 and 16 EV"),
         (&["render", "a.json", "b.json", "-o", "x.png"], "-o x.png is one file, but there are 2 scenes"),
         (&["render", "a/x.json", "b/x.json"], "would both be written to renders/x.png"),
-        (&["render", "-o", "x.jpg"], "only PNG files are written; did you mean x.png?"),
+        (&["render", "-o", "x.jpg"], "only PNG files can be written; did you mean x.png?"),
         (&["render", "-", "-"], "- can be given once"),
         (&["view", "--exit-after", "0"], "0 is not in 1.."),
         (&["--use-defaults", "--no-defaults", "check", "x"], "cannot be used with"),
-        (&["room.json", "models"], "room.json stands before the command"),
+        (&["room.json", "models"], "room.json must come after the command"),
         (&["rendr"], "did you mean lcm render?"),
         (&["evaluate", "fong"], "did you mean \"phong\"?"),
         (
@@ -111,7 +111,7 @@ fn missing_parts_need_an_answer() {
         refused(
             &run,
             1,
-            "standard input:1:1: shading_model (default: gouraud) is missing; --use-defaults takes the defaults, --no-defaults",
+            "standard input:1:1: shading_model (default: gouraud) is missing; --use-defaults accepts the defaults, --no-defaults",
         );
         assert_eq!(run.err.lines().count(), 1);
     }
@@ -119,7 +119,7 @@ fn missing_parts_need_an_answer() {
     refused(
         &lcm(&["render", "-"], ""),
         1,
-        "standard input is empty. Load the default scene? --use-defaults says yes",
+        "standard input is empty. Load the default scene? Use --use-defaults to accept.",
     );
 }
 
@@ -130,9 +130,7 @@ fn render_says_everything_that_is_wrong_with_all_scenes() {
     fs::write(folder.path().join("b.json"), "[]").expect("written");
     let run = lcm_in(folder.path(), &["render", "a.json", "b.json", "c.json"], b"");
     refused(&run, 1, "a.json:1:2: not JSON");
-    assert!(
-        run.err.contains("b.json:1:1: the scene is []") && run.err.contains("c.json: there is no such file")
-    );
+    assert!(run.err.contains("b.json:1:1: the scene is []") && run.err.contains("c.json: file not found"));
     assert!(!folder.path().join("renders").exists());
 }
 
@@ -145,10 +143,10 @@ fn new_writes_the_default_scene_and_overwrites_nothing() {
     refused(
         &lcm_in(folder.path(), &["new", "a.json"], b""),
         4,
-        "a.json exists already; it was not overwritten",
+        "a.json already exists; it was not overwritten",
     );
     refused(&lcm_in(folder.path(), &["new", "x/a.json"], b""), 4, "there is no folder x");
-    refused(&lcm_in(folder.path(), &["new", "."], b""), 4, "is a folder; name a file");
+    refused(&lcm_in(folder.path(), &["new", "."], b""), 4, "is a folder; choose a file name");
 }
 
 #[test]
@@ -231,13 +229,13 @@ fn albedo_integrates_on_both_machines() {
             assert_eq!((cells[0], e[2]), (mu, 0.0));
             assert!((e[0] - 1.0).abs() < 1e-4 && (e[1] - 0.502_886).abs() < 1e-4, "{line}");
         }
-        // A narrow lobe at normal incidence. The response of this family has no cosine of its own.
+        // A narrow lobe at normal incidence. The response of this family has no cosine.
         let set = ["k_d=0.5", "k_s=1", "alpha=998", "base_colour=0,0,0"];
         let mut arguments = vec!["albedo", "phong", "--on", machine];
         arguments.extend(set.iter().flat_map(|s| ["--set", *s]));
         let run = lcm(&arguments, "mu\n1\n");
         let e: f32 = run.out.lines().nth(1).and_then(|l| l.split(',').nth(1)).unwrap().parse().unwrap();
-        // ∫ cos^998 over the hemisphere, over π. An exponent of 999 is told apart.
+        // ∫ cos^998 over the hemisphere, over π. An exponent of 999 fails.
         assert!((e - 2.0 / 999.0).abs() < 5e-7, "{e}");
     }
 }
@@ -280,7 +278,7 @@ fn a_closed_pipe_is_no_error() {
     }
 }
 
-/// Mesa looks for a Wayland display where nobody said that there is one, and a library of it complains.
+/// Mesa looks for a Wayland display even without the variable, and one of its libraries complains.
 #[cfg(target_os = "linux")]
 #[test]
 fn nothing_is_printed_about_a_runtime_folder_that_is_not_set() {

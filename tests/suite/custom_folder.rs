@@ -1,4 +1,4 @@
-//! A folder of many custom models, some of them bad: of which files something is read, and who hears of it.
+//! A folder of many custom models, some of them broken: the files read, and the messages.
 
 use std::{
     collections::BTreeSet,
@@ -22,7 +22,7 @@ use serde_json::{Value as Json, json};
 
 use crate::support::{Run, lcm_in};
 
-/// How many models are in a large folder.
+/// The number of models in a large folder.
 const MANY: usize = 500;
 
 /// A model with a parameter of its own.
@@ -36,7 +36,7 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{
     )
 }
 
-/// A place to work in.
+/// A folder for the test.
 struct Bench {
     folder: tempfile::TempDir,
 }
@@ -48,7 +48,7 @@ impl Bench {
         Self { folder }
     }
 
-    /// With many good models, fuzz_0 to fuzz_499, and files that are bad, each in its way.
+    /// Many good models, fuzz_0 to fuzz_499, and files that are broken in various ways.
     fn crowded() -> Self {
         let bench = Self::new();
         for i in 0..MANY {
@@ -60,7 +60,7 @@ impl Bench {
         bench.put("larger.wgsl", &"nonsense ".repeat(1 << 18));
         fs::write(bench.models().join("bytes.wgsl"), b"// \xff").unwrap();
         fs::create_dir(bench.models().join("folder.wgsl")).unwrap();
-        // Reading it would wait for ever.
+        // Reading it would wait forever.
         #[cfg(target_os = "linux")]
         assert!(
             std::process::Command::new("mkfifo")
@@ -82,7 +82,7 @@ impl Bench {
         path
     }
 
-    /// Runs the program, telling details or not.
+    /// Runs the program, with or without details.
     fn run(&self, arguments: &str, input: &str) -> Run {
         let arguments: Vec<_> =
             format!("{arguments} --models models").split(' ').map(str::to_owned).collect();
@@ -97,7 +97,7 @@ impl Bench {
     }
 }
 
-/// The models that were read whole, and in how many files declarations were looked for, as `--verbose` tells.
+/// The completely read models, and the number of files searched for declarations, from `--verbose`.
 fn read(run: &Run) -> (BTreeSet<String>, usize) {
     let lines = || run.err.lines();
     let whole = lines().filter_map(|l| l.strip_prefix("read ")).map(|file| {
@@ -212,7 +212,7 @@ fn a_bad_file_is_an_error_for_whoever_names_it() {
             assert!(!told.err.contains(other), "{command} tells of {other}: {}", told.err);
         }
     }
-    // What is no file that can be read, and what is no model.
+    // Unreadable files, and files that are no models.
     for none in ["pipe", "folder", "huge"] {
         let told = bench.run(&format!("evaluate {none}"), ANGLES);
         assert!(told.status == Some(2) && told.err.contains("must be \"lambert\""), "{none}: {}", told.err);
@@ -253,12 +253,12 @@ fn messages_list_and_suggest_what_only_declarations_know() {
         "\"fuzz_0\"",
         "\"fuzz_499\"",
         "did you mean \"fuzz_321\"?",
-        "among the custom models there is no models/fuzzz_321.wgsl",
+        "the folder of custom models has no models/fuzzz_321.wgsl",
         "did you mean \"depth_321\"?",
     ] {
         assert!(unknown.err.contains(expected), "{expected} is not in {}", unknown.err);
     }
-    // In the order of the names, after the built-in ones, also when one was read before the others.
+    // In the order of the names, after the built-in ones, even if one was read before the others.
     let mixed = bench.run("check -", &scene("fuzz_77", &json!({}), Some("fuzzz_321")));
     let places =
         ["\"phong\"", "\"fuzz_0\"", "\"fuzz_1\"", "\"fuzz_77\"", "\"fuzz_78\""].map(|id| mixed.err.find(id));
@@ -275,7 +275,7 @@ fn the_list_has_all_declarations_and_tells_which_are_wrong() {
     let listed = bench.run("models --json --verbose", "");
     assert_eq!(listed.status, Some(0));
     let models: Vec<Json> = serde_json::from_str(&listed.out).unwrap();
-    // The declaration of the bad one is right.
+    // The declaration of the broken one is right.
     assert_eq!(models.len(), Registry::builtin().models().len() + MANY + 1);
     assert!(read(&listed).0.is_empty(), "{}", listed.err);
     for expected in ["worse.wgsl:1:", "bytes.wgsl:1:4", "larger than 1 MiB"] {
@@ -311,7 +311,7 @@ fn the_registry_knows_how_much_was_read_and_what_is_wanted() {
         extents(&registry),
         [("a", Extent::Declaration), ("b", Extent::Whole), ("c", Extent::Declaration)]
     );
-    // A scene that comes to use models wants the rest of them.
+    // A scene that starts to use models wants the rest of them.
     let mut scene = Scene { reflection_model: "c".to_owned(), ..Scene::default() };
     scene.objects[0].reflection_model = Some("b".to_owned());
     let wanted =
@@ -324,7 +324,7 @@ fn the_registry_knows_how_much_was_read_and_what_is_wanted() {
     assert_eq!(read_model("c", &mut registry), Reading::Read);
     assert!(wanted(&registry).is_empty());
 
-    // What did not change is not read again.
+    // Unchanged files are not read again.
     assert_eq!(declare_rest(&mut registry).files, 0);
     bench.put("a.wgsl", &model("another_name"));
     bench.put("d.wgsl", &model("depth_d"));
@@ -334,11 +334,11 @@ fn the_registry_knows_how_much_was_read_and_what_is_wanted() {
     assert_eq!(registry.model("a").unwrap().parameters[1].name, "another_name");
     assert_eq!(registry.model("b").unwrap().parameters[1].name, "depth_b");
     assert_eq!(extents(&registry).len(), 4);
-    // A model that is none any more.
+    // A file that is no longer a model.
     bench.put("a.wgsl", "fn helper() -> f32 { return 1.0; }");
     assert_eq!(declare_rest(&mut registry).files, 1);
     assert!(registry.model("a").is_none() && registry.sources().get("models/a.wgsl").is_some());
-    // A mistake that is found when the rest is read leaves the stand-in.
+    // An error found in reading the rest leaves the stand-in.
     bench.put("d.wgsl", &model("depth_d").replace("m.base_colour", "m.base_color"));
     assert!(matches!(read_model("d", &mut registry), Reading::Broken(_)));
     assert!(registry.broken_model("d").unwrap().contains("d.wgsl:3:"));
@@ -360,7 +360,7 @@ fn declarations_agree_on_types_in_the_order_of_names() {
     for (said, id) in told.iter().zip(["b", "d"]) {
         let place = format!("models/{id}.wgsl:1:");
         assert!(
-            said.starts_with(&place) && said.contains("a has a parameter of that name whose type is number"),
+            said.starts_with(&place) && said.contains("a has a parameter of that name with type number"),
             "{said}"
         );
     }
@@ -396,9 +396,9 @@ fn a_model_brings_the_files_that_it_imports() {
     let read: Vec<_> = registry.sources().edited().collect();
     assert_eq!(read, ["models/four.wgsl", "models/good.wgsl", "models/three.wgsl"]);
     for (id, expected) in [
-        ("round", "import each other in a circle"),
-        ("itself", "import each other in a circle"),
-        ("lost", "models/latin.wgsl:1:4: this is not UTF-8 text"),
+        ("round", "circular import"),
+        ("itself", "circular import"),
+        ("lost", "models/latin.wgsl:1:4: the byte 0xe9 is not UTF-8"),
     ] {
         let Reading::Broken(problems) = read_model(id, &mut registry) else { panic!("{id}") };
         let told: Vec<_> = problems.iter().map(|(_, problem)| problem.to_string()).collect();

@@ -1,4 +1,4 @@
-//! Models as one file: what a file may say, what is told of mistakes, and that it is drawn as it says.
+//! Models as one file: the contents of a file, messages about errors, and the picture.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ use lights_camera_models::{
 
 use crate::pictures::{close_up, compare};
 
-/// The path that a model of that id would have.
+/// The path of a model with that id.
 fn path(id: &str) -> std::path::PathBuf {
     Path::new("somewhere").join(format!("{id}.wgsl"))
 }
@@ -39,7 +39,7 @@ fn with(id: &str, text: &str) -> Registry {
     registry
 }
 
-/// Lambert's law under a declaration.
+/// Lambert's law with a declaration.
 fn matt(declaration: &str) -> String {
     format!(
         "/* lcm {declaration} */\nfn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{\n    \
@@ -47,7 +47,7 @@ fn matt(declaration: &str) -> String {
     )
 }
 
-/// What reading a file says; one line per problem.
+/// The messages of reading a file; one line per problem.
 fn said_of(id: &str, text: &str) -> String {
     match custom::read(&path(id), text, &Registry::builtin()) {
         Ok(_) => String::new(),
@@ -55,7 +55,7 @@ fn said_of(id: &str, text: &str) -> String {
     }
 }
 
-/// What is said of a declaration.
+/// The messages about a declaration.
 fn said(declaration: &str) -> String {
     said_of("mine", &matt(declaration))
 }
@@ -75,7 +75,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             "banana is not a key of a model; a model has the keys name, author, source, summary",
         ),
         ("{ \"name\": \"a\",\n \"name\": \"b\" }", "2:2: name is given twice"),
-        ("{ \"name\": 3 }", "1:18: name is 3, but it must be text on one line, of at most 60 characters"),
+        ("{ \"name\": 3 }", "1:18: name is 3, but it must be one line of text, of at most 60 characters"),
         ("{ \"name\": \" \" }", "name is \" \", but a name must have letters"),
         ("{ \"anisotropic\": 1 }", "anisotropic is 1, but it must be true or false"),
         ("{ \"equation\": 1 }", "equation is 1, but it must be text, or a list of parts"),
@@ -101,7 +101,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             "{ \"parameters\": [\"base_color\"] }",
             "parameters[0] is \"base_color\", but no built-in model has a parameter of that name; did you mean \"base_colour\"?",
         ),
-        ("{ \"parameters\": [\"banana\"] }", "to declare a new one write { \"name\": …"),
+        ("{ \"parameters\": [\"banana\"] }", "to declare a new one, write { \"name\": …"),
         ("{ \"parameters\": [3] }", "parameters[0] is 3, but a parameter must be an object"),
         ("{ \"parameters\": [{ \"min\": 0 }] }", "parameters[0].name is missing"),
         ("{ \"parameters\": [{ \"name\": 3 }] }", "parameters[0].name is 3, but it must be text"),
@@ -114,7 +114,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ("{ \"parameters\": [\"k_s\", { \"name\": \"k_s\" }] }", "there are two parameters k_s"),
         (
             "{ \"parameters\": [{ \"name\": \"base_colour\", \"type\": \"number\" }] }",
-            "parameters[0].name is \"base_colour\", but lambert has a parameter of that name whose type is colour",
+            "parameters[0].name is \"base_colour\", but lambert has a parameter of that name with type colour",
         ),
         (
             &parameter("\"type\": \"nummer\""),
@@ -133,8 +133,11 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             "parameters[0].range is [1, 1], but the largest value must be greater",
         ),
         (&parameter("\"range\": 1"), "parameters[0].range is 1, but a range must be two numbers: [min, max]"),
-        (&parameter("\"range\": [0, 1], \"max\": 2"), "parameters[0].range is given, but so is max"),
-        (&parameter("\"above\": 1"), "parameters[0].above is 1, but it must be 0"),
+        (&parameter("\"range\": [0, 1], \"max\": 2"), "parameters[0].range conflicts with max"),
+        (
+            &parameter("\"above\": 1"),
+            "parameters[0].above is 1, but it must be 0; it replaces min and means greater than 0",
+        ),
         (&parameter("\"default\": 2"), "parameters[0].default is 2, but it must be between 0 and 1"),
         (
             &parameter("\"type\": \"integer\", \"default\": 1.5"),
@@ -146,7 +149,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ),
         (
             &parameter("\"type\": \"integer\", \"slider_max\": 0"),
-            "slider_max is 0, but it must be greater than 0, where the slider begins",
+            "slider_max is 0, but it must be greater than 0, the start of the slider",
         ),
         (
             &parameter("\"type\": \"colour\", \"default\": [1, 2]"),
@@ -201,10 +204,7 @@ fn a_file_without_a_good_name_or_declaration_is_refused() {
     let good = matt("{}");
     assert_eq!(said_of("mine", &good), "");
     for (id, expected) in [
-        (
-            "Mine",
-            "models/Mine.wgsl:1:1: the name of the file is the id of the model: Mine must be lower-case",
-        ),
+        ("Mine", "models/Mine.wgsl:1:1: the file name is the id of the model: Mine must be lower-case"),
         ("my model", "must be lower-case letters"),
         ("1st", "begin with a letter"),
         ("phong", "models/phong.wgsl:1:1: phong is the id of a built-in model; give the file another name"),
@@ -302,7 +302,7 @@ fn equal_declarations_are_the_same_one() {
     let other = read(&text.replace("Same", "Other"));
     assert!(!std::ptr::eq(a.entry.declaration, other.entry.declaration));
     assert!(std::ptr::eq(a.entry.parameters, other.entry.parameters));
-    // A formula for uniform light is part of what is declared.
+    // A formula for uniform light is part of the declaration.
     let formula = format!(
         "{text}fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {{ return m.base_colour; }}"
     );
@@ -322,15 +322,13 @@ fn registering_replaces_in_place_and_removing_forgets() {
     registry.remove_model("first");
     assert!(registry.model("first").is_none() && registry.custom_file("first").is_none());
     assert_eq!(registry.sources().get("models/first.wgsl"), None);
-    // What parameters mean is agreed among custom models too.
+    // Custom models must agree on the types of parameters.
     let clash = custom::read(
         &path("third"),
         &matt("{ \"parameters\": [{ \"name\": \"x\", \"type\": \"colour\" }] }"),
         &with("second", &matt("{ \"parameters\": [{ \"name\": \"x\" }] }")),
     );
-    assert!(
-        clash.unwrap_err()[0].message.contains("second has a parameter of that name whose type is number")
-    );
+    assert!(clash.unwrap_err()[0].message.contains("second has a parameter of that name with type number"));
 }
 
 #[test]
@@ -348,7 +346,7 @@ fn a_model_without_a_good_version_is_drawn_as_a_stand_in() {
     assert!(d.covered > 300 && d.wrong == 0, "{d:?}");
 }
 
-/// A renderer on the GPU that knows what a registry knows.
+/// A renderer on the GPU with the contents of a registry.
 fn renderer(registry: &Registry) -> GpuRenderer {
     let registry = registry.clone();
     GpuRenderer::extended(64, 64, 1, Output::Linear, |app| {
@@ -460,7 +458,7 @@ fn a_built_in_model_as_a_file_gives_the_same_picture_in_every_shading_model() {
     }
 }
 
-/// What the GPU is found to do with a model.
+/// The GPU's findings about a model.
 fn examined(registry: &Registry, id: &str) -> Findings {
     let model = registry.model(id).unwrap();
     let mut evaluator = Evaluator::new(registry.sources(), model).expect("software Vulkan is installed");
@@ -473,7 +471,7 @@ fn examined(registry: &Registry, id: &str) -> Findings {
 
 #[test]
 fn the_laws_that_files_claim_are_put_to_the_test() {
-    // Divided by the cosine of the view alone, light cannot go backwards; brighter than white, energy is made.
+    // Divided by the cosine of the view alone, the BRDF is not reciprocal; brighter than white, it gains energy.
     for (law, body) in [
         ("reciprocal", "0.5 * cos_l * (1.0 - 0.5 * cos_v)"),
         ("energy conserving", "1.2 * cos_l"),
@@ -511,7 +509,7 @@ fn built_in_models_keep_what_they_claim_on_the_graphics_card_too() {
     }
     let phong = examined(&registry, "phong");
     assert!(phong.reciprocity.size > 10.0 * RECIPROCITY_TOLERANCE, "{phong:?}");
-    // Lambert reflects its colour: white all of it.
+    // Lambert reflects its colour: white reflects everything.
     let lambert = examined(&registry, "lambert");
     assert!((lambert.albedo.size - 1.0).abs() < 1e-3, "{lambert:?}");
 }
@@ -653,7 +651,7 @@ fn parameters_of_custom_models_are_saved_and_kept() {
 
 #[test]
 fn the_same_parameters_are_the_same_words_on_both_machines() {
-    // One of each kind, told apart by weights: a word in the wrong place gives another number.
+    // One of each type, distinguished by weights: a word in the wrong place gives another number.
     let declaration = "{ \"parameters\": [{ \"name\": \"a\" }, \"base_colour\", { \"name\": \"kind\", \"choices\": [\"x\", \"y\", \"z\"] }, \
         { \"name\": \"t\", \"type\": \"triple\" }, { \"name\": \"n\", \"type\": \"integer\", \"max\": 9 }] }";
     let text = matt(declaration).replace(

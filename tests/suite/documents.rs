@@ -1,5 +1,5 @@
-//! The documents: their tables are those of the registry, their examples are the examples, and the tour of the README
-//! is right.
+//! The documents: their tables match the registry, their examples match the program, and the tour of the README is
+//! right.
 
 use std::fs;
 
@@ -71,7 +71,7 @@ fn code(id: &str) -> String {
     format!("`{id}`")
 }
 
-/// The tables and examples that are made from the program, by page and by the name of their place.
+/// The tables and examples generated from the program, by page and by the name of their place.
 fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
     let registry = Registry::builtin();
     let example = |file: &str, language: &str| {
@@ -136,7 +136,7 @@ fn models(registry: &Registry) -> String {
             kept.join(", "),
         ]
     });
-    table(&["id", "name", "author", "what it shows", "parameters", "laws kept"], rows)
+    table(&["id", "name", "author", "description", "parameters", "laws kept"], rows)
 }
 
 fn parameters(registry: &Registry) -> String {
@@ -171,7 +171,7 @@ fn lights(registry: &Registry) -> String {
         fields.extend(d.parameters.iter().map(|p| code(p.name)));
         vec![code(d.id), d.summary.into(), format!("`{}`", d.equation), d.unit.into(), fields.join(", ")]
     });
-    table(&["id", "what it does", "light at a point", "unit", "fields"], rows)
+    table(&["id", "description", "light at a point", "unit", "fields"], rows)
 }
 
 fn shapes(registry: &Registry) -> String {
@@ -181,7 +181,7 @@ fn shapes(registry: &Registry) -> String {
         let tessellation = format!("{from}–{to}, default {}", d.default_tessellation);
         vec![code(d.id), d.summary.into(), tessellation, d.tessellation_help.into()]
     });
-    table(&["id", "what it shows", "tessellation", "meaning"], rows)
+    table(&["id", "description", "tessellation", "meaning"], rows)
 }
 
 fn gallery(registry: &Registry) -> String {
@@ -217,9 +217,9 @@ fn fields(schema: &Json) -> String {
         for (name, field) in needed.into_iter().chain(free) {
             let default = &field["default"];
             let without = match (is_required(name), default) {
-                (true, Json::Null) if name == "scene_size" => "asked for".to_owned(),
+                (true, Json::Null) if name == "scene_size" => "after asking".to_owned(),
                 (true, Json::Null) => "required".to_owned(),
-                (true, _) => format!("{}, asked for", code(&default.to_string())),
+                (true, _) => format!("{}, after asking", code(&default.to_string())),
                 (false, Json::Null) => String::new(),
                 (false, _) => code(&default.to_string()),
             };
@@ -230,7 +230,7 @@ fn fields(schema: &Json) -> String {
     table(&["field", "meaning", "range", "default"], rows.into_iter())
 }
 
-/// The range of a field that is one number.
+/// The range of a numeric field.
 fn range(field: &Json) -> String {
     let number = |key: &str| field[key].as_number().map(ToString::to_string);
     match (number("minimum"), number("exclusiveMinimum"), number("maximum")) {
@@ -259,15 +259,15 @@ fn scenes() -> String {
         let link = format!("[{}](../scenes/{})", e.file.trim_end_matches(".json"), e.file);
         vec![link, e.description.clone()]
     });
-    table(&["scene", "what it shows"], rows)
+    table(&["scene", "description"], rows)
 }
 
-/// What a shader may hold.
+/// The limits of a shader.
 fn limits() -> String {
     let l = LIMITS;
     let kib = |bytes: u64| format!("{} KiB", bytes >> 10);
     let rows = [
-        ("text, with everything that is joined to it", format!("{} MiB", l.bytes >> 20)),
+        ("composed text, imports included", format!("{} MiB", l.bytes >> 20)),
         ("statements", l.statements.to_string()),
         ("functions, constants, types and module variables", l.declarations.to_string()),
         ("brackets within brackets", l.nesting.to_string()),
@@ -277,10 +277,10 @@ fn limits() -> String {
         ("cases of a `switch`", l.cases.to_string()),
         ("elements of an array", l.elements.to_string()),
         ("a value", kib(l.value_bytes.into())),
-        ("all variables of a function, with those of the functions that it calls", kib(l.variable_bytes)),
-        ("steps of a function, with every call written out", l.steps.to_string()),
+        ("all variables of a function and the functions that it calls", kib(l.variable_bytes)),
+        ("steps of a function, with all calls inlined", l.steps.to_string()),
     ];
-    table(&["what", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
+    table(&["limit of", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
 }
 
 /// The modules as `lib.rs` lists them.
@@ -330,7 +330,7 @@ fn the_readme_is_short_and_counts_right() {
     for said in [
         format!("{} reflection models", registry.models().len()),
         format!("{} shading\n  models", registry.shading_models().len()),
-        format!("{} types of light", registry.lights().len()),
+        format!("{} light types", registry.lights().len()),
     ] {
         assert!(readme.contains(&said), "{said}");
     }

@@ -1,5 +1,5 @@
-//! A model, a light type and a shape from outside the crate are registered through the public calls
-//! and work everywhere.
+//! A model, a light type and an object type from outside the crate, registered through the public calls, work
+//! everywhere.
 
 use bevy::ecs::component::Component;
 use glam::Vec3;
@@ -34,9 +34,9 @@ const BANDS: Parameter = Parameter {
 parameters! {
     /// Cartoon shading: Lambert in a few tones.
     pub struct Toon {
-        /// Its colour.
+        /// The colour.
         base_colour: colour = BASE_COLOUR,
-        /// How many tones.
+        /// The number of tones.
         bands: number = BANDS,
     }
 }

@@ -1,5 +1,5 @@
-//! Files that are none, outputs that would cost something, what killed processes leave, and what must not reach a
-//! terminal. Nothing here may hang: every wait has an end.
+//! Paths that are no regular files, outputs that would overwrite something, leftovers of killed processes, and texts
+//! unsafe for a terminal. Nothing here may hang: every wait has an end.
 
 #![cfg(target_os = "linux")]
 
@@ -41,24 +41,24 @@ use crate::{
     support::{command_in, full_scene, names, read, root, written},
 };
 
-/// Long for anything that is tried here, on a busy machine too.
+/// Long enough for anything tried here, even on a busy machine.
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// Does something that must come to an end.
+/// Runs something that must end.
 fn bounded<T: Send + 'static>(what: &str, work: impl FnOnce() -> T + Send + 'static) -> T {
     let (done, wait) = mpsc::channel();
     thread::spawn(move || done.send(work()));
     wait.recv_timeout(LIMIT).unwrap_or_else(|e| panic!("{what}: {e}"))
 }
 
-/// What a run of a program gave.
+/// The result of a run of a program.
 struct Ran {
     status: Option<i32>,
     out: Vec<u8>,
     err: String,
 }
 
-/// Runs a program that must come to an end, and kills it if it does not.
+/// Runs a program that must end, and kills it if it does not.
 fn run(command: &mut Command) -> Ran {
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
     let all = |mut from: Box<dyn std::io::Read + Send>| {
@@ -128,14 +128,14 @@ fn scene_in(path: &Path) -> Scene {
     load::file(path, &Registry::builtin(), Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene
 }
 
-/// Asserts the status and one line on standard error that contains a text.
+/// Asserts the status and one line on standard error with a given text.
 fn refused(ran: &Ran, status: i32, expected: &str) {
     assert_eq!(ran.status, Some(status), "{}", ran.err);
     assert!(ran.err.contains(expected), "{}\nnot: {expected}", ran.err);
     assert_eq!(ran.err.trim_end().lines().count(), 1, "{}", ran.err);
 }
 
-/// Things that are no files, with what each is.
+/// Things other than regular files, with a description of each.
 fn no_files(at: &Path) -> Vec<(PathBuf, Kind)> {
     let named = |name: &str| at.join(name);
     pipe(&named("pipe.json"));
@@ -165,8 +165,7 @@ fn a_document_is_only_saved_to_a_file() {
             let at = path.clone();
             let error = bounded("saving", move || save(&at, &Scene::default(), expected));
             let said = error.expect_err("is no file").to_string();
-            let rule =
-                format!("{} was not written: it is {kind}, and a scene is saved to a file", path.display());
+            let rule = format!("{} was not written: it is {kind}, not a regular file", path.display());
             assert_eq!(said, rule, "{expected:?}");
         }
         let at = path.clone();
@@ -206,7 +205,7 @@ fn a_file_that_is_larger_than_its_limit_is_not_read() {
     assert_eq!(files::read(&file, 1000).expect("fits").len(), 1000);
     assert!(matches!(files::read(&file, 999), Err(FileError::TooLarge(999))));
     assert_eq!(files::read_start(&file, 3).expect("readable"), [7; 3]);
-    // What does not say how long it is.
+    // Streams do not report their length.
     let status = files::read(Path::new("/proc/self/status"), 1 << 20).expect("readable");
     assert!(status.len() > 100);
     assert!(matches!(files::read(Path::new("/proc/self/status"), 100), Err(FileError::TooLarge(100))));
@@ -265,7 +264,7 @@ fn settings_that_are_no_small_file_are_the_defaults_at_once() {
         assert!(complaint.contains("cannot be read") && complaint.contains(expected), "{complaint}");
         let at = folder.path().to_owned();
         let saved = bounded("saving settings", move || settings::save(&at, &Settings::default()));
-        // What is too large to be settings may be replaced by them.
+        // A file too large to be settings may be replaced by them.
         assert_eq!(saved.is_ok(), expected.contains("MiB"), "{saved:?}");
         let shown = run(screen
             .command(&["view", "--exit-after", "3", "--capture", "window.png"], folder.path())
@@ -308,7 +307,7 @@ fn models_and_shaders_that_are_no_files_hold_nothing_up() {
     symlink("/dev/zero", at.join("models/zero.wgsl")).expect("linked");
     let listed = run(&mut lcm(at, ["models", "--models", "models"]));
     assert_eq!(listed.status, Some(0), "{}", listed.err);
-    // What is exported must not be compared with what never ends.
+    // An export must not be compared with an endless file.
     let shader = at.join("assets/shaders/loop.wgsl");
     fs::create_dir_all(shader.parent().expect("has one")).expect("made");
     pipe(&shader);
@@ -319,7 +318,7 @@ fn models_and_shaders_that_are_no_files_hold_nothing_up() {
     );
     let ran = run(&mut lcm(at, ["check", "--assets", "assets", "x.json"]));
     assert_eq!(ran.status, Some(1), "{}", ran.err);
-    assert!(ran.err.contains("this is a named pipe, no file that can be read"), "{}", ran.err);
+    assert!(ran.err.contains("this is a named pipe, not a regular file"), "{}", ran.err);
 }
 
 /// The signature of PNG files.
@@ -347,7 +346,7 @@ fn pictures_go_to_devices_and_pipes() {
     for full in ["/dev/full", "full.png"] {
         refused(&run(&mut render(at, &["-o", full])), 4, "No space left");
     }
-    // A named pipe, with a reader that is slow to come.
+    // A named pipe, with a reader that comes late.
     pipe(&at.join("pipe.png"));
     let from = at.join("pipe.png");
     let reader = thread::spawn(move || {
@@ -360,14 +359,14 @@ fn pictures_go_to_devices_and_pipes() {
     assert_eq!(files::kind(&at.join("pipe.png")).expect("there"), Kind::Pipe);
     // And without one.
     refused(&run(&mut render(at, &["-o", "pipe.png"])), 4, "nobody reads from it");
-    // What is in the file of standard output stays, and it is written to the open file.
+    // The content of the file of standard output stays, and the open file is written to.
     let script = "echo before > all; \"$LCM\" render --size 32x32 --renderer cpu -o /dev/stdout >> all; echo after >> all";
     assert_eq!(run(&mut shell(at, script)).status, Some(0));
     let all = fs::read(at.join("all")).expect("readable");
     assert!(all.starts_with(b"before\n\x89PNG") && all.ends_with(b"after\n"));
     drop(UnixListener::bind(at.join("socket.png")).expect("bound"));
-    refused(&run(&mut render(at, &["-o", "socket.png"])), 4, "no place for a picture");
-    // A reader that has enough is no error.
+    refused(&run(&mut render(at, &["-o", "socket.png"])), 4, "is neither a file nor a folder");
+    // A reader that stops early is no error.
     let ran = run(&mut shell(
         at,
         "\"$LCM\" render --size 2000x2000 --renderer cpu --samples 1 -o /dev/stdout -q | head -c 1",
@@ -395,9 +394,9 @@ fn a_picture_never_takes_the_place_of_what_is_read_or_of_what_is_no_picture() {
     for (arguments, expected) in [
         (&["s.json", "-o", "link.png"][..], same),
         (&["s.json", "-o", "hard.png"], same),
-        (&["s.json", "-o", "notes.png"], "notes.png is there and is not a PNG file; it was not overwritten"),
-        (&["s.json", "-o", "notes.txt"], "notes.txt is a file, but not a PNG file"),
-        (&["-o", "link.png"], "link.png is there and is not a PNG file"),
+        (&["s.json", "-o", "notes.png"], "notes.png exists and is not a PNG file; it was not overwritten"),
+        (&["s.json", "-o", "notes.txt"], "notes.txt is not a PNG file; name a PNG file or a folder"),
+        (&["-o", "link.png"], "link.png exists and is not a PNG file"),
         (
             &["s.json", "--models", "models", "--reflection", "mine", "-o", "model.png"],
             "model.png is the same file as",
@@ -413,7 +412,7 @@ fn a_picture_never_takes_the_place_of_what_is_read_or_of_what_is_no_picture() {
     for (capture, expected) in [
         ("s.json", "s.json is read by this command; it was not overwritten"),
         ("link.png", same),
-        ("notes.txt", "notes.txt is there and is not a PNG file"),
+        ("notes.txt", "notes.txt exists and is not a PNG file"),
         ("model.png", "model.png is the same file as"),
     ] {
         let mut command =
@@ -422,7 +421,7 @@ fn a_picture_never_takes_the_place_of_what_is_read_or_of_what_is_no_picture() {
     }
     assert_eq!(fs::read_to_string(at.join("s.json")).expect("there"), scene);
     assert_eq!(fs::read_to_string(at.join("notes.png")).expect("there"), "notes");
-    // Nothing is lost in an empty file, nor in a picture that is made again.
+    // An empty file and a picture to be replaced have nothing to lose.
     for _ in 0..2 {
         let ran = run(&mut render(at, &["s.json", "-o", "empty.png"]));
         assert_eq!(ran.status, Some(0), "{}", ran.err);
@@ -438,26 +437,22 @@ fn a_report_is_replaced_only_when_the_user_says_so() {
     fs::create_dir(at.join("mine")).expect("made");
     fs::write(at.join("mine/index.html"), "<html>mine</html>").expect("written");
     for arguments in [&["-o", "mine"][..], &["-o", "mine", "--overwrite"]] {
-        refused(&study(arguments), 4, "mine holds files that are no report; it was left alone");
+        refused(&study(arguments), 4, "mine has files that are not a report");
     }
     assert_eq!(fs::read_to_string(at.join("mine/index.html")).expect("there"), "<html>mine</html>");
-    // An empty folder is as good as none.
+    // An empty folder counts as none.
     fs::create_dir(at.join("st")).expect("made");
     assert_eq!(study(&["-o", "st"]).status, Some(0));
     let page = at.join("st/index.html");
     let report = fs::metadata(&page).expect("there");
-    refused(
-        &study(&["-o", "st"]),
-        4,
-        "st holds a report already; it was left alone: --overwrite replaces it",
-    );
+    refused(&study(&["-o", "st"]), 4, "st already has a report; --overwrite replaces it");
     assert_eq!(fs::metadata(&page).expect("there").ino(), report.ino());
     let again = study(&["-o", "st", "--overwrite"]);
     assert_eq!(again.status, Some(0), "{}", again.err);
     assert_ne!(fs::metadata(&page).expect("there").mtime_nsec(), report.mtime_nsec());
 }
 
-/// The file that the child process of the next tests writes to; only set there.
+/// The file written by the child process of the next tests; only set there.
 const LOOP_FILE: &str = "LCM_TEST_FILES_LOOP";
 
 /// A scene whose file takes a moment to write.
@@ -468,7 +463,7 @@ fn large() -> Scene {
     }
 }
 
-/// Not a test by itself: saves for ever, in a process that another test kills.
+/// Not a test by itself: saves forever, in a process that another test kills.
 #[test]
 fn save_in_a_loop_if_asked_to() {
     let Some(file) = env::var_os(LOOP_FILE) else { return };
@@ -478,7 +473,7 @@ fn save_in_a_loop_if_asked_to() {
     }
 }
 
-/// Kills processes that save to a file, until there was one that left something or all is tried.
+/// Kills processes that save to a file, until one has left something or all attempts are used.
 fn kill_while_saving(file: &Path, rounds: u64, mut enough: impl FnMut() -> bool) {
     for round in 0..rounds {
         let mut child = Command::new(env::current_exe().expect("this binary"))
@@ -542,7 +537,7 @@ fn only_what_nobody_holds_and_this_program_wrote_is_litter() {
         (".b.json.Zz9Yy8.tmp", "", true, true),
         ("a.png.4711.partial", "\x7fPNG", true, false),
         ("b.png.4711.partial", "", true, true),
-        // Somebody of an older version may be at it.
+        // An older version may be working on it.
         (".c.json.a1B2c3.tmp", "{\n  \"name\": \"x", false, false),
         // Other programs name their files like that too.
         (".d.json.a1B2c3.tmp", "{\"a\": 1}", true, false),
@@ -556,12 +551,12 @@ fn only_what_nobody_holds_and_this_program_wrote_is_litter() {
     }
     fs::write(at.join("c.png.4711.partial"), PNG).expect("written");
     age(&at.join("c.png.4711.partial"));
-    // Links and folders of such names are nobody's litter, and a pipe must not be opened.
+    // Links and folders with such names are nobody's litter, and a pipe must not be opened.
     symlink("a.json", at.join(".lcm-link01.tmp")).expect("linked");
     fs::create_dir(at.join(".lcm-fold01.tmp")).expect("made");
     pipe(&at.join(".lcm-pipe01.tmp"));
     stays.extend([".lcm-link01.tmp", ".lcm-fold01.tmp", ".lcm-pipe01.tmp"]);
-    // A draft that somebody works on.
+    // A draft in use.
     let held = File::create(at.join(".lcm-held01.tmp")).expect("made");
     held.lock().expect("locked");
     let mut draft = Draft::new(&at.join("d.json")).expect("a draft");
@@ -581,7 +576,7 @@ fn only_what_nobody_holds_and_this_program_wrote_is_litter() {
     draft.create().expect("its draft was left alone");
     assert_eq!(fs::read(at.join("d.json")).expect("there"), b"{}");
     drop(held);
-    // Other tests start programs, which have the lock too until they have begun.
+    // Other tests start programs, which inherit the lock until they have started.
     for _ in 0..100 {
         save(&there, &Scene::default(), Expected::Anything).expect("written");
         if !names(at).iter().any(|n| n == ".lcm-held01.tmp") {
@@ -666,7 +661,7 @@ fn a_whole_copy_is_no_litter() {
     let file = at.join("a.json");
     let text = written(&large());
     let copy = |inode: u64| at.join(format!(".lcm-a1B2c3.{inode}-1.whole"));
-    // Cut off, at any place: finished, when the window starts and at the next save alike.
+    // Interrupted at any place: finished at the start of the window and at the next save alike.
     for (length, command) in [(0, None), (1000, None), (text.len() - 1, Some("new.json")), (text.len(), None)]
     {
         fs::write(&file, &text[..length]).expect("written");
@@ -679,7 +674,7 @@ fn a_whole_copy_is_no_litter() {
         assert_eq!(scene_in(&file), large(), "{length}");
         assert!(!copy.exists());
     }
-    // Killed before the first byte was overwritten: the file is as it was when that began.
+    // Killed before the first byte was overwritten: the file is as before.
     save(&file, &Scene::default(), Expected::Anything).expect("written");
     let metadata = fs::metadata(&file).expect("there");
     let time = metadata.modified().expect("known").duration_since(UNIX_EPOCH).expect("later").as_nanos();
@@ -687,7 +682,7 @@ fn a_whole_copy_is_no_litter() {
     fs::write(at.join(&name), &text).expect("written");
     assert_eq!(files::tidy(at), []);
     assert_eq!(scene_in(&file), large());
-    // Edited since, or gone: nobody but the user can know which one counts.
+    // Edited since, or gone: only the user can know which one counts.
     fs::write(&file, "edited").expect("written");
     let left = copy(fs::metadata(&file).expect("there").ino());
     fs::write(&left, &text).expect("written");
@@ -700,9 +695,9 @@ fn a_whole_copy_is_no_litter() {
     assert_eq!(fs::read_to_string(&file).expect("there"), "edited");
     assert_eq!(fs::read_to_string(&left).expect("there"), text);
     fs::remove_file(&file).expect("removed");
-    assert!(files::tidy(at)[0].to_string().contains("no longer there"));
+    assert!(files::tidy(at)[0].to_string().contains("no longer exists"));
     assert!(left.exists());
-    // The copy of a file of somebody else may come from anybody.
+    // The copy of another user's file may come from anybody.
     fs::write(&file, "").expect("written");
     fs::rename(&left, copy(fs::metadata(&file).expect("there").ino())).expect("renamed");
     if chown(&file, Some(1234), None).is_ok() {
@@ -740,7 +735,7 @@ fn output_that_cannot_be_written_has_status_4() {
         let script = format!("printf '{table}' | \"$LCM\" {command} lambert > /dev/full");
         refused(&run(&mut shell(at, &script)), 4, "standard output: No space left on device");
     }
-    // Nobody is left to tell.
+    // Nobody is left to inform.
     let ran = run(&mut shell(at, "\"$LCM\" --help 2>&1 >&3 3>&- | cat; \"$LCM\" --hlp 2> /dev/full"));
     assert_eq!(ran.status, Some(2));
 }
@@ -749,7 +744,7 @@ fn output_that_cannot_be_written_has_status_4() {
 fn rows_without_end_take_no_memory_without_end() {
     let folder = folder();
     let at = folder.path();
-    // 600 MB of address space, of which the program itself takes a part.
+    // 600 MB of address space, part of which the program itself takes.
     let limited = |script: &str| run(&mut shell(at, &format!("ulimit -v 600000; {script}")));
     for command in ["evaluate", "albedo"] {
         let ran = limited(&format!("\"$LCM\" {command} phong < /dev/zero"));
@@ -760,8 +755,8 @@ fn rows_without_end_take_no_memory_without_end() {
     let lines: Vec<_> = ran.err.lines().collect();
     assert_eq!(lines.len(), 21, "{}", ran.err);
     assert_eq!(lines[0], "standard input:2: mu is \"x\", but it must be a finite number");
-    assert_eq!(lines[20], "standard input: there are at least 999980 more problems");
-    // Rows that are good are answered as they come: the end is not waited for.
+    assert_eq!(lines[20], "standard input: at least 999980 more problems");
+    // Good rows are answered at once, without waiting for the end.
     let ran = limited(
         "(echo theta_i,phi_i,theta_o,phi_o; yes 10,20,30,40) | \"$LCM\" evaluate phong | head -n 3000000 | tail -n 1",
     );
@@ -770,9 +765,9 @@ fn rows_without_end_take_no_memory_without_end() {
     assert!(last.starts_with("10,20,30,40,0."), "{last}");
 }
 
-/// What a terminal obeys: colours, a bell, the beginning of the line, the other direction of writing.
+/// Characters that a terminal acts on: colours, a bell, the beginning of the line, the other direction of writing.
 const ODD: &str = "a\u{1b}[31m\u{7}\r\u{9b}2J\u{202e}b";
-/// The same as it is shown.
+/// The same made printable.
 const SHOWN: &str = r"a\u{1b}[31m\u{7}\r\u{9b}2J\u{202e}b";
 
 #[test]
@@ -811,14 +806,14 @@ fn what_a_terminal_obeys_does_not_reach_it() {
                 text.chars().find(|c| c.is_control() && *c != '\n' && *c != '\t' || *c == '\u{202e}');
             assert_eq!(obeyed, None, "{arguments:?}: {text:?}");
         }
-        // What clap repeats it takes colours out of.
+        // clap's quotations of it lose their colours.
         assert!(out.contains(r"\u{9b}") || ran.err.contains(r"\u{9b}"), "{arguments:?}: {out}{}", ran.err);
     }
-    // Results for programs are what they are.
+    // Results for programs are unchanged.
     let ran = run(&mut lcm(at, ["check", "--json", &valid]));
     let report: serde_json::Value = serde_json::from_slice(&ran.out).expect("JSON");
     assert_eq!(report[0]["file"], valid);
-    // A name that is no text does no harm either.
+    // A name that is not text does no harm either.
     let bytes = OsStr::from_bytes(b"\xff\x1b[2J.json");
     assert!(!run(&mut lcm(at, [OsStr::new("check"), bytes])).err.contains('\u{1b}'));
 }
@@ -852,13 +847,13 @@ fn a_window_that_starts_cleans_up_after_the_one_that_was_killed() {
     assert_eq!(fs::read_to_string(&file).expect("there"), text);
     assert_eq!(names(at), ["a.json", "config"]);
     assert!(!names(&config).iter().any(|name| name.ends_with(".tmp")));
-    // Without a display nothing of a scene is needed to know that it is none.
+    // A scene that is no file is reported even without a display.
     let mut command = screen::lcm(&["view", "pipe"], &config);
     pipe(&at.join("pipe"));
     refused(&run(command.current_dir(at)), 1, "a named pipe");
 }
 
-/// Whatever opens, writes, renames or removes files.
+/// Anything that opens, writes, renames or removes files.
 const DOORS: [&str; 14] = [
     "fs::read(",
     "fs::read_to_string(",
@@ -898,7 +893,7 @@ fn files_are_opened_in_one_module_only() {
                 // `files::read` is the guard itself.
                 let line = line.replace("files::", "guard::");
                 let door = DOORS.iter().find(|door| line.contains(*door));
-                // Recovery copies have folders and locks of their own; what is in them goes through the guard.
+                // Recovery copies have folders and locks of their own; their content goes through the guard.
                 let own = ["OpenOptions", "fs::remove_", "fs::rename("];
                 let door = door.filter(|door| !path.ends_with("recovery/store.rs") || !own.contains(*door));
                 assert_eq!(door, None, "{}: {line}", path.display());

@@ -1,5 +1,5 @@
-//! The shipped scenes are examples and golden tests alike: each is valid, says what it shows, and
-//! looks as it did when its picture in `tests/golden/` was accepted, on either renderer.
+//! The shipped scenes are examples and golden tests alike: each is valid, has a description, and looks like its
+//! accepted picture in `tests/golden/`, on either renderer.
 
 use std::{error::Error, fs, io::BufReader, path::Path};
 
@@ -25,22 +25,21 @@ use crate::support::{root, shipped_scenes};
 const WIDTH: u32 = 192;
 const HEIGHT: u32 = 108;
 
-/// What may differ between two pictures.
+/// The allowed difference between two pictures.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
-    /// Values that differ by no more levels than this agree.
+    /// Values that differ by at most this many levels agree.
     levels: u8,
     /// The fraction of values that may disagree.
     fraction: f64,
 }
 
-/// Between CPUs: compilers and libraries round sines and powers differently in the last bits, which
-/// can move a value by a level and, seldom, a silhouette by a sample: room for ten such pixels.
+/// Between CPUs: compilers and libraries round sines and powers differently in the last bits, which can move a value by
+/// a level and, seldom, a silhouette by a sample: room for ten such pixels.
 pub const SAME_RENDERER: Bound = Bound { levels: 2, fraction: 0.0005 };
 
-/// Between the renderers: they round independently, and snapping corners to a grid moves a sample of a
-/// silhouette here and there, which at this size, with much silhouette per picture, touches up to
-/// three pixels in a hundred.
+/// Between the renderers: they round independently, and snapping corners to a grid sometimes moves a sample of a
+/// silhouette, which at this size, with much silhouette per picture, affects up to three pixels in a hundred.
 const OTHER_RENDERER: Bound = Bound { levels: 2, fraction: 0.03 };
 
 impl Bound {
@@ -98,7 +97,7 @@ fn golden(name: &str) -> Vec<u8> {
     rgb8
 }
 
-/// Writes the picture and what differs, enlarged, for people to look at.
+/// Writes the picture and the amplified difference, for people to look at.
 fn keep(name: &str, actual: &[u8], expected: &[u8]) {
     let folder = root().join("error_output");
     fs::create_dir_all(&folder).expect("the folder can be made");
@@ -110,7 +109,7 @@ fn keep(name: &str, actual: &[u8], expected: &[u8]) {
     }
 }
 
-/// Compares pictures with the golden ones and says which differ.
+/// Compares pictures with the golden ones and lists the differing ones.
 fn assert_golden(pictures: &[(String, Vec<u8>)], renderer: &str, bound: Bound) {
     let mut report = Vec::new();
     for (name, actual) in pictures {

@@ -1,4 +1,4 @@
-//! The GPU's picture is the CPU renderer's picture, for every model, shading model, light type and shape.
+//! The GPU and the CPU renderer draw the same picture, for every model, shading model, light type and object type.
 
 use bevy::render::{RenderApp, render_resource::TextureFormat, view::ViewTarget};
 use glam::Vec3;
@@ -44,7 +44,7 @@ fn renderer() -> GpuRenderer {
     GpuRenderer::new(SIZE, SIZE, 1, Output::Linear).expect("software Vulkan is installed")
 }
 
-/// A renderer of pictures as people see them.
+/// A renderer of pictures as seen by people.
 fn displaying() -> GpuRenderer {
     GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed")
 }
@@ -60,8 +60,8 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
     let registry = Registry::builtin();
     let mut renderer = renderer();
     let mut report = Vec::new();
-    // Every model in every shading model meets every light and every shape, in changing company: all triples would
-    // be a thousand pictures. Every light meets every shape with every shading model.
+    // Every model with every shading model meets every light and every shape, in changing company: all triples would be
+    // a thousand pictures. Every light meets every shape with every shading model.
     let (lights, shapes) = (registry.lights(), registry.shapes());
     let mut cases = 0;
     for (i, model) in registry.models().iter().enumerate() {
@@ -80,8 +80,8 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
                 );
                 assert!(d.covered > 500, "hardly anything to compare: {case}");
                 cases += 1;
-                // A triangle seen edge-on shows in a pixel here and there; its slope to the view is what the
-                // snapping of its corners makes of it, and some models ask for that.
+                // A triangle seen edge-on shows in a pixel here and there; the snapping of its corners decides its
+                // slope to the view, and some models depend on that.
                 if d.wrong * 1000 > d.covered || d.edges * 50 > d.covered {
                     report.push(case);
                 }
@@ -271,7 +271,7 @@ fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
     let registry = Registry::builtin();
     let mut seed = 7;
     for model in registry.models() {
-        // Of choices every one should come up.
+        // Every choice should come up.
         let choices =
             model.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::Choice { .. })).count();
         let mut wrong_twin_noticed = false;

@@ -1,5 +1,5 @@
-//! A corpus of hostile models: short files that would end or freeze what reads them. Each is refused with its place
-//! and the limit, within a bound on time and memory, and what else is in the folder goes on working.
+//! A corpus of hostile models: short files that would crash or freeze their readers. Each is refused with its place and
+//! the limit, within a bound on time and memory, and the rest of the folder keeps working.
 
 use std::{
     fs,
@@ -25,12 +25,12 @@ use lights_camera_models::{
 
 use crate::support::{command_in, root};
 
-/// What a thread of Bevy has.
+/// The stack of a thread of Bevy.
 const STACK: usize = 2 << 20;
-/// No single thing may take longer, on a machine that does much else.
+/// No single case may take longer, even on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A model whose response is `y`; `items` stand before the function, `body` in it.
+/// A model whose response is `y`; `items` come before the function, `body` is in it.
 fn model(items: &str, body: &str) -> String {
     format!(
         "/* lcm {{}} */\n{items}\nfn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{\n    \
@@ -38,12 +38,12 @@ fn model(items: &str, body: &str) -> String {
     )
 }
 
-/// Something again and again, with its number.
+/// Something repeated, with its number.
 fn repeated(count: usize, each: impl Fn(usize) -> String) -> String {
     (0..count).map(each).collect()
 }
 
-/// `count` functions, each of which calls the one before twice.
+/// `count` functions, each of which calls the previous one twice.
 fn doubling(count: usize) -> String {
     let functions =
         repeated(count, |i| format!("fn g{}(x: f32) -> f32 {{ return g{i}(x) + g{i}(x + 1.0); }}\n", i + 1));
@@ -58,7 +58,7 @@ fn switch(cases: usize) -> String {
     model("", &format!("var y = x;\n    switch u32(x * 1000.0) {{\n{cases}        default: {{}}\n    }}"))
 }
 
-/// A hostile model: what it is called, its text, and what is said of it.
+/// A hostile model: its name, its text, and the expected message.
 struct Case {
     id: &'static str,
     text: String,
@@ -88,22 +88,26 @@ fn corpus() -> Vec<Case> {
     };
     let case = |id, text, said| Case { id, text, said };
     vec![
-        case("workgroup", file("workgroup.wgsl"), ":7:1: memory of a workgroup is not available"),
-        case("workgroup_array", file("workgroup_array.wgsl"), "memory of a workgroup"),
-        case("workgroup_atomic", file("workgroup_atomic.wgsl"), "memory of a workgroup"),
-        case("workgroup_hidden", file("workgroup_hidden.wgsl"), "memory of a workgroup"),
-        case("buffer", file("buffer.wgsl"), "@binding(0) is not there"),
-        case("texture", file("texture.wgsl"), "@binding(4) is not there"),
+        case("workgroup", file("workgroup.wgsl"), ":7:1: workgroup memory is not available"),
+        case("workgroup_array", file("workgroup_array.wgsl"), "workgroup memory"),
+        case("workgroup_atomic", file("workgroup_atomic.wgsl"), "workgroup memory"),
+        case("workgroup_hidden", file("workgroup_hidden.wgsl"), "workgroup memory"),
+        case("buffer", file("buffer.wgsl"), "@binding(0) is not available to a model"),
+        case("texture", file("texture.wgsl"), "@binding(4) is not available to a model"),
         case("barrier", file("barrier.wgsl"), "barriers are not available"),
-        case("hidden_brackets", file("hidden_brackets.wgsl"), "closes a bracket from before a condition"),
+        case(
+            "hidden_brackets",
+            file("hidden_brackets.wgsl"),
+            "closes a bracket from before an open condition",
+        ),
         case("hidden_comment", file("hidden_comment.wgsl"), "ends the comment in WGSL although"),
         case("quotation", file("quotation.wgsl"), "this quotation mark is not closed"),
         case("array_of_arrays", file("array_of_arrays.wgsl"), "bytes; at most 4096 are allowed"),
-        case("values_in_loop", file("values_in_loop.wgsl"), "this loop ends in its first round or never"),
+        case("values_in_loop", file("values_in_loop.wgsl"), "this loop ends in its first iteration or never"),
         case("parentheses_800", nested(800, "(-"), "this is nested 101 brackets deep; at most 100"),
         case("parentheses_3000", nested(3000, "("), "this is nested 101 brackets deep; at most 100"),
         case("calls_3000", nested(3000, "sin("), "this is nested 101 brackets deep; at most 100"),
-        case("summands_3000", chain(3000, " + x"), "has 257 operators and brackets on one way"),
+        case("summands_3000", chain(3000, " + x"), "has 257 operators and brackets on one path"),
         case("summands_20000", chain(20_000, " + x"), "has 257 operators and brackets"),
         case("factors_3000", chain(3000, " * x"), "has 257 operators and brackets"),
         case("members_5000", model("", &format!("let y = v{}.x;", ".xyz".repeat(5000))), "has 257 operators"),
@@ -142,7 +146,7 @@ fn corpus() -> Vec<Case> {
                 ),
                 "let y = x;",
             ),
-            "words when all is written out",
+            "this expands to",
         ),
         case(
             "pointers_300",
@@ -164,7 +168,7 @@ fn corpus() -> Vec<Case> {
                     repeated(3000, |i| format!("    let a{} = a{i} * 0.5 + a{i};\n", i + 1))
                 ),
             ),
-            "values stand one on the other",
+            "values, each calculated from the one before",
         ),
         case(
             "local_array",
@@ -179,7 +183,7 @@ fn corpus() -> Vec<Case> {
         case(
             "constant_array",
             model("const A = array<f32, 1 << 20>();", "let y = A[u32(x)];"),
-            "the length of this array cannot be told",
+            "the length of this array cannot be determined",
         ),
         case(
             "many_variables",
@@ -213,13 +217,13 @@ fn corpus() -> Vec<Case> {
             "`discard` is not available",
         ),
         case("override", model("override N: f32 = 1.0;", "let y = x * N;"), "`override` is not available"),
-        case("functions_18", doubling(18), "steps when every call in it is written out"),
-        case("functions_26", doubling(26), "steps when every call in it is written out"),
+        case("functions_18", doubling(18), "steps with all calls inlined"),
+        case("functions_26", doubling(26), "steps with all calls inlined"),
         case("switch_5000", switch(5000), "this switch has more than 256 cases"),
         case(
             "statements_100000",
             model("", &format!("var y = x;\n{}", "    y += 1.0;\n".repeat(20_000))),
-            "statements when everything is joined",
+            "statements; at most",
         ),
         case(
             "loops_20",
@@ -235,23 +239,23 @@ fn corpus() -> Vec<Case> {
             model(&format!("const {} = 1;", "a".repeat(100_000)), "let y = x;"),
             "this word has 100000 bytes",
         ),
-        case("open_1mib", file_of("("), "words and signs"),
-        case("less_1mib", file_of("a < "), "words and signs"),
-        case("blocks_1mib", file_of("{"), "words and signs"),
-        case("semicolons_1mib", file_of("a;"), "words and signs"),
-        case("minus_1mib", file_of("-"), "words and signs"),
-        case("attributes_1mib", file_of("@"), "words and signs"),
-        case("hash_1mib", file_of("#if A\n"), "words and signs"),
-        case("numbers_1mib", file_of("1,"), "words and signs"),
+        case("open_1mib", file_of("("), "words and symbols"),
+        case("less_1mib", file_of("a < "), "words and symbols"),
+        case("blocks_1mib", file_of("{"), "words and symbols"),
+        case("semicolons_1mib", file_of("a;"), "words and symbols"),
+        case("minus_1mib", file_of("-"), "words and symbols"),
+        case("attributes_1mib", file_of("@"), "words and symbols"),
+        case("hash_1mib", file_of("#if A\n"), "words and symbols"),
+        case("numbers_1mib", file_of("1,"), "words and symbols"),
     ]
 }
 
-/// A function that is nearly as long as a file may be.
+/// A function nearly as long as a file may be.
 fn file_of(piece: &str) -> String {
     model("", &format!("let y = x;\n    {}", piece.repeat((1_000_000) / piece.len())))
 }
 
-/// What reading a model says, on a thread as Bevy has them.
+/// The messages of reading a model, on a thread like Bevy's.
 fn said(id: &str, text: &str) -> Result<(), Vec<ShaderProblem>> {
     let path = Path::new("somewhere").join(format!("{id}.wgsl"));
     thread::scope(|scope| {
@@ -282,8 +286,8 @@ fn every_hostile_model_is_refused_with_its_place_and_the_limit() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Models that go as far as is allowed, in every direction in which something calls itself; in the others as far as
-/// software Vulkan takes no more than a second.
+/// Models at the limits, in every direction in which something recurses; in the others as far as software Vulkan takes
+/// no more than a second.
 fn at_the_limit() -> Vec<(&'static str, String)> {
     let most = limits::LIMITS;
     let nested = |count: usize, open: &str, close: &str| {
@@ -390,7 +394,7 @@ fn at_the_limit() -> Vec<(&'static str, String)> {
 
 #[test]
 fn what_is_within_the_limits_needs_a_quarter_of_the_stack() {
-    // What overflows here ends the process: there is nothing gentler.
+    // A stack overflow here ends the process: there is nothing gentler.
     for (id, text) in at_the_limit() {
         let registry = Registry::builtin();
         let path = Path::new("somewhere").join(format!("{id}.wgsl"));
@@ -421,7 +425,7 @@ fn what_is_within_the_limits_needs_a_quarter_of_the_stack() {
             };
             small.spawn_scoped(scope, call).expect("a thread").join().expect("no panic");
         });
-        // Ours need next to nothing of the stack of whoever calls.
+        // Our checks need next to nothing of the caller's stack.
         thread::scope(|scope| {
             let tiny = thread::Builder::new().stack_size(STACK / 16);
             let call = || assert!(validate(&composed).is_ok(), "{id}");
@@ -439,16 +443,16 @@ fn composes(text: &str) {
     assert!(composed.is_ok(), "{:?}", composed.err().map(|e| e.inner));
 }
 
-/// What a run of the program gave, and what it took.
+/// The result of a run of the program, and its cost.
 struct Watched {
     status: Option<i32>,
     out: String,
     err: String,
-    /// The most memory, bytes; 0 where the system does not tell.
+    /// The most memory, bytes; 0 if the system does not report it.
     memory: u64,
 }
 
-/// Runs the program in a folder, for so long at most.
+/// Runs the program in a folder, with a time limit.
 fn watched(folder: &Path, arguments: &[&str], patience: Duration) -> Watched {
     let mut child = command_in(folder, arguments)
         .stdin(Stdio::null())
@@ -485,7 +489,7 @@ fn pump(from: Option<impl Read + Send + 'static>) -> thread::JoinHandle<String> 
     })
 }
 
-/// The most memory that a process has had.
+/// The most memory that a process has used.
 fn peak(child: &Child) -> u64 {
     let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or_default();
@@ -494,7 +498,7 @@ fn peak(child: &Child) -> u64 {
 
 const GIB: u64 = 1 << 30;
 
-/// A folder with all hostile models, a good one, and a scene with that.
+/// A folder with all hostile models, a good one, and a scene that uses it.
 fn folder() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
     let models = folder.path().join("models");
@@ -568,7 +572,7 @@ fn models_at_the_limits_are_drawn() {
     }
 }
 
-/// Without end where the light is above the surface, which no look at the text tells.
+/// Endless where the light is above the surface, which the text does not reveal.
 fn endless() -> String {
     model("", "var y = 0.0;\n    while y >= 0.0 { y += f32(frame.n.z >= 0.0); }")
 }
@@ -588,7 +592,7 @@ fn a_loop_that_only_data_make_endless_is_not_given_to_the_graphics_card() {
         let run = watched(folder.path(), &arguments, Duration::from_secs(60));
         assert!(matches!(run.status, Some(1 | 3)), "{command}: {:?} {}", run.status, run.err);
         assert!(
-            run.err.contains("a function runs too long; a loop may have no end"),
+            run.err.contains("a function runs too long; a loop may be endless"),
             "{command}: {}",
             run.err
         );

@@ -1,4 +1,4 @@
-//! Models and shading models are exchanged between two frames, and no frame is without the object.
+//! Models and shading models are swapped between two frames, and no frame lacks the object.
 
 use glam::Vec3;
 use lights_camera_models::{
@@ -29,7 +29,7 @@ fn covered(picture: &[u8]) -> usize {
     picture.chunks_exact(3).filter(|p| *p != BACKGROUND).count()
 }
 
-/// The scene under a model and a shading model, scene-wide or on the object.
+/// The scene with a reflection model and a shading model, scene-wide or as an override of the object.
 fn choose(scene: &Scene, (model, shading): (&str, &str), on_object: bool) -> Scene {
     let mut scene = scene.clone();
     if on_object {
@@ -174,8 +174,7 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
     let cube = frame(&mut renderer);
     assert!(moved != cube, "the shape shows");
 
-    // The place of a thing is in its component and in its transform: either can be changed, and the
-    // other follows.
+    // The position of a part is in its component and in its transform: either can be changed, and the other follows.
     let world = renderer.app().world_mut();
     world.get_mut::<LitObject>(object).expect("the object is an entity").0.position.x += 0.5;
     let aside = frame(&mut renderer);

@@ -140,7 +140,7 @@ fn the_frame_is_used_as_the_rust_function_uses_it() {
             let room = |d: Vec3| d.x * frame.t + d.y * frame.b + d.z * frame.n;
             let (l, v) = (room(direction(&mut seed)), room(direction(&mut seed)));
             let error = difference(twin.response(l, v, &frame), surface.response(l, v, &frame));
-            // Directions that are turned to and fro are rounded differently.
+            // Directions rotated back and forth are rounded differently.
             assert!(error <= 2e-3, "{} {values:?} {frame:?} l {l} v {v}: {error}", model.declaration.id);
         }
     }
@@ -177,7 +177,7 @@ fn light_from_everywhere_is_answered_by_formula_and_by_the_curve_in_the_row() {
     }
 }
 
-/// A text with a few of its tokens replaced by others of the same text, or left out.
+/// A text with a few of its tokens replaced by others of the same text, or removed.
 fn mutated(text: &str, seed: &mut u64) -> String {
     let mut tokens: Vec<String> = Vec::new();
     for c in text.chars() {
@@ -199,7 +199,7 @@ fn mutated(text: &str, seed: &mut u64) -> String {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Mutations that are valid still, one in some dozens, neither upset the making of the program nor its run.
+    /// Mutations that are still valid, one in some dozens, crash neither the compilation of the program nor its run.
     #[test]
     fn mutated_models_never_panic(start in any::<u64>()) {
         let registry = Registry::builtin();

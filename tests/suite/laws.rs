@@ -1,5 +1,5 @@
-//! The laws of every registered model, over random directions and parameters: asserted where the model
-//! declares them and found broken where it does not.
+//! The laws of every registered model, over random directions and parameters: asserted if the model declares them, and
+//! found violated otherwise.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -55,8 +55,7 @@ fn responses_are_finite_for_all_directions_and_legal_parameters() {
     });
 }
 
-/// How far a law is broken by a model at worst, over everything: a number that is 0 for models that
-/// keep it exactly.
+/// The worst violation of a law by a model, over everything: a number that is 0 for models that keep it exactly.
 fn worst(
     seed: u64,
     measure: impl Fn(&dyn Surface, &Frame, &mut Random) -> f32,
@@ -122,7 +121,7 @@ fn no_light_is_made_where_that_is_declared_and_somewhere_it_is_where_not() {
             let theta = FRAC_PI_2 * [0.02, 0.5, 0.95, random.unit() * 0.99][i];
             let (sin, cos) = theta.sin_cos();
             let v = cos * frame.n + sin * frame.t;
-            // What a coarse grid finds is checked by a finer one, so that its error is no verdict.
+            // Findings of a coarse grid are checked by a finer one, so that its error is no verdict.
             let coarse = albedo(surface, v, frame, COARSE);
             let found = if coarse > NEARLY_ALL { albedo(surface, v, frame, FINE) } else { coarse };
             most = most.max(found);
@@ -141,7 +140,7 @@ fn no_light_is_made_where_that_is_declared_and_somewhere_it_is_where_not() {
 
 #[test]
 fn the_quadrature_of_the_albedo_is_right() {
-    // Lambert reflects its base colour, whatever the direction; half of it is told apart.
+    // Lambert reflects its base colour, whatever the direction; half of it fails.
     let registry = Registry::builtin();
     let mut values = Values::default();
     values.set("base_colour", Value::Colour([188; 3]));
@@ -161,7 +160,7 @@ fn the_quadrature_of_the_albedo_is_right() {
     assert!((albedo(&*phong, frame.n, &frame, 160) - expected).abs() < 1e-3);
 }
 
-/// The angles of a pair of directions, for writing formulas in another form than the models do.
+/// The angles of a pair of directions, for formulas in another form than the models'.
 struct Angles {
     /// Polar angle of light and view, and the azimuth between them.
     l: f64,
@@ -283,7 +282,7 @@ fn modified_lambert_without_wrap_and_power_is_lambert() {
     assert!(squared_differs, "with the square as written it is not Lambert");
 }
 
-/// Coefficients whose f32 values the formulas use as they are.
+/// Coefficients whose f32 values the formulas use directly.
 const K_A: f32 = 0.25;
 const K_D: f32 = 0.75;
 const K_S: f32 = 0.5;

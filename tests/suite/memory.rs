@@ -1,4 +1,4 @@
-//! Memory stays bounded however long somebody works, since whatever is replaced is let go.
+//! Memory stays bounded in long sessions, since everything replaced is freed.
 
 use std::fs;
 
@@ -34,11 +34,11 @@ use crate::{
     reload::{Lab, phong_scene},
 };
 
-/// The things that a renderer holds, and that Bevy or we might forget to let go.
+/// The resources of a renderer, which Bevy or this program might forget to free.
 #[derive(Debug, PartialEq)]
 struct Held {
     shaders: usize,
-    /// Of those, the ones that hold more than next to nothing.
+    /// Those that hold more than next to nothing.
     large: usize,
     tables: usize,
     materials: usize,
@@ -47,7 +47,7 @@ struct Held {
 }
 
 fn held(renderer: &mut GpuRenderer) -> Held {
-    // What is not used any more goes in the frame after.
+    // Unused resources are freed in the next frame.
     renderer.step();
     renderer.step();
     let world = renderer.app().world();
@@ -68,8 +68,8 @@ fn held(renderer: &mut GpuRenderer) -> Held {
     Held { pipelines: render.resource::<PipelineCache>().pipelines().count(), ..held }
 }
 
-/// A model that is as bright as its last parameter says. The number of parameters, and so the layout of the row,
-/// changes from edit to edit.
+/// A model as bright as its last parameter. The number of parameters, and so the layout of the row, changes from edit
+/// to edit.
 fn declared(edit: usize) -> String {
     let more: String = (0..edit % 4)
         .map(|i| format!("{{ \"name\": \"more_{i}\", \"min\": 0, \"max\": 1, \"default\": 1 }}, "))
@@ -83,7 +83,7 @@ fn declared(edit: usize) -> String {
     )
 }
 
-/// A scene under one model from a file, lit so that the picture is what the model says.
+/// A scene with one model from a file, lit so that the picture shows the model's value.
 fn under(model: &str) -> Scene {
     let mut scene = close_up("sphere", "directional");
     scene.lights[0].intensity = 1.0;
@@ -172,7 +172,7 @@ fn shaders_that_nothing_is_drawn_with_rest_and_wake() {
     }
     let before = held(&mut renderer);
     assert!(before.large <= SPARE + 1, "{before:?}");
-    // The first ones rest by now. The frame in which they come back is right.
+    // The first ones are asleep by now. The frame in which they return is right.
     for (pair, picture) in pairs.iter().zip(&pictures).take(6) {
         assert!(*picture == show(&mut renderer, *pair), "{pair:?}");
     }
@@ -181,7 +181,7 @@ fn shaders_that_nothing_is_drawn_with_rest_and_wake() {
     assert_eq!((after.shaders, after.pipelines), (before.shaders, before.pipelines));
 }
 
-/// A stream of numbers that is always the same.
+/// A reproducible stream of random numbers.
 struct Numbers(u64);
 
 impl Numbers {
@@ -232,7 +232,7 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
     };
     let before = random(&mut window, &mut renderer, 150);
     let after = random(&mut window, &mut renderer, 300);
-    // Two meshes for each kind and fineness of the scene, and for some that were there before.
+    // Two meshes for each type and tessellation of the scene, and for some that were there before.
     let most = |objects: usize| 2 * (objects + 17) + 8;
     assert!(after.meshes <= most(window.document.objects.len()), "{before:?} {after:?}");
     assert!(after.tables <= models.len() + 2, "{after:?}");

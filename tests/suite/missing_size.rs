@@ -1,4 +1,4 @@
-//! A scene without its size: what lies beyond the default room is not blamed, the missing size is.
+//! A scene without its size: the missing size is reported, not the parts outside the default room.
 
 use serde_json::{Value, json};
 
@@ -13,7 +13,7 @@ use crate::support::{changed, lcm_in};
 fn without_size(change: impl FnOnce(&mut Value)) -> String {
     changed(|s| {
         s.as_object_mut().expect("an object").remove("scene_size");
-        // Whatever else is in the scene fits into the default room.
+        // Everything else in the scene fits into the default room.
         s["lights"] = json!([{ "type": "ambient" }]);
         s["observer"]["position"] = json!([5, 5, 9.5]);
         s["objects"] = json!([{ "type": "sphere", "position": [5, 5, 5], "size": 2 }]);
@@ -34,7 +34,7 @@ fn parts_beyond_the_default_room_ask_for_the_size() {
     for defaults in [Defaults::Ask, Defaults::Use, Defaults::Refuse] {
         assert_eq!(said(&text, defaults), expected, "{defaults:?}");
     }
-    // What the message proposes is right.
+    // The proposal in the message is right.
     let mended = text.replacen('{', "{ \"scene_size\": { \"height\": 10, \"width\": 14, \"depth\": 23 },", 1);
     assert_eq!(said(&mended, Defaults::Refuse), "");
 }

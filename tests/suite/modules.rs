@@ -1,4 +1,4 @@
-//! Modules know each other in one direction: each uses only those that `lib.rs` lists above it.
+//! Modules depend on each other in one direction: each uses only those that `lib.rs` lists above it.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-/// The modules that a module must not use although they stand above it.
+/// The modules that a module must not use although they are above it.
 const BLIND: [(&str, &[&str]); 3] =
     [("panel", &["render"]), ("study", &["panel", "window"]), ("reference", &["render"])];
 
@@ -74,7 +74,7 @@ fn listed(lib: &str) -> Vec<&str> {
     lib.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')).collect()
 }
 
-/// The arrows that point the wrong way.
+/// The dependencies in the wrong direction.
 fn wrong(all: &Files) -> Vec<String> {
     let order = listed(&all["lib.rs"]);
     let place = |name: &str| order.iter().position(|m| *m == name);
@@ -84,7 +84,7 @@ fn wrong(all: &Files) -> Vec<String> {
         let Some(here) = place(from) else { continue };
         for to in heads(text, "crate::") {
             let blind = BLIND.iter().any(|(m, unseen)| *m == from && unseen.contains(&to.as_str()));
-            // Macros stand at the root.
+            // Macros are at the root.
             if blind || place(&to).is_some_and(|there| there > here) {
                 wrong.push(format!("{path} uses {to}"));
             }

@@ -1,4 +1,4 @@
-//! What several tests share.
+//! Helpers of several tests.
 
 use glam::{Vec3, Vec4};
 use lights_camera_models::{
@@ -36,7 +36,7 @@ pub fn close_up(shape: &str, light: &str) -> Scene {
     scene
 }
 
-/// How two linear pictures differ.
+/// The difference of two linear pictures.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Difference {
     /// Pixels that an object covers in the first picture.
@@ -50,11 +50,10 @@ pub struct Difference {
     pub worst: f32,
 }
 
-/// Compares a picture of the GPU with one of the CPU renderer. A pixel agrees when it is within
-/// `tolerance` relative (to its value, or to 0.001 where it is darker) beyond what half a step of the
-/// 1/256-pixel grid, to which hardware may or may not snap corners, can do at the local contrast; where
-/// it does not, it counts as an edge when the background shows beside it or each channel lies between
-/// those of its neighbours in the CPU's picture, else as wrong.
+/// Compares a picture of the GPU with one of the CPU renderer. A pixel agrees if it is within `tolerance` relative (to
+/// its value, or to 0.001 where it is darker) beyond the effect, at the local contrast, of half a step of the
+/// 1/256-pixel grid to which hardware may or may not snap corners; otherwise it counts as an edge if the background
+/// shows beside it or each channel lies between those of its neighbours in the CPU's picture, else as wrong.
 pub fn compare(gpu: &[Vec3], cpu: &reference::Picture, background: Vec3, tolerance: f32) -> Difference {
     let (w, h) = (cpu.width as i32, cpu.height as i32);
     let at = |x: i32, y: i32| {

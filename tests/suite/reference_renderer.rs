@@ -1,4 +1,4 @@
-//! The CPU renderer, seen from outside: pictures of small scenes against what theory says.
+//! The CPU renderer, seen from outside: pictures of small scenes against theory.
 
 use std::collections::HashSet;
 
@@ -37,7 +37,7 @@ fn wall(model: &str, shading: &str, z: f32) -> Scene {
     scene
 }
 
-/// The place on the plane z = `z` that the centre of a pixel shows.
+/// The point on the plane z = `z` at the centre of a pixel.
 fn place(scene: &Scene, settings: &Settings, x: u32, y: u32, z: f32) -> Vec3 {
     let eye = scene.observer.position;
     let half = (0.5 * scene.observer.field_of_view).to_radians().tan();
@@ -195,7 +195,7 @@ fn what_is_behind_the_eye_is_cut_away() {
     let inside = render(&scene, &SMALL);
     let seen = covered(&inside).count();
     assert!(seen > 1000 && seen < inside.pixels.len(), "{seen}");
-    // What is wholly behind the eye gives no pixel at all.
+    // A triangle wholly behind the eye gives no pixel at all.
     scene.objects[0].size = 2.0;
     scene.objects[0].position = Vec3::new(5.0, 5.0, 9.0);
     assert_eq!(covered(&render(&scene, &SMALL)).count(), 0);
@@ -288,7 +288,7 @@ fn ambient_light_is_the_same_everywhere() {
     }
 }
 
-/// The bytes of the first pixel that is covered whole.
+/// The bytes of the first fully covered pixel.
 fn shown(scene: &Scene) -> [u8; 3] {
     let picture = render(scene, &SMALL);
     let i = picture.pixels.iter().position(|p| p.w == 1.0).expect("something is there");
@@ -322,7 +322,7 @@ fn lumen_and_candela_are_the_same_light() {
         };
         let mut lumen = candela.clone();
         lumen.lights[0].luminous_flux = Some(20.0 * solid_angle);
-        // What is not given counts for nothing.
+        // Missing values count for nothing.
         lumen.lights[0].intensity = 7.0;
         let differs = |a: &Picture, b: &Picture| {
             let pairs = a.pixels.iter().zip(&b.pixels).filter(|(a, _)| a.x > 0.0);
@@ -345,7 +345,7 @@ fn lights_have_the_colour_of_their_temperature() {
         scene.display.encoding = encoding;
         for kelvin in [1900.0, 2700.0, 6500.0, 12_000.0] {
             scene.lights[0].colour_temperature = Some(kelvin);
-            // What counts as the colour in sRGB is what a white object shows, decoded or not.
+            // The reported sRGB colour is that of a white object, decoded or not.
             assert_eq!(shown(&scene), scene.lights[0].rgb8(), "{kelvin} K {encoding:?}");
         }
     }
@@ -437,8 +437,8 @@ fn things_of_unknown_kinds_are_left_out() {
     assert_eq!(covered(&render(&scene, &SMALL)).count(), 0);
 }
 
-/// At the rim an interpolated normal turns away from the viewer. A model that is zero for a viewer below
-/// the surface must not answer with black where a matte surface is lit.
+/// At the rim an interpolated normal faces away from the viewer. A model that is zero for a viewer below the surface
+/// must not answer with black where a matte surface is lit.
 #[test]
 fn rims_are_as_little_black_as_lambert_leaves_them() {
     let registry = Registry::builtin();

@@ -1,4 +1,4 @@
-//! Shaders are exchanged while they are on the picture, and whatever is done to their files, the picture stays.
+//! Shaders are swapped while they are on the picture, and whatever happens to their files, the picture stays.
 
 use std::{
     fs,
@@ -114,7 +114,7 @@ impl Lab {
         self.renderer.read_rgb8().expect("the picture can be read")
     }
 
-    /// The frame after everything was tried, and after problems are told.
+    /// The frame after everything was tried and problems were reported.
     pub fn settled(&mut self) -> Vec<u8> {
         thread::sleep(GRACE);
         for _ in 0..200 {
@@ -141,13 +141,13 @@ fn covered(picture: &[u8]) -> usize {
     picture.chunks_exact(3).filter(|p| *p != BACKGROUND).count()
 }
 
-/// One way to break a file: what it is called, the file, what is put for what in it, and what is said.
+/// One way to break a file: its name, the file, the change, and the message.
 pub struct Breakage {
     pub name: &'static str,
     pub file: &'static str,
     pub change: fn(&str) -> Vec<u8>,
     pub said: &'static str,
-    /// The line that is named, by what stands in it; empty for the first.
+    /// The line in the message, by a part of it; empty for the first.
     pub line: &'static str,
 }
 
@@ -203,7 +203,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "import cycle",
         file: "terms.wgsl",
         change: |t| format!("{t}\n#import \"reflection/../terms.wgsl\"\n").into_bytes(),
-        said: "circle: terms.wgsl → terms.wgsl",
+        said: "circular import: terms.wgsl → terms.wgsl",
         line: "../terms.wgsl",
     },
     Breakage {
@@ -276,7 +276,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "endless loop",
         file: "loop.wgsl",
         change: |t| replaced(t, "i++) {", ") {"),
-        said: "first round or never",
+        said: "first iteration or never",
         line: "for (",
     },
     Breakage {
@@ -296,7 +296,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "invalid UTF-8",
         file: "reflection/phong.wgsl",
         change: |t| [t.as_bytes(), b"\n// caf\xe9\n"].concat(),
-        said: "not UTF-8 text from the byte 0xe9",
+        said: "the byte 0xe9 is not UTF-8",
         line: "// caf",
     },
     Breakage {
@@ -399,7 +399,7 @@ fn whatever_breaks_a_file_the_last_good_picture_stays_and_the_place_is_told() {
     }
 }
 
-/// The twin of the test above: a change that can be drawn with does show.
+/// The twin of the test above: a valid change does show.
 #[test]
 fn a_good_save_is_on_the_next_picture() {
     for (file, from, to) in [
@@ -501,7 +501,7 @@ fn a_model_that_is_not_on_the_picture_is_tried_all_the_same() {
     assert_eq!(troubles.len(), 1, "{troubles:?}");
     assert_eq!(troubles[0].problem.file, "reflection/hapke.wgsl");
     assert_eq!(troubles[0].stale, Vec::<String>::new(), "nothing on the picture is old");
-    // Shown now, it is what was built in, and says so.
+    // Shown now, it is the built-in text, with a message.
     let mut scene = phong_scene("phong");
     scene.reflection_model = "hapke".to_owned();
     lab.renderer.set_scene(scene.clone());
@@ -548,7 +548,7 @@ fn switching_modes_and_models_while_a_file_is_broken_shows_their_last_good_versi
     let phong = lab.settled();
     lab.save("reflection/phong.wgsl", "fn broken(");
     assert!(lab.settled() == phong);
-    // Not composed before: the last good text is what there is.
+    // Not composed before: the last good text is used.
     lab.renderer.set_scene(phong_scene("flat"));
     let flat = lab.settled();
     let expected = Lab::with_files(phong_scene("flat"), &[("reflection/phong.wgsl", &bluish)]).settled();
@@ -572,13 +572,13 @@ fn unchanged_text_recompiles_nothing_and_a_change_recompiles_only_what_depends_o
     assert!(lab.live().is_busy(), "the twin: another text is due");
     lab.settled();
     assert_eq!(lab.status().last.map(|l| l.file), Some("reflection/phong.wgsl".to_owned()));
-    // A shading model that is not shown is not part of the shader that is.
+    // A shading model that is not shown is not part of the visible shader.
     lab.save("shading/flat.wgsl", format!("{}\n", original("shading/flat.wgsl")));
     lab.settled();
     assert_eq!(lab.status().last.map(|l| l.file), Some("reflection/phong.wgsl".to_owned()));
 }
 
-/// What a watcher tells goes to the shaders, until it has been quiet for a while.
+/// Passes the watcher's reports to the shaders, until it has been quiet for a while.
 fn follow(lab: &mut Lab, watcher: &Watcher, expect_change: bool) -> Vec<Vec<u8>> {
     let mut frames = Vec::new();
     let mut quiet = 0;
@@ -655,7 +655,7 @@ fn saving_as_editors_do_goes_from_one_picture_to_the_next_and_shows_nothing_betw
     }
 }
 
-/// Changes a text at random, as slips of the keyboard do.
+/// Changes a text at random, like typing errors.
 fn mutated(text: &str, random: &mut random::Random) -> String {
     let tokens: Vec<&str> = split_tokens(text);
     let mut tokens: Vec<String> = tokens.into_iter().map(str::to_owned).collect();
@@ -678,7 +678,7 @@ fn mutated(text: &str, random: &mut random::Random) -> String {
                 tokens.insert(at, token);
             }
             _ => {
-                // A character that no keyboard of ours has, or a digit for another.
+                // A character that our keyboards lack, or a digit for another.
                 let digit = char::from(b'0' + random.below(10) as u8);
                 let put = if random.below(2) == 0 {
                     digit
@@ -722,7 +722,7 @@ mod random {
 
 #[test]
 fn random_edits_never_lose_the_picture_or_the_program() {
-    /// How often; `LCM_FUZZ_ROUNDS` says more.
+    /// The number of rounds; `LCM_FUZZ_ROUNDS` overrides it.
     const ROUNDS: usize = 120;
     let rounds = std::env::var("LCM_FUZZ_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(ROUNDS);
     let files = [
@@ -753,7 +753,7 @@ fn random_edits_never_lose_the_picture_or_the_program() {
             refused += 1;
             assert!(shown == good, "a refused change shows\n{}", context());
         }
-        // A frame that is lost is black all over, background included; pipelines that failed are told here.
+        // A lost frame is black everywhere, background included; failed pipelines are reported here.
         assert!(shown.chunks_exact(3).any(|p| p == BACKGROUND), "the frame is gone\n{}", context());
         lab.renderer.settle().unwrap_or_else(|e| panic!("{e}\n{}", context()));
         lab.save(file, original(file));
@@ -763,7 +763,7 @@ fn random_edits_never_lose_the_picture_or_the_program() {
     assert!(refused > rounds / 3 && accepted > 0, "{refused} refused, {accepted} accepted");
 }
 
-/// A custom model; `tint` is its colour, and `knobs` what it declares beside the base colour.
+/// A custom model; `tint` is its colour, and `knobs` its declarations beside the base colour.
 fn custom_model(tint: &str, knobs: &str) -> String {
     format!(
         "/* lcm
@@ -784,7 +784,7 @@ const HELP: &str = "fn helped(c: vec3<f32>) -> vec3<f32> {\n    return c;\n}\n";
 const GREEN: &str = "vec3(0.0, 1.0, 0.0)";
 const RED: &str = "vec3(1.0, 0.0, 0.0)";
 
-/// A lab whose scene is drawn with a custom model.
+/// A laboratory whose scene uses a custom model.
 fn own_lab() -> Lab {
     let mut lab = Lab::new(phong_scene("phong"));
     lab.save("own/help.wgsl", HELP);
@@ -797,7 +797,7 @@ fn own_lab() -> Lab {
     lab
 }
 
-/// Whether the brightest pixel is pure in one channel.
+/// True if the brightest pixel is pure in one channel.
 fn is_all(picture: &[u8], channel: usize) -> bool {
     let lit = picture.chunks_exact(3).filter(|p| *p != BACKGROUND);
     lit.max_by_key(|p| p[channel])
@@ -813,7 +813,7 @@ fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
     lab.save("own/tinted.wgsl", custom_model(RED, ""));
     let red = lab.frame();
     assert!(is_all(&red, 0));
-    // So is another layout of the parameters, before and behind what was there.
+    // So is another layout of the parameters, before and after the existing ones.
     let knob = r#", { "name": "tint2", "type": "colour", "default": [0, 255, 0] }"#;
     lab.save("own/tinted.wgsl", custom_model("m.tint2", knob));
     assert!(lab.frame() == green);
@@ -821,7 +821,7 @@ fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
         "[\"base_colour\"",
         r#"["k_d", { "name": "tint3", "type": "colour", "default": [255, 0, 0] }, "base_colour""#,
     );
-    // What the driver refuses leaves text, parameters and picture.
+    // A shader refused by the driver leaves text, parameters and picture.
     let binding = "@group(2) @binding(7) var<uniform> more: vec4<f32>;\n";
     let refused = before
         .replace("fn response", &format!("{binding}fn response"))
@@ -833,7 +833,7 @@ fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
     assert!(lab.settled() == green);
     let troubles = lab.troubles();
     assert_eq!(troubles.len(), 1, "{troubles:?}");
-    assert!(troubles[0].problem.message.contains("@binding(7) is not there"), "{troubles:?}");
+    assert!(troubles[0].problem.message.contains("@binding(7) is not available to a model"), "{troubles:?}");
     assert_eq!(
         (troubles[0].problem.file.as_str(), &troubles[0].stale[..]),
         ("models/tinted.wgsl", &["Tinted".to_owned()][..])
@@ -849,7 +849,7 @@ fn a_custom_model_is_exchanged_with_its_declaration_or_not_at_all() {
 fn a_custom_model_follows_the_files_that_it_shares() {
     let mut lab = own_lab();
     let green = lab.settled();
-    // A broken helper leaves the picture; the model that changes meanwhile is shown as soon as it is mended.
+    // A broken helper leaves the picture; the model that changes meanwhile shows as soon as it is fixed.
     lab.save("own/help.wgsl", "fn helped(");
     assert!(lab.settled() == green);
     assert!(!lab.troubles().is_empty());

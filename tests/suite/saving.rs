@@ -1,4 +1,4 @@
-//! Saving: all or nothing, and never over what someone else wrote.
+//! Saving: all or nothing, and never over somebody else's changes.
 
 use std::{
     fs,
@@ -34,7 +34,7 @@ fn a_new_file_is_written_and_an_existing_one_is_not_overwritten() {
     assert_eq!(load(&file).scene, Scene::default());
     assert_eq!(load(&file).stamp, stamp);
     let error = write(&file, &Scene::default(), Expected::Nothing).expect_err("exists");
-    assert_eq!(error.to_string(), format!("{} exists already; it was not overwritten", file.display()));
+    assert_eq!(error.to_string(), format!("{} already exists; it was not overwritten", file.display()));
     assert_eq!(names(folder.path()), ["a.json"]);
 }
 
@@ -65,7 +65,7 @@ fn what_cannot_be_written_says_why_and_leaves_nothing_behind() {
     let said = |path: &Path, scene: &Scene| {
         write(path, scene, Expected::Anything).expect_err("cannot be written").to_string()
     };
-    assert!(said(at, &Scene::default()).ends_with("is a folder; name a file"));
+    assert!(said(at, &Scene::default()).ends_with("is a folder; choose a file name"));
     let missing = said(&at.join("no/a.json"), &Scene::default());
     assert!(missing.contains("there is no folder"), "{missing}");
     let mut invalid = Scene::default();
@@ -124,7 +124,7 @@ fn the_reference_to_the_schema_is_kept_or_made_where_the_schema_is() {
     assert!(fs::read_to_string(&file).expect("readable").contains("\"$schema\": \"./scene.schema.json\""));
 }
 
-/// The file that the child process of the next test writes to; only set there.
+/// The file written by the child process of the next test; only set there.
 const LOOP_FILE: &str = "LCM_TEST_SAVE_LOOP";
 
 /// Two scenes of very different length, so that half of one is not the other.

@@ -1,4 +1,4 @@
-//! Every kind of bad scene has its own message, which says what, where, and what would be right.
+//! Every kind of error in a scene has its own message: the error, its place, and the remedy.
 
 use std::{fs, time::Instant};
 
@@ -36,7 +36,7 @@ fn a_message_names_file_line_column_path_value_and_rule() {
     );
 }
 
-/// A change of the full scene, and what the message must contain.
+/// A change of the full scene, and the expected part of the message.
 type Case = (&'static str, Value, &'static str);
 
 #[test]
@@ -168,7 +168,7 @@ fn every_constraint_has_its_message() {
         (
             "/lights/0/luminous_flux",
             json!(800),
-            "lights[0].luminous_flux is given, but so is intensity; a light has one of the two",
+            "lights[0].luminous_flux conflicts with intensity; a light has one or the other",
         ),
         (
             "/lights/1/luminous_flux",
@@ -193,7 +193,7 @@ fn every_constraint_has_its_message() {
         (
             "/lights/0/colour_temperature",
             json!(2700),
-            "lights[0].colour_temperature is given, but so is colour; a light has one of the two",
+            "lights[0].colour_temperature conflicts with colour; a light has one or the other",
         ),
         (
             "/lights/1/colour_temperature",
@@ -379,7 +379,7 @@ fn unknown_keys_name_the_nearest_known_one_or_where_they_belong() {
         ("/lights/1/coneAngle", "did you mean \"cone_angle\"?"),
         ("/observer/fov", "did you mean \"field_of_view\"?"),
         ("/objects/0/positon", "did you mean \"position\"?"),
-        ("/objects/0/k_d", "objects[0].k_d is not a key of an object; it is a parameter of the material"),
+        ("/objects/0/k_d", "objects[0].k_d is not a key of an object; it is a material parameter"),
         ("/objects/0/material/shininess", "did you mean \"alpha\"?"),
         ("/objects/0/material/kd", "did you mean \"k_d\"?"),
         ("/objects/0/material/basecolor", "did you mean \"base_colour\"?"),
@@ -399,15 +399,12 @@ fn keys_given_twice_name_both_places() {
     let text = full_scene().to_string().replacen("\"k_a\":0.1", "\"k_a\":0.1,\n\"k_a\":0.2", 1);
     let said_of = said(&text);
     assert!(
-        said_of.contains("scene.json:2:1: objects[0].material.k_a is given twice; it is given first at 1:"),
+        said_of.contains("scene.json:2:1: objects[0].material.k_a is given twice; first given at 1:"),
         "{said_of}"
     );
     let text = full_scene().to_string().replacen("\"colour\":", "\"color\":[1,2,3],\n\"colour\":", 1);
     let said_of = said(&text);
-    assert!(
-        said_of.contains("lights[0].colour is given twice as colour; it is given first at 1:"),
-        "{said_of}"
-    );
+    assert!(said_of.contains("lights[0].colour is given twice as colour; first given at 1:"), "{said_of}");
 }
 
 #[test]
@@ -528,7 +525,7 @@ fn what_is_missing_is_asked_for() {
     assert_eq!(
         said(&text),
         "scene.json:1:1: scene_size (default: 10 × 10 × 10 m), reflection_model (default: lambert) and \
-         shading_model (default: gouraud) are missing; --use-defaults takes the defaults, --no-defaults refuses them"
+         shading_model (default: gouraud) are missing; --use-defaults accepts the defaults, --no-defaults rejects them"
     );
 }
 
@@ -551,7 +548,7 @@ fn missing_parts_and_other_problems_are_reported_together() {
         s["lights"][0]["intensity"] = json!(-1);
     });
     let said = said(&text);
-    assert!(said.contains("shading_model is missing; --use-defaults takes the default, gouraud"), "{said}");
+    assert!(said.contains("shading_model is missing; --use-defaults accepts the default, gouraud"), "{said}");
     assert!(said.contains("lights[0].intensity is -1"), "{said}");
 }
 
@@ -578,11 +575,11 @@ fn what_is_not_utf_8_json_is_recognised() {
         (b"\x89PNG\r\n\x1a\n\0\0".to_vec(), "the file is a PNG picture, not a scene"),
         (
             b"{\n \"name\": \"caf\xE9\" }".to_vec(),
-            "scene.json:2:14: not UTF-8 text: there is the byte 0xE9; the file may be Latin-1",
+            "scene.json:2:14: not UTF-8 text: unexpected byte 0xE9; the file may be Latin-1",
         ),
         (b"{\"a\": \0}".to_vec(), "scene.json:1:7: not UTF-8 text: there is a zero byte"),
         (b"\x7FELF\x01\x01\x02\xFF\xFE\x90".to_vec(), "binary"),
-        (b"{\"a\": \"\xE2\x82".to_vec(), "the file ends within a character; it seems to be cut off"),
+        (b"{\"a\": \"\xE2\x82".to_vec(), "the file ends within a character; it seems to be truncated"),
         (Vec::new(), "scene.json is empty. Load the default scene?"),
         (b" \n\t\n".to_vec(), "scene.json is empty. Load the default scene?"),
         (b"[]".to_vec(), "scene.json:1:1: the scene is [], but a scene must be an object"),
@@ -613,12 +610,12 @@ fn files_that_cannot_be_read_say_why() {
     huge.set_len(65 << 20).expect("a hole takes no space");
     fs::write(at.join("broken.json"), "{\"lights\": [").expect("written");
     for (file, expected) in [
-        ("scenes/rom.json", "scenes/rom.json: there is no such file. Did you mean scenes/room.json?"),
-        ("nowhere/x.json", "nowhere/x.json: there is no such file"),
+        ("scenes/rom.json", "scenes/rom.json: file not found. Did you mean scenes/room.json?"),
+        ("nowhere/x.json", "nowhere/x.json: file not found"),
         ("scenes", "scenes is a folder; a scene is a single JSON file; this one holds room.json"),
         ("empty.json", "empty.json is empty. Load the default scene?"),
-        ("huge.json", "huge.json is larger than 64 MiB, which no scene is; it was not read"),
-        ("broken.json", "broken.json:1:13: not JSON: the file ends within a list; it seems to be cut off"),
+        ("huge.json", "huge.json is larger than 64 MiB, the most allowed for a scene; it was not read"),
+        ("broken.json", "broken.json:1:13: not JSON: the file ends within a list; it seems to be truncated"),
         ("scenes/room.json/x", "scenes/room.json/x could not be read"),
     ] {
         let run = lcm_in(at, &["check", file], b"");

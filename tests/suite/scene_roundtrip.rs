@@ -1,4 +1,4 @@
-//! Reading what was written gives the same scene.
+//! Reading a written scene gives the same scene.
 
 use std::{fs, time::Instant};
 
@@ -141,10 +141,10 @@ fn light() -> impl Strategy<Value = Light> {
                 light_type: d.id.to_owned(),
                 name,
                 enabled,
-                // Apart from where objects and the observer are.
+                // Apart from the positions of objects and observer.
                 position: d.has_position.then_some(p + Vec3::X * 4.0),
                 direction: d.has_direction.then_some(direction),
-                // What is not written has its default when it is read.
+                // Absent fields have their defaults after reading.
                 colour: if kelvin.is_some() { [255; 3] } else { colour },
                 colour_temperature: kelvin,
                 intensity: if flux.is_some() { d.default_intensity } else { intensity },

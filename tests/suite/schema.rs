@@ -1,4 +1,4 @@
-//! The JSON Schema: in step with the program, and of one mind with the reader.
+//! The JSON Schema: in step with the program, and in agreement with the reader.
 
 use std::fs;
 
@@ -18,7 +18,7 @@ fn validator() -> Validator {
     jsonschema::draft202012::new(&schema(&Registry::builtin())).expect("a valid schema")
 }
 
-/// Compares a shipped file with what the program makes; writes it if `LCM_UPDATE` is set.
+/// Compares a shipped file with the program's output; writes it if `LCM_UPDATE` is set.
 fn in_step(file: &str, expected: &str) {
     let path = root().join(file);
     if std::env::var_os("LCM_UPDATE").is_some() {
@@ -152,7 +152,7 @@ fn the_schema_and_the_reader_know_the_same_keys() {
         ("/properties/display/properties", "/display"),
     ] {
         let mut scene = full_scene();
-        // What the reader says about an unknown key: the keys that it knows.
+        // The reader's message about an unknown key: the keys that it knows.
         scene.pointer_mut(parent).expect("there")["qqqqqqqqqqqqqqqq"] = json!(1);
         let said = said(&scene.to_string());
         let list = said.split_once(" has the keys ").expect(&said).1.lines().next().unwrap_or_default();

@@ -15,7 +15,7 @@ fn quick() -> (tempfile::TempDir, String) {
     (folder, html)
 }
 
-/// What a browser would load for the page.
+/// The external resources that a browser would load for the page.
 fn loads(html: &str) -> Vec<&str> {
     ["src=\"", "href=\"", "url(", "@import", "srcset=", "<script", "<link", "<iframe"]
         .into_iter()
@@ -33,11 +33,11 @@ fn the_study_writes_a_report_that_stands_alone() {
     for part in ["Question", "Method", "Results", "Conclusion"] {
         assert_eq!(html.matches(&format!("<h3>{part}</h3>")).count(), 4, "{part}");
     }
-    // What the numbers say, and not only that there are some.
+    // The content of the numbers, and not only their presence.
     assert!(html.contains("All four phenomena are shown"), "{}", &html[..4000.min(html.len())]);
     assert_eq!(loads(&html), [""; 0]);
     assert_eq!(loads("<img src=\"https://x\">").len(), 1);
-    // Numbers that are none would be seen in text and attributes; pictures are not text.
+    // NaN and infinity would appear in text and attributes; pictures are not text.
     let text: String = html.split("base64,").map(|part| part.split_once('"').map_or(part, |p| p.1)).collect();
     for none in ["NaN", "inf ", ">inf", "−inf"] {
         assert!(!text.contains(none), "{none}");
@@ -54,7 +54,7 @@ fn the_study_writes_a_report_that_stands_alone() {
         let columns: Vec<_> = text.lines().map(|line| line.split(',').count()).collect();
         assert!(columns.len() > 2 && columns.iter().all(|c| *c == columns[0]), "{}", table.display());
     }
-    // A quick run says that it was one.
+    // A quick run is marked as such.
     assert!(html.contains("quick run"));
 }
 

@@ -1,4 +1,4 @@
-//! What several tests need.
+//! Helpers of several tests.
 
 use std::{
     ffi::OsStr,
@@ -70,12 +70,12 @@ pub fn changed(change: impl FnOnce(&mut Value)) -> String {
     format!("{scene:#}")
 }
 
-/// What reading a text says; empty if it is a valid scene.
+/// The messages of reading a text; empty if it is a valid scene.
 pub fn said(text: &str) -> String {
     said_of_bytes(text.as_bytes())
 }
 
-/// What reading bytes says; empty if they are a valid scene.
+/// The messages of reading bytes; empty if they are a valid scene.
 pub fn said_of_bytes(bytes: &[u8]) -> String {
     match load::from_bytes(bytes, "scene.json", &Registry::builtin(), Defaults::Refuse) {
         Ok(_) => String::new(),
@@ -96,7 +96,7 @@ pub fn written(scene: &Scene) -> String {
     save::to_json(scene, None, &Registry::builtin())
 }
 
-/// What a run of the program gave.
+/// The result of a run of the program.
 pub struct Run {
     pub status: Option<i32>,
     pub out: String,
@@ -127,7 +127,7 @@ pub fn command_in<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<I
     command
         .args(arguments)
         .current_dir(folder)
-        // What cargo sets, and what the user of this machine keeps, would be found.
+        // Otherwise cargo's variables, and the user's files, would be found.
         .env_remove("CARGO_MANIFEST_DIR")
         .env_remove("BEVY_ASSET_ROOT")
         .env("LCM_DATA_DIR", root().join("no-such-folder"));

@@ -1,10 +1,10 @@
-//! Mistakes that swallow what follows them in the composed shader are told where they are made, by every command.
+//! Errors that swallow the following text in the composed shader are reported in their own file, by every command.
 
 use std::{fs, path::Path};
 
 use crate::support::{Run, lcm_in, root};
 
-/// A custom model with something behind its declaration, and something else at its end.
+/// A custom model with text after its declaration, and text at its end.
 fn model(before: &str, body: &str, behind: &str) -> String {
     format!(
         "/* lcm\n{{ \"name\": \"Mine\", \"parameters\": [\"base_colour\"] }}\n*/\n{before}\

@@ -1,4 +1,4 @@
-//! Tangents reach an anisotropic model alike in both renderers, in every shading model on every shape.
+//! Both renderers pass tangents to an anisotropic model alike, with every shading model on every shape.
 
 use glam::{Vec3, Vec4};
 use lights_camera_models::{
@@ -20,9 +20,9 @@ use lights_camera_models::{
 use crate::pictures::{close_up, compare};
 
 parameters! {
-    /// Lambert, brighter where the half vector leans along the tangent; it tells the tangent's sign too.
+    /// Lambert, brighter where the half vector leans along the tangent; it reveals the tangent's sign too.
     pub struct Brushed {
-        /// Its colour.
+        /// The colour.
         base_colour: colour = BASE_COLOUR,
     }
 }
@@ -59,9 +59,9 @@ impl ReflectionModel for Brushed {
 }
 
 parameters! {
-    /// The wrong twin: takes the bitangent for the tangent.
+    /// The wrong twin: uses the bitangent as the tangent.
     pub struct Crosswise {
-        /// Its colour.
+        /// The colour.
         base_colour: colour = BASE_COLOUR,
     }
 }
@@ -114,7 +114,7 @@ fn both_renderers_give_every_mode_and_shape_the_same_tangents() {
                 let gpu = renderer.read_linear().expect("the picture can be read");
                 let case = format!("{} × {} × {light}", shape.declaration.id, shading.declaration.id);
                 let d = compare(&gpu, &cpu(&scene, "brushed"), background, 1e-3);
-                // The tangent turns round within the pixel over a pole: which way is a matter of the last bit.
+                // The tangent turns round within the pixel over a pole: the last bit decides the direction.
                 assert!(d.covered > 500 && d.wrong <= 1 && d.edges * 50 <= d.covered, "{case}: {d:?}");
                 let wrong = compare(&gpu, &cpu(&scene, "crosswise"), background, 1e-3);
                 assert!(wrong.wrong * 2 > d.covered, "{case}, bitangent for tangent: {wrong:?}");

@@ -1,5 +1,5 @@
-//! Shaders are tried in another process: what that says is what is said here, and however it ends, the picture and
-//! the program stay.
+//! Shaders are tried in another process: its messages are reported here, and however it ends, the picture and the
+//! program survive.
 
 use std::{
     fs,
@@ -16,7 +16,7 @@ use lights_camera_models::render::trial::{
 
 use crate::reload::{BREAKAGES, Breakage, Lab, original, phong_scene};
 
-/// The lab, with shaders tried by a program.
+/// The laboratory, with shaders tried by a program.
 fn apart(program: &Path, budget: Budget) -> Lab {
     let mut lab = Lab::new(phong_scene("phong"));
     let process = TrialProcess::new(program.to_owned(), budget, || {});
@@ -28,7 +28,7 @@ fn lcm() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_lcm"))
 }
 
-/// Frames until all is tried and told.
+/// Frames until everything is tried and reported.
 fn settled(lab: &mut Lab) -> Vec<u8> {
     let start = Instant::now();
     while lab.live().is_trying() {
@@ -56,7 +56,7 @@ fn another_process_says_what_this_one_would() {
         assert!(settled(&mut lab) == before, "{name}");
         assert_eq!(lab.troubles(), [], "{name}");
     }
-    // The twin: what can be drawn with is.
+    // The twin: a valid shader is used.
     lab.save("loop.wgsl", original("loop.wgsl").replace("* light.colour;", "* light.colour * 0.5;"));
     assert!(settled(&mut lab) != before);
     assert_eq!(lab.troubles(), []);
@@ -106,7 +106,7 @@ fn a_shader_that_draws_for_ever_is_refused() {
     assert_eq!(lab.troubles(), []);
 }
 
-/// A program that does something else than trying shaders.
+/// A program that does something other than trying shaders.
 fn program(folder: &Path, does: &str) -> PathBuf {
     let path = folder.join("program");
     fs::write(&path, format!("#!/bin/sh\n{does}\n")).expect("writable");
@@ -154,7 +154,7 @@ fn what_cannot_be_tried_is_refused_and_tried_again_with_the_next_save() {
         let [trouble] = &troubles[..] else { panic!("{does:?}: {troubles:?}") };
         assert!(trouble.problem.message.contains("could not be tried"), "{}", trouble.problem);
     }
-    // The program is there again.
+    // The program exists again.
     std::fs::remove_file(&path).expect("removed");
     std::os::unix::fs::symlink(lcm(), &path).expect("linked");
     lab.save("loop.wgsl", &dark);

@@ -1,4 +1,4 @@
-//! Parameters that the chosen options do not use: their knobs, and where they are declared and listed.
+//! Parameters not used by the chosen options: their knobs, declarations and lists.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn a_knob_without_effect_is_disabled_and_says_why() {
     choose(&mut bench, "distribution", "gtr");
     assert!(!bench.field("exponent of GTR").disabled);
     assert!(caption_text(&bench.session, &bench.registry).contains("γ 2"));
-    // A chain: without Fresnel term there is no diffuse base, and without that no colour.
+    // A chain: without a Fresnel term there is no diffuse base, and without that no colour.
     choose(&mut bench, "fresnel", "none");
     assert!(bench.field("base colour in hexadecimal").disabled);
     let base = bench.tree.iter().find(|s| s.role == Role::ComboBox && s.label.starts_with("diffuse base"));
@@ -58,7 +58,7 @@ fn the_list_of_models_says_when_a_parameter_is_used() {
     assert!(parameter("cook_torrance", "extinction")["used_when"].is_null());
 }
 
-/// A model with a parameter that counts for one of two forms.
+/// A model with a parameter used by one of two forms.
 fn forms(used_when: &str) -> String {
     format!(
         "/* lcm {{ \"parameters\": [\n\
@@ -101,9 +101,9 @@ fn a_model_from_a_file_declares_it_too() {
 fn a_condition_that_cannot_hold_is_reported_where_it_stands() {
     for (declared, expected) in [
         ("\"soft\"", "3:36: parameters[1].used_when is \"soft\", but it must name one other parameter"),
-        ("{ \"from\": [\"soft\"] }", "it must name a parameter of this model, and \"from\" is none"),
-        ("{ \"k_d\": [\"soft\"] }", "it must name a parameter whose type is choice, and \"k_d\" has another"),
-        ("{ \"form\": [\"sfot\"] }", "\"sfot\" is no choice of form, which has \"plain\", \"soft\""),
+        ("{ \"from\": [\"soft\"] }", "it must name a parameter of this model, and there is no \"from\""),
+        ("{ \"k_d\": [\"soft\"] }", "it must name a parameter of type choice, and \"k_d\" has another type"),
+        ("{ \"form\": [\"sfot\"] }", "\"sfot\" is not a choice of form, which has \"plain\", \"soft\""),
         ("{ \"form\": [] }", "it must name one other parameter"),
     ] {
         let said = read(&forms(declared)).err().unwrap_or_default();

@@ -1,5 +1,5 @@
-// Directional albedo from the curve in the row of the object that is drawn, the twin of the curves in
-// src/optics/albedo; where they come from is calculated there alone. `curve_node(i)`, `lobe_mean()`
+// Directional albedo from the curve in the object's row, the twin of the curves in src/optics/albedo,
+// which alone calculates them. `curve_node(i)`, `lobe_mean()`
 // and HARMONICS are generated for the layout of the row.
 
 // Nodes at μ = (i/15)³.

@@ -6,8 +6,8 @@ fn burley(cos_l: f32, cos_v: f32, cos_d: f32, roughness: f32) -> f32 {
     return mix(1.0, f_d90, schlick_weight(cos_l)) * mix(1.0, f_d90, schlick_weight(cos_v));
 }
 
-// The angle of a cosine in [0, 1]; M. Abramowitz, I. Stegun (1964), 4.4.46, error 2e-8. The built-in acos may
-// be 4096 units of the last place off.
+// The angle of a cosine in [0, 1]; M. Abramowitz, I. Stegun (1964), 4.4.46, error 2e-8. The built-in acos may be
+// off by 4096 units in the last place.
 fn arc_cosine(x: f32) -> f32 {
     let c = clamp(x, 0.0, 1.0);
     let low = 1.5707963050 + c * (-0.2145988016 + c * (0.0889789874 + c * -0.0501743046));
@@ -38,7 +38,7 @@ fn oren_nayar_qualitative(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32) -> f3
     return a + b * max(cos_lv - cos_l * cos_v, 0.0) / max(max(cos_l, cos_v), 1e-12);
 }
 
-// The same, in full: once reflected light of three parts, and light that two facets pass on.
+// The same, in full: single reflection in three parts, and interreflection between two facets.
 fn oren_nayar_full(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32, rho: vec3<f32>) -> vec3<f32> {
     let s2 = sigma * sigma;
     let cos_alpha = min(cos_l, cos_v);
@@ -59,7 +59,7 @@ fn oren_nayar_full(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32, rho: vec3<f3
     // C₂ cos φ tan β, where cos φ sin α tan β is s / cos β.
     var middle = 0.45 * slope * s / cos_beta;
     if s < 0.0 {
-        // (sin α − b³)/sin α: 1 − b³ less 1 − sin α.
+        // (sin α − b³)/sin α: 1 − b³ minus 1 − sin α.
         middle *= (e * (3.0 - e * (3.0 - e)) - cos_alpha * cos_alpha / (1.0 + sin_alpha)) / max(sin_alpha, 1e-4);
     }
     let c3 = 4.0 * alpha * beta / (PI * PI);
@@ -71,7 +71,7 @@ fn oren_nayar_full(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32, rho: vec3<f3
 const FON_1: f32 = 0.5 - 2.0 / (3.0 * PI);
 const FON_2: f32 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
 
-// What the FON BRDF loses of light from the angle of a cosine, (1 − E)/(A r).
+// The loss of the FON BRDF for light at the angle of a cosine, (1 − E)/(A r).
 fn fon_loss(cosine: f32) -> f32 {
     let mu = clamp(cosine, 0.0, 1.0);
     let s = sine_of(mu);

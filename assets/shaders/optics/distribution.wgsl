@@ -27,7 +27,7 @@ fn beckmann(h: vec3<f32>, alpha: vec2<f32>) -> f32 {
     return exp(-exponent) / (PI * alpha.x * alpha.y * z2 * z2);
 }
 
-// Blinn–Phong with the exponent n = 2/α² − 2, along each axis its own.
+// Blinn–Phong with the exponent n = 2/α² − 2 along each axis.
 fn blinn_phong(h: vec3<f32>, alpha: vec2<f32>) -> f32 {
     if h.z <= 0.0 {
         return 0.0;

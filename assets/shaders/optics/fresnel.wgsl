@@ -36,7 +36,7 @@ fn conductor(n: f32, k: f32, cos_i: f32) -> f32 {
     let s2 = 1.0 - c2;
     let t = (n - k) * (n + k) - s2;
     let modulus = length(vec2(t, 2.0 * n * k));
-    // The real part, by the form that does not cancel.
+    // The real part, in the form without cancellation.
     var a = 0.0;
     if t > 0.0 {
         a = sqrt(0.5 * (modulus + t));

@@ -1,4 +1,4 @@
-// Normalised Blinn–Phong (J. Blinn 1977; exact factor after F. Giesen 2009): light is shared between
+// Normalised Blinn–Phong (J. Blinn 1977; exact factor after F. Giesen 2009): light is divided between
 // the diffuse part and the lobe.
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_i = dot(frame.n, l);

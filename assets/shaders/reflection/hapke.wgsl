@@ -1,4 +1,4 @@
-// B. Hapke (1981, 1984, 1986): grains that scatter, shadows between them, slopes.
+// B. Hapke (1981, 1984, 1986): scattering grains, shadows between them, slopes.
 
 const HAPKE_TINY: f32 = 1e-10;
 
@@ -16,13 +16,13 @@ fn hapke_lobe(b: f32, chord: f32) -> f32 {
     return (1.0 - b * b) * inverseSqrt(s) / s;
 }
 
-// Chandrasekhar's H less 1, Hapke's approximation of 1981.
+// Chandrasekhar's H minus 1, Hapke's approximation of 1981.
 fn hapke_h_less_one(x: f32, w: vec3<f32>, gamma: vec3<f32>) -> vec3<f32> {
     return 2.0 * x * w / ((vec3(1.0) + gamma) * (vec3(1.0) + 2.0 * x * gamma));
 }
 
-// The effective cosines, the larger of the two given ones first, and the product of the factors of
-// shadowing; t: tangent of the mean slope.
+// The effective cosines, for the larger of the two given ones first, and the product of the
+// shadowing factors; t: tangent of the mean slope.
 fn hapke_roughen(l: vec3<f32>, v: vec3<f32>, n: vec3<f32>, t: f32) -> vec3<f32> {
     let swapped = dot(n, v) > dot(n, l);
     let a = select(l, v, swapped);

@@ -1,4 +1,4 @@
-// H. Seeliger (1888), E. Lommel (1889): light scattered once in a deep powder.
+// H. Seeliger (1888), E. Lommel (1889): single scattering in a deep powder.
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_i = dot(frame.n, l);
     let cos_o = dot(frame.n, v);

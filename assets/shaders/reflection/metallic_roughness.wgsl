@@ -1,6 +1,6 @@
 // Metallic–roughness (B. Karis 2013; glTF 2.0, appendix B): GGX, height-correlated Smith masking, Schlick's
-// Fresnel term. Written out for one roughness and without a half vector, since many pixels are drawn with
-// it: what is needed of H follows from S = L + V.
+// Fresnel term. Written out for one roughness and without a half vector for speed, since it is so common:
+// everything needed of H follows from S = L + V.
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_l = dot(frame.n, l);
     let cos_v = dot(frame.n, v);

@@ -1,5 +1,5 @@
 // Modified Phong (R. Lewis 1993; E. Lafortune, Y. Willems 1994): a reciprocal lobe around the mirror
-// direction, light shared between it and the diffuse part.
+// direction, light divided between it and the diffuse part.
 fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_i = dot(frame.n, l);
     if cos_i <= 0.0 || dot(frame.n, v) <= 0.0 {

@@ -1,8 +1,8 @@
-// Torrance–Sparrow (K. E. Torrance, E. M. Sparrow 1967): facets whose angles follow a Gaussian, V-shaped
-// cavities, exact Fresnel equations.
+// Torrance–Sparrow (K. E. Torrance, E. M. Sparrow 1967): facets with Gaussian angles, V-shaped cavities,
+// exact Fresnel equations.
 
 // The angle of this sine and cosine, 0 to π/2: four times the arctangent of the tangent of its quarter,
-// by its series. Drivers may calculate atan to three digits only.
+// by its series. The built-in atan may be accurate to only three digits.
 fn angle_of(sine: f32, cosine: f32) -> f32 {
     let half = sine / (1.0 + cosine);
     let quarter = half / (1.0 + sqrt(1.0 + half * half));

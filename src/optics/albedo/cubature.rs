@@ -1,4 +1,4 @@
-//! The integral over the directions to the light: cells that are halved where the error is largest.
+//! The integral over the directions to the light: cells, halved where the error is largest.
 
 use std::f64::consts::PI;
 
@@ -9,8 +9,8 @@ use crate::optics::Terms;
 /// The largest absolute error of [`directional`](super::directional).
 pub const ACCURACY: f64 = 1e-4;
 
-/// The relative error that rounding in a response gives the value of a cell: a smaller one is no reason to
-/// halve the cell.
+/// The relative error that rounding in a response causes in the value of a cell: a smaller error is no reason to halve
+/// the cell.
 const ROUNDING: f64 = 3e-5;
 
 /// The first cells of an integral, and its tolerance.
@@ -22,8 +22,8 @@ pub(super) struct Plan {
     rings: usize,
     /// 2 if the azimuths are one half of a symmetric circle.
     symmetry: f64,
-    /// The sum of the estimated errors of the cells of an integral, diffuse and specular apart. The
-    /// estimates are those of the lower rule, and far above the error of the higher.
+    /// The sum of the estimated errors of the cells of an integral, diffuse and specular separately. The estimates are
+    /// those of the lower-degree rule, and far above the error of the higher.
     tolerance: f64,
     /// Most cells of an integral.
     cells: usize,
@@ -48,12 +48,12 @@ impl Plan {
         Self { azimuths, rings: 6, symmetry: 1.0, tolerance: 0.3 * ACCURACY, cells: 6000 }
     }
 
-    /// For curves of models that turning about the normal does not change.
+    /// For curves of isotropic models.
     pub(super) fn isotropic() -> Self {
         Self { azimuths: vec![0.0, PI / 2.0, PI], rings: 6, symmetry: 2.0, tolerance: 5e-4, cells: 100 }
     }
 
-    /// For curves of models that it does.
+    /// For curves of anisotropic models.
     pub(super) fn anisotropic() -> Self {
         Self {
             azimuths: (0..=8).map(|i| f64::from(i) * PI / 4.0).collect(),
@@ -82,7 +82,7 @@ struct Cell {
     half: [f64; 2],
     value: DVec3,
     error: f64,
-    /// The coordinate in which it is halved.
+    /// The coordinate along which it is halved.
     axis: usize,
 }
 
@@ -186,7 +186,7 @@ impl Cell {
         (turned.as_vec3(), area)
     }
 
-    /// Takes the answers at the points of the rule.
+    /// Receives the answers at the points of the rule.
     fn take(&mut self, values: &[DVec3; 17]) {
         let mut low = DVec3::ZERO;
         self.value = DVec3::ZERO;
@@ -197,7 +197,7 @@ impl Cell {
         }
         let difference = (self.value - low).abs().max_element();
         self.error = (difference - ROUNDING * self.value.abs().max_element()).max(0.0);
-        // The fourth difference along an axis: of the inner pair without what is quadratic.
+        // The fourth difference along an axis: the inner pair without its quadratic part.
         let bend = |first: usize| {
             let second = |i: usize| values[i] + values[i + 1] - 2.0 * values[0];
             (second(first) - second(first + 2) / 7.0).abs().max_element()
@@ -288,7 +288,7 @@ pub(super) fn integrate<E>(
                 task.fresh = task.cells.len();
                 continue;
             }
-            // The fewest that hold all but half of the tolerable error, not more than there is room for.
+            // The fewest cells that hold all but half of the tolerable error, within the space available.
             task.cells.sort_unstable_by(|a, b| a.error.total_cmp(&b.error));
             let room = task.plan.cells - task.cells.len();
             let mut halved = Vec::new();

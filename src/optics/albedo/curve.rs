@@ -7,9 +7,9 @@ use glam::{DVec3, Vec3};
 use super::cubature::{Plan, integrate};
 use crate::optics::{Frame, Terms};
 
-/// Nodes of a curve over `μ = n·v`, at `μ = (i/15)³`: closest where the view is grazing, since albedos
-/// turn fastest there. With the cubic between them a lobe of F = 1 is met to 0.002 (GGX) and 0.003
-/// (Beckmann) from α = 0.04 up, and to 0.005 at α = 0.01 (linear in √μ GGX would be 0.006 and 0.024 off).
+/// Nodes of a curve over `μ = n·v`, at `μ = (i/15)³`: closest at grazing views, where albedos change fastest. The cubic
+/// between them reproduces a lobe of F = 1 to 0.002 (GGX) and 0.003 (Beckmann) from α = 0.04 up, and to 0.005 at α =
+/// 0.01 (linear in √μ, GGX would be off by 0.006 and 0.024).
 pub const NODES: usize = 16;
 
 /// The view of the node at μ = 0, where a response is zero by definition: close enough for the limit.
@@ -32,9 +32,8 @@ fn nodes(response: impl Fn(Vec3, Vec3) -> Terms, azimuth: f64, plan: &Plan) -> [
     std::array::from_fn(|i| albedos[i])
 }
 
-/// Weights of the nodes around μ in the cubic of E. Catmull, R. Rom (1974), *A Class of Local
-/// Interpolating Splines*, over the cube root of μ; the first of the four nodes, which the curve is
-/// continued for in a straight line at both ends.
+/// Weights of the nodes around μ in the cubic of E. Catmull, R. Rom (1974), *A Class of Local Interpolating Splines*,
+/// over the cube root of μ; and the first of the four nodes. At both ends the curve is extrapolated linearly.
 fn spline(mu: f32) -> (usize, [f32; 4]) {
     let x = mu.clamp(0.0, 1.0).cbrt() * (NODES - 1) as f32;
     let i = (x as usize).min(NODES - 2);
@@ -51,18 +50,18 @@ fn spline(mu: f32) -> (usize, [f32; 4]) {
     }
 }
 
-/// The directional albedo of a surface as a function of the view, from values at [`NODES`] nodes,
-/// a cubic between them. For anisotropic models also of the azimuth of the view from the tangent:
-/// `E(μ, φ) ≈ a₀(μ) + a₂(μ) cos 2φ + a₄(μ) cos 4φ`, from φ = 0°, 45° and 90°: to 0.001 for GGX lobes of
-/// widths 3:2, 0.01 for 5:2; of widths 10:1 it smooths the azimuth by up to 0.1 at grazing views.
+/// The directional albedo of a surface as a function of the view, from values at [`NODES`] nodes, cubic between them.
+/// For anisotropic models, also of the azimuth of the view from the tangent: `E(μ, φ) ≈ a₀(μ) + a₂(μ) cos 2φ + a₄(μ)
+/// cos 4φ`, from φ = 0°, 45° and 90°: to 0.001 for GGX lobes of widths 3:2, 0.01 for 5:2; for widths 10:1 it smooths
+/// the azimuth by up to 0.1 at grazing views.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlbedoCurve {
-    /// The coefficients a₀, a₂, a₄ at each node; of isotropic models only a₀ is not zero.
+    /// The coefficients a₀, a₂, a₄ at each node; for isotropic models only a₀ is not zero.
     pub harmonics: [[Vec3; NODES]; 3],
 }
 
 impl AlbedoCurve {
-    /// The curve of a model by its response, in the local frame (normal +z, tangent +x).
+    /// The curve of a model from its response, in the local frame (normal +z, tangent +x).
     #[must_use]
     pub fn new(response: impl Fn(Vec3, Vec3) -> Terms, anisotropic: bool) -> Self {
         let mut harmonics = [[Vec3::ZERO; NODES]; 3];
@@ -97,11 +96,11 @@ impl AlbedoCurve {
     }
 }
 
-/// The directional albedo `E(μ)` of a specular lobe alone, with F = 1, and its mean over the hemisphere
-/// `2 ∫ E μ dμ`: what compensation of multiple scattering starts from (C. Kulla, A. Conty 2017, *Revisiting
-/// Physically Based Shading at Imageworks*; E. Turquin 2019, *Practical Multiple Scattering Compensation
-/// for Microfacet Models*). Of anisotropic lobes the mean over the azimuth. At most 1, since lobes that reflect
-/// more than they receive have nothing to get back; by default 1.
+/// The directional albedo `E(μ)` of a specular lobe alone, with F = 1, and its mean over the hemisphere `2 ∫ E μ dμ`:
+/// the basis for compensation of multiple scattering (C. Kulla, A. Conty 2017, *Revisiting Physically Based Shading at
+/// Imageworks*; E. Turquin 2019, *Practical Multiple Scattering Compensation for Microfacet Models*). For anisotropic
+/// lobes, the mean over the azimuth. At most 1, since lobes that reflect more than they receive need no compensation;
+/// by default 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeAlbedo {
     /// The albedo at each node.
@@ -116,15 +115,15 @@ impl Default for LobeAlbedo {
 }
 
 impl LobeAlbedo {
-    /// The albedo of an isotropic lobe by its response `π f_r(l, v) cos θ_l` with F = 1, in the local
-    /// frame (normal +z, tangent +x).
+    /// The albedo of an isotropic lobe from its response `π f_r(l, v) cos θ_l` with F = 1, in the local frame (normal
+    /// +z, tangent +x).
     #[must_use]
     pub fn new(response: impl Fn(Vec3, Vec3) -> f32) -> Self {
         let response = |l, v| Terms { specular: Vec3::splat(response(l, v)), ..Terms::default() };
         Self::from_nodes(nodes(response, 0.0, &Plan::isotropic()).map(|e| e.x as f32))
     }
 
-    /// The same of a lobe that turning about the normal changes.
+    /// The same for an anisotropic lobe.
     #[must_use]
     pub fn anisotropic(response: impl Fn(Vec3, Vec3) -> f32) -> Self {
         let response = |l, v| Terms { specular: Vec3::splat(response(l, v)), ..Terms::default() };
@@ -133,7 +132,7 @@ impl LobeAlbedo {
 
     fn from_nodes(nodes: [f32; NODES]) -> Self {
         let mut lobe = Self { nodes, average: 0.0 };
-        // 2 ∫ E μ dμ = 6 ∫ E x⁵ dx with x³ = μ; midpoints, of which many cost little.
+        // 2 ∫ E μ dμ = 6 ∫ E x⁵ dx with x³ = μ, by the midpoint rule, whose points cost little.
         let n = 960;
         let x = |k: i32| (f64::from(k) + 0.5) / f64::from(n);
         let sum: f64 = (0..n).map(|k| f64::from(lobe.at(x(k).powi(3) as f32)) * 6.0 * x(k).powi(5)).sum();
@@ -141,7 +140,7 @@ impl LobeAlbedo {
         lobe
     }
 
-    /// `E(μ)`, μ the cosine between view and normal.
+    /// `E(μ)`, μ being the cosine between view and normal.
     #[must_use]
     pub fn at(&self, mu: f32) -> f32 {
         let (i, weights) = spline(mu);
@@ -161,8 +160,8 @@ mod tests {
     use super::*;
     use crate::optics::albedo::directional;
 
-    /// GGX with height-correlated Smith masking and F = 1 (B. Walter et al. 2007; E. Heitz 2014), by the
-    /// forms that do not cancel.
+    /// GGX with height-correlated Smith masking and F = 1 (B. Walter et al. 2007; E. Heitz 2014), in forms without
+    /// cancellation.
     fn ggx(alpha: f32, correlated: bool) -> impl Fn(Vec3, Vec3) -> f32 {
         move |l, v| {
             if l.z <= 0.0 || v.z <= 0.0 {
@@ -209,12 +208,12 @@ mod tests {
                     let of_curve = f64::from(curve.at(view(mu), &Frame::LOCAL).x);
                     let tolerance = if mu < 0.1 { grazing } else { tolerance };
                     for e in [of_curve, f64::from(albedos.at(mu))] {
-                        assert!((e - exact).abs() < tolerance, "α {alpha} μ {mu}: {e} is not {exact}");
+                        assert!((e - exact).abs() < tolerance, "α {alpha} μ {mu}: {e} instead of {exact}");
                     }
                 }
             }
         }
-        // 4/3 (1 − ln 2), of Lommel and Seeliger.
+        // 4/3 (1 − ln 2), for Lommel and Seeliger.
         let average = LobeAlbedo::new(ggx(1.0, true)).average();
         assert!((f64::from(average) - 4.0 / 3.0 * (1.0 - 2f64.ln())).abs() < 5e-4, "{average}");
         assert_eq!((LobeAlbedo::default().at(0.3), LobeAlbedo::default().average()), (1.0, 1.0));

@@ -1,24 +1,23 @@
 //! Directional albedo: the fraction of uniform light that a surface sends towards the viewer,
 //! `E(v) = ∫ f_r(l, v) cos θ_l dω_l = (1/π) ∫ response dω_l`, over the hemisphere above the surface.
 //!
-//! [`directional`] integrates one model for one view to [`ACCURACY`]; [`AlbedoCurve`] is the same as a
-//! function of the view, for pictures; [`LobeAlbedo`] is that of a specular lobe alone whose Fresnel
-//! factor is 1, which compensation of multiple scattering needs.
+//! [`directional`] integrates one model for one view to [`ACCURACY`]; [`AlbedoCurve`] gives the same as a function of
+//! the view, for pictures; [`LobeAlbedo`] covers a specular lobe alone, with a Fresnel factor of 1, for compensation of
+//! multiple scattering.
 //!
-//! Twin: `assets/shaders/optics/albedo.wgsl` reads the curves, it does not calculate them.
+//! Twin: `assets/shaders/optics/albedo.wgsl`, which reads the curves but does not calculate them.
 //!
 //! # Method
 //!
-//! The diffuse term is integrated over directions to the light in spherical coordinates, the specular
-//! term over half vectors in spherical coordinates, `dω_l = 4 (v·h) dω_h`: in these a lobe around the
-//! mirror direction is one around the normal, however oblique the view. The half vectors for which the
-//! light is above the surface reach, in the azimuth φ from the plane of incidence, up to
-//! `θ_max = (π/2 + atan2(sin θ_v cos φ, cos θ_v))/2`; so `θ_h = θ_max t⁴`, 0 ≤ t ≤ 1, meets the horizon
-//! exactly, and gives narrow lobes as much room as wide ones. Both are rectangles, which are halved
-//! where the estimated error is largest, by the rule of degree 7 with an embedded one of degree 5 of
-//! A. C. Genz, A. A. Malik (1980), *Remarks on Algorithm 006: An Adaptive Algorithm for Numerical
-//! Integration over an N-dimensional Rectangular Region*. Responses are asked for in batches, so that
-//! a GPU may answer; sums are in 64 bits.
+//! The diffuse term is integrated over directions to the light in spherical coordinates, the specular term over half
+//! vectors in spherical coordinates, `dω_l = 4 (v·h) dω_h`: these turn a lobe around the mirror direction into one
+//! around the normal, however oblique the view. The half vectors that put the light above the surface reach, at the
+//! azimuth φ from the plane of incidence, up to `θ_max = (π/2 + atan2(sin θ_v cos φ, cos θ_v))/2`; so `θ_h = θ_max t⁴`,
+//! 0 ≤ t ≤ 1, meets the horizon exactly, and gives narrow lobes as much room as wide ones. Both domains are rectangles,
+//! which are halved where the estimated error is largest, by the rule of degree 7 with an embedded one of degree 5 of
+//! A. C. Genz, A. A. Malik (1980), *Remarks on Algorithm 006: An Adaptive Algorithm for Numerical Integration over an
+//! N-dimensional Rectangular Region*. Responses are requested in batches, so that a GPU may answer; sums are in 64
+//! bits.
 
 use std::convert::Infallible;
 
@@ -33,9 +32,9 @@ mod curve;
 pub use cubature::ACCURACY;
 pub use curve::{AlbedoCurve, LobeAlbedo, NODES};
 
-/// The directional albedos for views in the local frame (normal +z, tangent +x), each to [`ACCURACY`],
-/// of the model behind `ask`: that is asked for the responses to pairs of directions, to the light and to the
-/// viewer, in a few large batches. Zero for a viewer below the surface.
+/// The directional albedos for views in the local frame (normal +z, tangent +x), each to [`ACCURACY`], of the model
+/// behind `ask`, which returns the responses to pairs of directions, to the light and to the viewer, in a few large
+/// batches. Zero for a viewer below the surface.
 ///
 /// # Errors
 /// Any error of `ask`.
@@ -69,8 +68,8 @@ mod tests {
     use crate::optics::albedo::cubature::ACCURACY;
     use std::f64::consts::PI;
 
-    /// GGX with height-correlated Smith masking and F = 1 (B. Walter et al. 2007; E. Heitz 2014), by the
-    /// forms that do not cancel.
+    /// GGX with height-correlated Smith masking and F = 1 (B. Walter et al. 2007; E. Heitz 2014), in forms without
+    /// cancellation.
     fn ggx(alpha: f32, correlated: bool) -> impl Fn(Vec3, Vec3) -> f32 {
         move |l, v| {
             if l.z <= 0.0 || v.z <= 0.0 {
@@ -110,7 +109,7 @@ mod tests {
             let m = f64::from(mu);
             let lambert = |l: Vec3, _: Vec3| Terms { diffuse: Vec3::splat(l.z), ..Terms::default() };
             assert!((albedo(lambert, mu) - 1.0).abs() < 3e-5);
-            // GGX with α = 1 is the law of Lommel and Seeliger.
+            // GGX with α = 1 is the Lommel–Seeliger law.
             let correlated = albedo(specular(ggx(1.0, true)), mu);
             assert!((correlated - ln(m)).abs() < 3e-5, "{mu}: {correlated} {}", ln(m));
             let separable = albedo(specular(ggx(1.0, false)), mu);
@@ -123,7 +122,7 @@ mod tests {
 
     #[test]
     fn narrow_lobes_keep_what_they_hold() {
-        // Powers of the cosine to the mirror direction, from the angle, whose cosine has no digits left.
+        // Powers of the cosine to the mirror direction, from the angle: the cosine itself has no digits left.
         let phong = |n: f64| {
             move |l: Vec3, v: Vec3| {
                 let mirrored = v.as_dvec3() * DVec3::new(-1.0, -1.0, 1.0);
@@ -176,7 +175,7 @@ mod tests {
                 Terms { specular: Vec3::splat((PI * d * h.z / jacobian) as f32), ..Terms::default() }
             };
             let e = albedo(response, 1.0);
-            // What lies beyond the horizon: slopes above 1.
+            // The part beyond the horizon: slopes above 1.
             let horizon = (-1.0 / (a.max(b) * a.max(b))).exp();
             assert!((e - 1.0).abs() < ACCURACY + horizon, "{a} {b}: {e}");
         }

@@ -1,6 +1,5 @@
-//! Triangles to pixels, by the rules of graphics hardware: corners snapped to 1/256 pixel, exact edge
-//! functions in whole numbers, the top-left rule, so that triangles that share an edge leave no gap
-//! between them and hit no sample twice.
+//! Triangles to pixels, by the rules of graphics hardware: corners snapped to 1/256 pixel, exact edge functions in
+//! integers, the top-left rule, so that triangles sharing an edge leave no gap and hit no sample twice.
 
 use glam::{Mat4, Vec3, Vec4};
 
@@ -17,15 +16,14 @@ pub(super) const SUBPIXEL: i64 = 256;
 /// Bounds the products of the edge functions well within 64 bits.
 const GUARD: f32 = 32_768.0;
 
-/// The size of the picture, as far as placing needs it.
+/// The size of the picture, as needed for projection.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Screen {
     pub(super) width: usize,
     pub(super) height: usize,
     /// Distance of the sample positions' grid lines, and the first line, in 1/256 pixel.
     grid: (i64, i64),
-    /// The planes that a visible point lies on the positive side of: near, and far beyond the four
-    /// sides of the picture.
+    /// The planes with all visible points on their positive side: near, and far beyond the four sides of the picture.
     planes: [Vec4; 5],
 }
 
@@ -51,7 +49,7 @@ impl Screen {
         self.tiles_across() * self.height.div_ceil(TILE)
     }
 
-    /// The place of a point in front of the eye, in 1/256 pixel, y down.
+    /// The position of a point in front of the eye, in 1/256 pixel, y down.
     fn snap(&self, clip: Vec4) -> [i64; 2] {
         let x = (0.5 + 0.5 * clip.x / clip.w) * self.width as f32;
         let y = (0.5 - 0.5 * clip.y / clip.w) * self.height as f32;
@@ -68,20 +66,20 @@ impl Screen {
     }
 }
 
-/// The five side planes of the view frustum, in room coordinates, normalised: a point at a negative distance
-/// is not seen.
+/// The five side planes of the view frustum, in room coordinates, normalised: a point at a negative distance is
+/// invisible.
 pub(super) fn frustum(clip_from_room: &Mat4) -> [Vec4; 5] {
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_room.row(row));
     [w - z, w + x, w - x, w + y, w - y].map(|plane| plane / plane.truncate().length())
 }
 
-/// A corner in clip space and on the screen. A corner that cannot be projected as it is (behind the
-/// near plane, or far outside) makes its triangles take the way through the clipper.
+/// A corner in clip space and on the screen. If it cannot be projected directly (behind the near plane, or far
+/// outside), its triangles go through the clipper.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub(super) clip: Vec4,
     screen: Option<[i64; 2]>,
-    /// One bit for each side of the picture that it lies beyond.
+    /// One bit for each side of the picture beyond which it lies.
     beyond: u8,
 }
 
@@ -113,7 +111,7 @@ impl Placed {
     }
 }
 
-/// Twice the signed area; negative when the corners run anticlockwise as seen, y pointing down.
+/// Twice the signed area; negative for anticlockwise corners as seen, y pointing down.
 fn doubled_area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -123,15 +121,15 @@ fn doubled_area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
 pub(super) struct Triangle {
     corners: [[i64; 2]; 3],
     area: i64,
-    /// `1 / w` at the corners: linear on the screen; the greater, the nearer.
+    /// `1 / w` at the corners: linear on the screen; greater is nearer.
     inverse_w: [f32; 3],
     varyings: [Varying; 3],
     face_normal: Vec3,
-    /// True if the model needs tangents: they cost time.
+    /// True if the model needs tangents, which cost time.
     tangents: bool,
 }
 
-/// Calls `emit` for the visible triangles that a triangle becomes: itself, its clipped parts, or nothing.
+/// Calls `emit` for the visible parts of a triangle: itself, its clipped parts, or nothing.
 pub(super) fn set_up(
     placed: [&Placed; 3],
     varyings: [Varying; 3],
@@ -179,7 +177,7 @@ fn clip(polygon: &[(Vec4, Varying)], plane: Vec4) -> Vec<(Vec4, Varying)> {
         let from = polygon[(i + polygon.len() - 1) % polygon.len()];
         let (d_from, d_to) = (plane.dot(from.0), plane.dot(to.0));
         if (d_from >= 0.0) != (d_to >= 0.0) {
-            // Always from the inner to the outer corner: both neighbours of an edge get the same point.
+            // Always from the inner to the outer corner, so that both polygons at an edge get the same point.
             let (inner, outer, d_inner, d_outer) =
                 if d_from >= 0.0 { (from, to, d_from, d_to) } else { (to, from, d_to, d_from) };
             let t = d_inner / (d_inner - d_outer);
@@ -202,8 +200,7 @@ fn mix(a: &Varying, b: &Varying, t: f32) -> Varying {
 }
 
 impl Triangle {
-    /// The pixels that it may touch: first and last column, first and last row; `None` if it lies
-    /// outside the picture.
+    /// The pixels that it may touch: first and last column, first and last row; `None` if it lies outside the picture.
     pub(super) fn bounds(&self, screen: &Screen) -> Option<[usize; 4]> {
         let range = |axis: usize, size: usize| {
             let values = self.corners.map(|c| c[axis]);
@@ -222,12 +219,12 @@ impl Triangle {
         let mut scaled: [f32; 3] = std::array::from_fn(|i| weights[i] * self.inverse_w[i]);
         let mut sum: f32 = scaled.iter().sum();
         if sum < 1e-3 * self.inverse_w.iter().copied().fold(f32::INFINITY, f32::min) {
-            // The pixel's centre lies outside the triangle and beyond its horizon: stay within.
+            // The pixel's centre is outside the triangle and beyond its horizon: stay within.
             weights = weights.map(|w| w.clamp(0.0, 1.0));
             scaled = std::array::from_fn(|i| weights[i] * self.inverse_w[i]);
             sum = scaled.iter().sum();
         }
-        // From the first corner on: what is the same at all three stays exactly that.
+        // Relative to the first corner, so that a value equal at all three stays exact.
         let (b, c) = (scaled[1] / sum, scaled[2] / sum);
         let [p, q, r] = &self.varyings;
         let between = |p: Vec3, q: Vec3, r: Vec3| p + (q - p) * b + (r - p) * c;
@@ -258,7 +255,7 @@ mod tests {
         assert_eq!(kept.len(), 4);
         for (clip, varying) in &kept {
             assert!(near.dot(*clip) >= -1e-6);
-            // Red grows with the way towards the corner behind, and so with 1 − w.
+            // Red grows with the distance towards the corner behind, and so with 1 − w.
             assert!((varying.colour.x - 0.5 * (1.0 - clip.w)).abs() < 1e-6);
             assert_eq!(varying.tangent, varying.colour);
         }

@@ -1,4 +1,4 @@
-//! The samples of one tile of the picture, and how triangles are drawn into them.
+//! The samples of one tile of the picture, and drawing triangles into them.
 
 use glam::{Vec3, Vec4};
 
@@ -25,7 +25,7 @@ const fn positions<const S: usize>() -> [[i64; 2]; S] {
 
 /// The samples of one tile of the picture.
 pub(in crate::reference) struct Tile<const S: usize> {
-    /// Nearest `1 / w` so far; 0 where nothing is.
+    /// Nearest `1 / w` so far; 0 for background.
     nearness: Vec<[f32; S]>,
     colour: Vec<[Vec3; S]>,
 }
@@ -52,9 +52,8 @@ impl<const S: usize> Tile<S> {
         if left > right || top > bottom {
             return;
         }
-        // The edge opposite to corner i; its function is twice the area that the point spans with it,
-        // and so the weight of that corner. A point on an edge belongs to the triangle if it is a left
-        // or a top edge.
+        // The edge opposite to corner i; its function is twice the area spanned by the edge and the point, and so the
+        // weight of that corner. A point on an edge belongs to the triangle if it is a left or a top edge.
         let edges: [([i64; 2], [i64; 2], i64); 3] = std::array::from_fn(|i| {
             let (a, b) = (triangle.corners[(i + 1) % 3], triangle.corners[(i + 2) % 3]);
             let d = [b[0] - a[0], b[1] - a[1]];
@@ -65,7 +64,7 @@ impl<const S: usize> Tile<S> {
             let d = edges[e].1;
             samples.map(|s| d[0] * (s[1] - 128) - d[1] * (s[0] - 128))
         });
-        // What the edge functions reach at most at any sample of a pixel, beyond its centre.
+        // The largest values of the edge functions at any sample of a pixel, relative to its centre.
         let most: [i64; 3] = std::array::from_fn(|e| offsets[e].iter().copied().max().unwrap_or(0));
         let step: [i64; 3] = std::array::from_fn(|e| -edges[e].1[1] * SUBPIXEL);
         let per_area = 1.0 / triangle.area as f64;
@@ -130,7 +129,7 @@ impl<const S: usize> Tile<S> {
         }
     }
 
-    /// The pixels: the mean of their samples, and the fraction that objects cover.
+    /// The pixels: the mean of their samples, and the fraction covered by objects.
     pub(in crate::reference) fn resolve(&self) -> impl Iterator<Item = Vec4> {
         let share = 1.0 / S as f32;
         self.nearness.iter().zip(&self.colour).map(move |(nearness, colour)| {
@@ -154,7 +153,7 @@ mod tests {
         Screen::new(64, 48, 1)
     }
 
-    /// A triangle at given places on the screen (pixels, y down, clockwise as seen), at distance 1.
+    /// A triangle at given screen positions (pixels, y down, clockwise as seen), at distance 1.
     fn on_screen(corners: [[f64; 2]; 3]) -> Triangle {
         let corners = corners.map(|c| c.map(|v| (v * 256.0).round() as i64));
         let area = doubled_area(corners[0], corners[1], corners[2]);
@@ -217,7 +216,7 @@ mod tests {
                     .collect();
                 let counts = hits::<S>(&fan, &screen);
                 assert!(counts.iter().all(|&n| n == 1), "{centre:?}");
-                // The wrong twin: one corner of one triangle a hair aside leaves gaps or hits twice.
+                // The wrong twin: moving one corner of one triangle slightly leaves gaps or hits twice.
                 let mut wrong = fan;
                 wrong[0] = on_screen([[centre[0] + 2.0, centre[1] + 1.0], ring[0], ring[1]]);
                 assert!(hits::<S>(&wrong, &screen).iter().any(|&n| n != 1));

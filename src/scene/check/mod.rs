@@ -1,8 +1,8 @@
-//! Every constraint of a scene, once (R5, R6): the reader, the window and the writer all ask here.
+//! Every constraint of a scene, once (R5, R6): for the reader, the window and the writer.
 //!
-//! A rule for one field is a function that returns `Err` with the rule as a clause, so that it can end
-//! a sentence: "k_d is 0.2, but **the diffuse coefficient must be between 0.5 and 1**". [`scene`]
-//! applies them all to a whole scene; [`light`], [`object`] and their like to one part of it.
+//! A rule for one field is a function that returns `Err` with the rule as a clause, so that it can end a sentence: "k_d
+//! is 0.2, but **the diffuse coefficient must be between 0.5 and 1**". [`scene`] applies them all to a whole scene;
+//! [`light`], [`object`] and others to one part of it.
 
 use std::{collections::HashMap, fmt};
 
@@ -17,7 +17,7 @@ use crate::{light::LightEntry, parameter::Value, registry::Registry, text::quote
 mod rule;
 pub use rule::*;
 
-/// A vector as scene files write it.
+/// A vector as in scene files.
 struct Written(Vec3);
 
 impl fmt::Display for Written {
@@ -26,7 +26,7 @@ impl fmt::Display for Written {
     }
 }
 
-/// Everything that is wrong with a scene; empty if it is valid. The order is that of the scene.
+/// Everything that is wrong with a scene; empty if it is valid. In the order of the scene.
 #[must_use]
 pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     let count = |n: usize, what: &str| match n {
@@ -46,7 +46,7 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     })
 }
 
-/// Everything that is wrong with one light, also where it meets other parts; nothing if there is no such light.
+/// Everything that is wrong with one light, including conflicts with other parts; empty if there is no such light.
 #[must_use]
 pub fn light(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| {
@@ -57,13 +57,13 @@ pub fn light(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
     })
 }
 
-/// Everything that is wrong with one object, also where it meets other parts; nothing if there is no such object.
+/// Everything that is wrong with one object, including conflicts with other parts; empty if there is no such object.
 #[must_use]
 pub fn object(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.object(index))
 }
 
-/// Everything that is wrong with the observer, also where it meets other parts.
+/// Everything that is wrong with the observer, including conflicts with other parts.
 #[must_use]
 pub fn observer(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     let p = scene.observer.position;
@@ -74,7 +74,7 @@ pub fn observer(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     })
 }
 
-/// Everything that is wrong with the room, and everything that stands outside it.
+/// Everything that is wrong with the room, including parts outside it.
 #[must_use]
 pub fn room(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| {
@@ -89,8 +89,8 @@ pub fn room(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     })
 }
 
-/// Everything that is wrong with the reflection model and the shading model of a scene. The materials of objects that
-/// have no reflection model themselves are judged by the scene's: [`object`] tells.
+/// Everything that is wrong with the reflection model and the shading model of a scene. The scene's reflection model
+/// also judges the materials of objects without an override: see [`object`].
 #[must_use]
 pub fn models(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.models())
@@ -102,8 +102,8 @@ pub fn display(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.display())
 }
 
-/// The room to judge positions by: an extent that is itself wrong is as large as may be, so that one
-/// mistake is not reported once more for everything in the room.
+/// The room for checking positions: an invalid extent counts as the largest legal one, so that one error is not
+/// repeated for everything in the room.
 pub(super) fn plausible(mut room: SceneSize) -> SceneSize {
     for extent in [&mut room.height, &mut room.width, &mut room.depth] {
         if dimension("", *extent).is_err() {
@@ -113,15 +113,15 @@ pub(super) fn plausible(mut room: SceneSize) -> SceneSize {
     room
 }
 
-/// The identity of a place: two parts are in the same place if their coordinates are the same numbers in 32 bits, as
-/// scene files hold them. What is not finite is nowhere.
+/// The identity of a place: two parts are in the same place if their coordinates are the same numbers in 32 bits, as in
+/// scene files. Non-finite positions have no place.
 fn place(p: Vec3) -> Option<[u32; 3]> {
     // Adding 0 makes −0 and 0 the same bits.
     p.is_finite().then(|| (p + Vec3::ZERO).to_array().map(f32::to_bits))
 }
 
-/// True if lights, objects and the observer exclude each other here (CA AR4, AR10, AR15); two lights or two objects
-/// may share a place.
+/// True if lights, objects and the observer exclude each other here (CA AR4, AR10, AR15); two lights or two objects may
+/// share a place.
 #[must_use]
 pub fn same_place(a: Vec3, b: Vec3) -> bool {
     place(a).is_some_and(|a| Some(a) == place(b))
@@ -144,12 +144,12 @@ fn observer_path() -> Path {
     Path::root().key("observer")
 }
 
-/// The problems found so far, and what the parts of a scene are judged by.
+/// The problems found so far, and the data for judging the parts of a scene.
 struct Check<'a> {
     scene: &'a Scene,
     registry: &'a Registry,
     room: SceneSize,
-    /// The first light in each place: with many objects, places are looked up and not compared pairwise.
+    /// The first light in each place: with many objects, lookups replace pairwise comparison.
     lights: HashMap<[u32; 3], usize>,
     problems: Vec<Problem>,
 }
@@ -169,7 +169,7 @@ fn found(scene: &Scene, registry: &Registry, checks: impl FnOnce(&mut Check)) ->
 }
 
 impl Check<'_> {
-    /// Adds the broken rule; the path is made only then, since valid scenes are the rule and large.
+    /// Adds the broken rule; the path is built only then, since valid scenes are the rule and large.
     fn rule<T: fmt::Display>(&mut self, rule: Rule, at: impl FnOnce() -> (Path, T)) {
         if let Err(rule) = rule {
             let (path, found) = at();
@@ -186,7 +186,7 @@ impl Check<'_> {
         self.rule(position(self.room, p), || (path().key("position"), Written(p)));
     }
 
-    /// A part in a place where another is that it excludes.
+    /// A part in the same place as another that excludes it.
     fn meets(&mut self, p: Vec3, there: Option<String>, one: &str, other: &str, path: impl Fn() -> Path) {
         if let Some(there) = there {
             let rule = format!("{there} is there; {one} must not be where {other} is");
@@ -256,7 +256,7 @@ impl Check<'_> {
             match entry.map(|e| e.declaration.parameters.iter().find(|p| p.name == name.as_ref())) {
                 Some(Some(declared)) => self.rule(parameter(declared, value), || (path(), written(value))),
                 Some(None) => self.about(path(), presence(&light.light_type, name, false)),
-                // The type is unknown, and that is reported already.
+                // The type is unknown, which is already reported.
                 None => {}
             }
         }
@@ -311,7 +311,7 @@ impl Check<'_> {
     }
 }
 
-/// That a light of a type needs, or has not, a field.
+/// Reports a missing field that a light's type needs, or a field that the type does not have.
 fn presence(type_id: &str, field: &str, needed: bool) -> String {
     let article = if type_id.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     if needed {
@@ -321,7 +321,7 @@ fn presence(type_id: &str, field: &str, needed: bool) -> String {
     }
 }
 
-/// A parameter as scene files write it.
+/// A parameter as in scene files.
 fn written(value: &Value) -> String {
     match value {
         Value::Number(v) => v.to_string(),
@@ -415,7 +415,7 @@ mod tests {
         parts.extend(observer(&s, &registry));
         parts.extend((0..s.objects.len()).flat_map(|i| object(&s, i, &registry)));
         parts.extend(display(&s, &registry));
-        // Where two parts meet, each tells of it; the whole scene tells of it once.
+        // Each part's check reports a conflict of two parts; the check of the whole scene reports it once.
         let both: Vec<_> = parts.iter().filter(|p| !whole.contains(p)).map(ToString::to_string).collect();
         assert_eq!(
             both,

@@ -21,17 +21,17 @@ use crate::{
 pub const MIN_FIELD_OF_VIEW: f32 = 1.0;
 /// The widest legal field of view, degrees.
 pub const MAX_FIELD_OF_VIEW: f32 = 170.0;
-/// The legal exposures reach from minus this to plus this, EV.
+/// The legal exposures range from minus this to plus this, EV.
 pub const MAX_EXPOSURE: f32 = 16.0;
 
 /// The largest legal size of an object, metres: a million kilometres. Far beyond, the squares of distances and of their
-/// derivatives are no numbers any more on GPUs, and there is no picture that both renderers could agree on.
+/// derivatives overflow on GPUs, and the two renderers could not agree on a picture.
 pub const MAX_SIZE: f32 = 1e9;
 
 /// `Ok`, or the rule that is broken.
 pub type Rule = Result<(), String>;
 
-/// `Ok` where a rule is kept.
+/// `Ok` if a rule is kept.
 fn must(kept: bool, rule: impl FnOnce() -> String) -> Rule {
     if kept { Ok(()) } else { Err(rule()) }
 }
@@ -112,7 +112,7 @@ pub fn rotation(degrees: Vec3) -> Rule {
     must(degrees.is_finite(), || "a rotation must be three finite numbers of degrees".to_owned())
 }
 
-/// How finely an object of a type is cut.
+/// The tessellation of an object of a type.
 pub fn tessellation(shape: &ShapeEntry, count: u32) -> Rule {
     let range = &shape.declaration.tessellation;
     must(range.contains(&count), || tessellation_rule(shape))
@@ -164,8 +164,8 @@ fn unit(parameter: &Parameter) -> String {
     }
 }
 
-/// A parameter in the material of an object: if the object's own model declares it, in its range there,
-/// and otherwise in the range of some model that does.
+/// A parameter in the material of an object: if the object's reflection model declares it, its range there applies, and
+/// otherwise the range of some model that declares it.
 pub fn material_parameter(registry: &Registry, model: &str, name: &str, value: &Value) -> Rule {
     if let Some(own) = registry.model(model).and_then(|m| m.parameter(name)) {
         return parameter(own, value);
@@ -180,7 +180,7 @@ pub fn material_parameter(registry: &Registry, model: &str, name: &str, value: &
     Err(rule.unwrap_or_else(|| unknown_material_parameter(registry, name)))
 }
 
-/// That no model declares a material parameter, and which one it might be.
+/// The rule for a material parameter that no model declares, with a suggestion.
 fn unknown_material_parameter(registry: &Registry, name: &str) -> String {
     let declared: Vec<_> = registry.material_parameters().collect();
     let also = declared.iter().flat_map(|p| [(p.label, p.name), (p.symbol, p.name)]);
@@ -192,17 +192,17 @@ fn unknown_material_parameter(registry: &Registry, name: &str) -> String {
 pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
     let known = registry.models().iter().map(|m| (m.declaration.id, m.declaration.name));
     one_of("the reflection model", id, known).map_err(|rule| match registry.broken_model(id) {
-        Some(why) => format!("the file of that custom model has a mistake: {why}"),
+        Some(why) => format!("the file of that custom model has an error: {why}"),
         None => rule + &custom_model_missing(registry, id),
     })
 }
 
-/// That there is no file for an id, where custom models are kept: it may have been left behind.
+/// The addition for an id without a file in the folder of custom models, from which it may be missing.
 fn custom_model_missing(registry: &Registry, id: &str) -> String {
     match registry.custom_folder() {
         Some(folder) if folder.is_dir() && custom::is_id(id) => {
             format!(
-                "; among the custom models there is no {}",
+                "; the folder of custom models has no {}",
                 folder.join(id).with_extension(custom::EXTENSION).display()
             )
         }
@@ -236,12 +236,12 @@ pub fn encoding(id: &str) -> Rule {
     one_of("the encoding", id, Encoding::ALL.into_iter().map(|e| (e.id(), e.id())))
 }
 
-/// How many lights a scene has.
+/// The number of lights of a scene.
 pub fn light_count(count: usize) -> Rule {
     must((1..=MAX_LIGHTS).contains(&count), || format!("a scene must have between 1 and {MAX_LIGHTS} lights"))
 }
 
-/// How many objects a scene has.
+/// The number of objects of a scene.
 pub fn object_count(count: usize) -> Rule {
     must((1..=MAX_OBJECTS).contains(&count), || {
         format!("a scene must have between 1 and {MAX_OBJECTS} objects")

@@ -2,7 +2,7 @@
 
 use crate::registry::Registry;
 
-/// The keys of a scene. The order is that of messages.
+/// The keys of a scene, in the order of messages.
 pub(in crate::scene) const SCENE_KEYS: &[&str] = &[
     "scene_size",
     "reflection_model",
@@ -29,7 +29,7 @@ pub(in crate::scene) const LIGHT_KEYS: &[&str] = &[
     "intensity",
     "luminous_flux",
 ];
-/// Keys of a light of which it has one or the other; the first counts where neither is given.
+/// Alternative keys of a light; the first counts if neither is given.
 pub(in crate::scene) const LIGHT_ALTERNATIVES: [[&str; 2]; 2] =
     [["intensity", "luminous_flux"], ["colour", "colour_temperature"]];
 /// The keys of `observer`.
@@ -50,7 +50,7 @@ pub(in crate::scene) const OBJECT_KEYS: &[&str] = &[
 /// The keys of `display`.
 pub(in crate::scene) const DISPLAY_KEYS: &[&str] = &["tone_mapping", "exposure", "encoding"];
 
-/// Other words for keys, for suggestions only: what other programs call them.
+/// Other words for keys, for suggestions only: the names in other programs.
 pub(super) const OTHER_WORDS: &[(&str, &str)] = &[
     ("camera", "observer"),
     ("eye", "observer"),
@@ -86,7 +86,7 @@ pub(super) const OTHER_WORDS: &[(&str, &str)] = &[
     ("shininess", "alpha"),
 ];
 
-/// The keys that some type of light has.
+/// The keys of all light types.
 pub(super) fn light_keys(registry: &Registry) -> Vec<&'static str> {
     let declared = registry.lights().iter().flat_map(|l| l.declaration.parameters).map(|p| p.name);
     let mut keys = LIGHT_KEYS.to_vec();

@@ -1,5 +1,5 @@
-//! From JSON to a [`Scene`]: types, unknown, missing and repeated keys are found here; ranges and
-//! relations are [`check`]'s. Every problem gets the place of the value that it is about.
+//! From JSON to a [`Scene`]: types, unknown, missing and repeated keys are found here; ranges and relations are
+//! [`check`]'s. Every problem gets the place of its value.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -22,21 +22,21 @@ pub(super) mod keys;
 mod parts;
 mod values;
 
-/// So many unknown keys get a suggestion; more would take long in a hostile file.
+/// The number of unknown keys with a suggestion; more would take long in a hostile file.
 const MAX_SUGGESTIONS: usize = 200;
 
-/// So many problems are listed. A scene within the limits of lights and objects that is wrong in every
-/// field has fewer; a hostile file could have millions.
+/// The most problems listed. A scene within the limits of lights and objects with errors in every field has fewer; a
+/// hostile file could have millions.
 const MAX_PROBLEMS: usize = 200_000;
 
-/// Reads a scene from JSON whose syntax is checked already.
+/// Reads a scene from JSON with checked syntax.
 pub(super) fn scene(
     text: &str,
     name: &str,
     registry: &Registry,
     defaults: Defaults,
 ) -> Result<(Scene, Vec<Missing>), LoadError> {
-    // The two parsers agree but for half surrogate pairs, which only this one refuses.
+    // The two parsers agree except for half surrogate pairs, which only this one refuses.
     let root = json::parse(text, &STRICT)
         .map_err(|(at, what)| LoadError::Syntax {
             name: name.to_owned(),
@@ -53,9 +53,9 @@ pub(super) fn scene(
         return Ok((scene, missing));
     }
     if defaults == Defaults::Refuse {
-        // A missing size may be told already.
-        let told = |m: &&Missing| problems.iter().any(|(_, p)| p.path == m.path);
-        let more: Vec<_> = missing.iter().filter(|m| !told(m)).map(|m| (0, m.problem())).collect();
+        // A missing size may be reported already.
+        let reported = |m: &&Missing| problems.iter().any(|(_, p)| p.path == m.path);
+        let more: Vec<_> = missing.iter().filter(|m| !reported(m)).map(|m| (0, m.problem())).collect();
         problems.extend(more);
     }
     problems.sort_by_key(|(at, _)| *at);
@@ -73,23 +73,23 @@ pub(super) fn scene(
     Err(LoadError::Invalid { name: name.to_owned(), problems })
 }
 
-/// The reflection models that a scene names, from JSON whose syntax is checked already.
+/// The reflection models that a scene names, from JSON with checked syntax.
 pub(super) fn models_named(text: &str, registry: &Registry) -> BTreeSet<String> {
     let root = json::parse(text, &STRICT).ok().flatten();
     let scene = root.map(|root| Reader::new(text, registry).scene(Cursor::root(&root)));
     scene.map_or_else(BTreeSet::new, |scene| scene.models().into_iter().map(str::to_owned).collect())
 }
 
-/// What is being read.
+/// The state of reading.
 struct Reader<'a> {
     text: &'a str,
     registry: &'a Registry,
-    /// Problems, each with the byte that it is about.
+    /// Problems, each with its byte.
     problems: Vec<(usize, Problem)>,
-    /// Paths whose values could not be read: what stands in for them is not checked.
+    /// Paths of unreadable values: their stand-ins are not checked.
     reported: HashSet<Path>,
     missing: Vec<Missing>,
-    /// How many problems there are beyond [`MAX_PROBLEMS`].
+    /// The number of problems beyond [`MAX_PROBLEMS`].
     unlisted: usize,
     suggestions: usize,
     light_keys: Vec<&'static str>,
@@ -121,12 +121,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Notes that a part is missing which has a default.
+    /// Notes a missing part with a default.
     fn missing(&mut self, path: Path, at: usize, default: String) {
         self.missing.push(Missing { path, default, place: Some(self.lines.place(at)) });
     }
 
-    /// Applies [`check`] and finds the places of what it finds.
+    /// Applies [`check`] and locates its findings.
     fn check(&mut self, scene: &Scene, root: &Ast) {
         let mut problems = check::scene(scene, self.registry);
         if !self.reported.is_empty() {
@@ -147,7 +147,7 @@ impl json::Reader for Reader<'_> {
         self.text
     }
 
-    /// Adds a problem and remembers that its path is not to be checked.
+    /// Adds a problem and excludes its path from checks.
     fn report(&mut self, at: usize, path: Path, found: Option<String>, rule: &str) {
         if self.problems.len() < MAX_PROBLEMS {
             self.reported.insert(path.clone());
@@ -159,17 +159,17 @@ impl json::Reader for Reader<'_> {
         let at = self.lines.place(first.start());
         let written = again.name.as_str();
         let spelt = if first.name.as_str() == written { String::new() } else { format!(" as {written}") };
-        format!("{spelt}; it is given first at {at}")
+        format!("{spelt}; first given at {at}")
     }
 
-    /// The nearest known key, or where else the key belongs.
+    /// The nearest known key, or the object to which the key belongs.
     fn hint(&mut self, written: &str, known: &[&'static str], what: &str) -> String {
         self.suggestions += 1;
         if self.suggestions > MAX_SUGGESTIONS {
             return String::new();
         }
         if what == "an object" && json::canonical(written, &self.material_keys).is_some() {
-            return "; it is a parameter of the material: write it in \"material\"".to_owned();
+            return "; it is a material parameter: write it in \"material\"".to_owned();
         }
         let others = keys::OTHER_WORDS.iter().copied().filter(|(_, key)| known.contains(key));
         let parameters = self.registry.material_parameters();

@@ -1,4 +1,4 @@
-//! The parts of a scene, each from its object. What cannot be read is as by default.
+//! The parts of a scene, each from its object. Unreadable values have their defaults.
 
 use glam::Vec3;
 
@@ -62,8 +62,7 @@ impl Reader<'_> {
             self.missing(scene.path("scene_size"), scene.of.start(), format!("{d} × {d} × {d} m"));
             return size;
         };
-        // While its own size is unknown, the room is as large as may be, so that positions do not seem
-        // to be outside.
+        // While its size is unknown, the room counts as large as possible, so that positions do not seem to be outside.
         let unknown = SceneSize { height: MAX_DIMENSION, width: MAX_DIMENSION, depth: MAX_DIMENSION };
         let Some(fields) = self.fields(value, SIZE_KEYS, "scene_size") else { return unknown };
         let extents = [("height", &mut size.height), ("width", &mut size.width), ("depth", &mut size.depth)];
@@ -102,10 +101,10 @@ impl Reader<'_> {
         light.colour_temperature =
             self.number_field(&fields, "colour_temperature", check::colour_temperature);
         for [one, other] in LIGHT_ALTERNATIVES {
-            // That the type has no flux is said by the check, and says enough.
+            // The check reports that the type has no flux, which is enough.
             let possible = other != "luminous_flux" || entry.is_none_or(LightEntry::has_flux);
             if let (Some(_), Some(value), true) = (fields.get(one), fields.get(other), possible) {
-                let predicate = format!("is given, but so is {one}; a light has one of the two");
+                let predicate = format!("conflicts with {one}; a light has one or the other");
                 self.report(value.start(), value.path(), None, &predicate);
             }
         }

@@ -1,4 +1,4 @@
-//! The values of a scene, by their types.
+//! The values of a scene, by type.
 
 use std::borrow::Cow;
 
@@ -11,11 +11,11 @@ use crate::{
     text::json::{Ast, Cursor, Fields, Reader as _},
 };
 
-/// What every colour must be.
+/// The rule of every colour.
 pub(super) const COLOUR_RULE: &str = "a colour must be three whole numbers from 0 to 255: [red, green, blue]";
 
 impl Reader<'_> {
-    /// A parameter as it is declared, if the value has its type. Its range is checked later.
+    /// A declared parameter, if the value has its type. Its range is checked later.
     pub(super) fn parameter(&mut self, value: Cursor, parameter: &'static Parameter) -> Option<Value> {
         let rule = check::parameter_rule(parameter);
         match parameter.kind {
@@ -31,8 +31,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The entries of a list of lights or objects. Of a list that is too long, only the length is
-    /// reported: it may be very long.
+    /// The entries of a list of lights or objects. Of a list that is too long, only the length is reported: it may be
+    /// very long.
     pub(super) fn list<T>(
         &mut self,
         scene: &Fields,
@@ -80,7 +80,7 @@ impl Reader<'_> {
         value.text().map(str::to_owned)
     }
 
-    /// The rule for an id, for values that are no text.
+    /// The rule for an id, for values other than text.
     pub(super) fn id_rule(&self, what: &str) -> String {
         rule_of(match what {
             "reflection_model" => check::reflection_model(self.registry, ""),
@@ -90,7 +90,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A number, if it is given; its rule is checked later.
+    /// A number, if given; its rule is checked later.
     pub(super) fn number_field(
         &mut self,
         fields: &Fields,
@@ -123,7 +123,7 @@ impl Reader<'_> {
         integer
     }
 
-    /// Three numbers; not-a-number where they could not be read.
+    /// Three numbers; NaN if they could not be read.
     pub(super) fn vector(&mut self, value: Cursor, what: &str) -> Vec3 {
         let rule = || format!("{what} must be three numbers: [x, y, z]");
         let Some(list) = value.list().filter(|list| list.len() == 3) else {
@@ -187,12 +187,12 @@ impl Reader<'_> {
     }
 }
 
-/// The rule that a check broke.
+/// The rule broken in a check.
 pub(super) fn rule_of(rule: check::Rule) -> String {
     rule.err().unwrap_or_default()
 }
 
-/// What is needed instead of a value of another type.
+/// The type needed instead of another.
 fn needs(what: &str, value: Cursor, rule: &str) -> String {
     match value.text() {
         Some(text) if text.trim().parse::<f64>().is_ok() => {

@@ -1,4 +1,4 @@
-//! Writing code: registers, constants, folding, and what has been calculated before.
+//! Writing code: registers, constants, folding, and reuse of earlier results.
 
 use std::collections::HashMap;
 
@@ -7,14 +7,14 @@ use super::{
     instruction::{Instruction, Operation},
 };
 
-/// The number of registers, of variables, intermediate values and constants.
+/// The number of registers, for variables, intermediate values and constants.
 pub(super) const REGISTERS: usize = 1 << 16;
-/// The most instructions, calls and expressions of a program with all calls written out.
+/// The most instructions, calls and expressions of a program with all calls inlined.
 const WORK: usize = 1 << 20;
 /// The deepest nesting of blocks and calls.
 const DEPTH: usize = 200;
 
-/// One word that is known now, or when the program runs.
+/// One word, known now or at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Operand {
     Constant(u32),
@@ -24,7 +24,7 @@ pub(super) enum Operand {
 type Result<T> = std::result::Result<T, Unsupported>;
 
 fn too_large() -> Unsupported {
-    Unsupported { what: "it is too large when every call is written out".to_owned() }
+    Unsupported { what: "it is too large with all calls inlined".to_owned() }
 }
 
 #[derive(Default)]
@@ -34,26 +34,26 @@ pub(super) struct Builder {
     pub(super) constants: Vec<u32>,
     places: HashMap<u32, u16>,
     blocks: HashMap<Vec<u32>, u16>,
-    /// For each register below the constants whether it is written more than once.
+    /// For each register below the constants, true if it is written more than once.
     mutable: Vec<bool>,
-    /// The registers of values of operations on values that do not change.
+    /// The registers of operations on values that do not change.
     known: HashMap<(Operation, [Operand; 3]), u16>,
-    /// The keys of `known`, in the order in which they were added.
+    /// The keys of `known`, in the order of insertion.
     log: Vec<(Operation, [Operand; 3])>,
-    /// Registers that are read by number.
+    /// Registers read by number.
     pub(super) wanted: Vec<u16>,
     work: usize,
     depth: usize,
 }
 
 impl Builder {
-    /// Counts a piece of work.
+    /// Counts a unit of work.
     pub(super) fn work(&mut self) -> Result<()> {
         self.work += 1;
         if self.work > WORK { Err(too_large()) } else { Ok(()) }
     }
 
-    /// Goes one block or call deeper.
+    /// Enters a block or call.
     pub(super) fn enter(&mut self) -> Result<()> {
         self.depth += 1;
         if self.depth > DEPTH {
@@ -62,7 +62,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Comes back from [`enter`](Self::enter).
+    /// Leaves what [`enter`](Self::enter) entered.
     pub(super) fn leave(&mut self) {
         self.depth -= 1;
     }
@@ -76,12 +76,12 @@ impl Builder {
         u16::try_from(base).map_err(|_| too_large())
     }
 
-    /// New registers that may be written again and again.
+    /// New registers that may be rewritten.
     pub(super) fn variable(&mut self, words: usize) -> Result<u16> {
         self.allocate(words, true)
     }
 
-    /// New registers that are filled before the program starts.
+    /// New registers, filled before the program starts.
     pub(super) fn input(&mut self, words: usize) -> Result<u16> {
         self.allocate(words, false)
     }
@@ -114,7 +114,7 @@ impl Builder {
         }
     }
 
-    /// True if a register may be written again.
+    /// True if a register may be rewritten.
     pub(super) fn is_mutable(&self, register: u16) -> bool {
         self.mutable.get(usize::from(register)).copied().unwrap_or(false)
     }
@@ -126,14 +126,14 @@ impl Builder {
         }
     }
 
-    /// Writes an instruction as it is.
+    /// Writes an instruction unchanged.
     pub(super) fn push(&mut self, instruction: Instruction) -> Result<()> {
         self.work()?;
         self.code.push(instruction);
         Ok(())
     }
 
-    /// The value of a pure operation: known, known to stand somewhere, or calculated by a new instruction.
+    /// The value of a pure operation: constant, already in a register, or calculated by a new instruction.
     pub(super) fn emit(&mut self, operation: Operation, operands: &[Operand]) -> Result<Operand> {
         let mut words = [Operand::Constant(0); 3];
         for (word, operand) in words.iter_mut().zip(operands) {
@@ -159,7 +159,7 @@ impl Builder {
         Ok(Operand::Register(d))
     }
 
-    /// The product of two vectors of three words, in one instruction if each stands in a row.
+    /// The product of two vectors of three words, in one instruction if each is in consecutive registers.
     pub(super) fn dot(&mut self, a: &[Operand], b: &[Operand]) -> Result<Option<Operand>> {
         if a.len() != 3 || b.len() != 3 || a.iter().chain(b).all(|w| matches!(w, Operand::Constant(_))) {
             return Ok(None);
@@ -180,7 +180,7 @@ impl Builder {
         Ok(Some(Operand::Register(d)))
     }
 
-    /// Puts a value into a variable.
+    /// Assigns a value to a variable.
     pub(super) fn store(&mut self, register: u16, value: Operand) -> Result<()> {
         let a = self.register(value)?;
         if a == register {
@@ -189,7 +189,7 @@ impl Builder {
         self.push(Instruction::new(Operation::Copy, register, [a, 0, 0]))
     }
 
-    /// The word at a place that is known when the program runs.
+    /// The word at a place known at run time.
     pub(super) fn load_at(&mut self, base: usize, offset: u16) -> Result<Operand> {
         let d = self.allocate(1, false)?;
         let b = base as u16;
@@ -197,13 +197,13 @@ impl Builder {
         Ok(Operand::Register(d))
     }
 
-    /// Puts a value at a place that is known when the program runs.
+    /// Writes a value to a place known at run time.
     pub(super) fn store_at(&mut self, base: usize, offset: u16, value: Operand) -> Result<()> {
         let a = self.register(value)?;
         self.push(Instruction::new(Operation::StoreAt, base as u16, [a, offset, 0]))
     }
 
-    /// The first of the registers in a row that hold these values already, or may since they are constants.
+    /// The first of consecutive registers that hold these values already, or may since they are constants.
     fn row_of(&mut self, values: &[Operand]) -> Result<Option<u16>> {
         let constants: Option<Vec<u32>> = values
             .iter()
@@ -224,7 +224,7 @@ impl Builder {
         Ok(None)
     }
 
-    /// The first of the registers in a row that hold these values, for instructions that find them there by number.
+    /// The first of consecutive registers that hold these values, for instructions that address them by number.
     pub(super) fn in_a_row(&mut self, values: &[Operand]) -> Result<u16> {
         if let Some(base) = self.row_of(values)? {
             self.wanted.extend((0..values.len()).map(|i| base + i as u16));
@@ -249,12 +249,12 @@ impl Builder {
         Ok(base)
     }
 
-    /// The place of the next instruction.
+    /// The position of the next instruction.
     pub(super) fn here(&self) -> usize {
         self.code.len()
     }
 
-    /// Writes a jump whose target is said later, by [`land`](Self::land).
+    /// Writes a jump whose target is set later, by [`land`](Self::land).
     pub(super) fn jump(&mut self, operation: Operation, a: u16, d: u16) -> Result<usize> {
         self.push(Instruction::new(operation, d, [a, 0, 0]))?;
         Ok(self.code.len() - 1)
@@ -267,7 +267,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Lets jumps come here.
+    /// Makes jumps lead here.
     pub(super) fn land(&mut self, jumps: &[usize]) {
         let here = self.here();
         for jump in jumps {
@@ -275,12 +275,12 @@ impl Builder {
         }
     }
 
-    /// Starts code that may not be run, or not before what follows it.
+    /// Starts code that may not run, or not before the code after it.
     pub(super) fn scope(&self) -> usize {
         self.log.len()
     }
 
-    /// Forgets what was calculated since [`scope`](Self::scope).
+    /// Forgets results since [`scope`](Self::scope).
     pub(super) fn forget(&mut self, scope: usize) {
         for key in self.log.drain(scope..) {
             self.known.remove(&key);

@@ -13,7 +13,7 @@ use super::{
 
 type Words = Rc<[Operand]>;
 
-/// Two values word by word; one word goes with each of the other.
+/// Two values word by word; a single word goes with each word of the other.
 fn pairs<'a>(a: &'a [Operand], b: &'a [Operand]) -> impl Iterator<Item = (Operand, Operand)> + 'a {
     let count = a.len().max(b.len());
     let at = |words: &[Operand], i: usize| words[i.min(words.len() - 1)];
@@ -37,7 +37,7 @@ impl<'m> Lowering<'m> {
         let words: Words = match function.expressions[handle] {
             Expression::Literal(value) => match literal(value) {
                 Some(bits) => Rc::new([Operand::Constant(bits)]),
-                None => return unsupported("it calculates with numbers that have not 32 bits"),
+                None => return unsupported("it uses numbers that are not 32 bits wide"),
             },
             Expression::Constant(constant) => self.constant(constant)?,
             Expression::Override(handle) => {
@@ -64,7 +64,7 @@ impl<'m> Lowering<'m> {
             Expression::FunctionArgument(index) => {
                 return match frame.arguments.get(index as usize) {
                     Some(value) => Ok(value.clone()),
-                    None => unsupported("it uses an argument that it was not given"),
+                    None => unsupported("it uses an argument that it does not have"),
                 };
             }
             Expression::GlobalVariable(variable) => return self.global(variable).map(Value::Place),
@@ -90,7 +90,7 @@ impl<'m> Lowering<'m> {
             }
             Expression::As { expr, kind, convert } => self.cast(frame, expr, kind, convert)?,
             Expression::ArrayLength(pointer) => {
-                // Only the table is a buffer that can be reached.
+                // Only the table is a reachable buffer.
                 self.place(frame, pointer)?;
                 Rc::new([Operand::Constant(1)])
             }
@@ -106,7 +106,7 @@ impl<'m> Lowering<'m> {
             | Expression::RayQueryProceedResult
             | Expression::RayQueryGetIntersection { .. } => return unsupported("it traces rays"),
             Expression::SubgroupBallotResult | Expression::SubgroupOperationResult { .. } => {
-                return unsupported("it asks other invocations of its subgroup");
+                return unsupported("it uses subgroup operations");
             }
             Expression::CooperativeLoad { .. } | Expression::CooperativeMultiplyAdd { .. } => {
                 return unsupported("it uses cooperative matrices");
@@ -179,7 +179,7 @@ impl<'m> Lowering<'m> {
                 };
                 match words.get(start..start + count) {
                     Some(part) => Ok(Value::Words(part.into())),
-                    None => unsupported("it uses a part that a value does not have"),
+                    None => unsupported("it uses a component that a value does not have"),
                 }
             }
         }
@@ -260,7 +260,7 @@ impl<'m> Lowering<'m> {
         if swapped { self.map(operation, &[&b, &a]) } else { self.map(operation, &[&a, &b]) }
     }
 
-    /// An operation word by word; values of one word go with each word of the others.
+    /// An operation word by word; single words go with each word of the others.
     pub(super) fn map(&mut self, operation: O, values: &[&[Operand]]) -> Result<Words> {
         let count = values.iter().map(|v| v.len()).max().unwrap_or(0);
         let mut words = Vec::with_capacity(count);
@@ -297,7 +297,7 @@ impl<'m> Lowering<'m> {
         Ok(sum.unwrap_or(Operand::Constant(0)))
     }
 
-    /// The product of matrices that stand column by column; a vector is a matrix of one column, or of one row.
+    /// The product of matrices stored column by column; a vector is a matrix of one column, or of one row.
     fn matrix_product(
         &mut self,
         a: &[Operand],
@@ -364,7 +364,7 @@ impl<'m> Lowering<'m> {
         let from = kind_of(self.type_of(frame, expr));
         let words = self.words(frame, expr)?;
         if convert.is_some_and(|width| width != 4 && to != ScalarKind::Bool) {
-            return unsupported("it calculates with numbers that have not 32 bits");
+            return unsupported("it uses numbers that are not 32 bits wide");
         }
         if convert.is_none() {
             return Ok(words);
@@ -386,7 +386,7 @@ impl<'m> Lowering<'m> {
 /// Rows, inner length and columns of a product of matrices.
 type Sizes = (usize, usize, usize);
 
-/// The sizes of a product in which a matrix meets a matrix or a vector.
+/// The sizes of a product of a matrix with a matrix or a vector.
 fn product(left: &TypeInner, right: &TypeInner) -> Option<Sizes> {
     use TypeInner::{Matrix, Vector};
     match (left, right) {

@@ -4,9 +4,9 @@ use std::f32::consts::PI;
 
 use super::{STEPS, StepLimit, builder::REGISTERS};
 
-/// The registers of a running program. They are floats since most instructions calculate with these: moves between
-/// the processor's registers for whole numbers and for floats would take longer than the calculation. Other
-/// words stand in them bit by bit.
+/// The registers of a running program. They are floats since most instructions calculate with floats: moving values
+/// between the processor's integer and float registers would take longer than the calculation. Other words are stored
+/// bit by bit.
 pub(super) type Registers = [f32; REGISTERS];
 
 /// A type of 32 bits.
@@ -62,7 +62,7 @@ impl Bits for bool {
 /// A function of one to three words without side effects.
 trait Pure<Types> {
     const ARITY: usize;
-    /// The value, of words that are asked for by their place.
+    /// The value, from words fetched by index.
     fn apply(self, word: impl Fn(usize) -> f32) -> f32;
 }
 
@@ -97,7 +97,7 @@ fn arity<Types, F: Pure<Types>>(_: F) -> usize {
 macro_rules! operations {
     (
         { $($name:ident = $function:expr;)* }
-        // Of the following the second name does three times what the first does.
+        // In the following pairs, the second does three times what the first does.
         { $($single:ident $triple:ident = $part:expr;)* }
     ) => {
         /// The operation of an instruction. Pure ones put a function of registers `a`, `b`, `c` into `d`.
@@ -108,24 +108,24 @@ macro_rules! operations {
             $($triple,)*
             /// Multiplies three words from `a` on by three from `b` on, and puts the sum into `d`.
             Dot,
-            /// Goes on at the target.
+            /// Jumps to the target.
             Jump,
-            /// Goes on at the target unless `a` is true.
+            /// Jumps to the target unless `a` is true.
             JumpUnless,
-            /// Goes on at the target if `a` and `d` are the same word.
+            /// Jumps to the target if `a` and `d` are the same word.
             JumpIfEqual,
-            /// Goes back to the target, and counts.
+            /// Jumps back to the target, and counts.
             Repeat,
-            /// Goes back to the target unless `a` is true, and counts.
+            /// Jumps back to the target unless `a` is true, and counts.
             RepeatUnless,
-            /// Puts the register number `b` + content of `a` into `d`.
+            /// Copies register number `b` + content of `a` to `d`.
             LoadAt,
-            /// Puts `a` into the register number `d` + content of `b`.
+            /// Copies `a` to register number `d` + content of `b`.
             StoreAt,
         }
 
         impl Operation {
-            /// The number of registers that a pure operation reads; of others 0.
+            /// The number of registers read by a pure operation; 0 for others.
             pub(super) fn arity(self) -> usize {
                 match self {
                     $(Self::$name => arity($function),)*
@@ -141,7 +141,7 @@ macro_rules! operations {
                 }
             }
 
-            /// The value of a pure operation; of others 0.
+            /// The value of a pure operation; 0 for others.
             pub(super) fn evaluate(self, words: [u32; 3]) -> u32 {
                 let word = |i: usize| f32::from_bits(words[i]);
                 let value = match self {
@@ -152,8 +152,8 @@ macro_rules! operations {
             }
         }
 
-        /// Runs instructions until they end. There are as many registers as numbers of 16 bits, so that none
-        /// needs to be checked.
+        /// Runs instructions until they end. There are as many registers as 16-bit numbers, so no register number needs
+        /// a check.
         pub(super) fn execute(code: &[Instruction], registers: &mut Registers) -> Result<(), StepLimit> {
             let mut at = 0;
             let mut steps = 0;
@@ -214,7 +214,7 @@ macro_rules! operations {
 operations! {
 {
     Copy = |a: u32| a;
-    // The offset of an element: indices beyond the end count as the last, as on the GPU.
+    // The offset of an element: indices beyond the end mean the last, as on the GPU.
     Index = |i: u32, last: u32, stride: u32| i.min(last).wrapping_mul(stride);
     Select = |condition: bool, a: u32, b: u32| if condition { a } else { b };
 
@@ -224,7 +224,7 @@ operations! {
     DivF = |a: f32, b: f32| a / b;
     RemF = |a: f32, b: f32| a % b;
     NegF = |a: f32| -a;
-    // Rounded twice, as separate instructions would.
+    // Rounded twice, as by separate instructions.
     MulAddF = |a: f32, b: f32, c: f32| a * b + c;
     EqualF = |a: f32, b: f32| a == b;
     NotEqualF = |a: f32, b: f32| a != b;
@@ -312,7 +312,7 @@ operations! {
     TrailingZeros = u32::trailing_zeros;
     LeadingZeros = u32::leading_zeros;
     ReverseBits = u32::reverse_bits;
-    // The place of a bit; −1 if there is none.
+    // The position of a bit; −1 if there is none.
     FirstTrailing = |a: u32| if a == 0 { u32::MAX } else { a.trailing_zeros() };
     FirstLeadingU = first_leading;
     FirstLeadingS = |a: i32| first_leading((if a < 0 { !a } else { a }).cast_unsigned());
@@ -343,7 +343,7 @@ operations! {
 }
 }
 
-/// A number within bounds; the upper one where they are the wrong way round, and what is no number is the lower one.
+/// A number within bounds; the upper bound if they are the wrong way round; the lower bound for NaN.
 fn clamp(a: f32, low: f32, high: f32) -> f32 {
     a.max(low).min(high)
 }
@@ -354,12 +354,12 @@ fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Fraction in [0.5, 1) and exponent of a number; zero, infinities and what is no number have the exponent 0.
+/// Fraction in [0.5, 1) and exponent of a number; zero, infinities and NaN have the exponent 0.
 fn frexp(a: f32) -> (f32, i32) {
     if a == 0.0 || !a.is_finite() {
         return (a, 0);
     }
-    // Every number of 32 bits is a normal one of 64.
+    // Every 32-bit number is a normal 64-bit one.
     let bits = f64::from(a).to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i32 - 1022;
     (f64::from_bits(bits & !(0x7ff << 52) | 1022 << 52) as f32, exponent)
@@ -375,12 +375,11 @@ fn field(offset: u32, count: u32) -> (u32, u32) {
     (offset, count.min(32 - offset))
 }
 
-/// An instruction: an operation, the register that it writes, and those that it reads. Jumps have their
-/// target in `b` and `c`.
+/// An instruction: an operation, the register it writes, and those it reads. Jumps have their target in `b` and `c`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Instruction {
     pub(super) operation: Operation,
-    /// Of operations on three words: bits 0 to 2 say whether `a`, `b`, `c` go on from word to word.
+    /// For operations on three words: bits 0 to 2 tell if `a`, `b`, `c` advance from word to word.
     pub(super) strides: u8,
     pub(super) d: u16,
     pub(super) a: u16,
@@ -417,7 +416,7 @@ impl Instruction {
         matches!(self.operation, Jump | JumpUnless | JumpIfEqual | Repeat | RepeatUnless)
     }
 
-    /// The registers that it reads, as far as their numbers are known.
+    /// The registers that it reads, if their numbers are known.
     pub(super) fn reads(self) -> impl Iterator<Item = u16> {
         use Operation as O;
         let (words, count, length) = match self.operation {
@@ -431,12 +430,12 @@ impl Instruction {
         words.into_iter().take(count).flat_map(move |word| (0..length).map(move |k| word.wrapping_add(k)))
     }
 
-    /// The register that it writes, if it has one, and its number is known.
+    /// The register that it writes, if any, and if its number is known.
     pub(super) fn writes(self) -> Option<u16> {
         (!self.jumps() && self.operation != Operation::StoreAt).then_some(self.d)
     }
 
-    /// True if it reads or writes registers whose numbers are not known.
+    /// True if it reads or writes registers of unknown numbers.
     pub(super) fn wanders(self) -> bool {
         matches!(self.operation, Operation::LoadAt | Operation::StoreAt)
     }

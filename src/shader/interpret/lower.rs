@@ -1,7 +1,7 @@
-//! From naga's functions to instructions: functions and calls, and where values stand.
+//! From naga's functions to instructions: functions and calls, and the places of values.
 //!
-//! Calls are written out in place, vectors and structs are taken apart into words. What only rearranges words
-//! (swizzles, constructors, members) costs no instruction, and arguments are not copied.
+//! Calls are inlined, vectors and structs are split into words. Rearranging words (swizzles, constructors, members)
+//! costs no instruction, and arguments are not copied.
 
 use std::{collections::HashMap, rc::Rc};
 
@@ -35,45 +35,45 @@ pub(super) enum Value {
 /// The target of a pointer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    /// The register, apart from what is known only when the program runs.
+    /// The register, apart from an offset known only at run time.
     pub(super) base: usize,
     /// The register with an offset to add.
     pub(super) offset: Option<u16>,
     pub(super) layout: Layout,
 }
 
-/// A function that is being written out.
+/// A function being inlined.
 pub(super) struct Frame<'m> {
     pub(super) function: &'m Function,
     pub(super) types: Rc<Typifier>,
     pub(super) arguments: Vec<Value>,
     pub(super) values: Vec<Option<Value>>,
     pub(super) locals: Vec<u16>,
-    /// The registers of the results; `None` if the one `return` is the end, and its value needs no copy.
+    /// The registers of the results; `None` if the one `return` comes last, and its value needs no copy.
     pub(super) results: Option<u16>,
     /// The value of that one `return`.
     pub(super) returned: Rc<[Operand]>,
     /// Jumps to the end.
     pub(super) returns: Vec<usize>,
-    /// Loops and switches around, the innermost last.
+    /// Enclosing loops and switches, the innermost last.
     pub(super) around: Vec<Around>,
 }
 
 pub(super) struct Lowering<'m> {
     pub(super) module: &'m Module,
     pub(super) builder: Builder,
-    /// The values of the module's constant expressions; `None` where that is not supported.
+    /// The values of the module's constant expressions; `None` for unsupported ones.
     constants: Vec<Option<Rc<[Operand]>>>,
     types: HashMap<Handle<Function>, Rc<Typifier>>,
-    /// The registers of private variables that are reached.
+    /// The registers of private variables in use.
     globals: HashMap<Handle<GlobalVariable>, u16>,
-    /// The first values of private variables.
+    /// The initial values of private variables.
     pub(super) initial: Vec<(u16, u32)>,
-    /// The buffer that is an input, and its first register.
+    /// The buffer used as input, and its first register.
     pub(super) row: Option<(Handle<GlobalVariable>, u16)>,
 }
 
-/// The bits of a number; `None` if it has not 32.
+/// The bits of a number; `None` if it is not 32 bits wide.
 pub(super) fn literal(literal: Literal) -> Option<u32> {
     match literal {
         Literal::F32(v) => Some(v.to_bits()),
@@ -143,7 +143,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// The value of a constant of the module.
+    /// The value of a module constant.
     pub(super) fn constant(&self, constant: Handle<naga::Constant>) -> Result<Rc<[Operand]>> {
         let constant = &self.module.constants[constant];
         match self.constants.get(constant.init.index()) {
@@ -157,7 +157,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// A pointer to a variable of the module.
+    /// A pointer to a module variable.
     pub(super) fn global(&mut self, handle: Handle<GlobalVariable>) -> Result<Place> {
         if let Some((row, base)) = self.row
             && row == handle
@@ -223,7 +223,7 @@ impl<'m> Lowering<'m> {
         Ok(types)
     }
 
-    /// Writes out a call; gives the words of the result.
+    /// Inlines a call; returns the words of the result.
     pub(super) fn call(&mut self, handle: Handle<Function>, arguments: Vec<Value>) -> Result<Rc<[Operand]>> {
         let function = &self.module.functions[handle];
         let types = self.types(handle)?;
@@ -254,7 +254,7 @@ impl<'m> Lowering<'m> {
         Ok((0..count).map(|i| Operand::Register(base + i as u16)).collect())
     }
 
-    /// Gives local variables their registers and first values.
+    /// Gives local variables their registers and initial values.
     fn locals(&mut self, frame: &mut Frame<'m>) -> Result<()> {
         let function = frame.function;
         for (_, variable) in function.local_variables.iter() {
@@ -280,7 +280,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// The value of an expression: calculated before, or needing no calculation.
+    /// The value of an expression: calculated before, or without calculation.
     pub(super) fn value(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Value> {
         if let Some(value) = &frame.values[handle.index()] {
             return Ok(value.clone());

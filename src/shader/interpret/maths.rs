@@ -16,7 +16,7 @@ fn number(value: f32) -> Operand {
     Operand::Constant(value.to_bits())
 }
 
-/// Functions of floats that go word by word.
+/// Componentwise functions of floats.
 fn of_floats(fun: M) -> Option<O> {
     Some(match fun {
         M::Abs => O::AbsF,
@@ -60,7 +60,7 @@ fn of_floats(fun: M) -> Option<O> {
     })
 }
 
-/// Functions of whole numbers that go word by word.
+/// Componentwise functions of whole numbers.
 fn of_integers(fun: M, signed: bool) -> Option<O> {
     Some(match (fun, signed) {
         (M::Abs, true) => O::AbsS,
@@ -84,7 +84,7 @@ fn of_integers(fun: M, signed: bool) -> Option<O> {
 }
 
 impl Lowering<'_> {
-    /// The value of a function of values whose numbers are of a kind.
+    /// The value of a function of values of one scalar type.
     pub(super) fn math(
         &mut self,
         fun: M,
@@ -154,7 +154,7 @@ impl Lowering<'_> {
             (M::Refract, [a, normal, [eta]]) => self.refract(a, normal, *eta),
             (M::Transpose, [a]) => {
                 let TypeInner::Matrix { columns, rows, .. } = inner else {
-                    return unsupported("it transposes what is no matrix");
+                    return unsupported("it transposes a value that is not a matrix");
                 };
                 let (columns, rows) = (*columns as usize, *rows as usize);
                 Ok((0..rows)
@@ -167,7 +167,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// The first product less the second.
+    /// The first product minus the second.
     fn two_products(&mut self, [a, b]: [Operand; 2], [c, d]: [Operand; 2]) -> Result<Operand> {
         let first = self.builder.emit(O::MulF, &[a, b])?;
         let second = self.builder.emit(O::MulF, &[c, d])?;
@@ -182,7 +182,7 @@ impl Lowering<'_> {
         self.builder.emit(O::Sqrt, &[squared])
     }
 
-    /// Snell's law; zero where all light is reflected.
+    /// Snell's law; zero for total reflection.
     fn refract(&mut self, a: &[Operand], normal: &[Operand], eta: Operand) -> Result<Words> {
         let cosine = self.dot(normal, a, true)?;
         let squared = self.builder.emit(O::MulF, &[cosine, cosine])?;

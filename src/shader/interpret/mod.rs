@@ -1,13 +1,12 @@
-//! Running WGSL on the CPU: a function of a checked module becomes a program for a small machine.
+//! Running WGSL on the CPU: a function of a validated module becomes a program for a small virtual machine.
 //!
-//! Models that users write have no Rust twin. With this the CPU renderer, the tables of the command line
-//! and the curves of directional albedo can ask them all the same.
+//! Custom models have no Rust twin. This evaluates them for the CPU renderer, the tables of the command line and the
+//! curves of directional albedo.
 //!
-//! A program is a list of instructions on registers of 32 bits: vectors and structs are taken apart, and calls
-//! written out in place, which WGSL allows since its functions do not call themselves. Whole numbers follow the
-//! rules of WGSL (they wrap, division by zero gives the dividend, shifts go by the last five bits of the
-//! distance), floats are those of Rust. Indices beyond the end of an array mean its last element, as `wgpu` has
-//! it on the GPU.
+//! A program is a list of instructions on 32-bit registers: vectors and structs are split up, and calls inlined, which
+//! WGSL allows since it has no recursion. Integers follow the rules of WGSL (they wrap, division by zero gives the
+//! dividend, shifts use the last five bits of the distance), floats are those of Rust. Indices beyond the end of an
+//! array mean its last element, as with `wgpu` on the GPU.
 
 use std::{
     cell::RefCell,
@@ -33,7 +32,7 @@ use builder::{Operand, REGISTERS};
 use instruction::{Instruction, Registers, execute};
 use lower::{Lowering, Value, unsupported};
 
-/// The most instructions in loops of a run, a few milliseconds.
+/// The most instructions in loops of one run, a few milliseconds.
 pub const STEPS: usize = 1 << 17;
 
 /// A construct of a function that cannot be run on the CPU.
@@ -44,30 +43,30 @@ pub struct Unsupported {
     pub what: String,
 }
 
-/// A program ran longer than [`STEPS`], perhaps for ever; its results are undefined.
+/// A program ran longer than [`STEPS`], perhaps forever; its results are undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("it ran {STEPS} steps of its loops and did not end")]
+#[error("it did not end within {STEPS} steps of its loops")]
 pub struct StepLimit;
 
-/// A function of a module with all that it calls, ready to be run.
+/// A function of a module, with everything it calls, ready to run.
 ///
-/// Values go in and out as words of 32 bits: `f32` by its bits, `bool` as 0 or 1; vectors, matrices (column by
-/// column), arrays and structs flattened in the order of their members, without padding.
+/// Inputs and outputs are 32-bit words: `f32` by its bits, `bool` as 0 or 1; vectors, matrices (column by column),
+/// arrays and structs flattened in the order of their members, without padding.
 #[derive(Debug)]
 pub struct Program {
     code: Box<[Instruction]>,
     /// The register 65 535 − i holds the constant i.
     constants: Box<[u32]>,
-    /// The first values of private variables.
+    /// The initial values of private variables.
     initial: Box<[(u16, u32)]>,
     argument_words: usize,
     row_words: usize,
     results: Box<[u16]>,
-    /// Tells programs apart.
+    /// Identifies the program.
     id: u64,
 }
 
-/// Registers that are kept from run to run, and the program whose constants they hold.
+/// Registers kept from run to run, and the program whose constants they hold.
 struct Scratch {
     registers: Box<Registers>,
     program: u64,
@@ -88,16 +87,16 @@ thread_local! {
 static PROGRAMS: AtomicU64 = AtomicU64::new(1);
 
 impl Program {
-    /// Makes a function of a validated module, with all that it calls, ready to be run.
+    /// Prepares a function of a validated module, with everything it calls.
     ///
     /// # Errors
-    /// If there is no such function, or it reaches something that only a GPU has.
+    /// If there is no such function, or it uses something that only a GPU has.
     pub fn new(module: &Module, function: &str) -> Result<Self, Unsupported> {
         Self::build(module, function, None)
     }
 
     /// The same for a function that may read a table in a buffer: a read-only array of that name, of which
-    /// [`run_with`](Self::run_with) is given one row. Every index means that row.
+    /// [`run_with`](Self::run_with) receives one row. Every index means that row.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -162,7 +161,7 @@ impl Program {
         self.row_words
     }
 
-    /// Runs the function. Arguments that are missing are zero; results are written as far as there is room.
+    /// Runs the function. Missing arguments are zero; results are written as far as there is room.
     ///
     /// # Errors
     /// If it does not end.
@@ -170,8 +169,8 @@ impl Program {
         self.run_with(&[], arguments, results)
     }
 
-    /// Runs the function with a row of the table of [`with_table`](Self::with_table), as it stands in the
-    /// buffer: with padding, in words. Words that are missing are zero.
+    /// Runs the function with a row of the table of [`with_table`](Self::with_table), laid out as in the buffer: with
+    /// padding, in words. Missing words are zero.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -199,7 +198,7 @@ impl Program {
     }
 }
 
-/// Copies words; what is missing is zero.
+/// Copies words; missing ones are zero.
 fn fill(to: &mut [f32], from: &[u32]) {
     let given = to.len().min(from.len());
     for (to, from) in to.iter_mut().zip(from) {

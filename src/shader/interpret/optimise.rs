@@ -1,21 +1,21 @@
-//! Fewer instructions that do the same.
+//! Fewer instructions with the same effect.
 //!
-//! Registers that are no variables are written by one instruction, which makes it easy to leave out results that
-//! nobody reads, and to join copies with the calculation before them, products with the sum after them, and
-//! three equal operations on three words. Together these save a sixth of the time of Disney's model and a fifth
-//! of that of the microfacet model (`benches/models.rs`).
+//! Registers other than variables are written by one instruction, which makes it easy to remove unread results, and to
+//! fuse copies with the calculation before them, products with the sum after them, and three equal operations on three
+//! words. Together these save a sixth of the time of Disney's model and a fifth of that of the microfacet model
+//! (`benches/models.rs`).
 
 use super::{
     builder::Builder,
     instruction::{Instruction, Operation as O},
 };
 
-/// The number of instructions among which the origin of a value is searched.
+/// The number of instructions searched for the origin of a value.
 const REACH: usize = 64;
 
 struct Optimiser<'b> {
     builder: &'b Builder,
-    /// `None` where an instruction was left out.
+    /// `None` where an instruction was removed.
     code: Vec<Option<Instruction>>,
     /// The targets of jumps.
     targets: Vec<bool>,
@@ -23,7 +23,7 @@ struct Optimiser<'b> {
     reads: Vec<u32>,
 }
 
-/// The code of a builder, shorter; `results` are read in the end.
+/// The code of a builder, shortened; `results` are read in the end.
 pub(super) fn shortened(builder: &mut Builder, results: &[u16]) -> Vec<Instruction> {
     let code = std::mem::take(&mut builder.code);
     let mut targets = vec![false; code.len() + 1];
@@ -85,8 +85,8 @@ impl Optimiser<'_> {
         }
     }
 
-    /// The instruction before another that writes a register, with no jump into or out of what lies between, if what
-    /// lies between passes a test.
+    /// The instruction before another that writes a register, if the code between passes a test and has no jump into or
+    /// out of it.
     fn origin(&self, register: u16, at: usize, passes: impl Fn(Instruction) -> bool) -> Option<usize> {
         if self.targets[at] {
             return None;
@@ -128,7 +128,7 @@ impl Optimiser<'_> {
         }
     }
 
-    /// The origin of a product that is read once, if its factors have not changed since.
+    /// The origin of a product read once, if its factors have not changed since.
     fn origin_of_product(&self, register: u16, at: usize) -> Option<usize> {
         if !self.passing(register) {
             return None;
@@ -139,7 +139,7 @@ impl Optimiser<'_> {
         (steady(product.a) && steady(product.b)).then_some(origin)
     }
 
-    /// A value that is only copied into a variable is written there at once.
+    /// Writes a value directly to the variable into which alone it is copied.
     fn join_copies(&mut self) {
         for at in 0..self.code.len() {
             let Some(copy) = self.code[at] else { continue };

@@ -1,5 +1,5 @@
-//! Random functions against an interpreter of their own: variables that change while values that were read from
-//! them are in use, loops, early returns, pointers.
+//! Random functions against a separate interpreter: variables that change while values read from them are in use,
+//! loops, early returns, pointers.
 
 use std::fmt::Write as _;
 
@@ -21,7 +21,7 @@ enum Step {
     SetElement(Expr, Expr),
     Shuffle,
     Know(usize, Expr),
-    /// Adds to a variable by a pointer; what it was before becomes known.
+    /// Adds to a variable through a pointer; its old value becomes known.
     Bump(usize, usize, Expr),
     Branch(Expr, Vec<Step>, Vec<Step>),
     Switch(Expr, Vec<Step>, Vec<Step>),

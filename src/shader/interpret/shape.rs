@@ -26,13 +26,11 @@ fn too_large() -> Unsupported {
 fn check(scalar: Scalar) -> Result<()> {
     match (scalar.kind, scalar.width) {
         (ScalarKind::Bool, _) | (ScalarKind::AbstractInt | ScalarKind::AbstractFloat, _) | (_, 4) => Ok(()),
-        (_, width) => {
-            Err(Unsupported { what: format!("it calculates with numbers of {} bits", 8 * u32::from(width)) })
-        }
+        (_, width) => Err(Unsupported { what: format!("it uses numbers of {} bits", 8 * u32::from(width)) }),
     }
 }
 
-/// The number of elements of an array; of arrays in buffers that have no length, 1.
+/// The number of elements of an array; 1 for runtime-sized arrays in buffers.
 fn length(size: ArraySize) -> Result<usize> {
     match size {
         ArraySize::Constant(n) => Ok(n.get() as usize),
@@ -43,13 +41,13 @@ fn length(size: ArraySize) -> Result<usize> {
     }
 }
 
-/// Elements of the same kind, as an index finds them.
+/// Elements of one type, as found by an index.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Elements {
     pub(super) count: usize,
-    /// Words of one.
+    /// Words of one element.
     pub(super) words: usize,
-    /// Words from one to the next.
+    /// Words from one element to the next.
     pub(super) stride: usize,
 }
 
@@ -71,7 +69,7 @@ pub(super) fn elements(module: &Module, inner: &TypeInner, layout: Layout) -> Re
             let stride = if layout == Layout::Buffer { stride as usize / 4 } else { words };
             Ok(Elements { count: length(size)?, words, stride })
         }
-        _ => Err(Unsupported { what: "it indexes a value of a kind that has no elements".to_owned() }),
+        _ => Err(Unsupported { what: "it indexes a value without elements".to_owned() }),
     }
 }
 
@@ -89,7 +87,7 @@ pub(super) fn member(module: &Module, inner: &TypeInner, index: usize, layout: L
 
 /// The number of words of a value.
 pub(super) fn words(module: &Module, inner: &TypeInner) -> Result<usize> {
-    // With padding a value takes at most a few times its words.
+    // With padding, a value takes at most a few times its words.
     if inner.size(module.to_ctx()) as usize > 16 * LARGEST {
         return Err(too_large());
     }

@@ -11,13 +11,13 @@ use super::{
     shape::Layout,
 };
 
-/// A loop or a switch around a statement: jumps out of it, and to the next turn.
+/// A loop or a switch around a statement: jumps out of it, and to the next iteration.
 pub(super) struct Around {
     breaks: Vec<usize>,
     continues: Option<Vec<usize>>,
 }
 
-/// True if nothing after a statement is run.
+/// True if nothing after a statement runs.
 fn leaves(block: &Block) -> bool {
     match block.last() {
         Some(Statement::Return { .. } | Statement::Break | Statement::Continue) => true,
@@ -37,7 +37,7 @@ impl<'m> Lowering<'m> {
         Ok(())
     }
 
-    /// A block whose values are not known after it.
+    /// A block whose results are unknown after it.
     fn inner(&mut self, frame: &mut Frame<'m>, block: &'m Block) -> Result<()> {
         let scope = self.builder.scope();
         self.block(frame, block)?;
@@ -97,9 +97,7 @@ impl<'m> Lowering<'m> {
             Statement::RayQuery { .. } | Statement::RayPipelineFunction(_) => unsupported("it traces rays"),
             Statement::SubgroupBallot { .. }
             | Statement::SubgroupGather { .. }
-            | Statement::SubgroupCollectiveOperation { .. } => {
-                unsupported("it asks other invocations of its subgroup")
-            }
+            | Statement::SubgroupCollectiveOperation { .. } => unsupported("it uses subgroup operations"),
             Statement::CooperativeStore { .. } => unsupported("it uses cooperative matrices"),
         }
     }

@@ -44,8 +44,8 @@ fn ints(text: &str, arguments: &[i32]) -> Vec<i32> {
     run(text, &arguments).into_iter().map(u32::cast_signed).collect()
 }
 
-/// Asserts what an expression of `a` and `b` is, floats, also when the arguments are literals of WGSL, which naga
-/// calculates itself where it can.
+/// Asserts the value of an expression of the floats `a` and `b`, also with literal arguments, which naga folds where it
+/// can.
 fn of_floats(expression: &str, [a, b]: [f32; 2], expected: &[f32]) {
     let kind = if expected.len() == 1 { "f32".to_owned() } else { format!("vec{}<f32>", expected.len()) };
     let text = format!("fn f(a: f32, b: f32) -> {kind} {{ return {expression}; }}");
@@ -248,7 +248,7 @@ fn casts() {
     of_floats("f32(u32(a)) + f32(i32(-b)) + f32(a < b)", [3.7, 4.7], &[0.0]);
 }
 
-/// The sum of what a loop does, by a function of the number of turns.
+/// The sum of a loop's work, as a function of the number of iterations.
 fn counted(body: &str, turns: i32) -> i32 {
     ints(&format!("fn f(n: i32) -> i32 {{ var sum = 0; {body} return sum; }}"), &[turns])[0]
 }
@@ -275,7 +275,7 @@ fn loops() {
     assert_eq!(counted(text, 4), expected);
     let text = "for (var i = 0; i < n; i++) { switch i { case 1: { continue; } case 2: { break; } default: { sum += 1; } } sum += 100; }";
     assert_eq!(counted(text, 4), 302);
-    // A variable that is declared with a value in a loop gets it on every turn.
+    // A variable declared with a value in a loop gets it in every iteration.
     assert_eq!(counted("for (var i = 0; i < n; i++) { var x = 1; x += i; sum += x; }", 3), 6);
     // A function that returns from within a loop.
     let text =
@@ -304,7 +304,7 @@ fn values_last_while_variables_change() {
     // Read before a loop, and used in it alone, before the variable changes there.
     let text = "var x = n; let y = x; for (var i = 0; i < 3; i++) { sum += y * 2; x += 1; }";
     assert_eq!(counted(text, 1), 6);
-    // Put into a variable on every turn that changes there.
+    // Assigned in every iteration to a variable that changes there.
     let text = "var x = 0; let y = n * 3; var i = 0; loop { x = y; sum += x; x += 1; sum += x; continuing { i++; break if i >= 3; } }";
     assert_eq!(counted(text, 2), 39);
     assert_eq!(counted(&text.replace("loop {", "loop { sum += 1;"), 2), 42);
@@ -312,7 +312,7 @@ fn values_last_while_variables_change() {
     let text = "fn f(v: vec3<i32>) -> vec3<i32> { var w: vec3<i32>; if v.x > 0 { w.x = v.x; } w.y = v.y; w.z = v.z; return w; }";
     assert_eq!(ints(text, &[-1, 2, 3]), [0, 2, 3]);
     assert_eq!(ints(text, &[1, 2, 3]), [1, 2, 3]);
-    // Through a function that gives back what it was given, and by a pointer.
+    // Through a function that returns its argument, and by a pointer.
     let text = "fn same(x: i32) -> i32 { return x; }
         fn f(n: i32) -> i32 { var x = n; let y = same(x); x = 7; return 10 * y + x; }";
     assert_eq!(ints(text, &[1]), [17]);
@@ -336,11 +336,11 @@ fn branches_and_switches() {
     for (a, expected) in [(9, 11), (4, 21), (1, 1), (0, 2)] {
         assert_eq!(ints(text, &[a]), [expected], "{a}");
     }
-    // What is calculated in one branch is not known in another.
+    // Results of one branch are unknown in another.
     let text = "fn f(a: f32, b: f32) -> f32 { var x = 0.0; if a > 0.0 { x = a * b; } else { x = 1.0 + a * b; } return x + a * b; }";
     assert_eq!(floats(text, &[2.0, 3.0]), [12.0]);
     assert_eq!(floats(text, &[-2.0, 3.0]), [-11.0]);
-    // The second operand is not evaluated where the first decides.
+    // The second operand is not evaluated if the first decides.
     let text = "var<private> n: i32;
         fn count() -> bool { n++; return true; }
         fn f(a: bool) -> i32 { let x = a && count(); let y = a || count(); return n; }";
@@ -480,7 +480,7 @@ fn what_only_a_graphics_card_has_is_refused_where_it_is_reached() {
         ("return shared_sum;", "it uses the variable shared_sum, which belongs to a stage of the pipeline"),
         ("return STEP * x;", "it uses the override STEP"),
         ("return dpdx(x);", "it takes a derivative"),
-        ("return f32(f64(x));", "it calculates with numbers that have not 32 bits"),
+        ("return f32(f64(x));", "it uses numbers that are not 32 bits wide"),
         ("workgroupBarrier(); return x;", "it waits at a barrier"),
         ("if x < 0.0 { discard; } return x;", "it discards a fragment"),
         ("return f32(pack2x16float(vec2(x)));", "it calls pack2x16float"),

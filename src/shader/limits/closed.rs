@@ -1,14 +1,14 @@
-//! Mistakes of one file that swallow what follows it: a comment or a bracket that is not closed, a declaration that
-//! is not finished. Joined with other files, the compiler would find them at the first line that makes no sense any
-//! more, which is in a file of somebody else's.
+//! Errors of one file that swallow the next one: an unclosed comment or bracket, an unfinished declaration. In the
+//! joined text, the compiler would report them at the first line that makes no sense any more, which is in somebody
+//! else's file.
 
 use super::{
     LIMITS,
     token::{Finding, Kind, Token, tokens},
 };
 
-/// Finds what is open at the end of a file: where it begins, and what is missing. What the compiler finds within the
-/// file is left to it.
+/// Finds anything open at the end of a file: its beginning, and what is missing. Errors within the file are left to the
+/// compiler.
 #[must_use]
 pub fn unfinished(text: &str) -> Option<Finding> {
     let scan = tokens(text, LIMITS.tokens).ok().filter(|scan| scan.list.len() <= LIMITS.tokens)?;
@@ -20,13 +20,13 @@ pub fn unfinished(text: &str) -> Option<Finding> {
     open_import(text).or_else(|| open_bracket(text, &scan.list)).or_else(|| open_end(&scan.list))
 }
 
-/// True for a text that holds nothing but space and comments.
+/// True for a text with nothing but space and comments.
 #[must_use]
 pub fn is_empty(text: &str) -> bool {
     tokens(text, 0).is_ok_and(|scan| scan.list.is_empty())
 }
 
-/// An `#import` in braces goes on until these are closed, over any number of lines.
+/// An `#import` in braces continues until they are closed, over any number of lines.
 fn open_import(text: &str) -> Option<Finding> {
     let mut begins = None;
     let mut depth = 0_usize;
@@ -56,7 +56,7 @@ fn open_bracket(text: &str, tokens: &[Token]) -> Option<Finding> {
         (start, text[start..].find(|c: char| !c.is_whitespace()).unwrap_or_default())
     };
     let mut open: Vec<Token> = Vec::new();
-    // Blocks that are closed further to the left than they begin: probably by the bracket of the block around.
+    // Blocks closed further to the left than they begin: probably by the bracket of the enclosing block.
     let mut suspects: Vec<Token> = Vec::new();
     for token in tokens {
         match (token.kind, token.text) {
@@ -70,7 +70,7 @@ fn open_bracket(text: &str, tokens: &[Token]) -> Option<Finding> {
                     }
                 }
                 (Some(opening), "}") => return Some((opening.at, missing(opening.text))),
-                // One too many, which the compiler finds where it is.
+                // One too many, which the compiler finds in place.
                 _ => return None,
             },
             _ => {}
@@ -82,7 +82,7 @@ fn open_bracket(text: &str, tokens: &[Token]) -> Option<Finding> {
     Some((found.at, missing(found.text)))
 }
 
-/// Whatever is declared ends with a bracket or a semicolon.
+/// Every declaration ends with a bracket or a semicolon.
 fn open_end(tokens: &[Token]) -> Option<Finding> {
     let last = tokens.iter().rfind(|token| token.kind != Kind::Directive)?;
     if matches!(last.text, "}" | ";") {
@@ -108,7 +108,7 @@ fn missing(opening: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Line, column and message of what is unfinished in a text.
+    /// Line, column and message of the unfinished part of a text.
     fn said(text: &str) -> Option<(usize, usize, String)> {
         let (at, what) = unfinished(text)?;
         let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
@@ -130,7 +130,7 @@ mod tests {
             ("#import a::{\n  b,\nfn f() {}\n", 1, 12, "this { is not closed"),
             ("fn f() {\n#ifdef A\n    g(\n#endif\n}\n", 3, 6, "this ( is not closed"),
         ] {
-            let (l, c, said) = said(text).unwrap_or_else(|| panic!("{text}: nothing is found"));
+            let (l, c, said) = said(text).unwrap_or_else(|| panic!("{text}: nothing was found"));
             assert_eq!((l, c), (line, column), "{text}: {said}");
             assert!(said.contains(what), "{text}: {said}");
         }

@@ -1,6 +1,6 @@
-//! What constants and types grow to where they are used: `const B = array(A, A)` doubles with every line, and an
-//! array of arrays has as many elements as their lengths multiplied. The parser evaluates constants, so this is
-//! estimated before, from the text: a word stands for as many words as its declaration.
+//! The expanded size of constants and types: `const B = array(A, A)` doubles with every line, and an array of arrays
+//! multiplies the lengths. The parser evaluates constants, so this is estimated before, from the text: a word counts as
+//! many words as its declaration.
 
 use std::{cell::Cell, collections::HashMap};
 
@@ -14,20 +14,20 @@ use super::{
 struct Declaration<'a> {
     name: &'a str,
     at: usize,
-    /// It is put where it is used: constants and types. Functions and variables are not.
+    /// Expanded where it is used: constants and types. Functions and variables are not.
     expands: bool,
-    /// The tokens behind the name.
+    /// The tokens after the name.
     first: usize,
     end: usize,
 }
 
-/// What is known of a declaration.
+/// The state of a declaration.
 #[derive(Clone, Copy)]
 enum State {
     Unknown,
-    /// It is being looked at: one that uses itself is told by the parser.
+    /// Being examined: the parser reports a declaration that uses itself.
     Open,
-    /// The words that it stands for, and how many declarations stand one on the other in it.
+    /// Its expanded number of words, and the longest chain of declarations in it.
     Known(u64, usize),
 }
 
@@ -35,20 +35,20 @@ struct Search<'a> {
     limits: &'a Limits,
     tokens: &'a [Token<'a>],
     declarations: Vec<Declaration<'a>>,
-    /// Names that are given twice, as in the two parts of a condition, stand for both.
+    /// Names declared twice, as in the two parts of a condition, stand for both.
     by_name: HashMap<&'a str, Vec<usize>>,
     states: Vec<State>,
-    /// Of each declaration the one in it from which the longest chain goes on.
+    /// For each declaration, the one in it with the longest chain.
     next: Vec<usize>,
-    /// What is being looked at, each within the one before.
+    /// The declarations being examined, each within the one before.
     path: Vec<usize>,
-    /// The initial values of constants, those in functions too: arrays may have them as lengths.
+    /// The initial values of constants, including those in functions: arrays may have them as lengths.
     values: HashMap<&'a str, Vec<(usize, usize)>>,
-    /// How many more tokens the lengths of arrays may take to calculate.
+    /// The number of tokens left for calculating the lengths of arrays.
     steps: Cell<u32>,
 }
 
-/// So many tokens are read for the lengths of all arrays: constants that use each other are many.
+/// The tokens read for the lengths of all arrays: constants that use each other are many.
 const STEPS: u32 = 1 << 20;
 
 /// Checks the declarations of a text.
@@ -57,7 +57,7 @@ pub(super) fn check(tokens: &[Token], limits: &Limits) -> Result<(), Refusal> {
     let (declarations, values) = declarations(tokens);
     if declarations.len() > most {
         let what = format!(
-            "the shader has {} declarations when everything is joined that it is made of; at most {most} are allowed",
+            "the composed shader has {} declarations; at most {most} are allowed",
             declarations.len()
         );
         return Err(Refusal::Whole(what));
@@ -76,7 +76,7 @@ pub(super) fn check(tokens: &[Token], limits: &Limits) -> Result<(), Refusal> {
         sum = sum.saturating_add(search.declaration(i)?.0);
         if sum > 4 * limits.expansion {
             let what = format!(
-                "constants and types are written out where they are used, which makes more than {} words when everything is joined that the shader is made of",
+                "constants and types are expanded where they are used, which makes more than {} words in the composed shader",
                 4 * limits.expansion
             );
             return Err(Refusal::Whole(what));
@@ -85,7 +85,7 @@ pub(super) fn check(tokens: &[Token], limits: &Limits) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The declarations of a module, and what its constants are.
+/// The declarations of a module, and the values of its constants.
 fn declarations<'a>(tokens: &'a [Token]) -> (Vec<Declaration<'a>>, HashMap<&'a str, Vec<(usize, usize)>>) {
     let mut found = Vec::new();
     let mut values: HashMap<_, Vec<_>> = HashMap::new();
@@ -135,7 +135,7 @@ fn declarations<'a>(tokens: &'a [Token]) -> (Vec<Declaration<'a>>, HashMap<&'a s
     (found, values)
 }
 
-/// The tokens of an initial value: from behind `=` up to the semicolon.
+/// The tokens of an initial value: after `=`, up to the semicolon.
 fn value(tokens: &[Token], from: usize) -> (usize, usize) {
     let rest = &tokens[from.min(tokens.len())..];
     let end = rest.iter().position(|t| t.kind == Kind::Semicolon).unwrap_or(rest.len());
@@ -144,7 +144,7 @@ fn value(tokens: &[Token], from: usize) -> (usize, usize) {
 }
 
 impl<'a> Search<'a> {
-    /// The words that a declaration stands for where it is written, and its chain.
+    /// The expanded number of words of a declaration, and its chain.
     fn declaration(&mut self, i: usize) -> Result<(u64, usize), Finding> {
         match self.states[i] {
             State::Known(words, below) => return Ok((words, below)),
@@ -160,15 +160,13 @@ impl<'a> Search<'a> {
         let (words, below) = self.words(first, end, i)?;
         let chain = below + 1;
         if chain > self.limits.chain {
-            // What is built in stands at the ends of a chain, so its middle is told.
+            // The ends of a chain are built in, so its middle is reported.
             let middle = (0..self.limits.chain / 2).fold(i, |at, _| self.next.get(at).copied().unwrap_or(at));
             return Err(self.chain(middle, chain));
         }
         if expands && words > self.limits.expansion {
-            let what = format!(
-                "this stands for {words} words when all is written out that it is made of; at most {} are allowed",
-                self.limits.expansion
-            );
+            let what =
+                format!("this expands to {words} words; at most {} are allowed", self.limits.expansion);
             return Err((at, what));
         }
         self.states[i] = State::Known(words, chain);
@@ -184,10 +182,10 @@ impl<'a> Search<'a> {
         (self.declarations.get(blamed).map_or(0, |d| d.at), what)
     }
 
-    /// The words that some tokens stand for, and the longest chain of declarations below them.
+    /// The expanded number of words of some tokens, and the longest chain of declarations below them.
     fn words(&mut self, first: usize, end: usize, user: usize) -> Result<(u64, usize), Finding> {
         let tokens = self.tokens;
-        // The arrays around: where each ends, and how many elements they have together.
+        // The enclosing arrays: where each ends, and their number of elements together.
         let mut arrays: Vec<(usize, u64)> = Vec::new();
         let (mut sum, mut below) = (0_u64, 0);
         for i in first..end.min(tokens.len()) {
@@ -224,7 +222,7 @@ impl<'a> Search<'a> {
         Ok((sum, below))
     }
 
-    /// How many elements an array has at most, whose template list goes from one token to another.
+    /// The greatest number of elements of an array, given the tokens of its template list.
     fn length(&self, array: Token, first: usize, end: usize) -> Result<u64, Finding> {
         let (mut at, mut brackets, mut commas) = (first, 0_usize, Vec::new());
         while at < end {
@@ -237,7 +235,7 @@ impl<'a> Search<'a> {
             }
             at += 1;
         }
-        // A comma may stand at the end.
+        // A trailing comma is allowed.
         let last = commas.get(1).copied().unwrap_or(end);
         let Some(comma) = commas.first().copied() else { return Ok(1) };
         let count = self.magnitude(comma + 1, last, 0);
@@ -249,14 +247,14 @@ impl<'a> Search<'a> {
             }
             None => Err((
                 array.at,
-                "the length of this array cannot be told from here; write it as a whole number, or with constants that are, and + - * /"
+                "the length of this array cannot be determined; write it with whole numbers, constants and + - * /"
                     .to_owned(),
             )),
         }
     }
 
-    /// The largest that an expression of whole numbers can be: a sum and a product are no larger than the product of
-    /// their parts, each one more.
+    /// The largest possible value of an integer expression: a sum and a product are no larger than the product of their
+    /// parts, each plus one.
     fn magnitude(&self, first: usize, end: usize, depth: usize) -> Option<u64> {
         let tokens = self.tokens.get(first..end)?;
         let single = tokens.len() == 1;
@@ -286,7 +284,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A whole number as WGSL writes it.
+/// A whole number in the syntax of WGSL.
 fn whole(text: &str) -> Option<u64> {
     let digits = text.trim_end_matches(['u', 'i']);
     match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {

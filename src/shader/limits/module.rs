@@ -1,5 +1,5 @@
-//! Limits on a parsed module: what its values and variables take, how deep its expressions stand on each other,
-//! and how much there is when every call is written out.
+//! Limits on a parsed module: the size of values and variables, the depth of expressions, and the total with every call
+//! inlined.
 
 use naga::{
     Block, Expression, Function, Handle, Module, Span, Statement, Type, TypeInner, front::Typifier,
@@ -11,10 +11,10 @@ use super::Limits;
 type Finding = (Span, String);
 type Result<T> = std::result::Result<T, Finding>;
 
-/// From this size on, bytes, a value counts as more than one step wherever it is read or written.
+/// From this size on, in bytes, reading or writing a value counts as more than one step.
 const LARGE: u32 = 256;
 
-/// Finds the first thing in a module that goes beyond a limit.
+/// The first thing in a module that exceeds a limit.
 pub(super) fn check(module: &Module, limits: &Limits) -> Result<()> {
     constants(module, limits)?;
     let mut private = 0;
@@ -25,7 +25,7 @@ pub(super) fn check(module: &Module, limits: &Limits) -> Result<()> {
             within(private, limits.variable_bytes, span, "bytes of variables of the module")?;
         }
     }
-    // Functions come after those that they call.
+    // Functions come after those they call.
     let mut costs: Vec<Cost> = Vec::with_capacity(module.functions.len());
     for (handle, function) in module.functions.iter() {
         let cost = Walk::new(module, limits, function, &costs).function(module.functions.get_span(handle))?;
@@ -39,7 +39,7 @@ pub(super) fn check(module: &Module, limits: &Limits) -> Result<()> {
 
 fn within(found: u64, most: u64, span: Span, what: &str) -> Result<()> {
     if found > most {
-        return Err((span, format!("up to here there are {found} {what}; at most {most} are allowed")));
+        return Err((span, format!("this makes {found} {what}; at most {most} are allowed")));
     }
     Ok(())
 }
@@ -55,7 +55,7 @@ fn size(module: &Module, limits: &Limits, ty: Handle<Type>, span: Span, what: &s
     }
 }
 
-/// The bytes of a type; none if they are too many to be told.
+/// The bytes of a type; `None` if there are too many to count.
 fn bytes(module: &Module, inner: &TypeInner) -> Option<u32> {
     match inner {
         TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } => Some(4),
@@ -63,7 +63,7 @@ fn bytes(module: &Module, inner: &TypeInner) -> Option<u32> {
     }
 }
 
-/// Constants: their sizes, and how they stand on each other.
+/// Constants: their sizes, and their depth.
 fn constants(module: &Module, limits: &Limits) -> Result<()> {
     let mut depths: Vec<usize> = Vec::with_capacity(module.global_expressions.len());
     for (handle, expression) in module.global_expressions.iter() {
@@ -76,8 +76,10 @@ fn constants(module: &Module, limits: &Limits) -> Result<()> {
         let span = module.global_expressions.get_span(handle);
         // One word of the text may make three expressions.
         if depth + 1 > 4 * limits.chain {
-            let what =
-                format!("this constant stands on {depth} others; at most {} are allowed", 4 * limits.chain);
+            let what = format!(
+                "this constant depends on a chain of {depth} others; at most {} are allowed",
+                4 * limits.chain
+            );
             return Err((span, what));
         }
         depths.push(depth + 1);
@@ -97,7 +99,7 @@ fn constants(module: &Module, limits: &Limits) -> Result<()> {
     Ok(())
 }
 
-/// What a function takes when all calls in it are written out.
+/// The cost of a function with all its calls inlined.
 #[derive(Clone, Copy, Default)]
 struct Cost {
     steps: u64,
@@ -149,7 +151,7 @@ impl<'a> Walk<'a> {
         self.module.global_variables.iter().any(global) || self.module.constants.iter().any(constant)
     }
 
-    /// How expressions stand on each other; each is one step, or as many as its value has words.
+    /// The depth of expressions; each counts one step, or as many as its value has words.
     fn expressions(&mut self, mut large: bool) -> Result<()> {
         let (module, limits, function) = (self.module, self.limits, self.function);
         let span = |handle| function.expressions.get_span(handle);
@@ -161,8 +163,8 @@ impl<'a> Walk<'a> {
             operands(expression, |h| depth = depth.max(depths.get(h.index()).copied().unwrap_or(0)));
             if depth >= limits.values {
                 let what = format!(
-                    "{depth} values stand one on the other here, each calculated from the one before; at most {} are allowed; \
-                     a variable in between begins anew",
+                    "this ends a chain of {depth} values, each calculated from the one before; at most {} are allowed; \
+                     a variable in between starts a new chain",
                     limits.values
                 );
                 return Err((span(handle), what));
@@ -195,7 +197,7 @@ impl<'a> Walk<'a> {
             return Ok(());
         }
         let what = format!(
-            "up to here the function takes {} steps when every call in it is written out, as graphics drivers do; at most {} are allowed",
+            "up to here the function takes {} steps with all calls inlined, as graphics drivers do; at most {} are allowed",
             self.cost.steps, self.limits.steps
         );
         Err((span, what))
@@ -243,7 +245,7 @@ impl<'a> Walk<'a> {
                         self.cost.bytes,
                         self.limits.variable_bytes,
                         *span,
-                        "bytes of variables in this function, with those of the functions that it calls",
+                        "bytes of variables in this function and those it calls",
                     )?;
                 }
                 Statement::ControlBarrier(_)
@@ -257,7 +259,7 @@ impl<'a> Walk<'a> {
                 Statement::SubgroupBallot { .. }
                 | Statement::SubgroupGather { .. }
                 | Statement::SubgroupCollectiveOperation { .. } => {
-                    return Err((*span, "a model cannot ask other invocations of its subgroup".to_owned()));
+                    return Err((*span, "subgroup operations are not available to a model".to_owned()));
                 }
                 _ => {}
             }
@@ -267,7 +269,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Calls with each expression that an expression is made of.
+/// Calls a function with each operand of an expression.
 fn operands(expression: &Expression, mut each: impl FnMut(Handle<Expression>)) {
     use Expression as E;
     match expression {

@@ -1,18 +1,17 @@
-//! Limits on a text before it is parsed: the parser, the lowering and the evaluation of constants call themselves
-//! as deep as expressions, blocks and types are nested, and a chain such as `a + b + c` is a tree as deep as it is
-//! long.
+//! Limits on a text before it is parsed: the parser, the lowering and the evaluation of constants recurse as deep as
+//! expressions, blocks and types are nested, and a chain such as `a + b + c` is a tree as deep as it is long.
 
 use super::{
     Limits, expansion,
     token::{Finding, Kind, Token, tokens},
 };
 
-/// Why a text is refused.
+/// The reason for refusing a text.
 #[derive(Debug)]
 pub(super) enum Refusal {
-    /// For something at a byte.
+    /// Something at a byte.
     At(usize, String),
-    /// For being too much altogether.
+    /// The size of the whole.
     Whole(String),
 }
 
@@ -22,20 +21,17 @@ impl From<Finding> for Refusal {
     }
 }
 
-/// Finds what goes beyond a limit. `binds` tells whether what stands at a byte may declare bindings.
+/// Finds anything beyond a limit. `binds` is true for bytes at which bindings may be declared.
 pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) -> Result<(), Refusal> {
     if text.len() > limits.bytes {
-        let what = format!(
-            "the shader has {} bytes when everything is joined that it is made of; at most {} are allowed",
-            text.len(),
-            limits.bytes
-        );
+        let what =
+            format!("the composed shader has {} bytes; at most {} are allowed", text.len(), limits.bytes);
         return Err(Refusal::Whole(what));
     }
     let tokens = tokens(text, limits.tokens)?.list;
     if tokens.len() > limits.tokens {
         let what = format!(
-            "the shader has more than {} words and signs when everything is joined that it is made of, which none needs",
+            "the composed shader has more than {} words and symbols, the most allowed",
             limits.tokens
         );
         return Err(Refusal::Whole(what));
@@ -49,7 +45,7 @@ pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) 
     }
     if walk.statements > limits.statements {
         let what = format!(
-            "the shader has {} statements when everything is joined that it is made of; at most {} are allowed",
+            "the composed shader has {} statements; at most {} are allowed",
             walk.statements, limits.statements
         );
         return Err(Refusal::Whole(what));
@@ -60,10 +56,10 @@ pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) 
     expansion::check(&tokens, limits)
 }
 
-/// What stands between brackets, or between the bytes of a statement.
+/// A part between brackets, or between the braces of a block.
 struct Group {
     open: u8,
-    /// How deep the trees around are down to here, where there are no braces in between.
+    /// The depth of the enclosing trees down to here, without braces in between.
     above: usize,
     /// The same for brackets, and in braces for blocks.
     nesting: usize,
@@ -73,7 +69,7 @@ struct Group {
     deepest: usize,
     /// The deepest of all before that.
     worst: usize,
-    /// How many `else if` the chain has that is being read.
+    /// The number of `else if` in the chain being read.
     chain: usize,
     /// Values of `case`.
     cases: usize,
@@ -105,9 +101,9 @@ impl Group {
 
 struct Walk<'l> {
     limits: &'l Limits,
-    /// What is open, the innermost last; the first is the file.
+    /// The open groups, the innermost last; the first is the file.
     groups: Vec<Group>,
-    /// Where each condition of the preprocessor began, and how many groups were open.
+    /// The start of each preprocessor condition, and the number of groups open there.
     sections: Vec<(usize, usize)>,
     statements: usize,
 }
@@ -121,7 +117,7 @@ impl Walk<'_> {
             Kind::Open | Kind::TemplateOpen => self.open(token)?,
             Kind::Close if token.text == "}" => self.close_block(token)?,
             Kind::Close | Kind::TemplateClose => self.close(token)?,
-            // An assignment is no part of an expression.
+            // An assignment is not part of an expression.
             Kind::Operator if token.text == "=" => {}
             Kind::Operator | Kind::Dot => self.operator(token)?,
             Kind::Comma => {
@@ -178,7 +174,7 @@ impl Walk<'_> {
 
     fn open(&mut self, token: Token) -> Result<(), Finding> {
         let group = self.innermost();
-        // A call, an index and a list of template arguments are operators on what stands before.
+        // A call, an index and a list of template arguments are operators on what precedes them.
         group.operators += 1;
         let above = group.above + group.operators;
         let nesting = if group.open == b'{' { 1 } else { group.nesting + 1 };
@@ -193,7 +189,7 @@ impl Walk<'_> {
     }
 
     fn close(&mut self, token: Token) -> Result<(), Finding> {
-        // Brackets that do not match are told by the parser, which reads no further.
+        // Mismatched brackets are reported by the parser, which reads no further.
         if self.innermost().open == b'{' || self.in_section(1) {
             return self.unbalanced(token);
         }
@@ -236,17 +232,17 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// True if closing so many groups would close one from before the condition that is open.
+    /// True if closing so many groups would close one from before the open condition.
     fn in_section(&self, closed: usize) -> bool {
         self.sections.last().is_some_and(|(_, open)| self.groups.len() < open + closed)
     }
 
-    /// What may only be hidden from the parser must not hide depth from us.
+    /// Code hidden from the parser must not hide depth here.
     fn unbalanced(&self, token: Token) -> Result<(), Finding> {
         if self.sections.is_empty() {
             return Ok(());
         }
-        Err((token.at, "this closes a bracket from before a condition that is still open: its #endif is missing, or it does not close its own brackets".to_owned()))
+        Err((token.at, "this closes a bracket from before an open condition: its #endif is missing, or it does not close its own brackets".to_owned()))
     }
 
     fn directive(&mut self, token: Token) -> Result<(), Finding> {
@@ -255,13 +251,10 @@ impl Walk<'_> {
             self.sections.push((token.at, open));
         } else if token.text.starts_with("else") || token.text.starts_with("endif") {
             let Some(&(_, began)) = self.sections.last() else {
-                return Err((
-                    token.at,
-                    format!("there is no condition that this #{} belongs to", token.text),
-                ));
+                return Err((token.at, format!("this #{} has no condition before it", token.text)));
             };
             if open != began {
-                let what = "the brackets since the condition began are not closed here; each part of a condition must close its own";
+                let what = "brackets opened in this condition are not closed; each part of a condition must close its own";
                 return Err((token.at, what.to_owned()));
             }
             if token.text.starts_with("endif") {
@@ -286,40 +279,37 @@ impl Walk<'_> {
             return Ok(());
         }
         let what = format!(
-            "this expression has {depth} operators and brackets on one way through it; at most {most} are allowed; put parts of it into variables"
+            "this expression has {depth} operators and brackets on one path; at most {most} are allowed; put parts of it into variables"
         );
         Err((token.at, what))
     }
 }
 
-/// Refuses what models may not have: memory, since what they need comes in as parameters; `discard`, since they do not
-/// only draw pixels; and constants that somebody sets from outside.
+/// Refuses features not available to models: memory, since their input comes as parameters; `discard`, since they do
+/// not only draw pixels; and constants set from outside.
 fn resource(tokens: &[Token], i: usize, binds: impl Fn(usize) -> bool) -> Result<(), Finding> {
     let token = tokens[i];
     if token.kind == Kind::Word && matches!(token.text, "discard" | "override") && !binds(token.at) {
-        let instead =
-            if token.text == "discard" { "return what is reflected, or nothing" } else { "write const" };
+        let instead = if token.text == "discard" { "return zero instead" } else { "write const" };
         return Err((token.at, format!("`{}` is not available to a model; {instead}", token.text)));
     }
     let next = |n: usize| tokens.get(i + n).map_or("", |t| t.text);
     if matches!(token.text, "var" | "ptr") && next(1) == "<" {
         let space = next(2);
         if space == "workgroup" {
-            let what =
-                "memory of a workgroup is not available to a model; use var<private> or a local variable";
+            let what = "workgroup memory is not available to a model; use var<private> or a local variable";
             return Err((token.at, what.to_owned()));
         }
         let own = token.text == "ptr" || matches!(space, "private" | "function");
         if !own && !binds(token.at) {
-            let what =
-                format!("var<{space}> is not available to a model; what it needs comes in as parameters");
+            let what = format!("var<{space}> is not available to a model; its input comes as parameters");
             return Err((token.at, what));
         }
     }
     let attribute = i > 0 && tokens[i - 1].kind == Kind::Attribute;
     if attribute && token.text == "binding" && !binds(token.at) {
         let what = format!(
-            "@binding({}) is not there: a model has no buffers and textures of its own; what it needs comes in as parameters",
+            "@binding({}) is not available to a model: it has no buffers or textures; its input comes as parameters",
             next(2)
         );
         return Err((tokens[i - 1].at, what));
@@ -383,11 +373,11 @@ mod tests {
         assert_eq!(said("#ifdef A\nfn f() { x = (1); }\n#else\nfn f() { }\n#endif\n"), "");
         assert_eq!(said("fn f() {\n#ifdef A\n x = (1);\n#endif\n}"), "");
         for (text, what) in [
-            ("fn f() { x = (\n#ifdef A\n)\n#endif\n1); }", "from before a condition"),
-            ("fn f() {\n#ifdef A\n}\n#endif\n}", "from before a condition"),
+            ("fn f() { x = (\n#ifdef A\n)\n#endif\n1); }", "from before an open condition"),
+            ("fn f() {\n#ifdef A\n}\n#endif\n}", "from before an open condition"),
             ("#ifdef A\nfn f() { x = (\n#else\n#endif", "must close its own"),
             ("#ifdef A\nfn f() { }", "has no #endif"),
-            ("fn f() { }\n#endif", "no condition"),
+            ("fn f() { }\n#endif", "has no condition before it"),
             ("/* */ # ifdef A\nfn f() { }", "has no #endif"),
             ("#ifdef A /*\n#endif */", "has no #endif"),
             ("#define A \"\n/* \"", "not closed"),
@@ -417,16 +407,16 @@ mod tests {
         for (text, what) in [
             ("fn f() { var a: array<f32, 5000>; }", "up to 5000 elements"),
             ("const N = 100; fn f() { var a: array<f32, N * N>; }", "elements"),
-            ("fn f() { var a: array<f32, 1 << 20>; }", "cannot be told"),
-            ("fn f() { var a: array<f32, u32(1.0 / 0.00001)>; }", "cannot be told"),
-            ("fn f() { let y = a[0]; } const a = array<array<array<f32, 99>, 99>, 99>();", "words when all"),
-            ("alias A = array<f32, 999>; alias B = array<A, 999>;", "words when all"),
+            ("fn f() { var a: array<f32, 1 << 20>; }", "cannot be determined"),
+            ("fn f() { var a: array<f32, u32(1.0 / 0.00001)>; }", "cannot be determined"),
+            ("fn f() { let y = a[0]; } const a = array<array<array<f32, 99>, 99>, 99>();", "this expands to"),
+            ("alias A = array<f32, 999>; alias B = array<A, 999>;", "this expands to"),
             (&chain, "a chain of 65"),
-            (&doubled, "words when all"),
+            (&doubled, "this expands to"),
         ] {
             assert!(said(text).contains(what), "{text}\n{}", said(text));
         }
-        // What uses itself is told by the parser.
+        // The parser reports a declaration that uses itself.
         assert_eq!(said("const A = B; const B = A; fn f() { f(); }"), "");
     }
 }

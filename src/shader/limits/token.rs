@@ -1,18 +1,18 @@
-//! The tokens of a WGSL text, as far as limits need them: flat, in one pass, whatever the text is worth.
+//! The tokens of a WGSL text, as far as limits need them: flat, in one pass, for any text.
 //!
-//! Comments are left out as naga and the preprocessor leave them out, and characters on which the two differ are
-//! refused, so that nothing is hidden here that shows there.
+//! Comments are skipped as naga and the preprocessor skip them, and characters on which the two disagree are refused,
+//! so nothing visible to them is hidden here.
 
 use std::ops::ControlFlow;
 
-/// A piece of text that is one thing.
+/// A token of the text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token<'a> {
     pub kind: Kind,
     pub text: &'a str,
-    /// The byte where it stands.
+    /// Its first byte.
     pub at: usize,
-    /// Of the beginning of a template list, the number of the token that ends it.
+    /// For the start of a template list, the number of the token that ends it.
     pub end: usize,
 }
 
@@ -41,13 +41,13 @@ pub(super) enum Kind {
 /// The longest name, bytes.
 const LONGEST_WORD: usize = 256;
 
-/// What is wrong at a byte.
+/// A problem at a byte.
 pub(super) type Finding = (usize, String);
 
 /// The tokens of a text.
 pub(super) struct Tokens<'a> {
     pub list: Vec<Token<'a>>,
-    /// Where a comment begins that is not closed.
+    /// The start of an unclosed comment.
     pub open_comment: Option<usize>,
 }
 
@@ -65,7 +65,7 @@ struct Scanner<'a> {
     open_comment: Option<usize>,
 }
 
-/// The tokens of a text, at most so many and one.
+/// The tokens of a text, at most one more than a limit.
 pub(super) fn tokens(text: &str, most: usize) -> Result<Tokens<'_>, Finding> {
     let mut scanner = Scanner {
         text,
@@ -118,7 +118,8 @@ impl<'a> Scanner<'a> {
         }
         self.line_begins = false;
         let Some(kind) = self.advance() else {
-            let what = "this character is invisible and separates lines or words; write a space or an ordinary line end instead";
+            let what =
+                "this invisible character separates lines or words; use a space or an ordinary line end";
             return ControlFlow::Break((start, what.to_owned()));
         };
         if self.directive {
@@ -162,14 +163,14 @@ impl<'a> Scanner<'a> {
         self.tokens.push(Token { kind, text, at: start, end: 0 });
     }
 
-    /// What stands within the innermost brackets cannot begin a template list any more.
+    /// The code within the innermost brackets can no longer begin a template list.
     fn drop_pending(&mut self) {
         while self.pending.last().is_some_and(|(_, brackets)| *brackets >= self.brackets) {
             self.pending.pop();
         }
     }
 
-    /// Goes behind the next token; none on a character that is none.
+    /// Advances past the next token; `None` at a character that is no token.
     fn advance(&mut self) -> Option<Kind> {
         let (first, second) = (self.byte(0), self.byte(1));
         let closes = self.pending.last().is_some_and(|(_, brackets)| *brackets == self.brackets);
@@ -241,7 +242,7 @@ impl<'a> Scanner<'a> {
         let line = &rest[..rest.find('\n').unwrap_or(rest.len())];
         let seen = line.trim_end_matches('\r');
         if let Some(at) = seen.find(|c| matches!(c, '\u{b}' | '\u{c}' | '\r') || separates(c) && !joins(c)) {
-            let what = "this character ends the comment in WGSL although the line goes on; write an ordinary line end";
+            let what = "this character ends the comment in WGSL although the line continues; use an ordinary line end";
             return ControlFlow::Break((self.at + at, what.to_owned()));
         }
         self.at += line.len();
@@ -274,7 +275,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// The preprocessor takes no comment between quotation marks for one.
+    /// The preprocessor ignores comments between quotation marks.
     fn quotation(&mut self) -> ControlFlow<Finding> {
         let rest = &self.text[self.at + 1..];
         let line = &rest[..rest.find('\n').unwrap_or(rest.len())];

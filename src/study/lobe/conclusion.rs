@@ -11,7 +11,7 @@ use crate::study::fixed;
 /// A lobe narrower than this is very shiny: the highlight of a lamp is about a degree wide.
 const SHINY: f64 = 0.02;
 
-/// The fits that the conclusion is drawn from.
+/// The fits on which the conclusion is based.
 pub(super) struct Conclusion<'a> {
     pub(super) paints: &'a Paints,
     pub(super) merl: &'a Merl,
@@ -98,7 +98,7 @@ impl Conclusion<'_> {
         html! {
         p {
             "Acryl blue is nearly matte in this data: the errors of Blinn–Phong and GGX are " (fixed(acryl[0], 3)) " and " (fixed(acryl[1], 3)) ". "
-            @if (acryl[0] - acryl[1]).abs() < 0.02 { "The shape of a highlight that is hardly there decides nothing." }
+            @if (acryl[0] - acryl[1]).abs() < 0.02 { "The shape of a barely visible highlight decides nothing." }
         }
         }
     }
@@ -152,7 +152,7 @@ impl Conclusion<'_> {
                     "For " (short_better) " of the " (worse.len()) " Cook–Torrance is better than GGX, too: their lobes fall off faster than GGX’s, which a short tail fits. "
                 }
             }
-            "The microfacet models had one choice more, that of F. With F for n = 1.5 throughout, the median error of GGX is " (fixed(bound_median, 2)) ", and it is better than Blinn–Phong for " (bound_better) " of " (fits.len()) "."
+            "The microfacet models had one more choice, that of F. With F for n = 1.5 throughout, the median error of GGX is " (fixed(bound_median, 2)) ", and it is better than Blinn–Phong for " (bound_better) " of " (fits.len()) "."
         }
         }
     }

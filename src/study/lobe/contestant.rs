@@ -1,4 +1,4 @@
-//! The models that take part in the comparison of lobes, and their fits.
+//! The models in the comparison of lobes, and their fits.
 
 use crate::{
     optics::{Frame, colour::Encoding, equivalence},
@@ -12,10 +12,10 @@ use crate::{
     },
 };
 
-/// Widths that are tried.
+/// The widths tried.
 const WIDTHS: (f64, f64) = (0.002, 1.0);
 
-/// A model that takes part: its specular lobe with a free width.
+/// A model in the comparison: its specular lobe with a free width.
 pub(in crate::study) struct Contestant {
     pub(in crate::study) name: &'static str,
     id: &'static str,
@@ -75,7 +75,7 @@ impl Contestant {
         ]
     }
 
-    /// Microfacet models that differ in nothing but the distribution.
+    /// Microfacet models that differ only in the distribution.
     pub(super) fn distributions() -> Vec<Self> {
         let smith = "smith_height_correlated";
         vec![
@@ -115,7 +115,7 @@ impl Contestant {
         fit::fit(samples, WIDTHS, |width, samples| self.lobe(registry, &self.settings, width, samples))
     }
 
-    /// The best fit and its settings; for models that have one, with the Fresnel term that fits better.
+    /// The best fit and its settings; with the better Fresnel term for models with that choice.
     pub(super) fn fit_freely(&self, registry: &Registry, samples: &[Sample]) -> Found {
         let first = self.fit(registry, samples);
         let bound = first.error;
@@ -147,7 +147,7 @@ impl Contestant {
 /// The fit of a contestant to a material.
 pub(super) struct Found {
     pub(super) fit: Fit,
-    /// The settings that it took.
+    /// The chosen settings.
     pub(super) settings: Vec<Setting>,
     /// The error without a choice of the Fresnel term.
     pub(super) bound: f64,

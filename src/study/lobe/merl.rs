@@ -1,4 +1,4 @@
-//! Materials of the MERL database: the fits to them, a table, a chart by material, and lobes of four of them.
+//! Materials of the MERL database: the fits to them, a table, a chart by material, and the lobes of four of them.
 
 use maud::{Markup, html};
 use rayon::prelude::*;
@@ -20,13 +20,13 @@ use crate::{
     },
 };
 
-/// A material of which a constant is nearer than this has no lobe.
+/// A material closer than this to a constant has no lobe.
 const MATTE: f64 = 0.01;
-/// The materials of which lobes are shown.
+/// The materials whose lobes are shown.
 const SHOWN: [&str; 4] = ["gold-metallic-paint", "alum-bronze", "red-plastic", "blue-acrylic"];
 
-/// Directions for the fits of MERL materials, dense about the mirror direction as the database is: by the
-/// half vector and the difference of light and half vector (S. Rusinkiewicz 1998).
+/// Directions for the fits of MERL materials, dense about the mirror direction like the database: by the half vector
+/// and the difference of light and half vector (S. Rusinkiewicz 1998).
 fn merl_directions() -> Vec<Sample> {
     let mut samples = Vec::new();
     for i in 0..26u8 {
@@ -55,7 +55,7 @@ fn merl_directions() -> Vec<Sample> {
 /// The fits of all contestants to a material.
 pub(super) struct MerlFit {
     pub(super) name: &'static str,
-    /// Of each contestant.
+    /// One per contestant.
     pub(super) fits: Vec<Found>,
     /// The error of a matte surface.
     matte: f64,
@@ -97,7 +97,7 @@ fn median(mut all: Vec<f64>) -> f64 {
 pub(super) struct Merl {
     pub(super) contestants: Vec<Contestant>,
     pub(super) fits: Vec<MerlFit>,
-    /// The number of materials without a specular part: they have no lobe to compare, and no fit here.
+    /// The number of materials without a specular part, which have no lobe to compare and no fit.
     pub(super) flat: usize,
     /// The number of pairs of directions of a fit.
     pub(super) directions: usize,
@@ -125,7 +125,7 @@ impl Merl {
         self.contestants.len() - 1
     }
 
-    /// The number of materials for which a contestant is the best. A tie is no win.
+    /// The number of materials for which a contestant is the best. Ties do not count.
     pub(super) fn best(&self, i: usize) -> usize {
         let wins = |f: &&MerlFit| (0..self.contestants.len()).all(|j| j == i || f.error(i) < f.error(j));
         self.fits.iter().filter(wins).count()
@@ -207,7 +207,7 @@ impl Merl {
         lab.table(
             &html! {
                 "Fits to " (fits.len()) " materials of the MERL database, as represented by the SGD fits of Bagher et al. (2012): median of the log error, the number of materials for which the model is the best of the four, "
-                "and for which it is better than Blinn–Phong; a tie is no win. "
+                "and for which it is better than Blinn–Phong; ties do not count. "
                 @if self.flat > 0 { (self.flat) " more materials without a specular part, which every model fits exactly, are not counted." }
             },
             &["Model", "free numbers", "median error", "best for", "better than Blinn–Phong"],
@@ -239,11 +239,11 @@ impl Merl {
             size: (720, 400),
             legend: true,
         };
-        let caption = html! { "Error of the four models for each material, sorted. Logarithmic axis; it holds every point." @if self.flat > 0 { " The " (self.flat) " materials without a specular part have error 0 and no place on it." } };
+        let caption = html! { "Error of the four models for each material, sorted. Logarithmic axis; it holds every point." @if self.flat > 0 { " The " (self.flat) " materials without a specular part have error 0 and are not shown." } };
         Ok(lab.figure(&svg(&chart)?, &caption))
     }
 
-    /// The lobes of some materials; none if the study has left all of them out.
+    /// The lobes of some materials; `None` if the study has skipped all of them.
     fn panels(&self, lab: &mut Lab) -> Result<Option<Markup>, StudyError> {
         let mut panels = Vec::new();
         for name in SHOWN {

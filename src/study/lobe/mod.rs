@@ -76,8 +76,8 @@ fn five_lobes(lab: &mut Lab) -> Result<Markup, StudyError> {
         },
         &html! {
             "Black plastic under one lamp: five lobes of the same roughness (α = 0.15, n = 87). "
-            @if lower.is_empty() { "All have the same height. " } @else { "All have the same height but those that reach less of it: " (lower.join("; ")) ". " }
-            "They differ in their tails: GGX and GTR glow on where Blinn–Phong and Beckmann are dark. Scene "
+            @if lower.is_empty() { "All have the same height. " } @else { "All have the same height except those that reach less of it: " (lower.join("; ")) ". " }
+            "They differ in their tails: GGX and GTR still glow where Blinn–Phong and Beckmann are dark. Scene "
             code { "lobe_shape.json" } "."
         },
     ))
@@ -86,19 +86,19 @@ fn five_lobes(lab: &mut Lab) -> Result<Markup, StudyError> {
 fn question_and_method(merl: &Merl) -> Markup {
     html! {
         h3 { "Question" }
-        p { "Which model’s highlight has the shape of the highlights of real surfaces, when each is allowed its best parameters?" }
+        p { "Which model’s highlight has the shape of real highlights, each with its best parameters?" }
         h3 { "Method" }
         p { "Every model is fitted with three free numbers, the diffuse reflectance d, a scale s and the width α of its own specular lobe:" }
         p .equation { span { "f(l, v) = d/π + s · lobe(l, v; α)." } }
         p {
-            "What is minimised is the root mean square of ln f − ln f" sub { "data" } " over all pairs of directions, the log error. For each width, d and s are found by Levenberg’s method; the width by "
+            "The fit minimises the root mean square of ln f − ln f" sub { "data" } " over all pairs of directions, the log error. For each width, d and s are found by Levenberg’s method; the width by "
             "search (" code { "study::fit" } "). The lobe is the specular term of the program’s custom models: " code { "blinn_phong" } " (its response divided by π cos θ; n from α), " code { "ward" } ", and " code { "microfacet" }
             " as Cook–Torrance (Beckmann, V-cavities) and as GGX (Smith’s height-correlated masking)."
         }
         p {
-            "Data are, first, three paints that were measured at Cornell University, in the band in which each is brightest. Directions beyond " (LARGEST_ANGLE) "° are left out, since the measurement is unreliable there. "
+            "Data are, first, three paints measured at Cornell University, each in its brightest band. Directions beyond " (LARGEST_ANGLE) "° are left out, since the measurement is unreliable there. "
             "Second, the materials of the MERL database, not as measured but as represented by published fits of the SGD model, evaluated at " (merl.directions)
-            " pairs of directions that crowd about the mirror direction as the database does (luminance). "
+            " pairs of directions concentrated about the mirror direction like the database (luminance). "
             @if merl.flat > 0 { "Of the " (merl.flat + merl.fits.len()) " materials " (merl.flat) " are left out, because their SGD fit has no specular part. " }
             "The microfacet models may choose here between the Fresnel term for n = 1.5 and none, because metals need the latter."
         }

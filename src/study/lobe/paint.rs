@@ -14,7 +14,7 @@ use crate::{
     },
 };
 
-/// Beyond, measurements are unreliable and differ in reciprocity.
+/// Measurements beyond are unreliable and violate reciprocity.
 pub(super) const LARGEST_ANGLE: f32 = 71.0;
 /// The paints: id, name.
 pub(in crate::study) const PAINTS: [(&str, &str); 3] =
@@ -22,8 +22,8 @@ pub(in crate::study) const PAINTS: [(&str, &str); 3] =
 /// Angles of the light in the plots of paints, degrees.
 const INCIDENCES: [f32; 2] = [40.0, 60.0];
 
-/// The samples of a paint that count: in its brightest band, at no grazing angle, and with the light at an angle
-/// that `keep` accepts.
+/// The samples of a paint for the fits: in its brightest band, away from grazing angles, and with the light at an angle
+/// accepted by `keep`.
 pub(in crate::study) fn paint_samples(
     id: &str,
     keep: impl Fn(f32) -> bool,
@@ -78,8 +78,8 @@ impl Paints {
         let krylon = lab.figure(
             &plots(lab, 0)?,
             &html! {
-                "Krylon blue paint in the plane of incidence: measured values and the fits of the table, which are made to all directions of light and viewer and not to these alone. "
-                "A model may be far off in one plane and near elsewhere. The log error over all viewers is " (self.errors_by_incidence(lab, 0)?) ". Logarithmic axis."
+                "Krylon blue paint in the plane of incidence: measured values and the fits of the table, which cover all directions of light and viewer, not only these. "
+                "A model may be far off in one plane and close elsewhere. The log error over all viewers is " (self.errors_by_incidence(lab, 0)?) ". Logarithmic axis."
             },
         );
         let garnet = lab.figure(
@@ -103,7 +103,7 @@ impl Paints {
             .collect();
         lab.table(
             &html! {
-                "Log error of fits to three measured paints (1001 pairs of directions each, up to " (LARGEST_ANGLE) "°, brightest band), and the widths α that were found. "
+                "Log error of fits to three measured paints (1001 pairs of directions each, up to " (LARGEST_ANGLE) "°, brightest band), and the fitted widths α. "
                 "The last three rows are one microfacet model with three distributions; Fresnel term for n = 1.5."
             },
             &["Model", "free numbers", "Krylon blue", "Garnet red", "Acryl blue", "α Krylon", "α Garnet", "α Acryl"],
@@ -207,7 +207,7 @@ mod tests {
     use super::*;
     use crate::{registry::Registry, study::Settings};
 
-    /// Errors that were found by another program with other means (a general least-squares solver).
+    /// Errors found by another program with other means (a general least-squares solver).
     #[test]
     fn the_paints_have_the_shape_that_others_found() {
         let registry = Registry::builtin();

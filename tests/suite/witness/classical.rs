@@ -1,5 +1,4 @@
-//! The classical models, and the two highlights of the *Commonality Analysis*, whose lobes other programs
-//! have too.
+//! The classical models, and the two highlights of the *Commonality Analysis*, whose lobes other programs share.
 
 use std::f64::consts::{LN_2, PI};
 
@@ -119,7 +118,7 @@ fn narrow_lobes_have_the_height_and_width_of_the_formula() {
         // Light at 30°, view off the mirror direction by the tilt in its plane; H off N by half of it.
         let off = tilt.to_radians();
         let expected = (n + 2.0) / (2.0 * PI) * off.cos().powf(n);
-        // Of directions in f32 the angle is sure to 3e-8, of which the power makes n · off · 3e-8.
+        // For directions in f32 the angle is accurate to 3e-8, which the power multiplies to n · off · 3e-8.
         let noise = 1e-5 + 2.0 * n * off * 6e-8;
         assert_near(at(&modified_phong(1.0, 1e6), 30.0, 30.0 + tilt, 180.0), expected, noise);
         let exact = (n + 2.0) * (n + 4.0) / (8.0 * PI * n);
@@ -178,7 +177,7 @@ fn lommel_seeliger_reflects_what_its_closed_form_says() {
     for (i, r) in [(0.0f64, 0.0f64), (30.0, 60.0), (80.0, 85.0), (5.0, 89.0)] {
         let cosines = i.to_radians().cos() + r.to_radians().cos();
         assert_near(at(&surface, i, r, 77.0), 1.0 / (2.0 * PI * cosines), 1e-5);
-        // With w/4π for 1/2π, as a single scatterer of albedo 1 would have it.
+        // With w/4π for 1/2π, for a single scatterer of albedo 1.
         assert!(!near(at(&surface, i, r, 77.0), 1.0 / (4.0 * PI * cosines), 0.1));
     }
     for mu in [1.0f64, 0.6, 0.1] {
@@ -287,7 +286,7 @@ fn hapke_is_what_was_published_at_all_angles() {
                 let (i, e) = (f64::to_radians(i), f64::to_radians(e));
                 let got = f64::from(brdf(surface, l, v, &LOCAL).x);
                 let expected = published_hapke(surface, i, e, g);
-                // The azimuth, which the published form takes from the phase angle, is sure to some 1e-6.
+                // The azimuth, which the published form derives from the phase angle, is accurate to some 1e-6.
                 assert!(near(got, expected, 1e-4), "{n} at {i} {e} {phi}: {got} is not {expected}");
                 let wrong = Hapke { mean_slope: surface.mean_slope + 0.1, ..*surface };
                 told_apart |= !near(got, published_hapke(&wrong, i, e, g), 1e-4);
@@ -348,7 +347,7 @@ fn strauss_is_what_was_published_at_all_angles() {
         }
         assert!(told_apart, "{surface:?}: k_g = 1.02 goes unnoticed");
     }
-    // A mirror without end is left out: at s = 1 the highlight is finite.
+    // A perfect mirror is omitted: at s = 1 the highlight is finite.
     let mirror = Strauss { base_colour, smoothness: 1.0, metallic: 1.0, transparency: 0.0 };
     assert_near(at(&mirror, 0.0, 0.0, 0.0), f64::from(base_colour.x) / PI, 1e-5);
 }

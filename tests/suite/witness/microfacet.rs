@@ -175,13 +175,13 @@ fn anisotropic_lobes_are_those_of_bbm_but_for_its_masking() {
     assert!(rows.iter().any(|row| !near(f(alpha.yx(), row), row.f[0], 1e-2)), "the wrong twin passes");
 }
 
-/// Mitsuba turns measured spectra of n and k into three numbers in a way of its own. There is one pair
-/// (n, k) for each channel with which all its rows follow, and none with another lobe.
+/// Mitsuba converts measured spectra of n and k to three numbers in its own way. One pair (n, k) per channel matches
+/// all its rows with this lobe, and none with another lobe.
 #[test]
 fn metals_of_mitsuba_are_conductors_with_one_pair_of_constants() {
     let misfit = |rows: &[Row], d: u32, alpha: [f32; 2], channel: usize| {
         let lobe = microfacet(d, SEPARABLE, NONE, alpha, 1.5);
-        // Rows far in the tails say more of the noise than of F.
+        // Rows far in the tails reveal more about noise than about F.
         let reflectances: Vec<(f32, f64)> = rows
             .iter()
             .filter(|row| row.f[channel] > 1e-3)

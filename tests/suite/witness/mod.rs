@@ -1,5 +1,5 @@
-//! Every model against values that other programs calculated (`tests/data/golden/`), and against closed
-//! forms. One file for each group of models.
+//! Every model against values calculated by other programs (`tests/data/golden/`), and against closed forms. One file
+//! for each group of models.
 
 mod classical;
 mod microfacet;
@@ -13,10 +13,9 @@ use lights_camera_models::{
     reflection::{Surface, brdf},
 };
 
-/// One value of another program: the BRDF in sr⁻¹ without the cosine, or the bare factor that the row is
-/// named after.
+/// One value of another program: the BRDF in sr⁻¹ without the cosine, or the bare factor that the row is named after.
 pub struct Row {
-    /// What the program was asked, in its own words.
+    /// The program's input, in its own words.
     pub params: String,
     /// Unit vector to the light, in the local frame: normal +z, tangent +x.
     pub l: Vec3,
@@ -73,12 +72,12 @@ fn cells(line: &str) -> Vec<String> {
     cells
 }
 
-/// Whether two values are equal up to `tolerance`, relative; values below 1e-7 count as zero.
+/// True if two values are equal up to `tolerance`, relative; values below 1e-7 count as zero.
 pub fn near(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * a.abs().max(b.abs()) + 1e-7
 }
 
-/// Asserts that a surface has the BRDF of every row, and that `wrong` has not.
+/// Asserts that a surface has the BRDF of every row, and that `wrong` does not.
 pub fn assert_rows(rows: &[Row], surface: &dyn Surface, wrong: &dyn Surface, tolerance: f64) {
     let f = |surface: &dyn Surface, row: &Row| brdf(surface, row.l, row.v, &LOCAL).to_array().map(f64::from);
     let same = |a: [f64; 3], b: [f64; 3]| (0..3).all(|i| near(a[i], b[i], tolerance));

@@ -1,8 +1,8 @@
 //! Torrance–Sparrow, Cook–Torrance, metallic–roughness and Disney.
 //!
-//! Rows that are left out, since nothing here is defined like them: Mitsuba's `roughplastic` (light that is
-//! scattered below and leaves through the surface again) and the last set of its `principled` (its clear
-//! coat has another strength and distribution).
+//! Omitted rows, since nothing here is defined like them: Mitsuba's `roughplastic` (light that is scattered below and
+//! leaves through the surface again) and the last set of its `principled` (its clear coat has another strength and
+//! distribution).
 
 use std::f64::consts::{PI, TAU};
 
