@@ -7,6 +7,7 @@ use std::{
 
 use thiserror::Error;
 
+pub use crate::registry::Folders;
 use crate::{
     custom::{self, file},
     files::{self, FileError},
@@ -48,15 +49,6 @@ pub enum AssetError {
         /// What the system says.
         error: io::Error,
     },
-}
-
-/// Where shaders and custom models are read from.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Folders {
-    /// The folder whose files replace the built-in shaders; none when those are used.
-    pub shaders: Option<PathBuf>,
-    /// The folder whose files are custom models. It need not exist yet.
-    pub models: Option<PathBuf>,
 }
 
 /// What surrounds the process: where folders are looked for when none is named.

@@ -12,6 +12,7 @@
 //! ```
 
 pub mod compose;
+mod folders;
 
 use std::{
     collections::{BTreeMap, HashSet},
@@ -20,6 +21,9 @@ use std::{
 };
 
 use bevy::ecs::resource::Resource;
+
+pub use folders::Folders;
+pub(crate) use folders::MODELS;
 
 use crate::{
     light::{self, LightEntry, LightType, MAX_LIGHT_PARAMETERS},
@@ -116,7 +120,7 @@ pub enum Extent {
 
 /// The file of a custom model.
 #[derive(Clone, Debug)]
-struct CustomSource {
+struct CustomFile {
     path: PathBuf,
     extent: Extent,
 }
@@ -124,13 +128,10 @@ struct CustomSource {
 /// What is known of files: shaders and custom models.
 #[derive(Clone, Debug, Default)]
 struct Files {
-    /// The folder that shaders were read from.
-    shaders: Option<PathBuf>,
-    /// The folder that custom models were read from.
-    models: Option<PathBuf>,
-    /// The files by the id of their model.
-    own: BTreeMap<&'static str, CustomSource>,
-    /// By id why a file gives no model.
+    folders: Folders,
+    /// The files of custom models, by id.
+    custom: BTreeMap<&'static str, CustomFile>,
+    /// The mistakes of files that give no model, by id.
     broken: BTreeMap<String, String>,
     /// The state of each file whose declaration was looked for, at that time.
     seen: BTreeMap<PathBuf, Print>,
@@ -210,60 +211,66 @@ impl Registry {
         &mut self.sources
     }
 
-    /// Notes where shaders are read from.
-    pub fn set_shader_folder(&mut self, folder: &Path) {
-        self.files_mut().shaders = Some(folder.to_owned());
+    /// The folders that shaders and custom models are read from.
+    #[must_use]
+    pub fn folders(&self) -> &Folders {
+        &self.files.folders
     }
 
-    /// The file on disk of a source that messages call by its path, if it was read from one.
+    /// Notes the folder that shaders are read from.
+    pub fn set_shader_folder(&mut self, folder: &Path) {
+        self.files_mut().folders.shaders = Some(folder.to_owned());
+    }
+
+    /// The existing file behind a source path.
     #[must_use]
     pub fn path_on_disk(&self, source: &str) -> Option<PathBuf> {
-        let own = self
+        let custom = self
             .custom_models()
             .find(|(m, _)| m.declaration.wgsl.path == source)
             .map(|(_, path)| path.to_owned());
-        let below = |folder: &Option<PathBuf>, file: &str| {
-            Some(folder.as_ref()?.join(file)).filter(|path| path.is_file())
-        };
-        let models = || below(&self.files.models, source.strip_prefix("models/")?);
-        own.or_else(models).or_else(|| below(&self.files.shaders, source))
+        let below_shaders = || Some(self.folders().shaders.as_ref()?.join(source));
+        custom.or_else(|| {
+            let files = [self.folders().file_of(source), below_shaders()];
+            files.into_iter().flatten().find(|file| file.is_file())
+        })
     }
 
     /// Makes a model from a file known, with its text. A second one with the same id replaces the first, in its
     /// place.
     pub fn put_custom_model(&mut self, model: CustomModel) {
         self.sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
-        self.put_own(model, Extent::Whole);
+        self.put_custom(model, Extent::Whole);
     }
 
     /// Makes a model from a file known whose text is no good yet: the text that is known stays, and where there is
     /// none a stand-in is drawn.
     pub fn put_stand_in(&mut self, model: CustomModel) {
-        self.put_own(model, Extent::StandIn);
+        self.put_custom(model, Extent::StandIn);
     }
 
     /// Makes a model from a file known of which only the declaration was read. A stand-in is drawn until the rest is
     /// read, which [`wants_reading`](Self::wants_reading) asks for.
     pub fn put_declared(&mut self, model: CustomModel) {
         self.sources.forget(model.entry.declaration.wgsl.path);
-        self.put_own(model, Extent::Declaration);
+        self.put_custom(model, Extent::Declaration);
     }
 
-    fn put_own(&mut self, model: CustomModel, extent: Extent) {
+    fn put_custom(&mut self, model: CustomModel, extent: Extent) {
         let id = model.entry.declaration.id;
         let files = self.files_mut();
         files.broken.remove(id);
-        files.own.insert(id, CustomSource { path: model.path, extent });
+        files.custom.insert(id, CustomFile { path: model.path, extent });
         put(&mut self.models, model.entry, |m| m.declaration.id);
     }
 
     /// Puts the custom models in the order of their ids, whichever was read first.
     pub(crate) fn sort_custom_models(&mut self) {
-        let is_own = |m: &ModelEntry| self.files.own.contains_key(m.declaration.id);
-        let places: Vec<_> = (0..self.models.len()).filter(|i| is_own(&self.models[*i])).collect();
-        let mut own: Vec<_> = places.iter().map(|i| self.models[*i].clone()).collect();
-        own.sort_by_key(|m| m.declaration.id);
-        for (place, model) in places.into_iter().zip(own) {
+        let is_custom = |m: &ModelEntry| self.files.custom.contains_key(m.declaration.id);
+        let places: Vec<_> = (0..self.models.len()).filter(|i| is_custom(&self.models[*i])).collect();
+        let mut custom: Vec<_> = places.iter().map(|i| self.models[*i].clone()).collect();
+        custom.sort_by_key(|m| m.declaration.id);
+        for (place, model) in places.into_iter().zip(custom) {
             self.models[place] = model;
         }
     }
@@ -276,7 +283,7 @@ impl Registry {
     pub fn remove_model(&mut self, id: &str) {
         let Some(at) = self.models.iter().position(|m| m.declaration.id == id) else { return };
         let model = self.models.remove(at);
-        if self.files_mut().own.remove(id).is_some() {
+        if self.files_mut().custom.remove(id).is_some() {
             self.sources.forget(model.declaration.wgsl.path);
         }
     }
@@ -284,13 +291,13 @@ impl Registry {
     /// The file of a model that came from one.
     #[must_use]
     pub fn custom_file(&self, id: &str) -> Option<&Path> {
-        self.files.own.get(id).map(|own| own.path.as_path())
+        self.files.custom.get(id).map(|custom| custom.path.as_path())
     }
 
     /// How much was read of the file of a model that came from one.
     #[must_use]
     pub fn extent(&self, id: &str) -> Option<Extent> {
-        self.files.own.get(id).map(|own| own.extent)
+        self.files.custom.get(id).map(|custom| custom.extent)
     }
 
     /// The file of a model of which only the declaration was read.
@@ -323,15 +330,15 @@ impl Registry {
         self.models.iter().filter_map(|m| Some((m, self.custom_file(m.declaration.id)?)))
     }
 
-    /// Notes where custom models are read from.
+    /// Notes the folder that custom models are read from.
     pub fn set_custom_folder(&mut self, folder: &Path) {
-        self.files_mut().models = Some(folder.to_owned());
+        self.files_mut().folders.models = Some(folder.to_owned());
     }
 
-    /// Where custom models are read from, if they are.
+    /// The folder that custom models are read from, if there is one.
     #[must_use]
     pub fn custom_folder(&self) -> Option<&Path> {
-        self.files.models.as_deref()
+        self.folders().models.as_deref()
     }
 
     /// Notes why the file of that id gives no model, or none as it is.
