@@ -9,6 +9,8 @@ mod blame;
 pub mod problem;
 pub mod reading;
 pub mod status;
+#[cfg(test)]
+mod tests;
 mod texts;
 
 pub use texts::Library;
