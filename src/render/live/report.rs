@@ -3,7 +3,6 @@
 use super::{Key, LiveShaders, Registry, Visible};
 use crate::{
     library::status::{ShaderStatus, Trouble},
-    registry::Folders,
     shader::check::ShaderProblem,
 };
 
@@ -51,8 +50,8 @@ impl LiveShaders {
         for problem in self.unused_problems.values().filter(|p| p.has_settled()) {
             add(&problem.what, None);
         }
-        let Folders { shaders, models } = registry.folders().clone();
-        let status = ShaderStatus { shaders, models, troubles, last: self.last.clone() };
+        let folders = registry.folders().clone();
+        let status = ShaderStatus { folders, troubles, last: self.last.clone() };
         if self.status != status {
             self.status = status;
         }
