@@ -55,7 +55,7 @@ struct Identity {
 
 impl Identity {
     fn new(declaration: &Declaration, parameters: &[Parameter]) -> Self {
-        static VERSIONS: AtomicU64 = AtomicU64::new(0);
+        static VERSIONS: AtomicU64 = AtomicU64::new(1);
         let mut hasher = DefaultHasher::new();
         // The text of the shader is told apart where it is composed. Parameters have floats, which have no hash.
         let wgsl = Source { text: "", ..declaration.wgsl };
