@@ -15,7 +15,7 @@ use std::{
 use bevy::ecs::change_detection::{DetectChangesMut as _, Mut};
 use criterion::{Criterion, criterion_group, criterion_main};
 use lights_camera_models::{
-    library::assets::{Folders, built_in_sources},
+    library::assets::built_in_sources,
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
@@ -26,7 +26,6 @@ use lights_camera_models::{
         },
     },
     scene::Scene,
-    shader::compose::Sources,
     watch::Watcher,
 };
 
@@ -48,8 +47,7 @@ impl Lab {
         }
         let mut renderer =
             GpuRenderer::new(1280, 720, 1, Output::Display).expect("a Vulkan driver, software will do");
-        let folders = Folders { shaders: Some(folder.clone()), models: None };
-        renderer.app().world_mut().resource_mut::<LiveShaders>().start(Sources::default(), folders);
+        renderer.app().world_mut().resource_mut::<Registry>().set_shader_folder(&folder);
         renderer.set_scene(Scene::default());
         renderer.settle().expect("the GPU draws");
         // Unchanged content is not drawn: in the window, the processors are free for the trial.
@@ -90,8 +88,9 @@ impl Lab {
             self.renderer.step();
             self.renderer.wait();
             let elapsed = start.elapsed();
-            let live = self.renderer.app().world().resource::<LiveShaders>();
-            if live.is_trying() || live.sources().get(path) != Some(text) {
+            let world = self.renderer.app().world();
+            let (live, registry) = (world.resource::<LiveShaders>(), world.resource::<Registry>());
+            if live.is_trying() || registry.sources().get(path) != Some(text) {
                 continue;
             }
             assert!(live.is_up_to_date(), "{:?}", live.status().troubles);

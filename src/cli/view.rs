@@ -66,7 +66,6 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         capture,
         // The scene decides how much of it is read.
         registry: Registry::default(),
-        folders: workshop.folders.clone(),
         trial_program: super::trial::program(),
         warnings,
         verbose,

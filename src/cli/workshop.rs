@@ -56,7 +56,6 @@ fn pasted(word: &str) -> String {
 /// needs.
 pub(super) struct Workshop {
     pub registry: Registry,
-    pub folders: Folders,
     options: Options,
     /// A window draws broken models as stand-ins, and reports them itself.
     for_window: bool,
@@ -183,7 +182,7 @@ impl Places {
                 complain(all_annotated(&problems));
             }
         }
-        Ok(Workshop { registry, folders, options, for_window: false, tried: BTreeSet::new() })
+        Ok(Workshop { registry, options, for_window: false, tried: BTreeSet::new() })
     }
 
     /// Reads what a window needs at the start: the declarations of all custom models, since it lists them. Models that
@@ -199,7 +198,7 @@ impl Places {
             // The window itself reports problems.
             let _ = folder::declare_folder(models, &mut registry);
         }
-        Ok(Workshop { registry, folders, options, for_window: true, tried: BTreeSet::new() })
+        Ok(Workshop { registry, options, for_window: true, tried: BTreeSet::new() })
     }
 }
 

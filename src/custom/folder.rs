@@ -15,16 +15,13 @@ use rayon::prelude::*;
 
 use super::{EXTENSION, declare, file, id_of, is_id, is_model, named, read, source_path};
 use crate::{
-    registry::{CustomModel, Registry},
+    registry::{CustomModel, MODELS, Registry},
     shader::{
         check::ShaderProblem,
         compose::{Sources, imports_of},
     },
     watch::Print,
 };
-
-/// The prefix of the paths of sources in the folder.
-const PREFIX: &str = "models/";
 
 /// Problems, each with its file.
 pub type Problems = Vec<(PathBuf, ShaderProblem)>;
@@ -138,7 +135,7 @@ fn broken(id: &str, problems: Problems, registry: &mut Registry) -> Reading {
 /// Reads the files in the folder imported by edited shaders, which may do so too.
 pub fn import_for_shaders(registry: &mut Registry) -> Problems {
     let sources = registry.sources().clone();
-    let edited = sources.edited().filter(|path| !path.starts_with(PREFIX));
+    let edited = sources.edited().filter(|path| !path.starts_with(MODELS));
     edited.flat_map(|path| import(path, sources.get(path).unwrap_or_default(), registry)).collect()
 }
 
@@ -148,7 +145,7 @@ fn import(path: &str, text: &str, registry: &mut Registry) -> Problems {
     let mut looked_at = HashSet::from([path.to_owned()]);
     let mut wanted: Vec<_> = imports_of(path, text).collect();
     while let Some(source) = wanted.pop() {
-        let name = source.strip_prefix(PREFIX).filter(|name| !name.contains('/') && !name.starts_with('.'));
+        let name = source.strip_prefix(MODELS).filter(|name| !name.contains('/') && !name.starts_with('.'));
         let file = name.zip(registry.custom_folder()).map(|(name, folder)| folder.join(name));
         let Some(file) = file.filter(|file| file.extension().is_some_and(|e| e == EXTENSION)) else {
             continue;

@@ -1,6 +1,5 @@
 //! Declarations of custom models live as long as the program, like those of built-in models. Equal ones are stored
-//! once: re-reading a file with an unchanged declaration stores nothing new, and comparing pointers shows if it
-//! changed.
+//! once: re-reading a file with an unchanged declaration stores nothing new.
 
 use std::{
     collections::HashSet,

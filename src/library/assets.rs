@@ -1,4 +1,4 @@
-//! Where shaders and custom models are read from, and copies of them to edit.
+//! The folders of shaders and custom models: finding and reading them, and writing copies to edit.
 
 use std::{
     env, fs, io,
@@ -7,6 +7,7 @@ use std::{
 
 use thiserror::Error;
 
+pub use crate::registry::Folders;
 use crate::{
     custom::{self, file},
     files::{self, FileError},
@@ -26,7 +27,7 @@ pub const EXAMPLES: &[(&str, &str)] = &[
     ("gooch.wgsl", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/gooch.wgsl"))),
 ];
 
-/// What is wrong with a folder.
+/// A problem of a folder.
 #[derive(Debug, Error)]
 pub enum AssetError {
     /// It has no shaders.
@@ -34,7 +35,7 @@ pub enum AssetError {
     NoShaders {
         /// The folder.
         folder: PathBuf,
-        /// What it must be, and perhaps which folder is meant.
+        /// The rule for it, and perhaps the folder that is meant.
         rule: String,
     },
     /// It is a file.
@@ -43,23 +44,14 @@ pub enum AssetError {
     /// It, or something in it, could not be written.
     #[error("{} could not be written: {error}", .path.display())]
     Write {
-        /// What was being written.
+        /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         error: io::Error,
     },
 }
 
-/// Where shaders and custom models are read from.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Folders {
-    /// The folder whose files replace the built-in shaders; none when those are used.
-    pub shaders: Option<PathBuf>,
-    /// The folder whose files are custom models. It need not exist yet.
-    pub models: Option<PathBuf>,
-}
-
-/// What surrounds the process: where folders are looked for when none is named.
+/// The surroundings of the process, in which folders are looked for when none is named.
 #[derive(Clone, Debug, Default)]
 struct Surroundings {
     /// The folders that hold `assets`, in the order in which they are tried.
@@ -171,8 +163,8 @@ pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
         .collect()
 }
 
-/// Reads the shaders of a folder into a registry, as far as they differ from the built-in ones; what they are
-/// worth shows when they are used. Files that no built-in shader has the name of are for `#import`.
+/// Reads the shaders of a folder into a registry, as far as they differ from the built-in ones; they are checked when
+/// they are used. Files that no built-in shader has the name of are for `#import`.
 ///
 /// # Errors
 /// The files that could not be read.
@@ -219,14 +211,14 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// What an export did.
+/// The outcome of an export.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Exported {
     /// Files that were written.
     pub written: Vec<PathBuf>,
     /// Files that are there and differ: they were left alone.
     pub kept: Vec<PathBuf>,
-    /// How many files were there already, the same.
+    /// The number of files that were there already, the same.
     pub same: usize,
 }
 

@@ -1,5 +1,17 @@
-//! The shader library: which file holds which text, where it is on disk, and what is wrong with it.
+//! The shader library: the files of shaders and custom models as they come and change. It reads them, knows the text of
+//! each that was good last, and the problems of those that cannot be used.
+//!
+//! The texts that are drawn with and the folders are held by the [`Registry`](crate::registry::Registry), which the
+//! library keeps up to date; it holds only the texts that are not drawn with.
 
 pub mod assets;
+mod blame;
+pub mod problem;
 pub mod reading;
 pub mod status;
+#[cfg(test)]
+mod tests;
+mod texts;
+
+pub use texts::Library;
+pub(crate) use texts::model_of;

@@ -13,22 +13,22 @@ use crate::{
     optics::colour::Encoding,
     parameter::Values,
     reflection::ends::check_that_it_ends,
-    registry::{CustomModel, Registry},
+    registry::{CustomModel, MODELS, Registry},
     shader::{check::ShaderProblem, compose::Sources},
 };
 
-/// Many models are told of together, at most so often.
+/// The shortest time between two calls of `wake`: many models are taken together.
 const PACE: Duration = Duration::from_millis(100);
 
 /// A model to read.
 pub struct Job {
-    /// What messages call the file.
+    /// The source path, as messages name it.
     pub source: String,
     /// The file on disk.
     pub file: PathBuf,
     /// Its text.
     pub text: String,
-    /// What is known.
+    /// The texts and models to read it with.
     pub registry: Registry,
     /// The texts to read it with if a file that all models share has a mistake.
     pub lenient: Sources,
@@ -49,9 +49,9 @@ impl Job {
         let Self { source, file, text, mut registry, lenient } = self;
         let mut result = custom::read(&file, &text, &registry);
         if let Err(problems) = &result
-            && problems.iter().any(|p| !p.file.starts_with("models/"))
+            && problems.iter().any(|p| !p.file.starts_with(MODELS))
         {
-            // The mistake is in a file that all models share, and is told there.
+            // The mistake is in a file that all models share, and is reported there.
             *registry.sources_mut() = lenient;
             result = custom::read(&file, &text, &registry);
         }
@@ -74,7 +74,7 @@ impl Job {
 /// Reads models, one after the other.
 #[derive(Default)]
 pub struct Reader {
-    /// What a thread of its own does; without one, models are read at once.
+    /// The work of a thread of its own; without one, models are read at once.
     thread: Option<Arc<Shared>>,
 }
 
@@ -163,17 +163,6 @@ impl Reader {
         self.thread.as_ref().is_some_and(|shared| {
             let state = shared.lock();
             state.done.is_empty() && (state.reading.is_some() || !state.jobs.is_empty())
-        })
-    }
-
-    /// True while that file waits to be read, or for its outcome to be taken.
-    #[must_use]
-    pub fn has(&self, source: &str) -> bool {
-        self.thread.as_ref().is_some_and(|shared| {
-            let state = shared.lock();
-            state.reading.as_deref() == Some(source)
-                || state.jobs.contains_key(source)
-                || state.done.iter().any(|done| done.source == source)
         })
     }
 }

@@ -1,20 +1,18 @@
-//! What people are told of the shaders: where they are edited, what is wrong with them, and what the
-//! picture shows instead.
+//! The status of the shaders for people: the folders in which they are edited, their problems, and the models that the
+//! picture shows in an older version.
 
 use std::path::PathBuf;
 
-use crate::shader::check::ShaderProblem;
+use crate::{registry::Folders, shader::check::ShaderProblem};
 
-/// Where the shaders come from and what is wrong with them.
+/// The folders of the shaders, and their problems. Made anew by the renderer when something changed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShaderStatus {
-    /// The folder whose shader files are watched; none when the built-in copies are in use.
-    pub shaders: Option<PathBuf>,
-    /// The folder whose files are custom models.
-    pub models: Option<PathBuf>,
-    /// What is wrong, one entry for each problem.
+    /// The folders, as the registry has them.
+    pub folders: Folders,
+    /// The problems.
     pub troubles: Vec<Trouble>,
-    /// The last change that came through, for people: what, and how long it took.
+    /// The last change that came through.
     pub last: Option<Reloaded>,
 }
 
@@ -30,12 +28,12 @@ impl ShaderStatus {
     }
 }
 
-/// A problem with a shader, and what it means for the picture.
+/// A problem of a shader, and its consequence for the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trouble {
-    /// What is wrong, and where.
+    /// The problem and its place.
     pub problem: ShaderProblem,
-    /// The file to open, when it is one on disk.
+    /// The file to open, if it is one on disk.
     pub path: Option<PathBuf>,
     /// The names of the models that are on the picture in their last good version because of it. Empty
     /// when nothing on the picture depends on the file.
@@ -47,6 +45,6 @@ pub struct Trouble {
 pub struct Reloaded {
     /// The file, as messages name it.
     pub file: String,
-    /// From the news of the change to the new shader, milliseconds.
+    /// The time from the news of the change to the new shader, milliseconds.
     pub milliseconds: f32,
 }

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     custom::{id_of_name, source_path},
-    library::status::{Reloaded, ShaderStatus},
+    library::status::Reloaded,
     reflection::law_report::LawReport,
     registry::Registry,
 };
@@ -118,15 +118,6 @@ fn free_id(id: &str, registry: &Registry) -> String {
     std::iter::once(id.to_owned()).chain(numbered).find(|id| !taken(id)).unwrap_or_default()
 }
 
-/// Where the file of a shader is on disk, or will be, by the path that messages name; none for built-in copies.
-#[must_use]
-pub fn on_disk(status: &ShaderStatus, path: &str) -> Option<PathBuf> {
-    match path.strip_prefix("models/") {
-        Some(own) => Some(status.models.as_ref()?.join(own)),
-        None => Some(status.shaders.as_ref()?.join(path)),
-    }
-}
-
 impl Session {
     /// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that
     /// tells of it, and a model that was asked for is chosen once it is there.
@@ -215,7 +206,7 @@ impl Session {
     fn edit_shown(&mut self, registry: &Registry) -> Vec<Effect> {
         let id = self.model_shown();
         let path = registry.model(id).map_or_else(|| source_path(id), |m| m.declaration.wgsl.path.to_owned());
-        match on_disk(&self.shaders, &path) {
+        match self.shaders.folders.file_of(&path) {
             Some(file) => vec![Effect::OpenInEditor { path: file, line: self.line_of_trouble(&path) }],
             None => {
                 self.say(Severity::Info, BUILT_IN);
@@ -256,7 +247,7 @@ pub fn buttons(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Actio
             actions.push(Action::Model(ModelCommand::Duplicate));
         }
         let path = shown.map_or_else(|| source_path(session.model_shown()), |d| d.wgsl.path.to_owned());
-        let file = on_disk(&session.shaders, &path);
+        let file = session.shaders.folders.file_of(&path);
         let open = ui
             .add_enabled(file.is_some(), Button::new("Open in editor"))
             .on_disabled_hover_text(BUILT_IN)
@@ -348,7 +339,7 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) 
     ui.add_space(2.0);
     match &checked {
         Ok(id) => {
-            let path = on_disk(&session.shaders, &source_path(id));
+            let path = session.shaders.folders.file_of(&source_path(id));
             let path = path.map_or_else(|| source_path(id), |p| p.display().to_string());
             ui.label(
                 RichText::new(format!("Identifier (also the file name): {id}")).small().color(palette.text),

@@ -3,7 +3,7 @@
 use crate::shader::Source;
 
 /// The name, the source and the claims of a model.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Declaration {
     /// The name in scene files: lower case, underscores.
     pub id: &'static str,

@@ -3,7 +3,11 @@
 use std::{
     collections::HashMap,
     fmt,
-    sync::{Arc, Mutex, OnceLock, PoisonError},
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+    sync::{
+        Arc, Mutex, OnceLock, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
 };
 
 use glam::Vec3;
@@ -20,6 +24,7 @@ use crate::{
         colour::Encoding,
     },
     parameter::{Parameter, Value, Values, pack},
+    shader::Source,
 };
 
 /// A registered model, in the form used by the rest of the program.
@@ -34,8 +39,29 @@ pub struct ModelEntry {
     lobe: Lobe,
     pub(super) instantiate: Instantiate,
     on_cpu: Option<Arc<dyn Interpreted>>,
+    identity: Identity,
     /// Surfaces with curves, by their packed parameters: objects of one material share one.
     kept: Arc<Mutex<HashMap<Vec<u8>, Arc<dyn Surface>>>>,
+}
+
+/// The values by which entries of one id are told apart.
+#[derive(Clone, Copy)]
+struct Identity {
+    /// See [`ModelEntry::version`].
+    version: u64,
+    /// See [`ModelEntry::declared`].
+    declared: u64,
+}
+
+impl Identity {
+    fn new(declaration: &Declaration, parameters: &[Parameter]) -> Self {
+        static VERSIONS: AtomicU64 = AtomicU64::new(1);
+        let mut hasher = DefaultHasher::new();
+        // The text of the shader is told apart where it is composed. Parameters have floats, which have no hash.
+        let wgsl = Source { text: "", ..declaration.wgsl };
+        format!("{:?} {parameters:?}", Declaration { wgsl, ..*declaration }).hash(&mut hasher);
+        Self { version: VERSIONS.fetch_add(1, Ordering::Relaxed), declared: hasher.finish() }
+    }
 }
 
 /// The state of a model whose WGSL the CPU interprets.
@@ -76,6 +102,7 @@ impl ModelEntry {
                 Arc::new(Instance { model: M::from_values(values, encoding), curve: OnceLock::new() })
             }),
             on_cpu: None,
+            identity: Identity::new(&M::DECLARATION, M::PARAMETERS),
             kept: Arc::default(),
         }
     }
@@ -89,13 +116,20 @@ impl ModelEntry {
         on_cpu: Option<Arc<dyn Interpreted>>,
     ) -> Self {
         let preset = preset::by_names(parameters);
-        Self { declaration, parameters, preset, lobe, instantiate, on_cpu, kept: Arc::default() }
+        let identity = Identity::new(declaration, parameters);
+        Self { declaration, parameters, preset, lobe, instantiate, on_cpu, identity, kept: Arc::default() }
     }
 
-    /// A number that changes when the file of the model is read again.
+    /// A number that changes whenever the file of the model is read again.
     #[must_use]
-    pub(crate) fn version(&self) -> usize {
-        Arc::as_ptr(&self.kept) as usize
+    pub(crate) fn version(&self) -> u64 {
+        self.identity.version
+    }
+
+    /// A number that changes when the declaration or the parameters do, and with them the layout of rows.
+    #[must_use]
+    pub(crate) fn declared(&self) -> u64 {
+        self.identity.declared
     }
 
     /// The reason why the CPU cannot run the model, if any: it interprets the WGSL of custom models, but not every
@@ -208,5 +242,31 @@ pub(crate) fn append_curve(
 impl fmt::Debug for ModelEntry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("ModelEntry").field(&self.declaration.id).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{custom, registry::Registry};
+
+    #[test]
+    fn entries_of_one_file_are_told_apart_by_value() {
+        let read = |declaration: &str| {
+            let text = format!("/* lcm {declaration} */");
+            let path = std::path::Path::new("mine.wgsl");
+            custom::declare(path, &text, &Registry::builtin()).expect("valid").entry
+        };
+        let parameter = |default: f32| {
+            read(&format!("{{ \"parameters\": [{{ \"name\": \"mine\", \"default\": {default} }}] }}"))
+        };
+        let (first, again, other) = (parameter(0.5), parameter(0.5), parameter(0.25));
+        assert_eq!(first.declared(), again.declared());
+        assert_ne!(first.version(), again.version(), "the file was read again");
+        assert_eq!(first.version(), first.clone().version());
+        assert_ne!(first.declared(), other.declared());
+        assert_ne!(first.declared(), read("{ \"name\": \"Other\" }").declared());
+        let builtin = |id: &str| Registry::builtin().model(id).expect("built in").declared();
+        assert_eq!(builtin("phong"), builtin("phong"));
+        assert_ne!(builtin("phong"), builtin("lambert"));
     }
 }

@@ -24,7 +24,7 @@ use crate::{
 
 /// The WGSL struct `Row` of a model, what one object has in the table that the shader reads, and the
 /// functions that read the curve in it. The array of rows is `parameter_table`, the index of the
-/// object's own `object_row`. Curves are read in place: a copy would cost every pixel.
+/// object is `object_row`. Curves are read in place: a copy would cost every pixel.
 #[must_use]
 pub fn row_struct(model: &ModelEntry) -> String {
     let mut text = parameter_struct(model.parameters);
@@ -65,7 +65,7 @@ fn push_model(c: &mut Composer, model: &ModelEntry) {
     }
 }
 
-/// How models answer to uniform light that declare to do so by their albedo.
+/// The response to uniform light of models that declare to give it by their albedo.
 const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
     return directional_albedo(v, frame);
 }
@@ -101,7 +101,7 @@ pub fn compose(
     c.composed
 }
 
-/// What a file of a composed source is for, in the order in which authors look for them.
+/// The purpose of a file in a composed source, in the order in which authors look for them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Part {
     /// The reflection model.
@@ -118,7 +118,7 @@ pub enum Part {
     Vocabulary,
     /// The light record.
     LightRecord,
-    /// What goes into and out of a shading model.
+    /// The input and output of a shading model.
     Stages,
     /// Bindings and entry points.
     Wrapper,
@@ -127,7 +127,7 @@ pub enum Part {
 /// A file of a composed source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct File {
-    /// What it is for.
+    /// Its purpose.
     pub part: Part,
     /// Its path, as messages name it.
     pub path: String,
@@ -159,9 +159,9 @@ pub fn files(
         .collect::<Vec<_>>();
     let file = |path: &str| {
         let source = known.iter().find(|(_, source)| source.path == path);
-        let own = model.declaration.family == Family::Custom && path == model.declaration.wgsl.path;
+        let custom = model.declaration.family == Family::Custom && path == model.declaration.wgsl.path;
         let differs = |s: &Source| sources.get(path).is_some_and(|text| text != s.text);
-        let edited = !own && source.is_some_and(|(_, s)| differs(s));
+        let edited = !custom && source.is_some_and(|(_, s)| differs(s));
         File { part: source.map_or(Part::Import, |(part, _)| *part), path: path.to_owned(), edited }
     };
     let composed = compose(sources, model, shading, lights);

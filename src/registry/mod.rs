@@ -1,4 +1,5 @@
-//! What is known: reflection models, shading models, light types and object types, looked up by id.
+//! Everything that is known, looked up by id: reflection models, shading models, light types and object types; with the
+//! texts of shaders and the folders that they are read from.
 //!
 //! The registry is a value. The command line and the CPU renderer use it as it is; in the Bevy app it
 //! is a resource, and `App` offers the same calls, so that a plugin outside this crate registers
@@ -12,14 +13,17 @@
 //! ```
 
 pub mod compose;
+mod files;
+mod folders;
 
-use std::{
-    collections::{BTreeMap, HashSet},
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{collections::HashSet, sync::Arc};
 
 use bevy::ecs::resource::Resource;
+
+use files::Files;
+pub use files::{CustomModel, Extent};
+pub use folders::Folders;
+pub(crate) use folders::MODELS;
 
 use crate::{
     light::{self, LightEntry, LightType, MAX_LIGHT_PARAMETERS},
@@ -28,10 +32,9 @@ use crate::{
     shader::compose::Sources,
     shading::{self, ShadingEntry, ShadingModel},
     shape::{self, ObjectType, ShapeEntry},
-    watch::Print,
 };
 
-/// Where new kinds of things are made known.
+/// Registration of reflection models, shading models, light types and object types.
 pub trait Register {
     /// Makes a reflection model known. A second one with the same id replaces the first.
     fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self;
@@ -52,7 +55,7 @@ pub fn register_builtin(to: &mut impl Register) {
     shape::register_builtin(to);
 }
 
-/// Registers what it takes.
+/// Registers everything that it takes.
 struct Adding<'a, R>(&'a mut R);
 
 impl<R: Register> reflection::Take for Adding<'_, R> {
@@ -89,51 +92,6 @@ pub struct Registry {
     sources: Sources,
     /// Shared by copies of the registry, of which the window makes many.
     files: Arc<Files>,
-}
-
-/// A model from a file.
-#[derive(Clone, Debug)]
-pub struct CustomModel {
-    /// What the rest of the program knows of it. Its [`Source`](crate::shader::Source) is `models/ID.wgsl`; the text built into that is
-    /// a stand-in that is drawn as long as the file has no good version.
-    pub entry: ModelEntry,
-    /// The file.
-    pub path: PathBuf,
-    /// Its text, declaration included, so that lines count as in the file.
-    pub text: Arc<str>,
-}
-
-/// How much of a custom model was read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// The declaration. The rest is read when the model is used; until then a stand-in is drawn.
-    Declaration,
-    /// The declaration. The rest is no good: the last text that was is drawn with, or a stand-in.
-    StandIn,
-    /// All of it.
-    Whole,
-}
-
-/// The file of a custom model.
-#[derive(Clone, Debug)]
-struct CustomSource {
-    path: PathBuf,
-    extent: Extent,
-}
-
-/// What is known of files: shaders and custom models.
-#[derive(Clone, Debug, Default)]
-struct Files {
-    /// The folder that shaders were read from.
-    shaders: Option<PathBuf>,
-    /// The folder that custom models were read from.
-    models: Option<PathBuf>,
-    /// The files by the id of their model.
-    own: BTreeMap<&'static str, CustomSource>,
-    /// By id why a file gives no model.
-    broken: BTreeMap<String, String>,
-    /// The state of each file whose declaration was looked for, at that time.
-    seen: BTreeMap<PathBuf, Print>,
 }
 
 impl Registry {
@@ -210,141 +168,6 @@ impl Registry {
         &mut self.sources
     }
 
-    /// Notes where shaders are read from.
-    pub fn set_shader_folder(&mut self, folder: &Path) {
-        self.files_mut().shaders = Some(folder.to_owned());
-    }
-
-    /// The file on disk of a source that messages call by its path, if it was read from one.
-    #[must_use]
-    pub fn path_on_disk(&self, source: &str) -> Option<PathBuf> {
-        let own = self
-            .custom_models()
-            .find(|(m, _)| m.declaration.wgsl.path == source)
-            .map(|(_, path)| path.to_owned());
-        let below = |folder: &Option<PathBuf>, file: &str| {
-            Some(folder.as_ref()?.join(file)).filter(|path| path.is_file())
-        };
-        let models = || below(&self.files.models, source.strip_prefix("models/")?);
-        own.or_else(models).or_else(|| below(&self.files.shaders, source))
-    }
-
-    /// Makes a model from a file known, with its text. A second one with the same id replaces the first, in its
-    /// place.
-    pub fn put_custom_model(&mut self, model: CustomModel) {
-        self.sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
-        self.put_own(model, Extent::Whole);
-    }
-
-    /// Makes a model from a file known whose text is no good yet: the text that is known stays, and where there is
-    /// none a stand-in is drawn.
-    pub fn put_stand_in(&mut self, model: CustomModel) {
-        self.put_own(model, Extent::StandIn);
-    }
-
-    /// Makes a model from a file known of which only the declaration was read. A stand-in is drawn until the rest is
-    /// read, which [`wants_reading`](Self::wants_reading) asks for.
-    pub fn put_declared(&mut self, model: CustomModel) {
-        self.sources.forget(model.entry.declaration.wgsl.path);
-        self.put_own(model, Extent::Declaration);
-    }
-
-    fn put_own(&mut self, model: CustomModel, extent: Extent) {
-        let id = model.entry.declaration.id;
-        let files = self.files_mut();
-        files.broken.remove(id);
-        files.own.insert(id, CustomSource { path: model.path, extent });
-        put(&mut self.models, model.entry, |m| m.declaration.id);
-    }
-
-    /// Puts the custom models in the order of their ids, whichever was read first.
-    pub(crate) fn sort_custom_models(&mut self) {
-        let is_own = |m: &ModelEntry| self.files.own.contains_key(m.declaration.id);
-        let places: Vec<_> = (0..self.models.len()).filter(|i| is_own(&self.models[*i])).collect();
-        let mut own: Vec<_> = places.iter().map(|i| self.models[*i].clone()).collect();
-        own.sort_by_key(|m| m.declaration.id);
-        for (place, model) in places.into_iter().zip(own) {
-            self.models[place] = model;
-        }
-    }
-
-    fn files_mut(&mut self) -> &mut Files {
-        Arc::make_mut(&mut self.files)
-    }
-
-    /// Forgets a model, and its text if it came from a file.
-    pub fn remove_model(&mut self, id: &str) {
-        let Some(at) = self.models.iter().position(|m| m.declaration.id == id) else { return };
-        let model = self.models.remove(at);
-        if self.files_mut().own.remove(id).is_some() {
-            self.sources.forget(model.declaration.wgsl.path);
-        }
-    }
-
-    /// The file of a model that came from one.
-    #[must_use]
-    pub fn custom_file(&self, id: &str) -> Option<&Path> {
-        self.files.own.get(id).map(|own| own.path.as_path())
-    }
-
-    /// How much was read of the file of a model that came from one.
-    #[must_use]
-    pub fn extent(&self, id: &str) -> Option<Extent> {
-        self.files.own.get(id).map(|own| own.extent)
-    }
-
-    /// The file of a model of which only the declaration was read.
-    #[must_use]
-    pub fn unread_file(&self, id: &str) -> Option<&Path> {
-        self.custom_file(id).filter(|_| self.extent(id) == Some(Extent::Declaration))
-    }
-
-    /// The files that are to be read now that these models are used: of some only the declaration is known. See
-    /// [`custom::read`](crate::custom::read).
-    pub fn wants_reading<'a>(
-        &'a self,
-        used: impl IntoIterator<Item = &'a str>,
-    ) -> impl Iterator<Item = &'a Path> {
-        used.into_iter().filter_map(|id| self.unread_file(id))
-    }
-
-    /// The state of each file whose declaration was looked for, at that time.
-    pub(crate) fn files_seen(&self) -> &BTreeMap<PathBuf, Print> {
-        &self.files.seen
-    }
-
-    /// Notes the state of a file whose declaration is looked for.
-    pub(crate) fn note_seen(&mut self, file: &Path, print: Print) {
-        self.files_mut().seen.insert(file.to_owned(), print);
-    }
-
-    /// The models that came from files, with these.
-    pub fn custom_models(&self) -> impl Iterator<Item = (&ModelEntry, &Path)> {
-        self.models.iter().filter_map(|m| Some((m, self.custom_file(m.declaration.id)?)))
-    }
-
-    /// Notes where custom models are read from.
-    pub fn set_custom_folder(&mut self, folder: &Path) {
-        self.files_mut().models = Some(folder.to_owned());
-    }
-
-    /// Where custom models are read from, if they are.
-    #[must_use]
-    pub fn custom_folder(&self) -> Option<&Path> {
-        self.files.models.as_deref()
-    }
-
-    /// Notes why the file of that id gives no model, or none as it is.
-    pub fn mark_broken(&mut self, id: &str, why: String) {
-        self.files_mut().broken.insert(id.to_owned(), why);
-    }
-
-    /// Why the file of that id gives no model: where it is wrong and what is.
-    #[must_use]
-    pub fn broken_model(&self, id: &str) -> Option<&str> {
-        self.files.broken.get(id).map(String::as_str)
-    }
-
     /// Every parameter that some model declares, each name once, in order of first declaration.
     pub fn material_parameters(&self) -> impl Iterator<Item = &'static Parameter> + '_ {
         let mut known = HashSet::new();
@@ -358,7 +181,7 @@ impl Registry {
     }
 }
 
-/// What choosing a measured material for one model sets: the parameters of that model, and those of the
+/// The values that choosing a measured material for one model sets: the parameters of that model, and those of the
 /// microfacet and standard models that do not contradict them, so that gold stays gold when the model is
 /// exchanged.
 #[must_use]

@@ -35,8 +35,8 @@ pub struct Drawn {
     shading: String,
     encoding: Encoding,
     everywhere: bool,
-    /// What was known of the model: a file that is read again makes another.
-    version: usize,
+    /// The version of the model: a file that is read again makes another.
+    version: u64,
 }
 
 /// An object whose new shader is still being tried: it stays as it is for so long.

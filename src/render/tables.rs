@@ -23,8 +23,8 @@ fn free(mut world: DeferredWorld, context: HookContext) {
     }
 }
 
-/// The model of a table, and its declaration, from which the layout follows.
-type TableKey = (&'static str, [usize; 2]);
+/// The model of a table, and [what it declares](ModelEntry::declared), from which the layout follows.
+type TableKey = (&'static str, u64);
 
 /// The parameters of all objects, one table for each model in use, and for each view with overrides. A table
 /// that changed is uploaded whole: a buffer that never grows is replaced without touching any material. So that
@@ -80,11 +80,9 @@ impl ParameterTables {
         parameters: &[u8],
         buffers: &mut Assets<ShaderBuffer>,
     ) -> Handle<ShaderBuffer> {
-        let id = model.declaration.id;
-        let declaration =
-            [std::ptr::from_ref(model.declaration) as usize, model.parameters.as_ptr() as usize];
-        self.tables.retain(|(_, known), _| known.0 != id || known.1 == declaration);
-        let table = self.tables.entry((view, (id, declaration))).or_insert_with(|| {
+        let (id, declared) = (model.declaration.id, model.declared());
+        self.tables.retain(|(_, known), _| known.0 != id || known.1 == declared);
+        let table = self.tables.entry((view, (id, declared))).or_insert_with(|| {
             let bytes = vec![0; parameters.len() * self.rows];
             let buffer = buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()));
             Table { bytes, buffer, changed: true }

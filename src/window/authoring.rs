@@ -57,13 +57,12 @@ pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Opt
 }
 
 /// Where custom models are: where they are read from, else where they would be looked for.
-fn models_folder(session: &Session, registry: &Registry) -> Option<PathBuf> {
-    let known = session.shaders.models.clone().or_else(|| registry.custom_folder().map(Path::to_owned));
-    known.or_else(|| Folders::find(None, None).ok()?.models)
+fn models_folder(registry: &Registry) -> Option<PathBuf> {
+    registry.custom_folder().map(Path::to_owned).or_else(|| Folders::find(None, None).ok()?.models)
 }
 
 fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of: Option<&str>, text: &str) {
-    let Some(folder) = models_folder(session, registry) else {
+    let Some(folder) = models_folder(registry) else {
         let why = "There is no folder for custom models: name one with `lcm --models FOLDER`.";
         return session.say(Severity::Error, why);
     };

@@ -49,7 +49,7 @@ use glam::{UVec2, Vec2};
 
 use crate::{
     failure::Failure,
-    library::{assets::Folders, status::ShaderStatus},
+    library::status::ShaderStatus,
     panel::{
         PanelPlugin,
         files::{load_settings, run as run_files},
@@ -172,7 +172,7 @@ pub fn view(options: ViewOptions) -> Result<(), Failure> {
     }
     let wake = watching::waker(app.world());
     app.world_mut().resource_mut::<LiveShaders>().read_apart(wake);
-    shaders::open(app.world_mut(), &options.folders);
+    shaders::open(app.world_mut());
     if let Some(path) = options.open.clone() {
         app.add_systems(Startup, move |mut effects: MessageWriter<LabEffect>| {
             effects.write(LabEffect(Effect::OpenFile(path.clone())));
@@ -426,11 +426,7 @@ fn carry_out(
             }
             Effect::CheckLaws(model) => {
                 let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
-                let folders = Folders {
-                    shaders: session.shaders.shaders.clone(),
-                    models: session.shaders.models.clone(),
-                };
-                laws.begin(&model, &folders, move || {
+                laws.begin(&model, registry.folders(), move || {
                     proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
                 });
             }

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use crate::{
-    library::assets::Folders,
     registry::Registry,
     scene::{Scene, load::Stamp},
 };
@@ -29,10 +28,8 @@ pub struct ViewOptions {
     pub exit_after: Option<u32>,
     /// Write the whole window to this file before it closes.
     pub capture: Option<PathBuf>,
-    /// What is known, custom models included.
+    /// Everything that is known, custom models included. The shaders of its folder are not read yet.
     pub registry: Registry,
-    /// Where shaders and custom models are read from. The shaders are not read yet.
-    pub folders: Folders,
     /// The program that tries shaders when it is called with
     /// [`COMMAND`](crate::render::trial::process::COMMAND); without it the window itself does.
     pub trial_program: Option<PathBuf>,

@@ -1,5 +1,5 @@
-//! The shaders and custom models of the window: read when it opens, read again when their files change, and what is
-//! wrong with them told.
+//! The shaders and custom models of the window: read when it opens, read again when their files change, and their
+//! problems reported.
 
 use std::{
     io::{self, IsTerminal as _},
@@ -24,15 +24,15 @@ use crate::{
     shader::report::{annotated, coloured},
 };
 
-/// Reads the shaders of the folders and watches them. Custom models are in the registry already; shaders that cannot
-/// be drawn with are replaced by the built-in ones and told of.
-pub(super) fn open(world: &mut World, folders: &Folders) {
+/// Reads the shaders of the registry's folders and watches them. Custom models are in the registry already; shaders that
+/// cannot be drawn with are replaced by the built-in ones and reported.
+pub(super) fn open(world: &mut World) {
     let mut registry = world.resource_mut::<Registry>();
+    let folders = registry.folders().clone();
     let unreadable = match &folders.shaders {
         Some(folder) => assets::read_shaders(folder, &mut registry).err().unwrap_or_default(),
         None => Vec::new(),
     };
-    let sources = registry.sources().clone();
     // What is wrong with these is found when they are looked at. Models of which the declaration is right are read
     // when the scene uses them.
     let declared = |path: &PathBuf| custom::id_of(path).is_some_and(|id| registry.unread_file(id).is_some());
@@ -43,7 +43,7 @@ pub(super) fn open(world: &mut World, folders: &Folders) {
         .filter(|path| !declared(path))
         .chain(unreadable.into_iter().map(|(path, _)| path))
         .collect();
-    world.resource_mut::<LiveShaders>().start(sources, folders.clone());
+    world.resource_mut::<LiveShaders>().start();
     look_at(world, &broken);
     let mut watch = world.resource_mut::<FileWatch>();
     for folder in [&folders.shaders, &folders.models].into_iter().flatten() {
@@ -54,21 +54,21 @@ pub(super) fn open(world: &mut World, folders: &Folders) {
 /// Reads shaders from another folder from now on, and custom models too unless there are some where they were read
 /// from.
 pub(super) fn move_to(world: &mut World, folder: &Path) {
-    let mut folders = match Folders::find(Some(folder), None) {
+    let folders = match Folders::find(Some(folder), None) {
         Ok(folders) => folders,
         Err(why) => return world.resource_mut::<Session>().say(Severity::Error, why.to_string()),
     };
     let mut registry = world.resource_mut::<Registry>();
-    match registry.custom_folder().filter(|folder| folder.is_dir()) {
-        Some(known) => folders.models = Some(known.to_owned()),
-        None => {
-            if let Some(models) = &folders.models {
-                // What is wrong with them is told when they are looked at.
-                let _ = custom::folder::declare_folder(models, &mut registry);
-            }
-        }
+    if let Some(shaders) = &folders.shaders {
+        registry.set_shader_folder(shaders);
     }
-    open(world, &folders);
+    if !registry.custom_folder().is_some_and(Path::is_dir)
+        && let Some(models) = &folders.models
+    {
+        // Their problems are reported when they are looked at.
+        let _ = custom::folder::declare_folder(models, &mut registry);
+    }
+    open(world);
 }
 
 /// Looks at the files that changed.

@@ -62,7 +62,11 @@ fn said(declaration: &str) -> String {
 
 #[test]
 fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
-    let parameter = |fields: &str| format!("{{ \"parameters\": [{{ \"name\": \"mine\", {fields} }}] }}");
+    let check = |declaration: &str, expected: &str| {
+        let said = said(declaration);
+        assert!(said.contains(expected), "{declaration}\n{said}is not\n{expected}");
+        assert!(said.lines().all(|l| l.starts_with("models/mine.wgsl:")), "{said}");
+    };
     for (declaration, expected) in [
         ("", "1:7: the declaration is empty; it must be an object"),
         ("[]", "1:8: the declaration is [], but a model must be an object, with the keys name, author"),
@@ -116,71 +120,65 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             "{ \"parameters\": [{ \"name\": \"base_colour\", \"type\": \"number\" }] }",
             "parameters[0].name is \"base_colour\", but lambert has a parameter of that name with type colour",
         ),
+    ] {
+        check(declaration, expected);
+    }
+    // Of a parameter.
+    for (fields, expected) in [
         (
-            &parameter("\"type\": \"nummer\""),
-            "parameters[0].type is \"nummer\", but a type must be \"number\", \"integer\", \"colour\", \"triple\" or \"choice\"; did you mean \"number\"?",
-        ),
-        (&parameter("\"type\": \"color\""), "did you mean \"colour\"?"),
-        (&parameter("\"default\": [1, 2, 3]"), "type is missing; a list may be a \"colour\" or a \"triple\""),
-        (&parameter("\"min\": \"0\""), "parameters[0].min is \"0\", but it must be a number"),
-        (&parameter("\"max\": 1e99"), "parameters[0].max is 1e99, but it must be a number"),
-        (
-            &parameter("\"min\": 2, \"max\": 1"),
-            "parameters[0].max is 1, but the largest value must be greater than the smallest",
+            r#""type": "nummer""#,
+            r#"type is "nummer", but a type must be "number", "integer", "colour", "triple" or "choice"; did you mean "number"?"#,
         ),
         (
-            &parameter("\"range\": [1, 1]"),
-            "parameters[0].range is [1, 1], but the largest value must be greater",
+            r#""type": "color""#,
+            r#"type is "color", but a type must be "number", "integer", "colour", "triple" or "choice"; did you mean "colour"?"#,
         ),
-        (&parameter("\"range\": 1"), "parameters[0].range is 1, but a range must be two numbers: [min, max]"),
-        (&parameter("\"range\": [0, 1], \"max\": 2"), "parameters[0].range conflicts with max"),
+        (r#""default": [1, 2, 3]"#, r#"type is missing; a list may be a "colour" or a "triple""#),
+        (r#""min": "0""#, r#"min is "0", but it must be a number"#),
+        (r#""max": 1e99"#, "max is 1e99, but it must be a number"),
+        (r#""min": 2, "max": 1"#, "max is 1, but the largest value must be greater than the smallest"),
+        (r#""range": [1, 1]"#, "range is [1, 1], but the largest value must be greater"),
+        (r#""range": 1"#, "range is 1, but a range must be two numbers: [min, max]"),
+        (r#""range": [0, 1], "max": 2"#, "range conflicts with max"),
+        (r#""above": 1"#, "above is 1, but it must be 0; it replaces min and means greater than 0"),
+        (r#""default": 2"#, "default is 2, but it must be between 0 and 1"),
+        (r#""type": "integer", "default": 1.5"#, "default is 1.5, but it must be a whole number"),
         (
-            &parameter("\"above\": 1"),
-            "parameters[0].above is 1, but it must be 0; it replaces min and means greater than 0",
+            r#""type": "integer", "max": 4, "default": 5"#,
+            "default is 5, but it must be a whole number between 0 and 4",
         ),
-        (&parameter("\"default\": 2"), "parameters[0].default is 2, but it must be between 0 and 1"),
         (
-            &parameter("\"type\": \"integer\", \"default\": 1.5"),
-            "parameters[0].default is 1.5, but it must be a whole number",
-        ),
-        (
-            &parameter("\"type\": \"integer\", \"max\": 4, \"default\": 5"),
-            "parameters[0].default is 5, but it must be a whole number between 0 and 4",
-        ),
-        (
-            &parameter("\"type\": \"integer\", \"slider_max\": 0"),
+            r#""type": "integer", "slider_max": 0"#,
             "slider_max is 0, but it must be greater than 0, the start of the slider",
         ),
         (
-            &parameter("\"type\": \"colour\", \"default\": [1, 2]"),
-            "parameters[0].default is [1, 2], but a colour must be three whole numbers from 0 to 255",
+            r#""type": "colour", "default": [1, 2]"#,
+            "default is [1, 2], but a colour must be three whole numbers from 0 to 255",
         ),
         (
-            &parameter("\"type\": \"colour\", \"default\": [1, 2, 256]"),
-            "but a colour must be three whole numbers",
+            r#""type": "colour", "default": [1, 2, 256]"#,
+            "default is [1, 2, 256], but a colour must be three whole numbers",
         ),
-        (&parameter("\"type\": \"colour\", \"min\": 0"), "parameters[0].min is given, but a colour has none"),
+        (r#""type": "colour", "min": 0"#, "min is given, but a colour has none"),
         (
-            &parameter("\"type\": \"triple\", \"default\": [0, 2, 0]"),
-            "parameters[0].default is [0, 2, 0], but it must be three numbers between 0 and 1",
+            r#""type": "triple", "default": [0, 2, 0]"#,
+            "default is [0, 2, 0], but it must be three numbers between 0 and 1",
         ),
-        (&parameter("\"type\": \"choice\""), "parameters[0].choices is missing"),
-        (&parameter("\"choices\": []"), "parameters[0].choices is missing"),
-        (&parameter("\"choices\": 1"), "parameters[0].choices is 1, but it must be a list"),
+        (r#""type": "choice""#, "choices is missing"),
+        (r#""choices": []"#, "choices is missing"),
+        (r#""choices": 1"#, "choices is 1, but it must be a list"),
+        (r#""choices": ["A b"]"#, r#"choices has "A b", but a choice must be lower-case letters"#),
+        (r#""choices": ["a", "a"]"#, r#"choices has "a" twice"#),
         (
-            &parameter("\"choices\": [\"A b\"]"),
-            "parameters[0].choices has \"A b\", but a choice must be lower-case letters",
+            r#""choices": ["one", "two"], "default": "on""#,
+            r#"default is "on", but the default must be "one" or "two"; did you mean "one"?"#,
         ),
-        (&parameter("\"choices\": [\"a\", \"a\"]"), "parameters[0].choices has \"a\" twice"),
-        (
-            &parameter("\"choices\": [\"one\", \"two\"], \"default\": \"on\""),
-            "parameters[0].default is \"on\", but the default must be \"one\" or \"two\"; did you mean \"one\"?",
-        ),
-        (&parameter("\"colour\": 1"), "parameters[0].colour is not a key of a parameter"),
+        (r#""colour": 1"#, "colour is not a key of a parameter"),
     ] {
-        let said = said(declaration);
-        assert!(said.contains(expected), "{declaration}\n{said}is not\n{expected}");
-        assert!(said.lines().all(|l| l.starts_with("models/mine.wgsl:")), "{said}");
+        check(
+            &format!("{{ \"parameters\": [{{ \"name\": \"mine\", {fields} }}] }}"),
+            &format!("parameters[0].{expected}"),
+        );
     }
     // All of them at once, in the order of the file.
     let said =

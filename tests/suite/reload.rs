@@ -11,7 +11,8 @@ use bevy::prelude::Mut;
 
 use lights_camera_models::{
     library::{
-        assets::{Folders, built_in_sources},
+        assets::built_in_sources,
+        problem::GRACE,
         status::{ShaderStatus, Trouble},
     },
     optics::colour::BACKGROUND,
@@ -19,10 +20,9 @@ use lights_camera_models::{
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
-        live::{GRACE, LiveShaders},
+        live::LiveShaders,
     },
     scene::Scene,
-    shader::compose::Sources,
     watch::Watcher,
 };
 use tempfile::TempDir;
@@ -65,18 +65,18 @@ impl Lab {
             fs::create_dir_all(file.parent().expect("below the folder")).expect("writable");
             fs::write(file, source.text).expect("writable");
         }
-        let mut sources = Sources::default();
-        for (path, text) in files {
-            fs::write(folder.path().join(path), text).expect("writable");
-            sources.edit(*path, *text);
-        }
         let mut renderer =
             GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed");
         let world = renderer.app().world_mut();
+        let mut registry = world.resource_mut::<Registry>();
+        for (path, text) in files {
+            fs::write(folder.path().join(path), text).expect("writable");
+            registry.sources_mut().edit(*path, *text);
+        }
         fs::create_dir(folder.path().join("own")).expect("writable");
-        let folders =
-            Folders { shaders: Some(folder.path().to_owned()), models: Some(folder.path().join("own")) };
-        world.resource_mut::<LiveShaders>().start(sources, folders);
+        registry.set_shader_folder(folder.path());
+        registry.set_custom_folder(&folder.path().join("own"));
+        world.resource_mut::<LiveShaders>().start();
         renderer.set_scene(scene);
         renderer.settle().expect("the GPU draws");
         Self { renderer, folder }
@@ -603,7 +603,7 @@ fn saving_as_editors_do_goes_from_one_picture_to_the_next_and_shows_nothing_betw
     let mut lab = Lab::new(phong_scene("phong"));
     let mut watcher = Watcher::new(|| {});
     let folder = lab.file("").canonicalize().expect("there");
-    lab.live().start(Sources::default(), Folders { shaders: Some(folder.clone()), models: None });
+    lab.renderer.app().world_mut().resource_mut::<Registry>().set_shader_folder(&folder);
     watcher.watch_folder(&folder);
     let file = folder.join("reflection/phong.wgsl");
     let text =

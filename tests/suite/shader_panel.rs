@@ -20,7 +20,7 @@ use lights_camera_models::{
         state::{Action, Effect, Session, ThemeChoice, ViewChange},
         theme::Palette,
     },
-    registry::Registry,
+    registry::{Folders, Registry},
     scene::Scene,
     shader::check::ShaderProblem,
     window::{
@@ -59,8 +59,10 @@ fn broken_lambert() -> Trouble {
 
 fn folders() -> ShaderStatus {
     ShaderStatus {
-        shaders: Some(PathBuf::from("/home/mira/lab/shaders")),
-        models: Some(PathBuf::from("/home/mira/lab/models")),
+        folders: Folders {
+            shaders: Some(PathBuf::from("/home/mira/lab/shaders")),
+            models: Some(PathBuf::from("/home/mira/lab/models")),
+        },
         ..ShaderStatus::default()
     }
 }
@@ -529,7 +531,7 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     let folder = tempfile::tempdir()?;
     let models = folder.path().join("models");
     let mut bench = bench_with(Vec::new());
-    bench.session.shaders.models = Some(models.clone());
+    bench.registry.set_custom_folder(&models);
     let name = || "my_velvet".to_owned();
     let new = Effect::NewModel { id: name(), name: name() };
     assert_eq!(write(&new, &mut bench.session, &bench.registry), None);
@@ -573,7 +575,7 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     write(&gone, &mut bench.session, &bench.registry);
     assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("no reflection model “gone”")));
     // A folder that cannot be one.
-    bench.session.shaders.models = Some(file.clone());
+    bench.registry.set_custom_folder(&file);
     write(&new, &mut bench.session, &bench.registry);
     assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("could not be written")));
     Ok(())

@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 use super::missing_model;
 use crate::{
     panel::{
-        author::{self, ModelCommand},
+        author::ModelCommand,
         icon::{self, Icon},
         state::{Action, Session, Severity},
         theme::{self, Palette},
@@ -85,7 +85,7 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
 
 /// The folder that is watched, or a button that exports one.
 fn folder(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let Some(folder) = &session.shaders.shaders else {
+    let Some(folder) = &session.shaders.folders.shaders else {
         ui.label(theme::small(ui, "The shaders are built in."));
         let button = ui.button("Write them out for editing…").on_hover_text(
             "Copies every shader file into a folder that you choose. A file saved there is reloaded at once.",
@@ -102,7 +102,7 @@ fn folder(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let shown = tail(ui, &text, TextStyle::Small, room);
     let path = ui.label(RichText::new(shown).small().color(palette.text));
     let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
-    if let Some(models) = &session.shaders.models {
+    if let Some(models) = &session.shaders.folders.models {
         help += &format!("\nCustom models: {}", models.display());
     }
     path.on_hover_text(help);
@@ -133,7 +133,7 @@ pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, actions: &mut Ve
     let palette = Palette::here(ui);
     let (name, help) = words(part, path);
     let trouble = session.shaders.troubles.iter().find(|t| t.problem.file == *path);
-    let on_disk = author::on_disk(&session.shaders, path);
+    let on_disk = session.shaders.folders.file_of(path);
     let row = ui.horizontal(|ui| {
         ui.set_min_height(ROW);
         ui.spacing_mut().item_spacing.x = 6.0;

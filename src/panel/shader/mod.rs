@@ -92,7 +92,7 @@ pub fn missing_model(session: &Session, registry: &Registry, id: &str) -> String
 /// The panel without errors: the file that was loaded last, and first steps.
 fn well(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let heading = if laws::are_broken(session) { "No errors, but broken laws" } else { "No errors" };
-    let how = match &session.shaders.shaders {
+    let how = match &session.shaders.folders.shaders {
         Some(_) => {
             "Open a file at the left, change it and save it: the picture follows. Errors appear here, and the picture keeps the last version that worked."
         }

@@ -1,0 +1,353 @@
+//! The texts of files: read when they change, handed to the registry when they can be drawn with.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+use super::{
+    assets::built_in_sources,
+    problem::Problem,
+    reading::{Done, Job, Reader},
+    status::Reloaded,
+};
+use crate::{
+    custom,
+    reflection::{Ambient, ModelEntry},
+    registry::{CustomModel, Extent, MODELS, Registry, compose::compose_evaluation},
+    shader::{
+        check::ShaderProblem,
+        compose::{Composed, Sources},
+    },
+};
+
+/// The files of shaders and custom models as they come and change.
+///
+/// A shader file's text goes into the registry at once, and the shaders that are made of it are tried. A custom model
+/// is read, then tried by whoever draws, and goes into the registry when it can be drawn with: parameters and text
+/// together.
+#[derive(Default)]
+pub struct Library {
+    /// The text of each file as it was last drawn with.
+    good: Sources,
+    /// The texts of custom models that are being read, wait to be tried, or have mistakes.
+    pending: Sources,
+    reader: Reader,
+    /// Custom models that were read and are still to be tried.
+    arriving: Vec<CustomModel>,
+    /// Files that cannot be read and custom models with mistakes, by source path.
+    unusable: BTreeMap<String, Problem<Vec<ShaderProblem>>>,
+    /// The file that changed last, and when that became known.
+    change: Option<(String, Instant)>,
+    /// True if the unusable files are others than at the last [`take_news`](Self::take_news).
+    news: bool,
+}
+
+impl Library {
+    /// Reads a file that may have changed; others than shaders are passed over. Returns the source path of a shader
+    /// file, or of one that models share, if it has another text now. `drawn` tells by id which models were drawn.
+    pub fn look_at(
+        &mut self,
+        file: &Path,
+        registry: &mut Registry,
+        drawn: impl Fn(&str) -> bool,
+    ) -> Option<String> {
+        let source = registry.folders().source_of(file)?;
+        let in_folder = source.strip_prefix(MODELS).is_some_and(|name| !name.contains('/'));
+        let id = custom::id_of(file).filter(|_| in_folder);
+        let registered = id.is_some_and(|id| registry.custom_file(id).is_some());
+        let text = match custom::file::read(file, &source) {
+            Ok(text) => text,
+            Err(problem) => {
+                self.pending.forget(&source);
+                let used = registered || registry.sources().get(&source).is_some();
+                if used || built_in(registry, &source).is_some() {
+                    self.cannot_use(&source, vec![problem]);
+                } else {
+                    // Nothing was made of it, so nothing is missed.
+                    self.mend(&source);
+                }
+                return None;
+            }
+        };
+        if id.is_none() || !custom::is_model(&text) {
+            self.pending.forget(&source);
+            return self.change(source, text, registry, drawn);
+        }
+        let unusable = self.unusable.contains_key(&source);
+        let in_use = registered && registry.sources().get(&source) == Some(text.as_str());
+        if !unusable && self.pending.get(&source) == Some(text.as_str()) {
+            // It is being read or tried.
+        } else if !unusable && in_use {
+            self.pending.forget(&source);
+            self.arriving.retain(|model| model.entry.declaration.wgsl.path != source);
+        } else {
+            self.pending.edit(source.clone(), text);
+            self.read_pending(&source, registry);
+        }
+        None
+    }
+
+    /// Another text of a file goes into the registry. Returns its source path if it is not the one that is known.
+    fn change(
+        &mut self,
+        source: String,
+        text: String,
+        registry: &mut Registry,
+        drawn: impl Fn(&str) -> bool,
+    ) -> Option<String> {
+        self.mend(&source);
+        let built_in = built_in(registry, &source);
+        if registry.sources().get(&source).or(built_in) == Some(text.as_str()) {
+            return None;
+        }
+        if built_in == Some(text.as_str()) {
+            registry.sources_mut().forget(&source);
+        } else {
+            registry.sources_mut().edit(source.clone(), text);
+        }
+        self.read_again(&source, registry, drawn);
+        self.change = Some((source.clone(), Instant::now()));
+        Some(source)
+    }
+
+    /// Reads the custom models again that a change of another file may mend or change. Those that only share its
+    /// functions need it if the CPU calculates their response to uniform light, and they were drawn.
+    fn read_again(&mut self, changed: &str, registry: &mut Registry, drawn: impl Fn(&str) -> bool) {
+        let concerned = |model: &ModelEntry| {
+            let composed = compose_evaluation(registry.sources(), model);
+            composed.imports.contains(changed)
+                || (model.declaration.ambient == Ambient::Albedo
+                    && composed.depends_on(changed)
+                    && drawn(model.declaration.id))
+        };
+        let again: BTreeSet<_> = registry
+            .custom_models()
+            .map(|(model, _)| model)
+            .filter(|model| {
+                let source = model.declaration.wgsl.path;
+                let whole = registry.extent(model.declaration.id) == Some(Extent::Whole)
+                    && registry.sources().get(source).is_some_and(custom::is_model);
+                let known = whole && !self.unusable.contains_key(source);
+                source != changed && (known || self.pending.get(source).is_some()) && concerned(model)
+            })
+            .map(|model| model.declaration.wgsl.path.to_owned())
+            .chain(self.pending.edited().filter(|s| self.unusable.contains_key(*s)).map(str::to_owned))
+            .collect();
+        for source in again {
+            if self.pending.get(&source).is_none() {
+                self.pending.copy_from(registry.sources(), &source);
+            }
+            self.read_pending(&source, registry);
+        }
+    }
+
+    /// Reads a custom model. One with a mistake leaves what is known of it as it was.
+    fn read_pending(&mut self, source: &str, registry: &mut Registry) {
+        let Some((file, text)) = registry.folders().file_of(source).zip(self.pending.get(source)) else {
+            return;
+        };
+        let job = Job {
+            source: source.to_owned(),
+            file,
+            text: text.to_owned(),
+            registry: registry.clone(),
+            lenient: self.lenient(registry),
+        };
+        self.arriving.retain(|model| model.entry.declaration.wgsl.path != source);
+        if let Some(done) = self.reader.read(job) {
+            self.take_read(done, registry);
+        }
+    }
+
+    /// Takes the outcome of reading a custom model, unless its file has another text by now.
+    fn take_read(&mut self, done: Done, registry: &mut Registry) {
+        if self.pending.get(&done.source) != Some(done.text.as_str()) {
+            return;
+        }
+        match done.result {
+            Ok(model) => {
+                self.change = Some((done.source, Instant::now()));
+                self.arriving.push(model);
+            }
+            Err(problems) => self.refuse(&done.source, problems, registry),
+        }
+    }
+
+    /// Takes the outcomes of the thread that reads custom models.
+    pub fn take_finished(&mut self, registry: &mut Registry) {
+        for done in self.reader.finished() {
+            self.take_read(done, registry);
+        }
+    }
+
+    /// The files of models that are used and of which only the declaration is known, but for those that are being read
+    /// or have a mistake.
+    pub fn wanted<'a>(&self, used: impl Iterator<Item = &'a str>, registry: &Registry) -> Vec<PathBuf> {
+        let is_new = |file: &Path| {
+            let source = registry.folders().source_of(file);
+            source.is_some_and(|source| self.pending.get(&source).is_none())
+        };
+        let used: BTreeSet<_> = used.collect();
+        registry.wants_reading(used).filter(|file| is_new(file)).map(Path::to_owned).collect()
+    }
+
+    /// The next custom models to be tried, at most so many. Each is then to be [adopted](Self::adopt),
+    /// [refused](Self::refuse) or [kept for later](Self::try_later).
+    pub fn next_arriving(&mut self, most: usize) -> Vec<CustomModel> {
+        self.arriving.drain(..most.min(self.arriving.len())).collect()
+    }
+
+    /// A custom model can be drawn with.
+    pub fn adopt(&mut self, model: CustomModel, registry: &mut Registry) {
+        let source = model.entry.declaration.wgsl.path;
+        self.mend(source);
+        self.pending.forget(source);
+        registry.put_custom_model(model);
+    }
+
+    /// A custom model has mistakes. A new one whose declaration is right can be chosen all the same, and is drawn as
+    /// a stand-in.
+    pub fn refuse(&mut self, source: &str, problems: Vec<ShaderProblem>, registry: &mut Registry) {
+        if let Some((file, text)) = registry.folders().file_of(source).zip(self.pending.get(source))
+            && custom::id_of(&file).is_some_and(|id| registry.custom_file(id).is_none())
+            && let Ok(model) = custom::declare(&file, text, registry)
+        {
+            registry.put_stand_in(model);
+        }
+        self.cannot_use(source, problems);
+    }
+
+    /// Keeps a custom model that cannot be tried yet.
+    pub fn try_later(&mut self, model: CustomModel) {
+        self.arriving.push(model);
+    }
+
+    /// True while a model of which only the declaration was known is read or tried.
+    #[must_use]
+    pub fn is_arriving(&self, model: &ModelEntry, registry: &Registry) -> bool {
+        let source = model.declaration.wgsl.path;
+        registry.unread_file(model.declaration.id).is_some()
+            && self.pending.get(source).is_some()
+            && !self.unusable.contains_key(source)
+    }
+
+    /// Has custom models read on a thread of its own, which calls `wake`.
+    pub fn read_apart(&mut self, wake: impl Fn() + Send + 'static) {
+        self.reader = Reader::apart(wake);
+    }
+
+    /// True while a thread reads custom models; it wakes who waits.
+    #[must_use]
+    pub fn is_reading(&self) -> bool {
+        self.reader.is_reading()
+    }
+
+    /// True while custom models are read or wait to be tried.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.reader.is_busy() || !self.arriving.is_empty()
+    }
+
+    /// The text of a custom model that is not drawn with.
+    pub(super) fn pending(&self, source: &str) -> Option<&str> {
+        self.pending.get(source)
+    }
+
+    /// Notes that the files of a composed source can be drawn with as they are.
+    pub fn note_good(&mut self, composed: &Composed, registry: &Registry) {
+        composed.map.files().for_each(|source| self.good.copy_from(registry.sources(), source));
+    }
+
+    /// The texts as they were last drawn with.
+    #[must_use]
+    pub fn good(&self) -> &Sources {
+        &self.good
+    }
+
+    /// The texts as they are, but of the files that all models share as they were last drawn with.
+    #[must_use]
+    pub fn lenient(&self, registry: &Registry) -> Sources {
+        let mut sources = registry.sources().clone();
+        for source in registry.sources().edited().filter(|source| !source.starts_with(MODELS)) {
+            sources.copy_from(&self.good, source);
+        }
+        sources
+    }
+
+    /// True if a composed source holds only built-in texts, which tests have tried.
+    #[must_use]
+    pub fn is_built_in(&self, composed: &Composed, registry: &Registry) -> bool {
+        let edited =
+            |source: &str| registry.sources().get(source).is_some() || self.good.get(source).is_some();
+        !composed.map.files().any(edited) && composed.problem.is_none()
+    }
+
+    /// The source path of the file that changed last.
+    #[must_use]
+    pub fn changed(&self) -> Option<&str> {
+        self.change.as_ref().map(|(source, _)| source.as_str())
+    }
+
+    /// The last change as one that came through just now.
+    #[must_use]
+    pub fn reloaded(&self) -> Option<Reloaded> {
+        let (file, since) = self.change.as_ref()?;
+        Some(Reloaded { file: file.clone(), milliseconds: since.elapsed().as_secs_f32() * 1e3 })
+    }
+
+    /// The files that cannot be used, by source path.
+    pub fn unusable(&self) -> impl Iterator<Item = (&str, &Problem<Vec<ShaderProblem>>)> {
+        self.unusable.iter().map(|(source, problem)| (source.as_str(), problem))
+    }
+
+    /// The source paths of unusable files that are not on disk, nor built in.
+    pub fn gone(&self, registry: &Registry) -> impl Iterator<Item = &str> {
+        let is_gone = |source: &str| registry.folders().file_of(source).is_some_and(|file| !file.exists());
+        self.unusable
+            .keys()
+            .map(String::as_str)
+            .filter(move |source| is_gone(source) && built_in(registry, source).is_none())
+    }
+
+    /// Lets go of a file that is gone, and of the model in it.
+    pub fn forget(&mut self, source: &str, registry: &mut Registry) {
+        registry.remove_model(model_of(source).unwrap_or_default());
+        registry.sources_mut().forget(source);
+        self.mend(source);
+    }
+
+    /// True if the unusable files are others than when this was asked last.
+    pub fn take_news(&mut self) -> bool {
+        std::mem::take(&mut self.news)
+    }
+
+    /// True if [`take_news`](Self::take_news) has some.
+    #[must_use]
+    pub fn has_news(&self) -> bool {
+        self.news
+    }
+
+    fn cannot_use(&mut self, source: &str, problems: Vec<ShaderProblem>) {
+        let before = self.unusable.get(source);
+        self.news |= before.is_none_or(|before| before.what != problems);
+        let problem = Problem::after(before, problems);
+        self.unusable.insert(source.to_owned(), problem);
+    }
+
+    fn mend(&mut self, source: &str) {
+        self.news |= self.unusable.remove(source).is_some();
+    }
+}
+
+/// The id of the custom model of a source path.
+#[must_use]
+pub(crate) fn model_of(source: &str) -> Option<&str> {
+    custom::id_of(Path::new(source)).filter(|_| source.starts_with(MODELS))
+}
+
+/// The built-in text of a source path.
+fn built_in(registry: &Registry, source: &str) -> Option<&'static str> {
+    built_in_sources(registry).into_iter().find(|s| s.path == source).map(|s| s.text)
+}

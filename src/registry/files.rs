@@ -1,0 +1,195 @@
+//! The files that the registry was read from: folders, custom models, and how much of each was read.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use super::{Folders, Registry, put};
+use crate::{reflection::ModelEntry, watch::Print};
+
+/// A model from a file.
+#[derive(Clone, Debug)]
+pub struct CustomModel {
+    /// The entry. Its [`Source`](crate::shader::Source) is `models/ID.wgsl`; the text built into that is a stand-in that
+    /// is drawn as long as the file has no good version.
+    pub entry: ModelEntry,
+    /// The file.
+    pub path: PathBuf,
+    /// Its text, declaration included, so that lines count as in the file.
+    pub text: Arc<str>,
+}
+
+/// The part of a custom model that was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// The declaration. The rest is read when the model is used; until then a stand-in is drawn.
+    Declaration,
+    /// The declaration. The rest is no good: the last text that was is drawn with, or a stand-in.
+    StandIn,
+    /// All of it.
+    Whole,
+}
+
+/// The file of a custom model.
+#[derive(Clone, Debug)]
+struct CustomSource {
+    path: PathBuf,
+    extent: Extent,
+}
+
+/// The files of shaders and custom models.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Files {
+    folders: Folders,
+    /// The files of custom models, by id.
+    custom: BTreeMap<&'static str, CustomSource>,
+    /// The mistakes of files that give no model, by id.
+    broken: BTreeMap<String, String>,
+    /// The state of each file whose declaration was looked for, at that time.
+    seen: BTreeMap<PathBuf, Print>,
+}
+
+impl Registry {
+    /// The folders that shaders and custom models are read from.
+    #[must_use]
+    pub fn folders(&self) -> &Folders {
+        &self.files.folders
+    }
+
+    /// Notes the folder that shaders are read from.
+    pub fn set_shader_folder(&mut self, folder: &Path) {
+        self.files_mut().folders.shaders = Some(folder.to_owned());
+    }
+
+    /// The existing file behind a source path.
+    #[must_use]
+    pub fn path_on_disk(&self, source: &str) -> Option<PathBuf> {
+        let custom = self
+            .custom_models()
+            .find(|(m, _)| m.declaration.wgsl.path == source)
+            .map(|(_, path)| path.to_owned());
+        let below_shaders = || Some(self.folders().shaders.as_ref()?.join(source));
+        custom.or_else(|| {
+            let files = [self.folders().file_of(source), below_shaders()];
+            files.into_iter().flatten().find(|file| file.is_file())
+        })
+    }
+
+    /// Makes a model from a file known, with its text. A second one with the same id replaces the first, in its
+    /// place.
+    pub fn put_custom_model(&mut self, model: CustomModel) {
+        self.sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
+        self.put_custom(model, Extent::Whole);
+    }
+
+    /// Makes a model from a file known whose text is no good yet: the text that is known stays, and where there is
+    /// none a stand-in is drawn.
+    pub fn put_stand_in(&mut self, model: CustomModel) {
+        self.put_custom(model, Extent::StandIn);
+    }
+
+    /// Makes a model from a file known of which only the declaration was read. A stand-in is drawn until the rest is
+    /// read, which [`wants_reading`](Self::wants_reading) asks for.
+    pub fn put_declared(&mut self, model: CustomModel) {
+        self.sources.forget(model.entry.declaration.wgsl.path);
+        self.put_custom(model, Extent::Declaration);
+    }
+
+    fn put_custom(&mut self, model: CustomModel, extent: Extent) {
+        let id = model.entry.declaration.id;
+        let files = self.files_mut();
+        files.broken.remove(id);
+        files.custom.insert(id, CustomSource { path: model.path, extent });
+        put(&mut self.models, model.entry, |m| m.declaration.id);
+    }
+
+    /// Puts the custom models in the order of their ids, whichever was read first.
+    pub(crate) fn sort_custom_models(&mut self) {
+        let is_custom = |m: &ModelEntry| self.files.custom.contains_key(m.declaration.id);
+        let places: Vec<_> = (0..self.models.len()).filter(|i| is_custom(&self.models[*i])).collect();
+        let mut custom: Vec<_> = places.iter().map(|i| self.models[*i].clone()).collect();
+        custom.sort_by_key(|m| m.declaration.id);
+        for (place, model) in places.into_iter().zip(custom) {
+            self.models[place] = model;
+        }
+    }
+
+    fn files_mut(&mut self) -> &mut Files {
+        Arc::make_mut(&mut self.files)
+    }
+
+    /// Forgets a model, and its text if it came from a file.
+    pub fn remove_model(&mut self, id: &str) {
+        let Some(at) = self.models.iter().position(|m| m.declaration.id == id) else { return };
+        let model = self.models.remove(at);
+        if self.files_mut().custom.remove(id).is_some() {
+            self.sources.forget(model.declaration.wgsl.path);
+        }
+    }
+
+    /// The file of a model that came from one.
+    #[must_use]
+    pub fn custom_file(&self, id: &str) -> Option<&Path> {
+        self.files.custom.get(id).map(|custom| custom.path.as_path())
+    }
+
+    /// The part that was read of the file of a custom model.
+    #[must_use]
+    pub fn extent(&self, id: &str) -> Option<Extent> {
+        self.files.custom.get(id).map(|custom| custom.extent)
+    }
+
+    /// The file of a model of which only the declaration was read.
+    #[must_use]
+    pub fn unread_file(&self, id: &str) -> Option<&Path> {
+        self.custom_file(id).filter(|_| self.extent(id) == Some(Extent::Declaration))
+    }
+
+    /// The files that are to be read now that these models are used: of some only the declaration is known. See
+    /// [`custom::read`](crate::custom::read).
+    pub fn wants_reading<'a>(
+        &'a self,
+        used: impl IntoIterator<Item = &'a str>,
+    ) -> impl Iterator<Item = &'a Path> {
+        used.into_iter().filter_map(|id| self.unread_file(id))
+    }
+
+    /// The state of each file whose declaration was looked for, at that time.
+    pub(crate) fn files_seen(&self) -> &BTreeMap<PathBuf, Print> {
+        &self.files.seen
+    }
+
+    /// Notes the state of a file whose declaration is looked for.
+    pub(crate) fn note_seen(&mut self, file: &Path, print: Print) {
+        self.files_mut().seen.insert(file.to_owned(), print);
+    }
+
+    /// The models that came from files, with these.
+    pub fn custom_models(&self) -> impl Iterator<Item = (&ModelEntry, &Path)> {
+        self.models.iter().filter_map(|m| Some((m, self.custom_file(m.declaration.id)?)))
+    }
+
+    /// Notes the folder that custom models are read from.
+    pub fn set_custom_folder(&mut self, folder: &Path) {
+        self.files_mut().folders.models = Some(folder.to_owned());
+    }
+
+    /// The folder that custom models are read from, if there is one.
+    #[must_use]
+    pub fn custom_folder(&self) -> Option<&Path> {
+        self.folders().models.as_deref()
+    }
+
+    /// Notes the reason why the file of that id gives no model, or none as it is.
+    pub fn mark_broken(&mut self, id: &str, why: String) {
+        self.files_mut().broken.insert(id.to_owned(), why);
+    }
+
+    /// The reason why the file of that id gives no model: place and mistake.
+    #[must_use]
+    pub fn broken_model(&self, id: &str) -> Option<&str> {
+        self.files.broken.get(id).map(String::as_str)
+    }
+}

@@ -1,0 +1,68 @@
+//! The folders that shaders and custom models are read from, and the names of the files in them.
+
+use std::path::{Path, PathBuf};
+
+/// The beginning of the source path of a custom model, and of what custom models share.
+pub(crate) const MODELS: &str = "models/";
+
+/// The folders that shaders and custom models are read from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Folders {
+    /// The folder whose files replace the built-in shaders; none when those are used.
+    pub shaders: Option<PathBuf>,
+    /// The folder whose files are custom models. It need not exist yet.
+    pub models: Option<PathBuf>,
+}
+
+impl Folders {
+    /// The source path of a file on disk, as messages name it; none if it is no shader of these folders.
+    #[must_use]
+    pub fn source_of(&self, file: &Path) -> Option<String> {
+        if file.extension().is_none_or(|e| e != "wgsl") {
+            return None;
+        }
+        let below = |folder: &Option<PathBuf>, prefix: &str| {
+            let rest = file.strip_prefix(folder.as_ref()?).ok()?;
+            let parts: Option<Vec<_>> = rest.iter().map(|p| p.to_str()).collect();
+            Some(format!("{prefix}{}", parts?.join("/")))
+        };
+        let shader = || below(&self.shaders, "").filter(|source| !source.starts_with(MODELS));
+        below(&self.models, MODELS).or_else(shader)
+    }
+
+    /// The file on disk of a source path, whether it is there or not; none of generated text.
+    #[must_use]
+    pub fn file_of(&self, source: &str) -> Option<PathBuf> {
+        if source.starts_with('(') {
+            return None;
+        }
+        match source.strip_prefix(MODELS) {
+            Some(name) => Some(self.models.as_ref()?.join(name)),
+            None => Some(self.shaders.as_ref()?.join(source)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_and_source_paths_lead_to_each_other() {
+        // The folder of the models may lie within that of the shaders.
+        let folders = Folders { shaders: Some("/a/shaders".into()), models: Some("/a/shaders/mine".into()) };
+        for (file, source) in [
+            ("/a/shaders/loop.wgsl", "loop.wgsl"),
+            ("/a/shaders/reflection/phong.wgsl", "reflection/phong.wgsl"),
+            ("/a/shaders/mine/velvet.wgsl", "models/velvet.wgsl"),
+        ] {
+            assert_eq!(folders.source_of(Path::new(file)).as_deref(), Some(source));
+            assert_eq!(folders.file_of(source), Some(file.into()));
+        }
+        for file in ["/a/loop.wgsl", "/a/shaders/loop.txt", "/a/shaders/models/velvet.wgsl"] {
+            assert_eq!(folders.source_of(Path::new(file)), None, "{file}");
+        }
+        assert_eq!(folders.file_of("(row)"), None);
+        assert_eq!(Folders::default().file_of("loop.wgsl"), None);
+    }
+}

@@ -1,0 +1,254 @@
+//! The shaders on the picture: composed when first needed, exchanged when a file they are made of changes, and
+//! kept when the change cannot be drawn with.
+//!
+//! Each reflection model in each shading model has one shader, and each of those goes its own way: what a change of a
+//! shared file breaks for one model does not disturb the others. A shader is exchanged only after it was tried
+//! ([`trial`](super::trial)). Its asset stays the same, so cameras, materials and objects know nothing of it. The
+//! files are the business of the [`Library`].
+
+mod arriving;
+mod ready;
+mod report;
+mod trying;
+
+use std::{
+    collections::{BTreeMap, BTreeSet, HashMap, HashSet},
+    path::Path,
+    time::Instant,
+};
+
+use bevy::{
+    app::{App, Plugin},
+    asset::Handle,
+    ecs::prelude::*,
+    render::error_handler::RenderErrorHandler,
+    shader::Shader,
+};
+
+use super::{
+    entities::CurrentScene,
+    overrides::Overrides,
+    plugin::{LabFrame, LabSystems},
+    swap::Drawn,
+    trial::{Bench, TrialPlugin},
+};
+use crate::{
+    library::{
+        Library,
+        problem::Problem,
+        status::{Reloaded, ShaderStatus},
+    },
+    reflection::ModelEntry,
+    registry::Registry,
+    shader::{check::ShaderProblem, compose::Composed},
+    shading::ShadingEntry,
+};
+
+pub use ready::SPARE;
+
+/// Exchanges shaders while they are on the picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LiveShadersPlugin;
+
+impl Plugin for LiveShadersPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(TrialPlugin)
+            .init_resource::<LiveShaders>()
+            .insert_resource(RenderErrorHandler(trying::take_back))
+            .add_systems(LabFrame, exchange.in_set(LabSystems::Swap).before(crate::render::swap::swap));
+    }
+}
+
+/// The identity of a shader: model, shading model, and the number of light types that were known.
+type Key = (&'static str, &'static str, usize);
+
+fn key(model: &ModelEntry, shading: &ShadingEntry, registry: &Registry) -> Key {
+    (model.declaration.id, shading.declaration.id, registry.lights().len())
+}
+
+/// One shader.
+struct Live {
+    handle: Handle<Shader>,
+    /// The declaration that it was made for, see [`ModelEntry::declared`].
+    declared: u64,
+    /// The source that is drawn with.
+    shown: Composed,
+    /// The source that was drawn with before, and until when: the renderer may still refuse the one that came after.
+    before: Option<(Composed, Instant)>,
+    /// The source that was tried last and refused.
+    refused: Option<Refused>,
+    /// True if a file that it is made of changed.
+    due: bool,
+    /// The look at which it was last on the picture, see [`LiveShaders::rest`].
+    seen: u64,
+}
+
+struct Refused {
+    composed: Composed,
+    problem: Problem<Box<ShaderProblem>>,
+}
+
+/// The shaders by model and shading model.
+#[derive(Default, Resource)]
+pub struct LiveShaders {
+    library: Library,
+    shaders: HashMap<Key, Live>,
+    /// The assets of shaders that are made anew when something is drawn with them again.
+    resting: HashMap<Key, Handle<Shader>>,
+    /// The number of times that shaders were looked through for some that may rest.
+    looks: u64,
+    /// True if an object waits for a shader that is tried for the first time.
+    awaited: bool,
+    /// The composed texts that were tried with success in this frame.
+    approved: HashSet<String>,
+    /// Changed files that no shader is made of: they are tried on the side.
+    unused: BTreeSet<String>,
+    /// The problems of those.
+    unused_problems: BTreeMap<String, Problem<Box<ShaderProblem>>>,
+    /// The last change that came through.
+    last: Option<Reloaded>,
+    status: ShaderStatus,
+    /// True if the status has to be made anew.
+    stale_status: bool,
+}
+
+impl LiveShaders {
+    /// Tries all shaders again: the registry has other texts and folders.
+    pub fn start(&mut self) {
+        self.shaders.values_mut().for_each(|live| live.due = true);
+        self.stale_status = true;
+    }
+
+    /// The folders of the shaders and their problems.
+    #[must_use]
+    pub fn status(&self) -> &ShaderStatus {
+        &self.status
+    }
+
+    /// True if something is still to be tried or reported, so that frames must go on.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.stale_status || self.library.has_news() || self.is_trying()
+    }
+
+    /// True if something is still to be tried, so that the next picture may be another one.
+    #[must_use]
+    pub fn is_trying(&self) -> bool {
+        self.awaited
+            || self.library.is_busy()
+            || !self.unused.is_empty()
+            || self.shaders.values().any(|live| live.due)
+    }
+
+    /// The first problem that keeps a shader from being what its files say.
+    #[must_use]
+    pub fn refused(&self) -> Option<&ShaderProblem> {
+        self.shaders.values().find_map(|live| live.refused.as_ref().map(|refused| &*refused.problem.what))
+    }
+
+    /// The number of shaders that are ready to be drawn with.
+    #[must_use]
+    pub fn ready(&self) -> usize {
+        self.shaders.len()
+    }
+
+    /// True if the picture is what the files say, all of it.
+    #[must_use]
+    pub fn is_up_to_date(&self) -> bool {
+        !self.is_trying()
+            && self.shaders.values().all(|live| live.refused.is_none())
+            && self.library.unusable().next().is_none()
+            && self.unused_problems.is_empty()
+    }
+
+    /// Has custom models read on a thread of its own, which calls `wake`.
+    pub fn read_apart(&mut self, wake: impl Fn() + Send + 'static) {
+        self.library.read_apart(wake);
+    }
+
+    /// True while a thread reads custom models; it wakes who waits.
+    #[must_use]
+    pub fn is_reading(&self) -> bool {
+        self.library.is_reading()
+    }
+
+    /// Reads a file that may have changed, see [`Library::look_at`]. Custom models go into the registry once they were
+    /// tried.
+    pub fn look_at(&mut self, file: &Path, registry: &mut Registry) {
+        let Self { library, shaders, .. } = self;
+        let drawn = |id: &str| shaders.keys().any(|key| key.0 == id);
+        let Some(changed) = library.look_at(file, registry, drawn) else { return };
+        if self.mark_due(&changed) {
+            self.unused_problems.remove(&changed);
+        } else {
+            self.unused.insert(changed);
+        }
+    }
+
+    /// Has the shaders tried that a file is part of. True if there is one.
+    fn mark_due(&mut self, source: &str) -> bool {
+        let mut used = false;
+        for live in self.shaders.values_mut() {
+            let candidate = live.refused.as_ref().is_some_and(|r| r.composed.depends_on(source));
+            if candidate || live.shown.depends_on(source) {
+                live.due = true;
+                used = true;
+            }
+        }
+        used
+    }
+}
+
+/// The models and shading models on the picture.
+struct Visible(Vec<(String, String)>);
+
+impl Visible {
+    fn of(world: &mut World) -> Self {
+        let mut query = world.query::<&Drawn>();
+        let mut pairs: Vec<_> =
+            query.iter(world).map(|d| (d.model().to_owned(), d.shading().to_owned())).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        Self(pairs)
+    }
+
+    fn shows(&self, model: &str, shading: &ShadingEntry) -> bool {
+        self.0.iter().any(|(m, s)| m == model && s == shading.declaration.id)
+    }
+
+    fn has(&self, key: &Key) -> bool {
+        self.0.iter().any(|(model, shading)| model == key.0 && shading == key.1)
+    }
+}
+
+/// Exchanges the shaders whose files changed.
+fn exchange(world: &mut World) {
+    let mut overrides = world.query_filtered::<(), Changed<Overrides>>();
+    if world.is_resource_changed::<CurrentScene>() || overrides.iter(world).next().is_some() {
+        world.resource_scope(|world, mut live: Mut<LiveShaders>| live.read_wanted(world));
+    }
+    if !world.resource::<LiveShaders>().is_busy() {
+        return;
+    }
+    let visible = Visible::of(world);
+    world.resource_scope(|world, mut live: Mut<LiveShaders>| {
+        live.library.take_finished(world.resource_mut::<Registry>().bypass_change_detection());
+        live.approved.clear();
+        live.awaited = false;
+        world.resource::<Bench>().begin_frame();
+        live.adopt(world, &visible);
+        let registry = world.resource::<Registry>().clone();
+        live.work(world, &registry, &visible);
+        if live.shaders.iter().any(|(key, shader)| shader.due && visible.has(key)) {
+            // Problems are reported when all of them are known.
+            live.stale_status = true;
+            return;
+        }
+        live.forget_gone(world, &visible);
+        live.rest(world, &visible);
+        live.library.take_news();
+        // Problems that are too young now are reported later.
+        live.stale_status = live.has_young_problems();
+        live.report(&registry, &visible);
+    });
+}

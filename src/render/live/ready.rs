@@ -1,0 +1,175 @@
+//! The shaders that are ready to be drawn with: composed when first needed, and let rest when they are not.
+
+use bevy::{
+    asset::{Assets, Handle},
+    ecs::prelude::*,
+    shader::{Shader, ValidateShader},
+};
+
+use super::{
+    super::trial::{Bench, COMPOSED, Verdict},
+    Key, Live, LiveShaders, ModelEntry, Refused, Registry, ShadingEntry, Visible, key,
+};
+use crate::{
+    library::problem::Problem,
+    registry::compose::compose,
+    shader::{
+        compose::{Composed, Sources},
+        slim::slim,
+    },
+};
+
+/// The number of shaders that stay ready for a change back while nothing is drawn with them; each keeps some megabytes.
+pub const SPARE: usize = 32;
+/// The content of the assets of the others: the least that a pipeline can be made of.
+const RESTING: &str = "
+@vertex fn vertex(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> { return vec4(position, 1.0); }
+@fragment fn fragment() -> @location(0) vec4<f32> { return vec4(0.0); }
+";
+
+/// The path by which Bevy knows the asset of a shader.
+pub(super) fn path_of_asset(key: Key) -> String {
+    format!("{COMPOSED}{}/{}.wgsl", key.0, key.1)
+}
+
+impl LiveShaders {
+    /// The shader of a model and a shading model; none yet while another process tries it.
+    pub(crate) fn get(
+        &mut self,
+        world: &mut World,
+        model: &ModelEntry,
+        shading: &ShadingEntry,
+        registry: &Registry,
+    ) -> Option<Handle<Shader>> {
+        let key = key(model, shading, registry);
+        let declared = model.declared();
+        if let Some(live) = self.shaders.get(&key).filter(|live| live.declared == declared) {
+            return Some(live.handle.clone());
+        }
+        if self.library.is_arriving(model, registry) {
+            self.awaited = true;
+            return None;
+        }
+        let wanted = compose(registry.sources(), model, shading, registry.lights());
+        // From here on these files are used.
+        for path in wanted.map.files() {
+            self.unused.remove(path);
+            self.unused_problems.remove(path);
+        }
+        let mut refused = None;
+        let mut due = false;
+        let mut shown = None;
+        if self.library.is_built_in(&wanted, registry) {
+            shown = Some(wanted);
+        } else {
+            match self.try_out(world, &wanted, model, shading) {
+                Verdict::Good => {
+                    self.library.note_good(&wanted, registry);
+                    shown = Some(wanted);
+                }
+                Verdict::Bad(problem) => {
+                    refused = Some(Refused { composed: wanted, problem: Problem::new(problem) })
+                }
+                Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
+                    self.awaited = true;
+                    return None;
+                }
+                Verdict::NotYet => due = true,
+            }
+        }
+        let shown = match shown {
+            Some(shown) => shown,
+            None => self.last_good(world, model, shading, registry)?,
+        };
+        let asset = self.asset(&shown, key, registry);
+        let replaced = self.replaced(key, registry);
+        let mut assets = world.resource_mut::<Assets<Shader>>();
+        let handle = match replaced {
+            Some(handle) => {
+                // The asset is there as long as its handle.
+                let _ = assets.insert(handle.id(), asset);
+                handle
+            }
+            None => assets.add(asset),
+        };
+        self.stale_status = true;
+        let seen = self.looks;
+        let live = Live { handle: handle.clone(), declared, shown, before: None, refused, due, seen };
+        self.shaders.insert(key, live);
+        Some(handle)
+    }
+
+    /// The asset that a shader takes over: that of the same model as it was declared before or as it rested, or of a
+    /// custom model that is gone. Bevy never lets go of a pipeline, but makes it anew when its shader changes; with an
+    /// asset for each declaration, each would keep megabytes.
+    fn replaced(&mut self, key: Key, registry: &Registry) -> Option<Handle<Shader>> {
+        if let Some(live) = self.shaders.remove(&key) {
+            return Some(live.handle);
+        }
+        if let Some(handle) = self.resting.remove(&key) {
+            return Some(handle);
+        }
+        // Materials of custom models are of one type, so any of them may take it.
+        registry.custom_file(key.0)?;
+        let gone = |known: &&Key| known.1 == key.1 && registry.model(known.0).is_none();
+        let known = *self.shaders.keys().chain(self.resting.keys()).find(gone)?;
+        self.shaders.remove(&known).map(|live| live.handle).or_else(|| self.resting.remove(&known))
+    }
+
+    /// Lets shaders rest that were not on the picture for longest, if there are many: their pipelines stay, since Bevy
+    /// keeps those, but are made of next to nothing.
+    pub(super) fn rest(&mut self, world: &mut World, visible: &Visible) {
+        self.looks += 1;
+        for (_, live) in self.shaders.iter_mut().filter(|(key, _)| visible.has(key)) {
+            live.seen = self.looks;
+        }
+        let idle = |(key, live): &(&Key, &Live)| !visible.has(key) && !live.due && live.refused.is_none();
+        let mut idle: Vec<_> =
+            self.shaders.iter().filter(idle).map(|(key, live)| (live.seen, *key)).collect();
+        idle.sort_unstable();
+        let many = idle.len().saturating_sub(SPARE);
+        for (_, key) in idle.into_iter().take(many) {
+            let Some(live) = self.shaders.remove(&key) else { continue };
+            let asset = Shader::from_wgsl(RESTING, path_of_asset(key));
+            // The asset is there as long as its handle.
+            let _ = world.resource_mut::<Assets<Shader>>().insert(live.handle.id(), asset);
+            self.resting.insert(key, live.handle);
+        }
+    }
+
+    /// The latest that can be drawn with: the file of the model with the others as they last came through, else all
+    /// as they last came through, else what is built in. None yet while another process tries one of them.
+    fn last_good(
+        &mut self,
+        world: &mut World,
+        model: &ModelEntry,
+        shading: &ShadingEntry,
+        registry: &Registry,
+    ) -> Option<Composed> {
+        for sources in [self.library.lenient(registry), self.library.good().clone()] {
+            let composed = compose(&sources, model, shading, registry.lights());
+            if self.library.is_built_in(&composed, registry) {
+                return Some(composed);
+            }
+            match self.try_out(world, &composed, model, shading) {
+                Verdict::Good => return Some(composed),
+                Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
+                    self.awaited = true;
+                    return None;
+                }
+                Verdict::Bad(_) | Verdict::NotYet => {}
+            }
+        }
+        Some(compose(&Sources::default(), model, shading, registry.lights()))
+    }
+
+    /// The asset of a composed source.
+    pub(super) fn asset(&self, composed: &Composed, key: Key, registry: &Registry) -> Shader {
+        let mut shader = Shader::from_wgsl(slim(&composed.text), path_of_asset(key));
+        if !self.library.is_built_in(composed, registry) {
+            // What users write may read outside of arrays.
+            shader.validate_shader = ValidateShader::Enabled;
+        }
+        shader
+    }
+}

@@ -1,0 +1,213 @@
+//! Trying shaders, and exchanging those that can be drawn with.
+
+use std::time::{Duration, Instant};
+
+use bevy::{
+    asset::Assets,
+    ecs::prelude::*,
+    render::{
+        error_handler::{ErrorType, RenderError, RenderErrorHandler, RenderErrorPolicy},
+        renderer::{RenderAdapter, RenderDevice},
+    },
+    shader::Shader,
+};
+
+use super::{
+    super::trial::{Bench, Tools, Verdict},
+    Key, LiveShaders, ModelEntry, Refused, Registry, ShadingEntry, Visible,
+    ready::path_of_asset,
+};
+use crate::{
+    library::problem::Problem,
+    optics::colour::Encoding,
+    parameter::Values,
+    registry::compose::compose,
+    shader::{
+        check::ShaderProblem,
+        compose::{Composed, WRAPPER},
+    },
+    shading::Stage,
+};
+
+/// The time that a frame may try shaders before it is drawn: with many on the picture, the window goes on answering.
+const SLICE: Duration = Duration::from_millis(200);
+/// The time after an exchange in which a failure of the renderer is blamed on it.
+const PROBATION: Duration = Duration::from_secs(5);
+
+impl LiveShaders {
+    /// Tries a composed source, once.
+    pub(super) fn try_out(
+        &mut self,
+        world: &mut World,
+        composed: &Composed,
+        model: &ModelEntry,
+        shading: &ShadingEntry,
+    ) -> Verdict {
+        if composed.problem.is_none() && self.approved.contains(&composed.text) {
+            return Verdict::Good;
+        }
+        let verdict = try_out(world, composed, model, shading);
+        if verdict == Verdict::Good {
+            self.approved.insert(composed.text.clone());
+        }
+        verdict
+    }
+
+    /// Tries what is due, for as long as a frame may take: first what is on the picture; then, one in a frame, what
+    /// is not.
+    pub(super) fn work(&mut self, world: &mut World, registry: &Registry, visible: &Visible) {
+        let begin = Instant::now();
+        // Shaders of older declarations are made anew when something is drawn with them.
+        for (key, live) in &mut self.shaders {
+            if registry.model(key.0).is_some_and(|model| model.declared() != live.declared) {
+                (live.due, live.refused) = (false, None);
+            }
+        }
+        let mut due: Vec<Key> = self.shaders.iter().filter(|(_, live)| live.due).map(|(k, _)| *k).collect();
+        due.sort_unstable();
+        let (on_picture, off_picture): (Vec<_>, Vec<_>) = due.into_iter().partition(|k| visible.has(k));
+        if !on_picture.is_empty() {
+            for key in on_picture {
+                self.refresh(world, registry, key);
+                if begin.elapsed() > SLICE {
+                    break;
+                }
+            }
+            return;
+        }
+        if let Some(key) = off_picture.first() {
+            self.refresh(world, registry, *key);
+        }
+        if let Some(path) = self.unused.pop_first() {
+            self.try_unused(world, registry, visible, &path);
+        }
+    }
+
+    /// Exchanges a shader for what its files say now, if that can be drawn with.
+    fn refresh(&mut self, world: &mut World, registry: &Registry, key: Key) {
+        let entries = registry.model(key.0).zip(registry.shading_model(key.1));
+        let Some((model, shading)) =
+            entries.filter(|(model, shading)| super::key(model, shading, registry) == key)
+        else {
+            // Other light types were known then; nothing is drawn with it any more.
+            if let Some(live) = self.shaders.get_mut(&key) {
+                live.due = false;
+            }
+            return;
+        };
+        let wanted = compose(registry.sources(), model, shading, registry.lights());
+        let shown_already = self.shaders.get(&key).is_some_and(|live| live.shown == wanted);
+        let verdict = if shown_already || self.library.is_built_in(&wanted, registry) {
+            Verdict::Good
+        } else {
+            self.try_out(world, &wanted, model, shading)
+        };
+        if verdict == Verdict::Good {
+            self.library.note_good(&wanted, registry);
+        }
+        let asset = self.asset(&wanted, key, registry);
+        let Some(live) = self.shaders.get_mut(&key) else { return };
+        live.due = verdict == Verdict::NotYet;
+        match verdict {
+            Verdict::Good if shown_already => live.refused = None,
+            Verdict::Good => {
+                let id = live.handle.id();
+                // The asset is there as long as its handle.
+                let _ = world.resource_mut::<Assets<Shader>>().insert(id, asset);
+                live.before = Some((std::mem::replace(&mut live.shown, wanted), Instant::now()));
+                live.refused = None;
+                if let Some(reloaded) = self.library.reloaded() {
+                    self.last = Some(reloaded);
+                }
+            }
+            Verdict::Bad(problem) => {
+                let problem = self.library.blamed(problem, &wanted, registry);
+                let problem = Problem::after(live.refused.as_ref().map(|r| &r.problem), problem);
+                live.refused = Some(Refused { composed: wanted, problem });
+            }
+            Verdict::NotYet => {}
+        }
+        self.stale_status = true;
+    }
+
+    /// Tries a file that nothing on the picture is made of, with a model or shading model that it belongs to.
+    fn try_unused(&mut self, world: &mut World, registry: &Registry, visible: &Visible, path: &str) {
+        let shadings = registry.shading_models();
+        let models = registry.models();
+        let shading = shadings.iter().find(|m| m.declaration.wgsl.path == path);
+        let model = models.iter().find(|m| m.declaration.wgsl.path == path);
+        if shading.is_none() && model.is_none() {
+            return;
+        }
+        let shown_shading =
+            || shadings.iter().find(|m| visible.0.iter().any(|(_, id)| id == m.declaration.id));
+        let Some((model, shading)) =
+            model.or(models.first()).zip(shading.or_else(shown_shading).or(shadings.first()))
+        else {
+            return;
+        };
+        let composed = compose(registry.sources(), model, shading, registry.lights());
+        match self.try_out(world, &composed, model, shading) {
+            Verdict::Good => {
+                self.unused_problems.remove(path);
+                self.library.note_good(&composed, registry);
+            }
+            Verdict::Bad(problem) => {
+                let problem = self.library.blamed(problem, &composed, registry);
+                self.unused_problems.insert(path.to_owned(), Problem::new(problem));
+            }
+            Verdict::NotYet => {
+                self.unused.insert(path.to_owned());
+            }
+        }
+        self.stale_status = true;
+    }
+}
+
+fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, shading: &ShadingEntry) -> Verdict {
+    let (Some(device), Some(adapter)) =
+        (world.get_resource::<RenderDevice>().cloned(), world.get_resource::<RenderAdapter>().cloned())
+    else {
+        return Verdict::NotYet;
+    };
+    world.resource_scope(|world, mut bench: Mut<Bench>| {
+        let tools = Tools { device: &device, adapter: &adapter, shaders: world.resource::<Assets<Shader>>() };
+        let row = || model.row(&Values::default(), Encoding::Srgb, false);
+        bench.try_out(composed, shading.declaration.stage == Stage::Polygon, row, tools)
+    })
+}
+
+/// The renderer failed all the same: goes back to what was drawn with before. Where nothing was exchanged, the
+/// cause is another, and the program ends as Bevy has it.
+pub(super) fn take_back(error: &RenderError, main: &mut World, render: &mut World) -> RenderErrorPolicy {
+    let usual = RenderErrorHandler::default().0;
+    if !matches!(error.ty, ErrorType::Validation | ErrorType::Internal) {
+        return usual(error, main, render);
+    }
+    let what = error.description.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+    let mut taken_back = false;
+    main.resource_scope(|main, mut live: Mut<LiveShaders>| {
+        let live = &mut *live;
+        let file = live.library.changed().unwrap_or(WRAPPER.path).to_owned();
+        let mut shaders = main.resource_mut::<Assets<Shader>>();
+        for (key, entry) in &mut live.shaders {
+            let Some((before, _)) = entry.before.take_if(|(_, at)| at.elapsed() < PROBATION) else {
+                continue;
+            };
+            let refused = std::mem::replace(&mut entry.shown, before);
+            let asset = Shader::from_wgsl(entry.shown.text.clone(), path_of_asset(*key));
+            let _ = shaders.insert(entry.handle.id(), asset);
+            let problem = Box::new(ShaderProblem {
+                file: file.clone(),
+                line: 1,
+                column: 1,
+                source: String::new(),
+                message: format!("the graphics driver failed while drawing with it: {what}"),
+            });
+            entry.refused = Some(Refused { composed: refused, problem: Problem::new(problem) });
+            taken_back = true;
+        }
+        live.stale_status |= taken_back;
+    });
+    if taken_back { RenderErrorPolicy::Ignore } else { usual(error, main, render) }
+}
