@@ -8,7 +8,7 @@ use crate::{
     scene::{Scene, load::Stamp},
 };
 
-/// What the window starts with.
+/// The choices with which the window starts.
 #[derive(Clone, Debug)]
 pub struct ViewOptions {
     /// The scene, checked.
@@ -29,14 +29,14 @@ pub struct ViewOptions {
     pub exit_after: Option<u32>,
     /// Write the whole window to this file before it closes.
     pub capture: Option<PathBuf>,
-    /// What is known, custom models included.
+    /// The registry, custom models included.
     pub registry: Registry,
-    /// Where shaders and custom models are read from. The shaders are not read yet.
+    /// The folders of shaders and custom models. The shaders are not read yet.
     pub folders: Folders,
     /// The program that tries shaders when it is called with
     /// [`COMMAND`](crate::render::trial::process::COMMAND); without it the window itself does.
     pub trial_program: Option<PathBuf>,
-    /// What there is to say when the window opens.
+    /// Warnings for the start.
     pub warnings: Vec<String>,
     /// Log more.
     pub verbose: bool,

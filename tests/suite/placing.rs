@@ -39,7 +39,7 @@ fn touches_nothing(what: &str, session: &Session, added: usize, registry: &Regis
     for light in session.document.lights.iter().filter_map(|l| l.position) {
         assert!(object.position.distance(light) > r, "{added} is around a light");
     }
-    assert!(object.position.distance(session.eye) > r);
+    assert!(object.position.distance(session.facts.eye) > r);
     assert!(session.document.scene_size.contains(object.position));
 }
 

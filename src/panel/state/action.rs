@@ -1,4 +1,4 @@
-//! What a user can do, and where it is carried out.
+//! The actions of a user, and their dispatch.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::{
     scene::{Display, Scene},
 };
 
-/// What a user can do. Panels return these.
+/// An action of a user. Panels return these.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// Start a new default scene.
@@ -108,9 +108,7 @@ impl Session {
     pub fn apply(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
         let effects = self.carry_out(action, registry);
         // It would undo something else.
-        if self.undo_offered.as_ref().is_some_and(|step| *step != self.last_step()) {
-            self.withdraw_undo();
-        }
+        self.messages.check_undo(&self.last_step());
         effects
     }
 
@@ -119,7 +117,7 @@ impl Session {
             Action::New => return self.unless_unsaved(Action::New, |session| session.start_new()),
             Action::Quit => return self.unless_unsaved(Action::Quit, |_| vec![Effect::Quit]),
             Action::OpenDialog => return self.unless_unsaved(Action::OpenDialog, |_| vec![Effect::PickOpen]),
-            Action::Open(path) if std::mem::take(&mut self.may_discard) => {
+            Action::Open(path) if std::mem::take(&mut self.questions.may_discard) => {
                 return vec![Effect::OpenFile(path)];
             }
             Action::Open(path) => {
@@ -163,7 +161,7 @@ impl Session {
             }
             Action::Answer(answer) => {
                 let mut effects = self.answer(answer, registry);
-                if self.question.is_none() && std::mem::take(&mut self.disk.deferred) {
+                if self.questions.open.is_none() && std::mem::take(&mut self.disk.deferred) {
                     effects.push(Effect::LookAtFile { discard: false });
                 }
                 return effects;
@@ -234,11 +232,7 @@ impl Session {
             Action::Copy(text) => return vec![Effect::CopyText(text)],
             Action::Model(ask) => return self.author(ask, registry),
             Action::Say(severity, text) => self.say(severity, text),
-            Action::Dismiss(index) => {
-                if index < self.messages.len() {
-                    self.messages.remove(index);
-                }
-            }
+            Action::Dismiss(index) => self.messages.dismiss(index),
             Action::DismissAll => self.messages.clear(),
         }
         Vec::new()

@@ -1,6 +1,6 @@
 //! Changes of the scene, and the way back.
 
-use super::{Session, Severity};
+use super::{Session, Severity, messages::Step};
 use crate::{
     document::{Edit, LightField, ObjectField, Selection},
     panel::follow::follow_registry,
@@ -8,7 +8,7 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// What the scene has, and objects may override.
+/// A choice of the scene that objects may override.
 const MODEL: &str = "reflection model";
 
 impl Session {
@@ -35,7 +35,7 @@ impl Session {
             return self.say(Severity::Warning, why);
         }
         if let Some(id) = model {
-            self.use_slot(&id);
+            self.model_slots.take(&id);
         }
         if let Some(what) = scene_choice {
             let own = |o: &Object| match what {
@@ -54,16 +54,23 @@ impl Session {
         }
     }
 
-    /// Takes over what something other than the panels changed: a system that changed a component.
+    /// Takes over a change made outside the panels: by a system that changed a component.
     ///
     /// # Errors
-    /// Why it is refused; the document stays as it is.
+    /// The reason for a refusal; the document stays as it is.
     pub fn submit(&mut self, scene: Scene, registry: &Registry) -> Result<(), String> {
         self.document.submit(scene, self.selection, registry)?;
         if !self.exists(self.selection) {
             self.selection = Selection::Room;
         }
         Ok(())
+    }
+
+    /// The number of steps that are done, and the name of the last one.
+    pub(super) fn last_step(&self) -> Step {
+        let done = self.document.done();
+        let last = done.checked_sub(1).and_then(|last| self.document.steps().nth(last));
+        (done, last.map(str::to_owned))
     }
 
     pub(super) fn change_light_type(&mut self, i: usize, id: &str, registry: &Registry) {
@@ -87,7 +94,7 @@ impl Session {
         }
         self.renaming = None;
         if self.document.reflection_model != model {
-            self.use_slot(&self.document.reflection_model.clone());
+            self.model_slots.take(&self.document.reflection_model);
         }
         // The models may be others than when the step was made.
         follow_registry(self, registry);

@@ -1,4 +1,4 @@
-//! What needs files, entities or the operating system.
+//! Effects: work that needs files, entities or the operating system.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use bevy::ecs::message::Message;
 use super::Steer;
 use crate::{panel::recovery::Choice, scene::load::Stamp};
 
-/// What needs files, entities or the operating system; the app carries these out.
+/// Work that needs files, entities or the operating system; the app carries it out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
     /// Show the dialog that chooses a file to open.
@@ -18,7 +18,7 @@ pub enum Effect {
     OpenFile(PathBuf),
     /// Write the document; see [`files::run`](crate::panel::files::run).
     SaveFile {
-        /// Where to.
+        /// The file.
         path: PathBuf,
         /// True to replace a file that changed on disk since it was read, or that was never read.
         overwrite: bool,
@@ -39,7 +39,7 @@ pub enum Effect {
         /// Its state.
         version: Stamp,
     },
-    /// What becomes of the recovery copy that the question was about.
+    /// The fate of the recovery copy that the question was about.
     Recovery(Choice),
     /// Write to standard error, for those who watch it.
     Complain(String),
@@ -61,16 +61,16 @@ pub enum Effect {
     NewModel {
         /// Its id, which is also the name of the file.
         id: String,
-        /// What people call it.
+        /// Its name for people.
         name: String,
     },
-    /// Write a model as a file of one's own.
+    /// Write a model as the file of a custom model.
     DuplicateModel {
         /// Id of the model that is copied.
         model: String,
         /// Id of the copy, which is also the name of the file.
         id: String,
-        /// What people call it.
+        /// Its name for people.
         name: String,
     },
     /// Open a file in an editor.

@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Action, Effect, Note, Question, Session, Severity};
+use super::{Action, Effect, Note, Session, Severity};
 use crate::{
     document::Document,
-    files::printable,
     optics::TermSelection,
     registry::Registry,
     scene::{Scene, examples::EXAMPLES},
@@ -18,14 +17,7 @@ impl Session {
     /// True if the document differs from its file.
     #[must_use]
     pub fn is_dirty(&self) -> bool {
-        self.recovered || !self.defaulted.is_empty() || self.disk.gone || self.document.differs()
-    }
-
-    /// True while the user is asked about unsaved changes, or saves them, in order to close the window.
-    #[must_use]
-    pub fn is_quitting(&self) -> bool {
-        let asked = matches!(&self.question, Some(Question::Unsaved { then }) if **then == Action::Quit);
-        asked || self.after_save == Some(Action::Quit)
+        self.disk.lacks_document() || self.document.differs()
     }
 
     /// The scene of a file has been read: it becomes the document.
@@ -42,38 +34,25 @@ impl Session {
         self.note_saved(&path);
         self.path = Some(path);
         self.document.mark_saved();
-        self.recovered = false;
-        self.defaulted.clear();
-        self.disk_settled();
+        self.disk_saved();
         let mut effects = vec![Effect::SaveSettings];
-        if let Some(action) = self.after_save.take() {
+        if let Some(action) = self.questions.after_save.take() {
             effects.extend(self.apply(action, registry));
         }
         effects
     }
 
     pub(super) fn note_saved(&mut self, path: &Path) {
-        let mut text = format!("Saved to {}.", printable(&path.to_string_lossy()));
-        let mut offer = None;
-        if self.camera_left {
-            text.push_str(" The view you turned to is not in the file: it has the observer’s.");
+        let mut note = Note::new(Severity::Info, format!("Saved to {}.", path.display()));
+        if self.facts.camera_left {
+            note.text.push_str(" The view you turned to is not in the file: it has the observer’s.");
             match self.observer_problem() {
-                None => offer = Some(("Set observer to this view", Box::new(Action::ObserverFromView))),
-                Some(why) => text.push_str(&format!(" {why}")),
+                None => note = note.offering("Set observer to this view", Action::ObserverFromView),
+                Some(why) => note.text.push_str(&format!(" {why}")),
             }
         }
         self.messages.retain(|m| m.severity != Severity::Info || !m.text.starts_with("Saved to "));
-        self.note(Note { severity: Severity::Info, text, offer });
-    }
-
-    /// The document could not be written, or no file was chosen: what waited for it is dropped.
-    pub fn not_saved(&mut self) {
-        self.after_save = None;
-    }
-
-    /// The dialog that chooses a file to open was closed without a choice.
-    pub fn not_opened(&mut self) {
-        self.may_discard = false;
+        self.note(note);
     }
 
     pub(super) fn start_new(&mut self) -> Vec<Effect> {
@@ -100,20 +79,18 @@ impl Session {
         self.path = path;
         self.stashed.clear();
         self.renaming = None;
-        self.after_save = None;
-        self.may_discard = false;
-        self.recovered = false;
-        self.defaulted.clear();
-        self.disk_settled();
+        self.questions.not_saved();
+        self.questions.not_opened();
+        self.disk_saved();
         self.view.terms = TermSelection::All;
         self.select_first();
-        self.use_slot(&self.document.reflection_model.clone());
+        self.model_slots.take(&self.document.reflection_model);
     }
 
     /// The scene of a recovery copy becomes the document; it is unsaved.
     pub(in crate::panel) fn recovered(&mut self, path: Option<PathBuf>, scene: Scene) {
         self.replace_document(path, scene);
-        self.recovered = true;
+        self.disk.recovered = true;
     }
 
     pub(super) fn remember_file(&mut self, path: &Path) {

@@ -1,6 +1,6 @@
 //! Adding, copying and removing lights and objects.
 
-use super::{Action, Note, Session, Severity};
+use super::{Session, Severity};
 use crate::{
     document::{Selection, names::free_name},
     light::MAX_LIGHTS,
@@ -111,10 +111,7 @@ impl Session {
                     (other, _) => other,
                 });
                 self.renaming = None;
-                self.withdraw_undo();
-                self.undo_offered = Some(self.last_step());
-                let offer = Some(("Undo", Box::new(Action::Undo)));
-                self.note(Note { severity: Severity::Info, text, offer });
+                self.messages.offer_undo(text, self.last_step());
             }
             Selection::Observer => {
                 self.say(Severity::Info, "The observer stays: a scene has exactly one.");
@@ -125,6 +122,6 @@ impl Session {
 
     /// The scene before the camera, as a place for what is added.
     pub(super) fn stand<'a>(&'a self, registry: &'a Registry) -> Stand<'a> {
-        Stand::new(&self.document, registry, self.eye, self.camera)
+        Stand::new(&self.document, registry, self.facts.eye, self.facts.camera)
     }
 }

@@ -1,4 +1,4 @@
-//! Questions that must be answered, and what becomes of the answers.
+//! Questions that must be answered, and the consequences of the answers.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ use crate::{
 pub enum Question {
     /// There are unsaved changes, and this would lose them.
     Unsaved {
-        /// What was asked for.
+        /// The action that was asked for.
         then: Box<Action>,
     },
     /// A file lacks parts that have defaults (R3).
@@ -23,7 +23,7 @@ pub enum Question {
         path: PathBuf,
         /// The scene with the defaults in place.
         scene: Box<Scene>,
-        /// Which parts are missing.
+        /// The missing parts.
         parts: Vec<MissingPart>,
     },
     /// The file is empty (R2).
@@ -52,7 +52,7 @@ pub enum Question {
 /// A part that a scene file lacks, and its default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingPart {
-    /// What people call it: "the scene size".
+    /// Its name for people: "the scene size".
     pub name: String,
     /// The default in words: "10 × 10 × 10 m".
     pub default: String,
@@ -79,19 +79,49 @@ pub enum Answer {
     Recover,
 }
 
-impl Session {
+/// The open question, and what depends on answers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Questions {
+    /// The question that waits for an answer. While there is one, nothing else can be done.
+    pub open: Option<Question>,
+    /// The action that waits for the document to be saved first.
+    pub(super) after_save: Option<Action>,
+    /// True if the next file that is opened may replace unsaved changes: the user was asked.
+    pub(super) may_discard: bool,
+}
+
+impl Questions {
     /// Asks a question.
     pub fn ask(&mut self, question: Question) {
-        self.question = Some(question);
+        self.open = Some(question);
     }
 
+    /// True while the user is asked about unsaved changes, or saves them, in order to close the window.
+    #[must_use]
+    pub fn is_quitting(&self) -> bool {
+        let asked = matches!(&self.open, Some(Question::Unsaved { then }) if **then == Action::Quit);
+        asked || self.after_save == Some(Action::Quit)
+    }
+
+    /// The document could not be written, or no file was chosen: the action that waited for it is dropped.
+    pub fn not_saved(&mut self) {
+        self.after_save = None;
+    }
+
+    /// The dialog that chooses a file to open was closed without a choice.
+    pub fn not_opened(&mut self) {
+        self.may_discard = false;
+    }
+}
+
+impl Session {
     pub(super) fn unless_unsaved(
         &mut self,
         action: Action,
         go: impl FnOnce(&mut Self) -> Vec<Effect>,
     ) -> Vec<Effect> {
         if self.is_dirty() {
-            self.question = Some(Question::Unsaved { then: Box::new(action) });
+            self.questions.open = Some(Question::Unsaved { then: Box::new(action) });
             return Vec::new();
         }
         go(self)
@@ -107,7 +137,7 @@ impl Session {
             Action::OpenExample(i) => self.open_example(i, registry),
             Action::Reload => self.path.clone().map(Effect::OpenFile).into_iter().collect(),
             Action::OpenDialog => {
-                self.may_discard = true;
+                self.questions.may_discard = true;
                 vec![Effect::PickOpen]
             }
             other => self.apply(other, registry),
@@ -115,17 +145,17 @@ impl Session {
     }
 
     pub(super) fn answer(&mut self, answer: Answer, registry: &Registry) -> Vec<Effect> {
-        let Some(question) = self.question.take() else { return Vec::new() };
+        let Some(question) = self.questions.open.take() else { return Vec::new() };
         match (question, answer) {
             (Question::Unsaved { then }, Answer::Discard) => self.confirmed(*then, registry),
             (Question::Unsaved { then }, Answer::Save) => {
-                self.after_save = Some(*then);
+                self.questions.after_save = Some(*then);
                 self.apply(Action::Save, registry)
             }
             (Question::MissingParts { path, scene, parts }, Answer::UseDefaults) => {
                 let effects = self.opened(path, *scene);
                 // Until it is saved, the file differs from what is on screen.
-                self.defaulted = parts.into_iter().map(|p| p.name).collect();
+                self.disk.defaulted = parts.into_iter().map(|p| p.name).collect();
                 effects
             }
             (Question::MissingParts { path, parts, .. }, _) => {
@@ -142,13 +172,13 @@ impl Session {
                 vec![Effect::SaveFile { path, overwrite: true }]
             }
             (Question::ChangedOnDisk { path }, Answer::Reload) => {
-                self.not_saved();
+                self.questions.not_saved();
                 vec![Effect::OpenFile(path)]
             }
             (Question::NewerOnDisk { path, scene, version }, Answer::Keep) => {
                 // What is on disk is known now: saving replaces it.
                 self.document.set_saved(*scene);
-                self.recovered = false;
+                self.disk.recovered = false;
                 self.disk_settled();
                 vec![Effect::ExpectFile { path, version }]
             }
@@ -158,7 +188,7 @@ impl Session {
                 Vec::new()
             }
             _ => {
-                self.not_saved();
+                self.questions.not_saved();
                 Vec::new()
             }
         }

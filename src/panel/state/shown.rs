@@ -1,4 +1,4 @@
-//! What the window shows of the document.
+//! The document as the window shows it.
 
 use super::Session;
 use crate::{
@@ -10,14 +10,14 @@ use crate::{
 };
 
 impl Session {
-    /// What the window calls the document: the name of the scene, else the name of the file.
+    /// The title of the document: the name of the scene, else the name of the file.
     #[must_use]
     pub fn title(&self) -> String {
         let file = || Some(printable(&self.path.as_ref()?.file_stem()?.to_string_lossy()).into_owned());
         self.document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
     }
 
-    /// The name of the window: what it calls the document, and the file where that is called otherwise.
+    /// The title of the window: that of the document, and the file if it has another name.
     #[must_use]
     pub fn window_title(&self) -> String {
         let title = self.title();
@@ -30,7 +30,7 @@ impl Session {
         }
     }
 
-    /// What people call a part of the scene: its name, or its type and its number among its type.
+    /// The name of a part of the scene for people: its own, or its type and its number among its type.
     #[must_use]
     pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
         self.document.name_of(part, registry)
@@ -94,14 +94,14 @@ impl Session {
         shown != TermSelection::All && !self.known_terms.present(&self.document, registry).contains(&shown)
     }
 
-    /// Why the observer cannot be where the camera is.
+    /// The reason why the observer can't be where the camera is.
     #[must_use]
     pub fn observer_problem(&self) -> Option<&'static str> {
         let scene = &self.document;
         let taken = (scene.lights.iter().filter_map(|l| l.position))
             .chain(scene.objects.iter().map(|o| o.position))
-            .any(|p| same_place(p, self.eye));
-        match scene.scene_size.contains(self.eye) {
+            .any(|p| same_place(p, self.facts.eye));
+        match scene.scene_size.contains(self.facts.eye) {
             false => Some("The view is outside the room."),
             true if taken => Some("The view is from the place of a light or an object."),
             true => None,

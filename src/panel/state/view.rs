@@ -1,9 +1,12 @@
-//! What is shown and how.
+//! The choice of what is shown, and how.
 
 use super::{Effect, RECENT_FILES, Session};
 use crate::{
     optics::TermSelection,
-    panel::settings::{SCALES, Settings, nearest_scale},
+    panel::{
+        messages::MESSAGES_TAB,
+        settings::{SCALES, Settings, nearest_scale},
+    },
 };
 
 /// Light or dark.
@@ -17,7 +20,7 @@ pub enum ThemeChoice {
     Light,
 }
 
-/// What is shown and how.
+/// The choice of what is shown, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Light or dark.
@@ -38,7 +41,7 @@ pub struct View {
     pub show_room: bool,
     /// True if clipped pixels are marked.
     pub show_clipping: bool,
-    /// Which terms of the equation the picture shows.
+    /// The terms of the equation that the picture shows.
     pub terms: TermSelection,
     /// True if the strip at the bottom is unfolded.
     pub bottom_open: bool,
@@ -76,7 +79,7 @@ impl Default for View {
             show_clipping: false,
             terms: TermSelection::All,
             bottom_open: false,
-            bottom_tab: "messages".to_owned(),
+            bottom_tab: MESSAGES_TAB.to_owned(),
             left_open: true,
             right_open: true,
             left_width: 208.0,
@@ -116,7 +119,7 @@ pub enum ViewChange {
     Terms(TermSelection),
     /// True if the strip at the bottom is unfolded.
     Bottom(bool),
-    /// Which panel the strip at the bottom shows; unfolds it.
+    /// Shows a panel in the strip at the bottom, and unfolds it.
     BottomTab(String),
     /// See [`View::left_open`].
     Left(bool),
@@ -139,6 +142,51 @@ pub enum ViewChange {
     Chooser(bool),
 }
 
+impl View {
+    /// Unfolds the strip at the bottom with a panel.
+    pub fn unfold(&mut self, tab: &str) {
+        self.bottom_open = true;
+        tab.clone_into(&mut self.bottom_tab);
+    }
+
+    fn change(&mut self, change: ViewChange) {
+        match change {
+            ViewChange::Theme(theme) => self.theme = theme,
+            ViewChange::Scale(percent) => self.scale = nearest_scale(percent),
+            ViewChange::Larger => {
+                self.scale = SCALES.into_iter().find(|s| *s > self.scale).unwrap_or(self.scale)
+            }
+            ViewChange::Smaller => {
+                self.scale = SCALES.into_iter().rfind(|s| *s < self.scale).unwrap_or(self.scale);
+            }
+            ViewChange::Examples(on) => self.examples_open = on,
+            ViewChange::Presenting(on) if on != self.presenting => {
+                let before = std::mem::replace(&mut self.fullscreen_before, self.fullscreen);
+                self.fullscreen = on || before;
+                self.presenting = on;
+            }
+            ViewChange::Presenting(_) => {}
+            ViewChange::Fullscreen(on) => self.fullscreen = on,
+            ViewChange::Gizmos(on) => self.show_gizmos = on,
+            ViewChange::Room(on) => self.show_room = on,
+            ViewChange::Clipping(on) => self.show_clipping = on,
+            ViewChange::Terms(terms) => self.terms = terms,
+            ViewChange::Bottom(open) => self.bottom_open = open,
+            ViewChange::BottomTab(id) => {
+                self.unfold(&id);
+            }
+            ViewChange::Left(open) => self.left_open = open,
+            ViewChange::Right(open) => self.right_open = open,
+            ViewChange::Sizes { left, right, bottom } => {
+                (self.left_width, self.right_width, self.bottom_height) = (left, right, bottom);
+            }
+            ViewChange::Keys(open) => self.keys_open = open,
+            ViewChange::About(open) => self.about_open = open,
+            ViewChange::Chooser(open) => self.chooser_open = open,
+        }
+    }
+}
+
 impl Session {
     /// The change that folds the strip at the bottom away, or unfolds it with the messages.
     #[must_use]
@@ -146,11 +194,11 @@ impl Session {
         if self.view.bottom_open {
             ViewChange::Bottom(false)
         } else {
-            ViewChange::BottomTab("messages".to_owned())
+            ViewChange::BottomTab(MESSAGES_TAB.to_owned())
         }
     }
 
-    /// What should survive a restart.
+    /// The settings that survive a restart.
     #[must_use]
     pub fn settings(&self) -> Settings {
         Settings {
@@ -163,7 +211,7 @@ impl Session {
         }
     }
 
-    /// Takes over what survived a restart.
+    /// Takes over the settings that survived a restart.
     pub fn adopt(&mut self, settings: Settings) {
         self.view.theme = settings.theme;
         self.view.scale = settings.scale;
@@ -176,42 +224,7 @@ impl Session {
 
     pub(super) fn change_view(&mut self, change: ViewChange) -> Vec<Effect> {
         let before = self.settings();
-        let view = &mut self.view;
-        match change {
-            ViewChange::Theme(theme) => view.theme = theme,
-            ViewChange::Scale(percent) => view.scale = nearest_scale(percent),
-            ViewChange::Larger => {
-                view.scale = SCALES.into_iter().find(|s| *s > view.scale).unwrap_or(view.scale)
-            }
-            ViewChange::Smaller => {
-                view.scale = SCALES.into_iter().rfind(|s| *s < view.scale).unwrap_or(view.scale);
-            }
-            ViewChange::Examples(on) => view.examples_open = on,
-            ViewChange::Presenting(on) if on != view.presenting => {
-                let before = std::mem::replace(&mut view.fullscreen_before, view.fullscreen);
-                view.fullscreen = on || before;
-                view.presenting = on;
-            }
-            ViewChange::Presenting(_) => {}
-            ViewChange::Fullscreen(on) => view.fullscreen = on,
-            ViewChange::Gizmos(on) => view.show_gizmos = on,
-            ViewChange::Room(on) => view.show_room = on,
-            ViewChange::Clipping(on) => view.show_clipping = on,
-            ViewChange::Terms(terms) => view.terms = terms,
-            ViewChange::Bottom(open) => view.bottom_open = open,
-            ViewChange::BottomTab(id) => {
-                view.bottom_tab = id;
-                view.bottom_open = true;
-            }
-            ViewChange::Left(open) => view.left_open = open,
-            ViewChange::Right(open) => view.right_open = open,
-            ViewChange::Sizes { left, right, bottom } => {
-                (view.left_width, view.right_width, view.bottom_height) = (left, right, bottom);
-            }
-            ViewChange::Keys(open) => view.keys_open = open,
-            ViewChange::About(open) => view.about_open = open,
-            ViewChange::Chooser(open) => view.chooser_open = open,
-        }
+        self.view.change(change);
         if before == self.settings() { Vec::new() } else { vec![Effect::SaveSettings] }
     }
 }
