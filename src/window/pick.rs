@@ -85,7 +85,7 @@ fn nearest_light(
     pointer: Vec2,
     reach: f32,
 ) -> Option<usize> {
-    let lens = Lens::of(session, area.rect);
+    let lens = Lens::of(session, area.frame);
     scene
         .0
         .lights
@@ -127,7 +127,7 @@ mod tests {
             let mut session = Session::new(scene.clone());
             session.selection = Selection::Observer;
             let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
-            let area = PictureArea { rect, has_pointer: true, ..PictureArea::default() };
+            let area = PictureArea { rect, frame: rect, has_pointer: true, ..PictureArea::default() };
             let mut camera = Camera::default();
             camera.computed.target_info = Some(RenderTargetInfo { physical_size: SIZE, scale_factor: 1.0 });
             let lens =

@@ -8,10 +8,11 @@ use bevy::{
     color::Color,
     core_pipeline::tonemapping::Tonemapping,
     ecs::prelude::*,
+    math::URect,
     render::{render_resource::TextureUsages, renderer::RenderAdapterInfo, view::Msaa},
     window::{PrimaryWindow, Window},
 };
-use bevy_egui::PrimaryEguiContext;
+use bevy_egui::{PrimaryEguiContext, egui::Rect};
 use bevy_panorbit_camera::ActiveCameraData;
 use glam::{UVec2, Vec2};
 
@@ -66,7 +67,10 @@ pub(super) fn fit_picture(
     if place.size.min_element() == 0 {
         return;
     }
-    view.set_if_neq(View::for_display(place.size));
+    let frame = PicturePlace::of_rect(area.frame, area.zoom, &window);
+    let at = frame.at.saturating_sub(place.at);
+    let inset = (frame != place).then(|| URect::from_corners(at, at + frame.size));
+    view.set_if_neq(View { inset, ..View::for_display(place.size) });
     // In the light theme the surround is light.
     let grey = Palette::of(&session.view).surround;
     let surround = Color::srgb_u8(grey.r(), grey.g(), grey.b());
@@ -105,12 +109,15 @@ pub(super) struct PicturePlace {
 
 impl PicturePlace {
     pub(super) fn of(area: &PictureArea, window: &Window) -> Self {
-        let rect = area.rect;
+        Self::of_rect(area.rect, area.zoom, window)
+    }
+
+    fn of_rect(rect: Rect, zoom: f32, window: &Window) -> Self {
         let limit = window.physical_size();
         if !rect.is_finite() || !rect.is_positive() || limit.min_element() == 0 {
             return Self { at: UVec2::ZERO, size: UVec2::ZERO };
         }
-        let pixels = |points: f32| (points * area.zoom * window.scale_factor()).round().max(0.0) as u32;
+        let pixels = |points: f32| (points * zoom * window.scale_factor()).round().max(0.0) as u32;
         let at = UVec2::new(pixels(rect.min.x), pixels(rect.min.y)).min(limit.saturating_sub(UVec2::ONE));
         let end = UVec2::new(pixels(rect.max.x), pixels(rect.max.y)).min(limit);
         Self { at, size: end.saturating_sub(at).max(UVec2::ONE) }

@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use bevy::ecs::{change_detection::DetectChangesMut as _, world::World};
+use bevy::ecs::world::World;
 use bevy_egui::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, TextureId, accesskit, epaint, pos2,
     vec2,

@@ -209,7 +209,7 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
                 let least = if text.chars().count() == 1 { 0.017 } else { 0.025 };
                 assert!(high >= least * height, "{}, {scale} %: {text}: {high} of {height}", d.id);
             }
-            let picture = bench.area.rect;
+            let picture = bench.area.frame;
             assert!(
                 picture.width() * picture.height() > 0.2 * 1280.0 * 720.0 / bench.area.zoom.powi(2),
                 "{}: {picture:?}",

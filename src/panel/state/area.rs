@@ -8,6 +8,8 @@ use bevy_egui::egui;
 pub struct PictureArea {
     /// The rectangle of the picture, points of the panels.
     pub rect: egui::Rect,
+    /// The part of it that shows what the observer sees; around it the picture goes on.
+    pub frame: egui::Rect,
     /// Points of the window per point of the panels.
     pub zoom: f32,
     /// True if the pointer is over the picture with no panel, menu or dialog between. What turns the camera must ask
@@ -21,6 +23,13 @@ pub struct PictureArea {
 
 impl Default for PictureArea {
     fn default() -> Self {
-        Self { rect: egui::Rect::NOTHING, zoom: 1.0, has_pointer: false, has_keys: true, popup_open: false }
+        Self {
+            rect: egui::Rect::NOTHING,
+            frame: egui::Rect::NOTHING,
+            zoom: 1.0,
+            has_pointer: false,
+            has_keys: true,
+            popup_open: false,
+        }
     }
 }
