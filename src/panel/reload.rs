@@ -47,7 +47,7 @@ pub struct OnDisk {
 impl OnDisk {
     /// True if no file has what the document began with.
     pub(super) fn lacks_document(&self) -> bool {
-        self.recovered || !self.disk.defaulted.is_empty() || self.gone
+        self.recovered || !self.defaulted.is_empty() || self.gone
     }
 }
 

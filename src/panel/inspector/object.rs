@@ -74,7 +74,7 @@ impl Shown<'_> {
 
     /// The knobs of the parameters of the model, and the parameters that it does not use.
     fn material(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
-        let Self { session, registry, object, model } = *self;
+        let Self { registry, object, model, .. } = *self;
         let Some(model) = model else {
             ui.label(theme::small(ui, "The parameters come back with the model."));
             return;
