@@ -54,8 +54,8 @@ fn labs() -> Vec<Session> {
     small.observer.position = Vec3::new(0.75, 0.5, 0.95);
     let mut turned = Session::default();
     // From the right, above.
-    turned.eye = Vec3::new(9.5, 7.5, 5.0);
-    turned.camera = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2) * Quat::from_rotation_x(-0.5);
+    turned.facts.eye = Vec3::new(9.5, 7.5, 5.0);
+    turned.facts.camera = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2) * Quat::from_rotation_x(-0.5);
     vec![Session::default(), Session::new(low), Session::new(small), turned]
 }
 

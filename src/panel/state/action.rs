@@ -20,7 +20,7 @@ pub enum Action {
     OpenDialog,
     /// Open a file.
     Open(PathBuf),
-    /// Open one of [`EXAMPLES`] as a document that is in no file.
+    /// Open one of [`EXAMPLES`](crate::scene::examples::EXAMPLES) as a document that is in no file.
     OpenExample(usize),
     /// Read the file again.
     Reload,
