@@ -103,7 +103,7 @@ pub trait Panel: Send + Sync + 'static {
     /// Its place.
     fn place(&self) -> Place;
     /// A note on its tab beside the title, such as the number of errors.
-    fn note(&self, _lab: &Session) -> Option<(Severity, String)> {
+    fn note(&self, _session: &Session) -> Option<(Severity, String)> {
         None
     }
     /// Shows it. What the user does comes back as actions.
