@@ -221,6 +221,11 @@ impl History {
         self.steps.iter().map(|step| step.name.as_str())
     }
 
+    /// The gesture of the last step.
+    pub(super) fn gesture(&self) -> Option<u64> {
+        self.steps.last().map(|step| step.gesture)
+    }
+
     pub(super) fn done(&self) -> usize {
         self.done
     }

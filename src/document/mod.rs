@@ -317,6 +317,12 @@ impl Document {
         self.gesture += 1;
     }
 
+    /// True if a step could be joined with the last one.
+    #[must_use]
+    pub fn in_gesture(&self) -> bool {
+        self.history.gesture() == Some(self.gesture)
+    }
+
     /// The selection after the last step is this.
     pub fn selected(&mut self, selection: Selection) {
         self.history.selected(selection);

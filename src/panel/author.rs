@@ -1,7 +1,6 @@
-//! Models and shaders of one's own: what the window asks before it writes a file, and where the files
-//! are that an editor can open.
+//! Custom models and shaders: the question before a file is written, and the files that an editor can open.
 
-use std::path::PathBuf;
+use std::{ops::DerefMut, path::PathBuf};
 
 use bevy_egui::egui::{
     self, Align, Button, Id, Key, Layout, RichText, TextEdit, Ui, WidgetInfo, Window, vec2,
@@ -9,12 +8,12 @@ use bevy_egui::egui::{
 
 use super::{
     icon,
-    state::{Action, Effect, Session, Severity},
+    state::{Action, Effect, PictureArea, Session, Severity},
     theme::{self, Palette},
 };
 use crate::{
     custom::{id_of_name, source_path},
-    library::status::Reloaded,
+    library::status::{Reloaded, Trouble},
     reflection::law_report::LawReport,
     registry::Registry,
 };
@@ -22,14 +21,14 @@ use crate::{
 /// Id of the panel that shows the shaders.
 pub const SHADER_TAB: &str = "shader";
 
-/// What can be asked about custom models and shaders.
+/// A command about custom models and shaders.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModelCommand {
     /// Begin a new model: ask what it shall be called.
     New,
     /// Begin a copy of the shown model: ask what it shall be called.
     Duplicate,
-    /// What was typed as the name of the model.
+    /// The name of the model, as typed.
     Type(String),
     /// Write the file of the model.
     Create,
@@ -57,7 +56,7 @@ pub enum ModelCommand {
 pub struct ModelDraft {
     /// Id of the model that is copied; none for a new one.
     pub of: Option<String>,
-    /// What it is to be called, as typed; its identifier follows.
+    /// Its name, as typed; its identifier follows.
     pub name: String,
 }
 
@@ -72,7 +71,7 @@ pub struct LawCheck {
     pub outcome: Option<Result<LawReport, String>>,
 }
 
-/// Why a name cannot be taken.
+/// The reason why a name can't be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameProblem {
     /// A sentence.
@@ -118,29 +117,30 @@ fn free_id(id: &str, registry: &Registry) -> String {
     std::iter::once(id.to_owned()).chain(numbered).find(|id| !taken(id)).unwrap_or_default()
 }
 
-impl Session {
-    /// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that
-    /// tells of it, and a model that was asked for is chosen once it is there.
-    pub fn notice_shaders(&mut self, registry: &Registry) {
-        // Without line and column: a problem that moves while one types above it is not a new one.
-        let now: Vec<_> = self
-            .shaders
-            .troubles
-            .iter()
-            .map(|t| (t.problem.file.clone(), t.problem.message.clone()))
-            .collect();
-        if now.iter().any(|trouble| !self.seen_troubles.contains(trouble)) {
-            self.view.bottom_open = true;
-            SHADER_TAB.clone_into(&mut self.view.bottom_tab);
+/// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that tells of it,
+/// and a model that was asked for is chosen once it is there. `session` is borrowed mutably only when something
+/// changes.
+pub fn notice_shaders(session: &mut impl DerefMut<Target = Session>, registry: &Registry) {
+    // Without line and column: a problem that moves while one types above it is not a new one.
+    let words = |t: &Trouble| (t.problem.file.clone(), t.problem.message.clone());
+    let now: Vec<_> = session.shaders.troubles.iter().map(words).collect();
+    if now != session.seen_troubles {
+        let session = &mut **session;
+        if now.iter().any(|trouble| !session.seen_troubles.contains(trouble)) {
+            session.view.unfold(SHADER_TAB);
         }
-        self.seen_troubles = now;
-        if let Some(id) = self.wanted_model.take_if(|id| registry.model(id).is_some()) {
-            let edit = self.edit_model(&id);
-            // An edit asks for no file.
-            let _ = self.apply(Action::Edit(edit), registry);
-        }
+        session.seen_troubles = now;
     }
+    if session.wanted_model.as_ref().is_some_and(|id| registry.model(id).is_some())
+        && let Some(id) = session.wanted_model.take()
+    {
+        let edit = session.edit_model(&id);
+        // An edit asks for no file.
+        let _ = session.apply(Action::Edit(edit), registry);
+    }
+}
 
+impl Session {
     /// Carries out what is asked about custom models and shaders.
     pub(super) fn author(&mut self, ask: ModelCommand, registry: &Registry) -> Vec<Effect> {
         match ask {
@@ -210,8 +210,7 @@ impl Session {
             Some(file) => vec![Effect::OpenInEditor { path: file, line: self.line_of_trouble(&path) }],
             None => {
                 self.say(Severity::Info, BUILT_IN);
-                SHADER_TAB.clone_into(&mut self.view.bottom_tab);
-                self.view.bottom_open = true;
+                self.view.unfold(SHADER_TAB);
                 Vec::new()
             }
         }
@@ -224,7 +223,7 @@ impl Session {
     }
 }
 
-/// Why a file cannot be opened.
+/// The reason why a file can't be opened.
 pub const BUILT_IN: &str = "The shaders are built in, so there is no file to open. Write them out for editing first: \
      Edit, “Export shaders for editing…”. Or copy the model as a file.";
 
@@ -260,7 +259,7 @@ pub fn buttons(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Actio
 }
 
 /// Asks what a new model shall be called, while there is a draft. Stands in nobody's way.
-pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
+pub fn show(ctx: &egui::Context, session: &Session, area: &PictureArea, registry: &Registry) -> Vec<Action> {
     let Some(draft) = &session.draft else {
         ctx.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
         return Vec::new();
@@ -281,7 +280,7 @@ pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<
         .resizable(false)
         .default_width(440.0)
         .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(session.picture_rect.center())
+        .default_pos(area.rect.center())
         .show(ctx, |ui| {
             ui.set_width(440.0);
             actions.extend(ask(ui, session, registry, draft));

@@ -52,9 +52,9 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
 pub struct Entry<'a> {
     /// The group; a heading stands where it changes. Empty for none.
     pub heading: &'a str,
-    /// What it is.
+    /// Its name.
     pub name: &'a str,
-    /// What else is worth reading, at the right.
+    /// More that is worth reading, at the right.
     pub note: String,
     /// The key that chooses it.
     pub number: Option<usize>,
@@ -64,14 +64,14 @@ pub struct Entry<'a> {
     pub current: bool,
 }
 
-/// What a [`list`] says.
+/// The words of a [`list`].
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
-    /// What is searched, for screen readers: "Search reflection models".
+    /// The name of the search, for screen readers: "Search reflection models".
     pub label: &'static str,
     /// In the empty field.
     pub hint: &'static str,
-    /// Where nothing was found.
+    /// The text when nothing was found.
     pub none: &'static str,
     /// Below the list.
     pub foot: &'static str,
@@ -260,7 +260,7 @@ pub fn models<'a>(
     })
 }
 
-/// What a tooltip says about a model.
+/// The tooltip of a model.
 pub fn about(ui: &mut Ui, model: &ModelEntry) {
     let d = model.declaration;
     let palette = Palette::here(ui);
@@ -279,7 +279,7 @@ pub fn about(ui: &mut Ui, model: &ModelEntry) {
     }
 }
 
-/// How wide the button is, points.
+/// Width of the button, points.
 pub const WIDTH: f32 = 160.0;
 
 /// The button and, when it is open, the list. They are about the model that the selected object has of its

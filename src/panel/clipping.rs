@@ -11,7 +11,7 @@ pub const GRID: [usize; 2] = [128, 96];
 /// The part of a picture that may clip without a sign: sharp highlights. New lights keep to it.
 pub const TOLERATED: f64 = 0.001;
 
-/// Where the picture clips.
+/// The clipped parts of the picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clipping {
     /// Clipped pixels in each field, row by row from the top left.
@@ -45,7 +45,7 @@ fn percent(share: f64) -> String {
 /// The sign in the corner of a picture of so many pixels; for a few of them only while they are shown.
 #[must_use]
 pub fn badge(session: &Session, pixels: f64) -> Option<Badge> {
-    let clipping = session.clipping.as_ref()?;
+    let clipping = session.facts.clipping.as_ref()?;
     let share = clipping.pixels() as f64 / pixels.max(1.0);
     if share < TOLERATED && !session.view.show_clipping {
         return None;
@@ -61,9 +61,11 @@ pub fn badge(session: &Session, pixels: f64) -> Option<Badge> {
     })
 }
 
-/// Paints where the picture clips.
+/// Marks the clipped parts of the picture.
 pub fn paint(painter: &Painter, rect: Rect, session: &Session, pixels_per_point: f32) {
-    let Some(clipping) = session.clipping.as_ref().filter(|_| session.view.show_clipping) else { return };
+    let Some(clipping) = session.facts.clipping.as_ref().filter(|_| session.view.show_clipping) else {
+        return;
+    };
     let mut mesh = Mesh::default();
     let [across, down] = GRID;
     let edge = |low: f32, extent: f32, k: usize, of: usize| {
@@ -105,7 +107,7 @@ mod tests {
         (counts[0], counts[fields - 1]) = (2, 3);
         let mut session = Session::default();
         assert_eq!(badge(&session, 100.0), None);
-        session.clipping = Clipping::new(counts);
+        session.facts.clipping = Clipping::new(counts);
         assert_eq!(badge(&session, 100.0).map(|b| b.text).as_deref(), Some("Clipped: 5 % of the picture"));
         assert_eq!(badge(&session, 10_000.0), None, "new lights may clip as much");
         session.view.show_clipping = true;

@@ -1,5 +1,7 @@
 //! The dialogs that choose files.
 
+use std::ops::DerefMut;
+
 use bevy_egui::egui::{self, Color32, Context, Label, LayerId, Order, Sense, Shape, Stroke, Ui, vec2};
 use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
@@ -11,11 +13,11 @@ use super::{
 };
 use crate::registry::Registry;
 
-/// How much of the window they take.
+/// Their share of the window.
 const SHARE: f32 = 0.7;
 /// The same in a window that is narrow, which has no room to spare.
 const ALL: f32 = 0.96;
-/// As wide is a narrow window, points.
+/// Width of a narrow window, points.
 const NARROW: f32 = 800.0;
 
 /// See the module.
@@ -93,7 +95,7 @@ impl Dialogs {
     pub(super) fn update(
         &mut self,
         ctx: &Context,
-        session: &mut Session,
+        session: &mut impl DerefMut<Target = Session>,
         registry: &Registry,
     ) -> Vec<Action> {
         let mut actions = Vec::new();
@@ -123,14 +125,14 @@ impl Dialogs {
             // Whoever got this far was asked about unsaved changes before.
             actions.push(Action::Open(path));
         } else if was_open && *self.open.state() == DialogState::Cancelled {
-            session.not_opened();
+            session.questions.not_opened();
         }
         let was_open = *self.save.state() == DialogState::Open;
         self.save.update(ctx);
         if let Some(path) = self.save.take_picked() {
             actions.push(Action::SaveAs(path));
         } else if was_open && *self.save.state() == DialogState::Cancelled {
-            session.not_saved();
+            session.questions.not_saved();
         }
         self.folder.update(ctx);
         for dialog in [&self.open, &self.save, &self.folder] {

@@ -26,7 +26,7 @@ pub trait Files: Send + Sync + 'static {
     fn expect(&mut self, path: &Path, version: Option<Stamp>);
 }
 
-/// What became of looking at a file.
+/// The result of looking at a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Looked {
     /// It is as it was last seen.
@@ -37,12 +37,12 @@ pub enum Looked {
     Changed {
         /// Tells this content from others.
         version: Stamp,
-        /// What is in it.
+        /// Its content.
         content: Opened,
     },
 }
 
-/// What became of opening a file.
+/// The result of opening a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Opened {
     /// It holds a legal scene.
@@ -51,7 +51,7 @@ pub enum Opened {
     Incomplete {
         /// With defaults.
         scene: Box<Scene>,
-        /// What is missing.
+        /// The missing parts.
         parts: Vec<MissingPart>,
     },
     /// It is empty.
@@ -60,7 +60,7 @@ pub enum Opened {
     Failed(Vec<String>),
 }
 
-/// What became of saving a file.
+/// The result of saving a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Saved {
     /// It is on disk.
@@ -79,11 +79,11 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
         Effect::OpenFile(path) => match files.open(&path, registry) {
             Opened::Scene(scene) => session.opened(path, *scene),
             Opened::Incomplete { scene, parts } => {
-                session.ask(Question::MissingParts { path, scene, parts });
+                session.questions.ask(Question::MissingParts { path, scene, parts });
                 Vec::new()
             }
             Opened::Empty => {
-                session.ask(Question::EmptyFile { path });
+                session.questions.ask(Question::EmptyFile { path });
                 Vec::new()
             }
             Opened::Failed(problems) => {
@@ -102,11 +102,11 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
             match files.save(&path, &session.document, registry, overwrite) {
                 Saved::Done => session.saved(path, registry),
                 Saved::ChangedOnDisk => {
-                    session.ask(Question::ChangedOnDisk { path });
+                    session.questions.ask(Question::ChangedOnDisk { path });
                     Vec::new()
                 }
                 Saved::Failed(why) => {
-                    session.not_saved();
+                    session.questions.not_saved();
                     session.say(Severity::Error, why);
                     Vec::new()
                 }

@@ -11,7 +11,7 @@ pub(super) enum Region {
     Panel(Place),
     /// The strip of examples.
     Examples,
-    /// What can be operated over the picture: badges, arrows.
+    /// The widgets over the picture: badges, arrows.
     Picture,
 }
 
@@ -42,7 +42,7 @@ pub(super) fn remember_regions(ctx: &Context) {
     });
 }
 
-/// What can have the focus, in the order of the Tab key, as it was shown last; also what is scrolled out of sight.
+/// The widgets that can have the focus, in the order of the Tab key, as shown last; also those scrolled out of sight.
 fn drawn(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
     let mut stops: Vec<WidgetRect> = ctx.viewport(|viewport| {
         let widgets = &viewport.prev_pass.widgets;
@@ -137,12 +137,12 @@ pub(super) fn reveal(ctx: &Context) {
     ctx.input_mut(|input| input.events.push(Event::AccessKitActionRequest(request)));
 }
 
-/// What has the focus and is scrolled out of sight.
+/// The widget that has the focus and is scrolled out of sight.
 fn hidden() -> Id {
     Id::new("focus out of sight")
 }
 
-/// What had the focus when it was last looked for.
+/// The widget that had the focus at the last look.
 fn looked_for() -> Id {
     Id::new("focus looked for")
 }

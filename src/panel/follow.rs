@@ -19,9 +19,9 @@ type Place = (PartId, Cow<'static, str>);
 /// A value that was stashed.
 #[derive(Clone, Debug, PartialEq)]
 struct Kept {
-    /// What the user wants.
+    /// The value that the user wants.
     wanted: Value,
-    /// What the document has in its place, if anything.
+    /// The value that the document has in its place, if any.
     instead: Option<Value>,
 }
 
@@ -30,7 +30,7 @@ struct Kept {
 pub struct StashedValues(BTreeMap<Place, Kept>);
 
 impl StashedValues {
-    /// How many values are stashed.
+    /// The number of stashed values.
     #[must_use]
     pub fn len(&self) -> usize {
         self.0.len()
@@ -58,9 +58,9 @@ impl StashedValues {
 /// A value of the document that becomes another one.
 struct Change {
     place: Place,
-    /// What the user wants.
+    /// The value that the user wants.
     wanted: Value,
-    /// What the document gets.
+    /// The value that the document gets.
     to: Option<Value>,
     /// Of the parameter that the value is for, if there is one.
     declared: Option<&'static Parameter>,
@@ -97,7 +97,7 @@ pub fn follow_registry(mut session: impl DerefMut<Target = Session>, registry: &
     }
 }
 
-/// What must change in the document, and what is stashed then.
+/// The changes that the document needs, and the values that are stashed then.
 fn plan(session: &Session, registry: &Registry) -> (Vec<Change>, StashedValues) {
     let mut changes = Vec::new();
     let mut stashed = StashedValues::default();
@@ -177,7 +177,7 @@ fn nearest(parameter: &Parameter, value: &Value) -> Option<Value> {
     parameter.allows(&nearest).then_some(nearest)
 }
 
-/// How far a value is from another one of its type.
+/// Distance of a value from another one of its type.
 fn distance(a: &Value, b: &Value) -> f64 {
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => f64::from((a - b).abs()),
@@ -210,7 +210,7 @@ fn told(session: &Session, registry: &Registry, changes: &[Change]) -> Vec<Strin
 }
 
 impl Change {
-    /// What is said when it is about one object.
+    /// The message when it is about one object.
     fn single(&self, object: &str) -> String {
         let Self { place: (_, name), wanted, to, .. } = self;
         match to {
@@ -227,7 +227,7 @@ impl Change {
         }
     }
 
-    /// What is said before and after the number of objects when it is about several.
+    /// The message before and after the number of objects when it is about several.
     fn several(&self) -> (String, String) {
         let Self { place: (_, name), wanted, to, .. } = self;
         match to {
@@ -246,7 +246,7 @@ impl Change {
         }
     }
 
-    /// Why the document has this value instead of the one that is wanted.
+    /// The reason for this value instead of the one that is wanted.
     fn reason(&self, value: &Value) -> String {
         let Some(p) = self.declared else { return String::new() };
         let (most, least) = match (&p.kind, value, &self.wanted) {
@@ -268,7 +268,7 @@ impl Change {
         }
     }
 
-    /// Why the document has no value any more, and when it has it again.
+    /// The reason for no value, and the condition of its return.
     fn why_gone(&self, allowed: &'static str) -> (String, &'static str) {
         match self.declared {
             None => ("is no parameter of any model any more".to_owned(), "with the name"),

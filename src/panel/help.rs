@@ -119,11 +119,11 @@ fn about(ui: &mut Ui, session: &Session, registry: &Registry) {
         registry.shapes().len()
     );
     ui.add(egui::Label::new(theme::small(ui, line)).wrap());
-    if !session.status.adapter.is_empty() {
+    if !session.facts.adapter.is_empty() {
         ui.add(
             egui::Label::new(theme::small(
                 ui,
-                format!("{} · {}", session.status.adapter, session.status.backend),
+                format!("{} · {}", session.facts.adapter, session.facts.backend),
             ))
             .wrap(),
         );

@@ -192,7 +192,7 @@ pub fn severity_in(painter: &Painter, centre: Pos2, radius: f32, severity: Sever
     }
 }
 
-/// Where a shading model evaluates the reflection model: a triangle with the points marked.
+/// The points at which a shading model evaluates the reflection model, marked on a triangle.
 pub fn stage(painter: &Painter, rect: Rect, stage: Stage, palette: &Palette) {
     let corners = [
         pos2(rect.center().x, rect.top() + 3.0),

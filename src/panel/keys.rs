@@ -5,7 +5,7 @@ use bevy_egui::egui::{self, Key, Modifiers};
 use super::{
     author::{ModelCommand, SHADER_TAB},
     focus,
-    state::{Action, Session, Steer, ViewChange},
+    state::{Action, PictureArea, Session, Steer, ViewChange},
 };
 use crate::registry::Registry;
 
@@ -25,14 +25,14 @@ pub struct Binding {
     pub key: Key,
     /// The heading in the list of keys.
     pub group: &'static str,
-    /// What it does.
+    /// Its action.
     pub label: String,
     /// The action.
     pub action: Action,
 }
 
 impl Binding {
-    /// How people write it: `Ctrl+Shift+S`.
+    /// Its usual spelling: `Ctrl+Shift+S`.
     #[must_use]
     pub fn keys(&self) -> String {
         let ctrl = match (self.ctrl, cfg!(target_os = "macos")) {
@@ -176,7 +176,7 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
     all
 }
 
-/// What the mouse does, and keys that belong to a widget: for the list.
+/// Actions of the mouse, and keys that belong to a widget: for the list.
 pub const ELSEWHERE: &[(&str, &str, &str)] = &[
     ("Window", "F6, Shift+F6", "To the next panel, to the one before; Tab moves on within it, Esc leaves"),
     ("Window", "F10, Alt and a letter", "The menus; arrows walk, Enter chooses"),
@@ -191,26 +191,26 @@ pub const ELSEWHERE: &[(&str, &str, &str)] = &[
     ("Mouse in the picture", "click", "Select"),
 ];
 
-/// How people write the key of an action: for menus.
+/// The usual spelling of the key of an action: for menus.
 #[must_use]
 pub fn keys_of(bindings: &[Binding], action: &Action) -> String {
     bindings.iter().find(|b| b.action == *action).map(Binding::keys).unwrap_or_default()
 }
 
 /// True if Escape was pressed and nothing that is open over the picture takes it.
-pub(super) fn escapes(ctx: &egui::Context, session: &Session) -> bool {
+pub(super) fn escapes(ctx: &egui::Context, session: &Session, area: &PictureArea) -> bool {
     let open = session.view.chooser_open
         || session.view.keys_open
         || session.view.about_open
         || session.draft.is_some();
-    let free = session.keyboard_free && !open && !egui::Popup::is_any_open(ctx);
+    let free = area.has_keys && !open && !egui::Popup::is_any_open(ctx);
     free && ctx.input(|i| i.key_pressed(Key::Escape))
 }
 
 /// Reads the keys that were pressed. Call before the widgets see them.
 #[must_use]
 pub fn pressed(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
-    if session.question.is_some() {
+    if session.questions.open.is_some() {
         return Vec::new();
     }
     let typing = ctx.text_edit_focused();

@@ -50,7 +50,7 @@ const DOT: f32 = 2.5;
 const REACH: f32 = 0.14;
 /// Length of the observer's mark, metres.
 const OBSERVER_MARK: f32 = 0.4;
-/// What is nearer to the camera than this is not drawn, metres.
+/// Nothing nearer to the camera than this is drawn, metres.
 const NEAR: f32 = 0.05;
 /// Half the height of an arrow at the edge, points.
 const ARROW: f32 = 8.0;
@@ -78,8 +78,8 @@ impl Lens {
         let degrees = session.document.observer.field_of_view;
         let angle = vertical_field_of_view(degrees, rect.width() / rect.height().max(1.0), true);
         Self {
-            eye: session.eye,
-            to_camera: session.camera.inverse(),
+            eye: session.facts.eye,
+            to_camera: session.facts.camera.inverse(),
             rect,
             scale: 0.5 * rect.height() / (0.5 * angle).tan(),
         }
@@ -255,7 +255,7 @@ pub fn marks(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> (Ve
         lamp(&mut ink, light, entry, at, scene, colour, crowd && !chosen(i));
     }
     // From within, its own pyramid would frame the picture.
-    if session.eye.distance(scene.observer.position) > OBSERVER_MARK {
+    if session.facts.eye.distance(scene.observer.position) > OBSERVER_MARK {
         observer(&mut ink, &scene.observer, session.selection == Selection::Observer);
     }
     if let Selection::Object(i) = session.selection
@@ -433,7 +433,7 @@ fn arrows(
     (actions, places)
 }
 
-/// Where the way from the middle meets the frame.
+/// The point at which the way from the middle meets the frame.
 fn at_edge(frame: Rect, way: Vec2) -> Pos2 {
     let half = 0.5 * frame.size();
     let reach = |half: f32, way: f32| if way.abs() > 1e-6 { half / way.abs() } else { f32::INFINITY };

@@ -10,13 +10,16 @@ use super::{
 };
 use crate::registry::Registry;
 
+/// Id of the panel that shows the messages.
+pub const MESSAGES_TAB: &str = "messages";
+
 /// See the module.
 #[derive(Clone, Copy, Debug)]
 pub struct Messages;
 
 impl Panel for Messages {
     fn id(&self) -> &'static str {
-        "messages"
+        MESSAGES_TAB
     }
 
     fn title(&self) -> &'static str {

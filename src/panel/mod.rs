@@ -7,11 +7,12 @@
 //! **To add one**: write `panel/x.rs` and add its name to [`register_builtin`]; a panel at the bottom
 //! gets a tab and an entry in the menu by itself. From outside the crate: [`PanelApp::add_panel`].
 
-use std::sync::Arc;
+use std::{ops::DerefMut, sync::Arc};
 
 use bevy::{
     app::{App, Plugin},
     ecs::{
+        change_detection::DetectChangesMut,
         message::MessageWriter,
         resource::Resource,
         system::{Local, Res, ResMut},
@@ -25,7 +26,7 @@ use bevy_egui::{
 use crate::registry::Registry;
 pub use dialogs::Dialogs;
 use focus::Region;
-use state::{Action, Effect, LabEffect, Session, Severity, ViewChange};
+use state::{Action, Effect, LabEffect, PictureArea, Session, Severity, ViewChange};
 use theme::Palette;
 
 pub mod author;
@@ -78,7 +79,7 @@ pub fn register_builtin(to: &mut Panels) {
     to.add(inspector::Inspector);
 }
 
-/// Where a panel is, in the order in which F6 goes through them.
+/// The place of a panel, in the order in which F6 goes through them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Place {
     /// Across the top.
@@ -97,19 +98,19 @@ pub enum Place {
 pub trait Panel: Send + Sync + 'static {
     /// A name that no other panel has.
     fn id(&self) -> &'static str;
-    /// What people call it.
+    /// Its name for people.
     fn title(&self) -> &'static str;
-    /// Where it is.
+    /// Its place.
     fn place(&self) -> Place;
-    /// What its tab says beside the title, such as how many errors it tells of.
-    fn note(&self, _lab: &Session) -> Option<(Severity, String)> {
+    /// A note on its tab beside the title, such as the number of errors.
+    fn note(&self, _session: &Session) -> Option<(Severity, String)> {
         None
     }
     /// Shows it. What the user does comes back as actions.
     fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>;
 }
 
-/// What the menus know of a panel.
+/// The entry of a panel in menus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelInfo {
     /// See [`Panel::id`].
@@ -148,10 +149,9 @@ impl Panels {
         }
     }
 
-    /// What there is.
-    #[must_use]
-    pub fn list(&self) -> Vec<PanelInfo> {
-        self.0.iter().map(|p| PanelInfo { id: p.id(), title: p.title(), place: p.place() }).collect()
+    /// Their entries in menus.
+    pub fn infos(&self) -> impl Iterator<Item = PanelInfo> {
+        self.0.iter().map(|p| PanelInfo { id: p.id(), title: p.title(), place: p.place() })
     }
 
     fn at(&self, place: Place) -> impl Iterator<Item = &Arc<dyn Panel>> {
@@ -172,10 +172,13 @@ impl PanelApp for App {
     }
 }
 
-/// Shows the window, applies what the user does, and returns the effects. `ui` covers the window.
+/// Shows the window, applies what the user does, and returns the effects. `ui` covers the window. `session` is borrowed
+/// mutably only when something changes, `area` has the place of the picture in the frame before and gets that of this
+/// one.
 pub fn show(
     ui: &mut Ui,
-    session: &mut Session,
+    mut session: impl DerefMut<Target = Session>,
+    area: &mut PictureArea,
     registry: &Registry,
     panels: &Panels,
     dialogs: &mut Dialogs,
@@ -186,18 +189,19 @@ pub fn show(
     }
     let style = ctx.global_style();
     ui.set_style(style);
-    session.panels = panels.list();
-    session.notice_shaders(registry);
+    if !session.panels.iter().copied().eq(panels.infos()) {
+        session.panels = panels.infos().collect();
+    }
+    author::notice_shaders(&mut session, registry);
     let palette = Palette::of(&session.view);
     menu::walk(&ctx);
     focus::reveal(&ctx);
     focus::forget_regions(&ctx);
-    session.zoom = ctx.zoom_factor();
-    let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, session, registry) };
-    actions.extend(presentation::left(&ctx, session));
-    actions.extend(welcome::left(&ctx, session));
-    actions.extend(help::show(&ctx, session, registry));
-    actions.extend(author::show(&ctx, session, registry));
+    let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, &session, registry) };
+    actions.extend(presentation::left(&ctx, &session, area));
+    actions.extend(welcome::left(&ctx, &session, area));
+    actions.extend(help::show(&ctx, &session, registry));
+    actions.extend(author::show(&ctx, &session, area, registry));
     let whole = ui.available_rect_before_wrap();
 
     // A presentation shows the bar only for the chooser that hangs on it.
@@ -206,21 +210,21 @@ pub fn show(
         let frame = theme::panel_frame(&palette, vec2(8.0, 4.0));
         let shown = egui::Panel::top(panel.id())
             .frame(frame)
-            .show(ui, |ui| actions.extend(panel.show(ui, session, registry)));
+            .show(ui, |ui| actions.extend(panel.show(ui, &session, registry)));
         focus::region(&ctx, Region::Panel(Place::Top), shown.response.rect);
     }
     for panel in panels.at(Place::Status).filter(|_| !presenting) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 2.0));
         let shown = egui::Panel::bottom(panel.id())
             .frame(frame)
-            .show(ui, |ui| actions.extend(panel.show(ui, session, registry)));
+            .show(ui, |ui| actions.extend(panel.show(ui, &session, registry)));
         focus::region(&ctx, Region::Panel(Place::Status), shown.response.rect);
     }
     // Each size of everything has widths of its own. It takes effect a frame after it was chosen.
     let zoom = zoom_percent(&ctx);
     let mut sizes = (session.view.left_width, session.view.right_width, session.view.bottom_height);
     if session.view.bottom_open && !presenting {
-        bottom(ui, session, registry, panels, &palette, whole, &mut sizes.2, &mut actions);
+        bottom(ui, &session, registry, panels, &palette, whole, &mut sizes.2, &mut actions);
     }
     if session.view.left_open && !presenting {
         let most = 0.26 * whole.width();
@@ -230,7 +234,7 @@ pub fn show(
             .size_range(120f32.min(most)..=most);
         let response = panel.show(ui, |ui| {
             for panel in panels.at(Place::Left) {
-                actions.extend(panel.show(ui, session, registry));
+                actions.extend(panel.show(ui, &session, registry));
             }
         });
         focus::region(&ctx, Region::Panel(Place::Left), response.response.rect);
@@ -249,38 +253,40 @@ pub fn show(
             .size_range(300f32.min(most)..=most);
         let response = panel.show(ui, |ui| {
             for panel in panels.at(Place::Right) {
-                actions.extend(panel.show(ui, session, registry));
+                actions.extend(panel.show(ui, &session, registry));
             }
         });
         focus::region(&ctx, Region::Panel(Place::Right), response.response.rect);
         sizes.1 = response.response.rect.width();
     }
-    remember_sizes(&ctx, session, sizes, &mut actions);
+    remember_sizes(&ctx, &session, sizes, &mut actions);
 
     if !presenting {
-        actions.extend(welcome::strip(ui, session, registry));
+        actions.extend(welcome::strip(ui, &session, registry));
     }
     let rect = ui.available_rect_before_wrap();
-    let stage = presenting.then(|| presentation::Stage::of(ui, rect, session, registry));
+    let stage = presenting.then(|| presentation::Stage::of(ui, rect, &session, registry));
     focus::region(&ctx, Region::Picture, rect);
-    session.picture_rect = rect;
-    let rect = stage.as_ref().map_or(rect, |stage| stage.picture);
-    session.picture_frame = rect;
-    let (asked, covered) = picture::overlays(ui, rect, stage.as_ref(), session, registry);
+    let frame = stage.as_ref().map_or(rect, |stage| stage.picture);
+    let (asked, covered) = picture::overlays(ui, [rect, frame], stage.as_ref(), &session, registry);
     actions.extend(asked);
-    actions.extend(question::show(&ctx, session));
-    actions.extend(dialogs.update(&ctx, session, registry));
-    steering(&ctx, session, rect, &covered, dialogs.is_open());
+    actions.extend(question::show(&ctx, &session));
+    actions.extend(dialogs.update(&ctx, &mut session, registry));
+    *area = picture_area(&ctx, &session, [rect, frame], &covered, dialogs.is_open());
     focus::remember_regions(&ctx);
-    focus::show(&ctx, &palette, rect);
+    focus::show(&ctx, &palette, frame);
 
     let mut effects = Vec::new();
     for action in actions {
         effects.extend(session.apply(action, registry));
     }
-    end_gesture(&ctx, session);
-    effects.extend(session.wanted_dialog.take());
-    effects.retain(|effect| !dialogs.start(&ctx, effect, session));
+    if session.document.in_gesture() && !gesture_goes_on(&ctx) {
+        session.document.end_gesture();
+    }
+    if session.wanted_dialog.is_some() {
+        effects.extend(session.wanted_dialog.take());
+    }
+    effects.retain(|effect| !dialogs.start(&ctx, effect, &session));
     for effect in &effects {
         if let Effect::CopyText(text) = effect {
             ctx.copy_text(text.clone());
@@ -295,16 +301,14 @@ fn zoom_percent(ctx: &egui::Context) -> u32 {
     (100.0 * ctx.zoom_factor()).round() as u32
 }
 
-/// A drag is one step of the history, and so is typing in one field.
-fn end_gesture(ctx: &egui::Context, session: &mut Session) {
+/// True during a drag, which is one step of the history, and while a field is typed in, which is one too.
+fn gesture_goes_on(ctx: &egui::Context) -> bool {
     let focus = ctx.memory(egui::Memory::focused);
     let key = Id::new("focus of the gesture");
     let before = ctx.data(|data| data.get_temp::<Option<Id>>(key)).flatten();
     ctx.data_mut(|data| data.insert_temp(key, focus));
     let typing = focus.is_some() && focus == before;
-    if !typing && !ctx.input(|input| input.pointer.any_down()) {
-        session.document.end_gesture();
-    }
+    typing || ctx.input(|input| input.pointer.any_down())
 }
 
 /// The least height of the strip with the shaders, points.
@@ -387,21 +391,31 @@ fn remember_sizes(ctx: &egui::Context, session: &Session, sizes: (f32, f32, f32)
     }
 }
 
-/// Writes down whether the pointer and the keys belong to the picture. What is clicked in `covered` is not the
-/// picture.
-fn steering(ctx: &egui::Context, session: &mut Session, rect: Rect, covered: &[Rect], dialog: bool) {
+/// The place of the picture, and if pointer and keys are its own. What is clicked in `covered` is not the picture.
+fn picture_area(
+    ctx: &egui::Context,
+    session: &Session,
+    [rect, frame]: [Rect; 2],
+    covered: &[Rect],
+    dialog: bool,
+) -> PictureArea {
     let pointer = ctx.input(|i| i.pointer.latest_pos());
-    let busy = session.question.is_some() || dialog;
+    let busy = session.questions.open.is_some() || dialog;
     // Panels are no layers of their own; menus, popups, windows and dialogs are.
     let over = pointer.is_some_and(|p| {
-        rect.contains(p)
+        frame.contains(p)
             && !covered.iter().any(|c| c.contains(p))
             && ctx.layer_id_at(p).is_none_or(|l| l.order == egui::Order::Background)
     });
-    session.pointer_in_picture = over && !busy && !ctx.egui_is_using_pointer();
-    // The chooser opens and closes by an action, and is not among egui's.
-    session.popup_open = egui::Popup::is_any_open(ctx) || session.view.chooser_open;
-    session.keyboard_free = !busy && ctx.memory(|m| m.focused()).is_none();
+    PictureArea {
+        rect,
+        frame,
+        zoom: ctx.zoom_factor(),
+        has_pointer: over && !busy && !ctx.egui_is_using_pointer(),
+        has_keys: !busy && ctx.memory(|m| m.focused()).is_none(),
+        // The chooser opens and closes by an action, and is not among egui's.
+        popup_open: egui::Popup::is_any_open(ctx) || session.view.chooser_open,
+    }
 }
 
 /// Adds the window to the app: the state, the panels, and the system that shows them. What it does
@@ -411,7 +425,7 @@ pub struct PanelPlugin;
 
 impl Plugin for PanelPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Session>();
+        app.init_resource::<Session>().init_resource::<PictureArea>();
         app.world_mut().get_resource_or_insert_with(Panels::builtin);
         app.add_message::<LabEffect>();
         app.add_systems(EguiPrimaryContextPass, show_panels);
@@ -421,7 +435,8 @@ impl Plugin for PanelPlugin {
 /// Shows the panels in the primary egui context. Does nothing while there is none.
 pub fn show_panels(
     mut contexts: EguiContexts,
-    mut session: ResMut<Session>,
+    session: ResMut<Session>,
+    mut area: ResMut<PictureArea>,
     registry: Res<Registry>,
     panels: Res<Panels>,
     mut dialogs: Local<Dialogs>,
@@ -434,7 +449,8 @@ pub fn show_panels(
         Id::new("lab"),
         UiBuilder::new().layer_id(LayerId::background()).max_rect(ctx.viewport_rect()),
     );
-    for effect in show(&mut ui, &mut session, &registry, &panels, &mut dialogs) {
-        effects.write(LabEffect(effect));
-    }
+    let mut now = *area;
+    let asked = show(&mut ui, session, &mut now, &registry, &panels, &mut dialogs);
+    effects.write_batch(asked.into_iter().map(LabEffect));
+    area.set_if_neq(now);
 }

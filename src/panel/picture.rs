@@ -1,4 +1,4 @@
-//! What is painted over the picture: badges, caption, axes, hints.
+//! The overlays of the picture: badges, caption, axes, hints.
 
 use bevy_egui::egui::{
     self, Align2, CursorIcon, FontFamily, FontId, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo,
@@ -11,7 +11,7 @@ use super::{
     caption::{self, Lines, caption_text, models_shown},
     clipping, icon, marks,
     presentation::Stage,
-    state::{Action, Badge, Session, Severity, Shaders, ViewChange},
+    state::{Action, Badge, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
 use crate::{
@@ -25,11 +25,11 @@ use crate::{
 /// The least width of a picture with axes: in a narrower one they would hide more than they say.
 const AXES: f32 = 240.0;
 
-/// Paints the overlays into the rectangle of the picture, and around it what a presentation says. Returns what was
+/// Paints the overlays into the picture, which goes on in `whole`, and around it what a presentation says. Returns what was
 /// asked for there, and the places that can be clicked, which do not belong to the picture.
 pub fn overlays(
     ui: &mut Ui,
-    rect: Rect,
+    [whole, rect]: [Rect; 2],
     stage: Option<&Stage>,
     session: &Session,
     registry: &Registry,
@@ -37,7 +37,6 @@ pub fn overlays(
     if rect.width() < 80.0 || rect.height() < 80.0 {
         return (Vec::new(), Vec::new());
     }
-    let whole = session.picture_rect;
     clipping::paint(&ui.painter_at(whole), whole, session, ui.pixels_per_point());
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     let (mut actions, mut places) =
@@ -47,7 +46,7 @@ pub fn overlays(
         let (asked, covered) = stale(ui, free, session, registry);
         actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
-        let (asked, clicked) = badges(ui, free, top, session, registry);
+        let (asked, clicked) = badges(ui, free, top, whole, session, registry);
         actions.extend(asked);
         places.extend(clicked);
         places.push(covered);
@@ -62,7 +61,7 @@ pub fn overlays(
     (actions, places)
 }
 
-/// What the picture says of itself while a shader has an error: a heading, and where the errors are. The model
+/// The words of the picture while a shader has an error: a heading, and the places of the errors. The model
 /// that people call `shown` is named first.
 #[must_use]
 pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<String>)> {
@@ -186,11 +185,12 @@ fn hidden_terms(session: &Session, registry: &Registry) -> Option<Sign> {
     Some((badge, Some(Action::View(ViewChange::Terms(TermSelection::All)))))
 }
 
-/// The badges. Returns what was asked for there, and the places that can be clicked.
+/// The badges of a picture. Returns what was asked for there, and the places that can be clicked.
 fn badges(
     ui: &mut Ui,
     rect: Rect,
     top: f32,
+    picture: Rect,
     session: &Session,
     registry: &Registry,
 ) -> (Vec<Action>, Vec<Rect>) {
@@ -198,9 +198,9 @@ fn badges(
     let scale = theme::scale_here(ui);
     let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
     let per_point = ui.pixels_per_point();
-    let clipped = clipping::badge(session, f64::from(session.picture_rect.area() * per_point * per_point));
+    let clipped = clipping::badge(session, f64::from(picture.area() * per_point * per_point));
     let toggle = Action::View(ViewChange::Clipping(!session.view.show_clipping));
-    let told = session.disk.badge.iter().chain(&session.badges).map(|badge| (badge.clone(), None));
+    let told = session.disk.badge.iter().map(|badge| (badge.clone(), None));
     let all = hidden_terms(session, registry).into_iter().chain(told);
     let (mut actions, mut places) = (Vec::new(), Vec::new());
     let mut at = pos2(rect.left() + 8.0, top);
@@ -271,7 +271,7 @@ fn axes(ui: &Ui, rect: Rect, session: &Session) {
     let radius = 34.0;
     let centre = rect.right_bottom() - vec2(radius + 8.0, radius + 8.0);
     painter.circle_filled(centre, radius, palette.panel.gamma_multiply(0.72));
-    let inverse = session.camera.inverse();
+    let inverse = session.facts.camera.inverse();
     let mut ends: Vec<(Vec3, &str)> =
         [(Vec3::X, "x"), (Vec3::Y, "y"), (Vec3::Z, "z")].into_iter().map(|(a, n)| (inverse * a, n)).collect();
     // What points away from the eye is painted first.
@@ -288,14 +288,12 @@ fn axes(ui: &Ui, rect: Rect, session: &Session) {
     }
 }
 
-/// What to do, or what is going on, where there is no picture.
+/// Advice where there is no picture.
 fn hint(ui: &Ui, rect: Rect, session: &Session) {
     let text = if session.document.objects.is_empty() {
         "There is nothing to light. Add an object: + beside “Objects”."
     } else if session.document.lights.is_empty() {
         "It is dark. Add a light: + beside “Lights”."
-    } else if session.status.shaders == Shaders::Compiling && session.status.frame_ms == 0.0 {
-        "Compiling shaders…"
     } else {
         return;
     };

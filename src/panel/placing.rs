@@ -24,7 +24,7 @@ const AIR: f32 = 0.3;
 const PROBE: [u32; 2] = [128, 72];
 /// The most objects in such a picture: those nearest to the camera.
 const PROBED: usize = 200;
-/// What a new light may take of what is left up to the brightest that the display shows.
+/// Share of a new light in the range that is left up to the brightest that the display shows.
 const SHARE: f32 = 0.35;
 /// The least that a new light adds, in the scale of the display's values from 0 to 1, even if it clips for that.
 const VISIBLE: f32 = 0.05;
@@ -275,7 +275,7 @@ impl<'a> Stand<'a> {
         10f32.powf((20.0 / room).log10().ceil().max(1.0))
     }
 
-    /// Where all is full: a place of a lattice in which nothing has its centre.
+    /// A point of a lattice at which nothing has its centre, for a full room.
     fn lattice(&self, wanted: Vec3) -> Vec3 {
         let corner = self.scene.scene_size.corner();
         let step = 0.1 * corner;

@@ -17,7 +17,7 @@ use super::{
     keys,
     marks::Lens,
     maths::{self, Sizes},
-    state::{Action, Session, ViewChange},
+    state::{Action, PictureArea, Session, ViewChange},
     theme::{self, Palette},
 };
 use crate::{reflection::Term, registry::Registry};
@@ -33,12 +33,12 @@ const MOST: f32 = 0.4;
 const BESIDE: f32 = 0.34;
 /// The part of the objects that may be hidden.
 const HIDDEN: f32 = 0.005;
-/// How long it says how to leave, seconds.
+/// Time for which it tells the way out, seconds.
 const REMINDER: f64 = 5.0;
 
 /// Escape leaves, unless it is another's.
-pub fn left(ctx: &Context, session: &Session) -> Option<Action> {
-    let left = session.view.presenting && keys::escapes(ctx, session);
+pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
+    let left = session.view.presenting && keys::escapes(ctx, session, area);
     left.then_some(Action::View(ViewChange::Presenting(false)))
 }
 
@@ -55,7 +55,7 @@ struct Block {
     size: Vec2,
 }
 
-/// What a presentation says, and where.
+/// The texts of a presentation, and their places.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The screen.
@@ -70,7 +70,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// What is said in this rectangle.
+    /// The text in this rectangle.
     #[must_use]
     pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
         let models = models_shown(session);
@@ -227,7 +227,7 @@ impl Block {
     }
 }
 
-/// How high definitions are, wide enough or not.
+/// Height of definitions, wide enough or not.
 fn measured(ui: &mut Ui, parts: &[Definition], width: f32, sizes: Sizes) -> f32 {
     let room = Rect::from_min_size(ui.max_rect().min, vec2(width, f32::INFINITY));
     let mut trial = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(room).invisible());
@@ -237,7 +237,7 @@ fn measured(ui: &mut Ui, parts: &[Definition], width: f32, sizes: Sizes) -> f32 
 /// The objects as the camera sees them: discs, without what is far outside the picture.
 fn discs(session: &Session, rect: Rect) -> Vec<(Pos2, f32)> {
     let lens = Lens::of(session, rect);
-    let right = session.camera * glam::Vec3::X;
+    let right = session.facts.camera * glam::Vec3::X;
     let disc = |o: &crate::scene::Object| {
         // Half the size, and what corners reach beyond it.
         let radius = 0.6 * o.size;

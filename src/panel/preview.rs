@@ -44,12 +44,12 @@ pub enum Source {
     File(PathBuf),
 }
 
-/// What there is to see of a scene.
+/// The preview of a scene.
 #[derive(Clone)]
 pub enum Preview {
     /// It is being made.
     Waiting,
-    /// What the file holds.
+    /// The content of the file.
     Ready(Arc<Shown>),
     /// The file cannot be used: why.
     Failed(Arc<str>),
@@ -59,9 +59,9 @@ pub enum Preview {
 pub struct Shown {
     /// Its name, if it has one.
     pub name: Option<String>,
-    /// What it shows.
+    /// Its picture.
     pub description: Option<String>,
-    /// What it is made of, in a line.
+    /// Its contents, in a line.
     pub facts: String,
     /// Its picture, unless that would take too long.
     pub picture: Option<TextureHandle>,
@@ -70,7 +70,7 @@ pub struct Shown {
 #[derive(Default)]
 struct Store {
     known: HashMap<Source, Preview>,
-    /// What is still to be done, the most urgent last.
+    /// Previews still to be made, the most urgent last.
     queue: Vec<Source>,
     working: bool,
 }
@@ -85,7 +85,7 @@ fn store(ctx: &Context) -> Shared {
     ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("previews")).clone())
 }
 
-/// What there is to see of a scene now. What is asked for last is made first.
+/// The preview of a scene as it is now. The one that is asked for last is made first.
 pub fn of(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
     let shared = store(ctx);
     let mut store = lock(&shared);

@@ -9,7 +9,7 @@ use super::{
 
 /// Shows the open question. Enter gives the first answer, which loses nothing; Escape the last.
 pub fn show(ctx: &egui::Context, session: &Session) -> Vec<Action> {
-    let Some(question) = &session.question else { return Vec::new() };
+    let Some(question) = &session.questions.open else { return Vec::new() };
     let (title, text, details, answers) = words(session, question);
     let mut out = None;
     Modal::new(Id::new("question")).show(ctx, |ui: &mut Ui| {

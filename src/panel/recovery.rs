@@ -23,7 +23,7 @@ pub struct Offer {
     pub scene: Result<Scene, String>,
 }
 
-/// What becomes of a recovery copy.
+/// The fate of a recovery copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
     /// It is the document now.
@@ -98,9 +98,9 @@ mod tests {
     }
 
     fn answered(session: &mut Session, offer: Offer, answer: Answer) -> Vec<Effect> {
-        session.ask(Question::Recover(Box::new(offer)));
+        session.questions.ask(Question::Recover(Box::new(offer)));
         let effects = session.apply(Action::Answer(answer), &Registry::builtin());
-        assert_eq!(session.question, None);
+        assert_eq!(session.questions.open, None);
         effects
     }
 
@@ -167,15 +167,15 @@ mod tests {
         let registry = Registry::builtin();
         let mut session = Session::default();
         answered(&mut session, offer(Ok(Scene::default())), Answer::Recover);
-        assert!(!session.is_quitting());
+        assert!(!session.questions.is_quitting());
         assert_eq!(session.apply(Action::Quit, &registry), []);
-        assert!(session.is_quitting());
+        assert!(session.questions.is_quitting());
         session.apply(Action::Answer(Answer::Cancel), &registry);
-        assert!(!session.is_quitting());
+        assert!(!session.questions.is_quitting());
         session.apply(Action::Quit, &registry);
         session.apply(Action::Answer(Answer::Save), &registry);
-        assert!(session.is_quitting(), "it closes once it is saved");
-        session.not_saved();
-        assert!(!session.is_quitting());
+        assert!(session.questions.is_quitting(), "it closes once it is saved");
+        session.questions.not_saved();
+        assert!(!session.questions.is_quitting());
     }
 }

@@ -19,15 +19,19 @@ use crate::{
 /// A state of a file on disk: its content, or that there is no file.
 type Version = Option<Stamp>;
 
-/// What is known of the document's file on disk beyond the document itself.
+/// Facts about the document's file on disk beyond the document itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OnDisk {
-    /// What the picture must say about it.
+    /// The remark of the picture on it.
     pub badge: Option<Badge>,
     /// The document may take the defaults of any part that its file lacks.
     pub use_defaults: bool,
+    /// True if the document came from a recovery copy: no file is known to have it.
+    pub(super) recovered: bool,
+    /// The names of the parts that the file lacks and that the document got as defaults.
+    pub(super) defaulted: Vec<String>,
     /// True if the file was deleted, so that only the window has the document.
-    pub(super) gone: bool,
+    gone: bool,
     /// News came while a question was open.
     pub(super) deferred: bool,
     /// A version that cannot be used, but that may be in the middle of being written.
@@ -40,6 +44,13 @@ pub struct OnDisk {
     notes: Vec<Note>,
 }
 
+impl OnDisk {
+    /// True if no file has what the document began with.
+    pub(super) fn lacks_document(&self) -> bool {
+        self.recovered || !self.defaulted.is_empty() || self.gone
+    }
+}
+
 /// Looks whether the document's file is another one than was last seen, and does what follows.
 /// `discard` takes what is on disk even if it costs unsaved changes: the user was asked.
 ///
@@ -48,7 +59,7 @@ pub struct OnDisk {
 #[must_use]
 pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &mut dyn Files) -> Vec<Effect> {
     let Some(path) = session.path.clone() else { return Vec::new() };
-    if session.question.is_some() {
+    if session.questions.open.is_some() {
         // One question after the other.
         session.disk.deferred = true;
         return Vec::new();
@@ -96,12 +107,12 @@ fn take(
     discard: bool,
 ) -> Vec<Effect> {
     // What a recovered document began with is not known.
-    let edited = (session.recovered || session.document.differs()) && session.document != scene;
-    if edited && !discard && (session.recovered || scene != *session.document.saved()) {
+    let edited = (session.disk.recovered || session.document.differs()) && session.document != scene;
+    if edited && !discard && (session.disk.recovered || scene != *session.document.saved()) {
         if session.disk.asked != Some(Some(version)) {
             session.disk_settled();
             session.disk.asked = Some(Some(version));
-            session.ask(Question::NewerOnDisk { path, scene: Box::new(scene), version });
+            session.questions.ask(Question::NewerOnDisk { path, scene: Box::new(scene), version });
         }
         return Vec::new();
     }
@@ -164,7 +175,7 @@ fn doubt(
     vec![Effect::Complain(problems.join("\n"))]
 }
 
-/// What the picture says, without what names of files may hold that is not to be shown.
+/// A badge without what names of files may hold that is not to be shown.
 fn badge(severity: Severity, text: &str, help: &str) -> Option<Badge> {
     Some(Badge { severity, text: printable(text).into_owned(), help: printable(help).into_owned() })
 }
@@ -178,11 +189,21 @@ impl Session {
     pub(super) fn disk_settled(&mut self) {
         let notes = std::mem::take(&mut self.disk.notes);
         self.messages.retain(|m| !notes.contains(m));
+        let known = std::mem::take(&mut self.disk);
         self.disk = OnDisk {
-            use_defaults: self.disk.use_defaults,
-            deferred: self.disk.deferred,
+            use_defaults: known.use_defaults,
+            recovered: known.recovered,
+            defaulted: known.defaulted,
+            deferred: known.deferred,
             ..OnDisk::default()
         };
+    }
+
+    /// The document is as its file has it, or is another one.
+    pub(super) fn disk_saved(&mut self) {
+        self.disk_settled();
+        self.disk.recovered = false;
+        self.disk.defaulted.clear();
     }
 
     /// The user leaves it open whether the file on disk or the document counts.
@@ -200,13 +221,14 @@ impl Session {
 
     /// Says something about the file that gives way when there is something newer to say.
     fn say_of_disk(&mut self, severity: Severity, text: String) {
-        self.disk.notes.push(Note { severity, text: printable(&text).into_owned(), offer: None });
-        self.say(severity, text);
+        let note = Note::new(severity, text);
+        self.disk.notes.push(note.clone());
+        self.note(note);
     }
 
     /// True if the user agreed to the defaults of all these parts.
     fn may_default(&self, parts: &[MissingPart]) -> bool {
-        self.disk.use_defaults || parts.iter().all(|p| self.defaulted.contains(&p.name))
+        self.disk.use_defaults || parts.iter().all(|p| self.disk.defaulted.contains(&p.name))
     }
 
     /// The scene in the document's file becomes the document. Camera and terms stay as they are, and so
@@ -218,7 +240,7 @@ impl Session {
             Selection::Room | Selection::Observer => None,
         };
         if self.document.reflection_model != scene.reflection_model {
-            self.use_slot(&scene.reflection_model);
+            self.model_slots.take(&scene.reflection_model);
         }
         self.document.set_saved(scene.clone());
         self.document.replace("Reload from disk", self.selection, scene);
@@ -241,7 +263,7 @@ impl Session {
         }
         self.selection = selection;
         self.document.selected(selection);
-        self.recovered = false;
-        self.defaulted = defaulted;
+        self.disk.recovered = false;
+        self.disk.defaulted = defaulted;
     }
 }

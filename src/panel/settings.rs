@@ -1,4 +1,4 @@
-//! What survives a restart: theme, scale, panel sizes, recent files.
+//! Settings, which survive a restart: theme, scale, panel sizes, recent files.
 
 use std::{
     io,
@@ -26,7 +26,7 @@ pub fn nearest_scale(percent: u16) -> u16 {
     SCALES.into_iter().min_by_key(|s| s.abs_diff(percent)).unwrap_or(100)
 }
 
-/// What survives a restart.
+/// The settings that survive a restart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {

@@ -1,14 +1,14 @@
-//! The line at the bottom: what is selected, what is in progress, what needs attention.
+//! The line at the bottom: messages, errors of shaders, the selection.
 
 use bevy_egui::egui::{
-    self, Align, Button, Layout, ProgressBar, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
+    self, Align, Button, Layout, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
 };
 
 use super::{
     Panel, Place,
     author::SHADER_TAB,
     icon::{self, Icon},
-    state::{Action, Session, Severity, Shaders, ViewChange},
+    state::{Action, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
 use crate::{registry::Registry, text::plural};
@@ -41,7 +41,7 @@ impl Panel for StatusLine {
                 if count == 0 { "No messages".to_owned() } else { plural(count, "message") },
             );
             let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
-            match session.worst() {
+            match session.messages.worst() {
                 Some(worst) => icon::severity(ui.painter(), rect.center(), 5.5, worst, &palette),
                 None => icon::paint(
                     ui.painter(),
@@ -60,24 +60,6 @@ impl Panel for StatusLine {
             }
             shader_errors(ui, session, &mut actions);
             latest(ui, session, &mut actions);
-            let (words, help) = match session.status.shaders {
-                Shaders::Ready => ("", ""),
-                Shaders::Compiling => {
-                    ("Compiling shaders…", "The GPU’s programs are being made; the picture follows.")
-                }
-                Shaders::Stale if session.shaders.troubles.is_empty() => (
-                    "Shader has an error: the picture shows the last good one",
-                    "The message says where the error is.",
-                ),
-                Shaders::Stale => ("", ""),
-            };
-            if !words.is_empty() {
-                ui.label(theme::small(ui, words)).on_hover_text(help);
-            }
-            if let Some((what, how_far)) = &session.status.progress {
-                ui.label(theme::small(ui, what));
-                ui.add(ProgressBar::new(*how_far).desired_width(120.0).desired_height(6.0));
-            }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let name = session.name_of(session.selection, registry);
                 ui.add(egui::Label::new(theme::small(ui, format!("{name} selected · F1 keys"))).truncate());
@@ -107,7 +89,7 @@ fn latest(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     }
 }
 
-/// How many errors the shaders have, and whether the picture suffers from them; leads to the panel that says more.
+/// The number of errors of the shaders, and if the picture suffers from them; leads to the panel that says more.
 fn shader_errors(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let count = session.shaders.troubles.len();
     if count == 0 {

@@ -18,7 +18,7 @@ use crate::{
 
 /// So many objects are looked at; in most scenes the first one has all terms.
 const OBJECTS: usize = 256;
-/// As many answers are kept: a slider makes one for each of its values.
+/// Number of answers that are kept: a slider makes one for each of its values.
 const KEPT: usize = 256;
 
 /// True for each term that is not 0: ambient, diffuse, specular.
@@ -29,7 +29,7 @@ type Present = [bool; 3];
 pub(super) struct KnownTerms(Arc<Mutex<HashMap<String, Present>>>);
 
 impl KnownTerms {
-    /// What the picture of a scene may show: all terms, and each that is there if there are others beside it.
+    /// The terms that the picture of a scene may show: all, and each that is there if there are others beside it.
     pub(super) fn offered(&self, scene: &Scene, registry: &Registry) -> Vec<TermSelection> {
         let there = self.present(scene, registry);
         let several = there.len() > 1;

@@ -1,4 +1,4 @@
-//! How the window looks: colours, type, space.
+//! The look of the window: colours, type, space.
 //!
 //! Neutral greys, since colours are judged against them; one accent for what can be touched or is
 //! chosen; the colours of M. Okabe and K. Ito (2008), *Color Universal Design*, for data. Text has a
@@ -40,9 +40,9 @@ pub struct Palette {
     pub dark: bool,
     /// Behind everything in a panel.
     pub panel: Color32,
-    /// What stands out of a panel: menus, dialogs, buttons.
+    /// Surfaces raised above a panel: menus, dialogs, buttons.
     pub raised: Color32,
-    /// What the pointer is over.
+    /// The widget under the pointer.
     pub hovered: Color32,
     /// Fields that are typed into, and rails.
     pub field: Color32,
@@ -52,7 +52,7 @@ pub struct Palette {
     pub text: Color32,
     /// Text of less weight: units, ends of ranges, hints.
     pub weak: Color32,
-    /// What is chosen or can be touched.
+    /// Chosen and interactive widgets.
     pub accent: Color32,
     /// The ground of what is chosen in a list.
     pub chosen: Color32,
@@ -172,7 +172,7 @@ pub fn small(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
     egui::RichText::new(text).small().color(Palette::here(ui).weak)
 }
 
-/// How wide a text in the smallest size is.
+/// Width of a text in the smallest size.
 #[must_use]
 pub fn small_width(ui: &egui::Ui, text: &str) -> f32 {
     let font = TextStyle::Small.resolve(ui.style());

@@ -9,6 +9,7 @@ use super::{
     history::HISTORY_TAB,
     keys::{self, Binding},
     menu,
+    messages::MESSAGES_TAB,
     state::{Action, Session, ThemeChoice, ViewChange},
     theme::{self, Palette},
     welcome,
@@ -281,7 +282,7 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                         ViewChange::BottomTab(panel.id.to_owned())
                     };
                     let key = match panel.id {
-                        "messages" => "F8",
+                        MESSAGES_TAB => "F8",
                         SHADER_TAB => "F9",
                         _ => "",
                     };
@@ -401,7 +402,7 @@ fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
     });
 }
 
-/// How wide a choice of several is: as when it is chosen, so that nothing moves when the choice does.
+/// Width of one of several choices: as when it is chosen, so that nothing moves when the choice does.
 fn segment_width(ui: &Ui, option: &str) -> f32 {
     let bold = egui::FontId::new(egui::TextStyle::Button.resolve(ui.style()).size, theme::semibold());
     let text = ui.painter().layout_no_wrap(option.to_owned(), bold, egui::Color32::WHITE);
@@ -473,13 +474,13 @@ fn prepare_digits(ui: &Ui) {
 }
 
 fn renderer(ui: &mut Ui, session: &Session) {
-    let status = &session.status;
+    let facts = &session.facts;
     let mut parts = Vec::new();
-    if status.fps() > 0.0 {
-        parts.push(format!("{:.0} fps", status.fps()));
+    if facts.fps() > 0.0 {
+        parts.push(format!("{:.0} fps", facts.fps()));
     }
-    if !status.backend.is_empty() {
-        parts.push(status.backend.clone());
+    if !facts.backend.is_empty() {
+        parts.push(facts.backend.clone());
     }
     if ui.available_width() < 100.0 {
         parts.truncate(1);
@@ -490,9 +491,9 @@ fn renderer(ui: &mut Ui, session: &Session) {
     prepare_digits(ui);
     let text = theme::small(ui, parts.join(" · "));
     ui.add(egui::Label::new(text).truncate()).on_hover_ui(|ui| {
-        ui.label(format!("{:.2} ms per frame", status.frame_ms));
-        if !status.adapter.is_empty() {
-            ui.label(&status.adapter);
+        ui.label(format!("{:.2} ms per frame", facts.frame_ms));
+        if !facts.adapter.is_empty() {
+            ui.label(&facts.adapter);
         }
     });
 }

@@ -10,7 +10,7 @@ use super::{
     icon::{self, Icon},
     keys,
     preview::{self, Source},
-    state::{Action, Session, ViewChange},
+    state::{Action, PictureArea, Session, ViewChange},
     theme::{self, Palette},
 };
 use crate::{registry::Registry, scene::examples::EXAMPLES};
@@ -21,7 +21,7 @@ const CARD: egui::Vec2 = vec2(112.0, 63.0);
 const ROW: egui::Vec2 = vec2(96.0, 54.0);
 /// The least height of strip and picture together, points.
 const LEAST: f32 = 320.0;
-/// How wide the menu is.
+/// Width of the menu.
 const MENU: f32 = 440.0;
 
 /// The strip below the picture.
@@ -74,8 +74,8 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
 }
 
 /// Escape closes the strip, unless it is another's.
-pub fn left(ctx: &Context, session: &Session) -> Option<Action> {
-    let left = session.view.examples_open && !session.view.presenting && keys::escapes(ctx, session);
+pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
+    let left = session.view.examples_open && !session.view.presenting && keys::escapes(ctx, session, area);
     left.then_some(Action::View(ViewChange::Examples(false)))
 }
 

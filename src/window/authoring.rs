@@ -1,4 +1,4 @@
-//! Files of one's own: writing new models and writing the shaders out.
+//! The files of users: writing new models and exporting the shaders.
 
 use std::{
     io,
@@ -16,7 +16,7 @@ use crate::{
     registry::Registry,
 };
 
-/// Carries out an effect that writes a file of one's own: says what became of it, and wishes for a new model to be
+/// Carries out an effect that writes a file of the user's: reports the result, and wishes for a new model to be
 /// chosen. Returns the folder whose shaders are to be read from now on, if there is a new one.
 pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Option<PathBuf> {
     match effect {
@@ -90,7 +90,7 @@ fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of
     }
 }
 
-/// What an export did, in words.
+/// The result of an export in words.
 fn told(exported: &Exported, folder: &Path) -> String {
     let count = |n: usize| if n == 1 { "1 file".to_owned() } else { format!("{n} files") };
     let mut text = match exported.written.len() {

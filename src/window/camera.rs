@@ -17,16 +17,16 @@ use glam::{Quat, Vec3};
 use super::WindowView;
 use crate::{
     document::{Edit, Selection},
-    panel::state::{Action, Session, Severity, Steer},
+    panel::state::{Action, PictureArea, Session, Steer},
     registry::Registry,
     render::{camera::PictureCamera, entities::CurrentScene},
-    scene::{Observer, Scene, check, observer::rotation},
+    scene::{Observer, Scene, observer::rotation},
 };
 
 /// The nearest that the camera comes to what it turns around, metres.
 const NEAREST: f32 = 0.05;
 
-/// How steeply the camera may look down or up, radians.
+/// The steepest angle at which the camera may look down or up, radians.
 const HIGHEST: f32 = 89.9 / 180.0 * std::f32::consts::PI;
 
 /// The controls of the camera.
@@ -54,12 +54,12 @@ impl Plugin for CameraPlugin {
         app.add_systems(PreUpdate, (gate, keep_at_observer).chain()).add_systems(
             PostUpdate,
             // So that the marks over the picture belong to the same frame.
-            tell_lab.after(PanOrbitCameraSystemSet).before(EguiPostUpdateSet::EndPass),
+            feed_viewpoint.after(PanOrbitCameraSystemSet).before(EguiPostUpdateSet::EndPass),
         );
     }
 }
 
-/// What the view turns around when it stands at the observer: the point of its line of sight nearest
+/// The point that the view turns around when it stands at the observer: that of its line of sight nearest
 /// to the objects' middle.
 fn focus_of(scene: &Scene, observer: &Observer) -> Vec3 {
     let forward = rotation(observer.direction) * Vec3::NEG_Z;
@@ -80,7 +80,7 @@ fn put_at(camera: &mut PanOrbitCamera, transform: &mut Transform, place: Transfo
 /// The picture gets the mouse only where nothing else wants it; and a camera that is moved no longer
 /// stands at the observer.
 pub(super) fn gate(
-    session: Res<Session>,
+    area: Res<PictureArea>,
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
     mut wheel: MessageReader<MouseWheel>,
@@ -89,15 +89,15 @@ pub(super) fn gate(
     mut cameras: Query<(&mut PanOrbitCamera, &mut PictureCamera), With<WindowView>>,
 ) {
     let pressed = [MouseButton::Left, MouseButton::Right];
-    if session.pointer_in_picture && buttons.any_just_pressed(pressed) {
+    if area.has_pointer && buttons.any_just_pressed(pressed) {
         *dragging = true;
     } else if !buttons.any_pressed(pressed) {
         *dragging = false;
     }
     let moved = motion.read().count() > 0;
-    let wheeled = wheel.read().count() > 0 && session.pointer_in_picture;
+    let wheeled = wheel.read().count() > 0 && area.has_pointer;
     // A drag that began in the picture goes on outside; one that began outside never gets in.
-    let enabled = *dragging || (session.pointer_in_picture && !buttons.any_pressed(pressed));
+    let enabled = *dragging || (area.has_pointer && !buttons.any_pressed(pressed));
     let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
     for (mut orbit, mut picture) in &mut cameras {
         if orbit.enabled != enabled {
@@ -138,17 +138,19 @@ fn keep_at_observer(
     }
 }
 
-fn tell_lab(mut session: ResMut<Session>, cameras: Query<(&Transform, &PictureCamera), With<WindowView>>) {
-    if let Some((transform, picture)) = cameras.iter().next()
-        && ((session.camera, session.eye) != (transform.rotation, transform.translation)
-            || session.camera_left == picture.follows_observer)
-    {
-        (session.camera, session.eye) = (transform.rotation, transform.translation);
-        session.camera_left = !picture.follows_observer;
+/// Tells the panels the position of the camera.
+fn feed_viewpoint(
+    mut session: ResMut<Session>,
+    cameras: Query<(&Transform, &PictureCamera), With<WindowView>>,
+) {
+    if let Some((transform, picture)) = cameras.iter().next() {
+        let facts = &mut session.bypass_change_detection().facts;
+        (facts.camera, facts.eye) = (transform.rotation, transform.translation);
+        facts.camera_left = !picture.follows_observer;
     }
 }
 
-/// Where the camera and what it looks at are after a movement.
+/// The camera and the point that it looks at, after a movement.
 fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
     let offset = camera.translation - focus;
     match steer {
@@ -173,7 +175,7 @@ fn steered(camera: Transform, focus: Vec3, steer: Steer) -> (Transform, Vec3) {
     }
 }
 
-/// What the panels may ask of the camera.
+/// The movements of the camera that panels ask for.
 #[derive(SystemParam)]
 pub(super) struct CameraControl<'w, 's> {
     scene: Res<'w, CurrentScene>,
@@ -234,16 +236,9 @@ impl CameraControl<'_, '_> {
             direction: transform.rotation * Vec3::NEG_Z,
             field_of_view: session.document.observer.field_of_view,
         };
-        let mut wanted = session.document.scene().clone();
-        wanted.observer = observer;
-        match check::scene(&wanted, registry).first() {
-            Some(problem) => {
-                session.apply(Action::Say(Severity::Warning, problem.message()), registry);
-            }
-            None => {
-                session.apply(Action::Edit(Edit::Observer(observer)), registry);
-                self.home();
-            }
+        session.apply(Action::Edit(Edit::Observer(observer)), registry);
+        if session.document.observer == observer {
+            self.home();
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Counts where the picture clips: on the GPU, in the picture that is on screen, once it has come to rest.
+//! Counts clipped pixels: on the GPU, in the picture that is on screen, once it has come to rest.
 //!
 //! A compute pass after tone mapping reads the texture of the picture, which holds what the display is asked for, also
 //! beyond what it can show. A few kilobytes come back, a frame or two later.
@@ -29,7 +29,10 @@ use bevy::{
 };
 use wgpu::{BufferUsages, ShaderStages, util::BufferInitDescriptor};
 
-use super::{SETTLING_FRAMES, Settling, WindowView};
+use super::{
+    WindowView,
+    redraw::{SETTLING_FRAMES, Settling, redraw},
+};
 use crate::{
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
@@ -68,7 +71,7 @@ impl Plugin for ClippingPlugin {
             ExtractResourcePlugin::<Question>::default(),
             ExtractComponentPlugin::<WindowView>::default(),
         ))
-        .add_systems(PostUpdate, ask.after(ViewSystems).after(super::redraw));
+        .add_systems(PostUpdate, ask.after(ViewSystems).after(redraw));
         if let Some(render) = app.get_sub_app_mut(RenderApp) {
             // The pass is prepared before anything is handed over.
             render
@@ -79,7 +82,7 @@ impl Plugin for ClippingPlugin {
     }
 }
 
-/// What the GPU is asked.
+/// The question to the GPU.
 #[derive(Clone, Resource)]
 struct Question {
     /// Counts the questions.
@@ -152,9 +155,10 @@ fn answered(
     }
     question.open = false;
     let clipping = Clipping::new(numbers.collect());
-    if session.clipping != clipping {
-        session.clipping = clipping;
-        settling.frames = settling.frames.max(SETTLING_FRAMES);
+    let known = &mut session.bypass_change_detection().facts.clipping;
+    if *known != clipping {
+        *known = clipping;
+        settling.draw(SETTLING_FRAMES);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Which editor opens a file: the one that is named, else what the desktop opens text with, else one that is known to
+//! The editor that opens a file: the one that is named, else that of the desktop for text, else one that is known to
 //! have a window. An editor that needs a terminal is only taken if its user named it, since others find no way out.
 
 use std::{
@@ -153,7 +153,7 @@ fn unquoted(exec: &str) -> Vec<String> {
     words
 }
 
-/// How a known editor is called, by its name or path.
+/// The arguments of a known editor, by its name or path.
 fn known(program: &str) -> Option<&'static str> {
     let name = Path::new(program).file_name()?.to_str()?;
     KNOWN.iter().find(|(known, _)| *known == name).map(|(_, how)| *how)
@@ -164,14 +164,14 @@ fn filled(how: &str, file: &Path, line: usize) -> Vec<String> {
     how.split(' ').map(|word| filled(word).replace("{file}", &file.to_string_lossy())).collect()
 }
 
-/// What there is to choose from.
+/// The editors that there are.
 #[derive(Clone, Debug, Default)]
 pub struct Surroundings {
     /// The value of [`EDITOR_VARIABLE`].
     pub named: Option<String>,
     /// The values of `VISUAL` and `EDITOR`, as far as they are set.
     pub usual: Vec<String>,
-    /// What the desktop opens text files with.
+    /// The application of the desktop for text files.
     pub default: Option<Application>,
     /// The folders that programs are looked for in.
     pub path: Vec<PathBuf>,
@@ -210,7 +210,7 @@ impl Surroundings {
             .or_else(|| self.usual.iter().find_map(|usual| self.in_terminal(usual, file, line)))
     }
 
-    /// What opens text where the system has one way for all.
+    /// The command that opens text where the system has one way for all.
     fn of_system(&self, file: &Path) -> Option<Called> {
         let arguments = || vec!["-t".to_owned(), file.to_string_lossy().into_owned()];
         cfg!(target_os = "macos").then(|| ("open".to_owned(), arguments()))
@@ -265,7 +265,7 @@ fn default_application() -> Option<Application> {
     })
 }
 
-/// What went wrong with editors that were started, told by the threads that wait for them.
+/// Complaints about editors that were started, from the threads that wait for them.
 #[derive(Clone, Debug, Default, Resource)]
 pub struct Editors {
     complaints: Arc<Mutex<Vec<String>>>,
@@ -325,7 +325,7 @@ fn start(named: Option<String>, file: &Path, line: usize) -> Result<(), String> 
     }
 }
 
-/// Where no editor is found.
+/// The last resort when no editor is found.
 fn otherwise(file: &Path) -> Result<(), String> {
     if cfg!(target_os = "linux") {
         return Err("no editor with a window was found".to_owned());

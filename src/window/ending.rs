@@ -1,4 +1,4 @@
-//! How the window ends when nobody in it asked for it: the display is lost, the renderer fails, something panics.
+//! The end of the window when nobody in it asked for it: the display is lost, the renderer fails, something panics.
 //! The unsaved changes are kept, and the user is told where.
 //!
 //! When the X server goes, Xlib ends the process with `exit(1)`, from within the event loop, and offers no safe way to
@@ -39,7 +39,7 @@ impl Drop for Alarm {
     }
 }
 
-/// What is set while the window may be ended by others.
+/// The alarm is set while this exists.
 pub(super) struct Guard(());
 
 impl Guard {

@@ -107,7 +107,7 @@ impl Files for DiskFiles {
     }
 }
 
-/// What reading a file means to the panels.
+/// The result of reading a file, for the panels.
 fn opened(read: Result<Loaded, LoadError>) -> Opened {
     match read {
         Ok(Loaded { scene, missing, .. }) if missing.is_empty() => Opened::Scene(Box::new(scene)),

@@ -1,4 +1,4 @@
-//! What a frame costs: the time between frames that follow each other without a rest, so that the work of the GPU
+//! The cost of a frame: the time between frames that follow each other without a rest, so that the work of the GPU
 //! counts, which goes on after the last system of a frame.
 
 use std::time::{Duration, Instant};
@@ -6,13 +6,14 @@ use std::time::{Duration, Instant};
 use bevy::{
     app::AppExit,
     ecs::prelude::*,
+    render::renderer::RenderAdapterInfo,
     winit::{UpdateMode, WinitSettings},
 };
 
-use super::{Settling, watching::complain};
+use super::{redraw::Settling, watching::complain};
 use crate::{panel::state::Session, render::view::Drawing};
 
-/// As many frames of either kind are remembered.
+/// Number of frames of either kind that are remembered.
 const REMEMBERED: usize = 1000;
 
 /// The clock of the frames.
@@ -21,10 +22,12 @@ pub(super) struct FrameClock {
     /// When the last frame began, and if it drew a picture, if another was to follow at once.
     last: Option<(Instant, bool)>,
     mean: f32,
-    /// How long the last frames took, those that drew panels alone and those that drew a picture too.
+    /// Durations of the last frames, those that drew panels alone and those that drew a picture too.
     times: [Vec<Duration>; 2],
-    /// How many frames there were of either kind.
+    /// Number of frames of either kind.
     count: [u64; 2],
+    /// Frames in which the session changed.
+    changes: u64,
     /// The program says so when it ends.
     pub(super) tells: bool,
 }
@@ -39,10 +42,21 @@ impl FrameClock {
                 times.get(times.len() / 2).map(|t| format!(", median {:.1} ms", t.as_secs_f32() * 1e3));
             format!("{kind} {count}{}", median.unwrap_or_default())
         });
-        format!("Frames: {}.", told.collect::<Vec<_>>().join("; "))
+        let told = told.collect::<Vec<_>>().join("; ");
+        format!("Frames: {told}; session changed in {}.", self.changes)
     }
 }
 
+/// Tells the panels which GPU draws.
+pub(super) fn adapter_facts(adapter: Option<Res<RenderAdapterInfo>>, mut session: ResMut<Session>) {
+    if let Some(adapter) = adapter {
+        let facts = &mut session.bypass_change_detection().facts;
+        facts.backend = format!("{:?}", adapter.backend);
+        facts.adapter.clone_from(&adapter.name);
+    }
+}
+
+/// Measures the frame, and tells the panels.
 pub(super) fn measure(
     mut clock: ResMut<FrameClock>,
     settling: Res<Settling>,
@@ -64,12 +78,13 @@ pub(super) fn measure(
         if drew {
             let ms = time.as_secs_f32() * 1e3;
             clock.mean = if clock.mean == 0.0 { ms } else { 0.8 * clock.mean + 0.2 * ms };
-            session.bypass_change_detection().status.frame_ms = clock.mean;
+            session.bypass_change_detection().facts.frame_ms = clock.mean;
         }
     }
     let draws = views.iter().any(Drawing::draws);
     clock.count[usize::from(draws)] += 1;
-    let follows = settling.frames > 0 || settings.focused_mode == UpdateMode::Continuous;
+    clock.changes += u64::from(session.is_changed());
+    let follows = settling.goes_on() || settings.focused_mode == UpdateMode::Continuous;
     clock.last = follows.then_some((now, draws));
     if exit.read().count() > 0 && clock.tells {
         complain(&clock.summary());
@@ -83,8 +98,15 @@ mod tests {
     #[test]
     fn the_summary_counts_frames_of_both_kinds_and_gives_their_medians() {
         let ms = Duration::from_millis;
-        let clock =
-            FrameClock { times: [vec![ms(9), ms(3), ms(4)], vec![]], count: [5, 1], ..FrameClock::default() };
-        assert_eq!(clock.summary(), "Frames: panels alone 5, median 4.0 ms; panels and picture 1.");
+        let clock = FrameClock {
+            times: [vec![ms(9), ms(3), ms(4)], vec![]],
+            count: [5, 1],
+            changes: 2,
+            ..FrameClock::default()
+        };
+        assert_eq!(
+            clock.summary(),
+            "Frames: panels alone 5, median 4.0 ms; panels and picture 1; session changed in 2."
+        );
     }
 }

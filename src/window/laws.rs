@@ -17,7 +17,7 @@ use crate::{library::assets::Folders, reflection::law_report::LawReport};
 /// The longest that a check may take: software Vulkan needs seconds for a model at the limits.
 const LONGEST: Duration = Duration::from_secs(120);
 
-/// What became of a check: the findings, or why there are none.
+/// The result of a check: the findings, or the reason why there are none.
 pub type Outcome = Result<LawReport, String>;
 
 /// Checks laws, one model at a time.

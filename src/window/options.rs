@@ -7,7 +7,7 @@ use crate::{
     scene::{Scene, load::Stamp},
 };
 
-/// What the window starts with.
+/// The choices with which the window starts.
 #[derive(Clone, Debug)]
 pub struct ViewOptions {
     /// The scene, checked.
@@ -33,7 +33,7 @@ pub struct ViewOptions {
     /// The program that tries shaders when it is called with
     /// [`COMMAND`](crate::render::trial::process::COMMAND); without it the window itself does.
     pub trial_program: Option<PathBuf>,
-    /// What there is to say when the window opens.
+    /// Warnings for the start.
     pub warnings: Vec<String>,
     /// Log more.
     pub verbose: bool,

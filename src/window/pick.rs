@@ -11,20 +11,20 @@ use bevy::{
 };
 use glam::Vec2;
 
-use super::{PicturePlace, WindowView};
+use super::{WindowView, picture::PicturePlace};
 use crate::{
     document::Selection,
     panel::{
         marks::{self, Lens},
-        state::{Action, Session},
+        state::{Action, PictureArea, Session},
     },
     registry::Registry,
     render::entities::{CurrentScene, LitObject, SceneEntities},
 };
 
-/// How far from a light's mark a click still means it, points.
+/// Distance from a light's mark within which a click means it, points.
 const LIGHT_REACH: f32 = 12.0;
-/// How far the pointer may move between press and release of a click, points.
+/// Distance that the pointer may move between press and release of a click, points.
 const CLICK_SLACK: f32 = 4.0;
 
 /// Selects the light whose mark, or else the object whose surface, was clicked.
@@ -36,28 +36,29 @@ pub(super) fn pick(
     entities: Res<SceneEntities>,
     objects: Query<(), With<LitObject>>,
     registry: Res<Registry>,
+    area: Res<PictureArea>,
     mut session: ResMut<Session>,
     mut ray_cast: MeshRayCast,
     mut pressed_at: Local<Option<Vec2>>,
 ) {
     let pointer = window.cursor_position();
     if buttons.just_pressed(MouseButton::Left) {
-        *pressed_at = pointer.filter(|_| session.pointer_in_picture && !session.popup_open);
+        *pressed_at = pointer.filter(|_| area.has_pointer && !area.popup_open);
     }
     if !buttons.just_released(MouseButton::Left) {
         return;
     }
     let (Some(start), Some(end)) = (pressed_at.take(), pointer) else { return };
     let Ok((camera, place)) = cameras.single() else { return };
-    if start.distance(end) > CLICK_SLACK * session.zoom {
+    if start.distance(end) > CLICK_SLACK * area.zoom {
         return;
     }
-    let end = PicturePlace::of(&session, &window).within(&window, end);
-    let reach = LIGHT_REACH * session.zoom * window.scale_factor();
+    let end = PicturePlace::of(&area, &window).within(&window, end);
+    let reach = LIGHT_REACH * area.zoom * window.scale_factor();
     let light = session
         .view
         .show_gizmos
-        .then(|| nearest_light(&scene, &session, camera, place, end, reach))
+        .then(|| nearest_light(&scene, &session, &area, camera, place, end, reach))
         .flatten();
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
@@ -78,12 +79,13 @@ pub(super) fn pick(
 fn nearest_light(
     scene: &CurrentScene,
     session: &Session,
+    area: &PictureArea,
     camera: &Camera,
     place: &GlobalTransform,
     pointer: Vec2,
     reach: f32,
 ) -> Option<usize> {
-    let lens = Lens::of(session, session.picture_frame);
+    let lens = Lens::of(session, area.frame);
     scene
         .0
         .lights
@@ -124,9 +126,8 @@ mod tests {
             let scene = Scene::default();
             let mut session = Session::new(scene.clone());
             session.selection = Selection::Observer;
-            session.picture_rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
-            session.picture_frame = session.picture_rect;
-            (session.zoom, session.pointer_in_picture) = (1.0, true);
+            let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
+            let area = PictureArea { rect, frame: rect, has_pointer: true, ..PictureArea::default() };
             let mut camera = Camera::default();
             camera.computed.target_info = Some(RenderTargetInfo { physical_size: SIZE, scale_factor: 1.0 });
             let lens =
@@ -142,6 +143,7 @@ mod tests {
 
             let mut world = World::new();
             world.insert_resource(session);
+            world.insert_resource(area);
             world.insert_resource(CurrentScene(scene));
             world.insert_resource(Registry::builtin());
             world.init_resource::<SceneEntities>();

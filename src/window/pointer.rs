@@ -26,7 +26,7 @@ impl Plugin for PointerPlugin {
     }
 }
 
-/// What is known of the pointer.
+/// The state of the pointer.
 #[derive(Default)]
 struct Pointer {
     /// The way of the device for which no cursor has moved so far.
@@ -89,10 +89,10 @@ mod tests {
     use super::*;
     use crate::window::camera::orbit;
 
-    /// What a device sends in a frame: its own way, and that of the cursor.
+    /// The messages of a device in a frame: its own way, and that of the cursor.
     type Sent = (Option<Vec2>, Option<Vec2>);
 
-    /// Where the camera is after a drag with this button.
+    /// The camera after a drag with this button.
     fn drag(button: MouseButton, frames: &[Sent]) -> Transform {
         drag_after(None, button, frames)
     }

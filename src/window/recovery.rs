@@ -28,7 +28,7 @@ use crate::{
     signals::Interrupt,
 };
 
-/// What the window has in common with whoever waits for its end.
+/// The part of the window that outlives it.
 #[derive(Clone)]
 pub(super) struct Farewell {
     pub(super) keeper: Keeper,
@@ -75,14 +75,14 @@ impl Farewell {
 #[derive(Resource)]
 pub(super) struct Recovery {
     pub(super) farewell: Farewell,
-    /// What is still to be asked about, the best first.
+    /// Copies still to be asked about, the best first.
     left: VecDeque<Left>,
-    /// What the question is about.
+    /// The copy that the question is about.
     asked: Option<Left>,
     registry: Option<Arc<Registry>>,
 }
 
-/// How the window is told of something that another thread did.
+/// Wakes the window after the work of another thread.
 fn waker(proxy: Option<&EventLoopProxyWrapper>) -> impl Fn() + Send + use<> {
     let proxy = proxy.map(|proxy| (**proxy).clone());
     move || {
@@ -180,14 +180,14 @@ pub(super) fn interrupted(
 /// After Ctrl+C the user may decide to stay. Runs right after the effects are carried out: what closes the window is
 /// none on its way then.
 pub(super) fn stayed(recovery: Res<Recovery>, session: Res<Session>) {
-    if !recovery.farewell.closing.load(Ordering::SeqCst) && !session.is_quitting() {
+    if !recovery.farewell.closing.load(Ordering::SeqCst) && !session.questions.is_quitting() {
         recovery.farewell.interrupt.stay();
     }
 }
 
 /// Asks about the next copy, as soon as nothing else is asked.
 pub(super) fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry: Res<Registry>) {
-    if recovery.left.is_empty() || session.question.is_some() {
+    if recovery.left.is_empty() || session.questions.open.is_some() {
         return;
     }
     let Some(left) = recovery.left.pop_front() else { return };
@@ -200,7 +200,7 @@ pub(super) fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>
         complain(&problems.join("\n"));
     }
     let age = SystemTime::now().duration_since(left.when).unwrap_or(Duration::ZERO);
-    session.ask(Question::Recover(Box::new(Offer {
+    session.questions.ask(Question::Recover(Box::new(Offer {
         title: left.about.title.clone(),
         path: left.about.path.clone(),
         file: left.journal.file(),
@@ -224,7 +224,7 @@ pub(super) fn keep(
     if let Some(why) = recovery.farewell.keeper.problem() {
         session.say(Severity::Warning, format!("There is no recovery copy of the unsaved changes: {why}."));
     }
-    if !session.is_changed() {
+    if !session.is_changed() && !files.is_changed() {
         return;
     }
     if !session.is_dirty() {

@@ -1,4 +1,4 @@
-//! What changes on disk reaches the window, which sleeps meanwhile.
+//! Changes on disk reach the window, which sleeps meanwhile.
 
 use std::{
     io::{self, Write as _},
@@ -18,7 +18,7 @@ use crate::{
     watch::Watcher,
 };
 
-/// How long a file that cannot be used may be in the middle of being written.
+/// Time for which a file that can't be used may be in the middle of being written.
 pub(super) const GRACE: Duration = Duration::from_millis(150);
 
 /// The watcher of the window: one for everything. It wakes the window.
@@ -50,7 +50,7 @@ pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + use<> {
     }
 }
 
-/// Asks the watcher what changed.
+/// Asks the watcher for changes.
 pub(super) fn collect(
     watch: Res<FileWatch>,
     mut changed: MessageWriter<FilesChanged>,

@@ -15,12 +15,12 @@ fn the_sign_tells_the_share_and_the_view_shows_where() {
     bench.settle();
     assert!(!bench.says("Clipped"));
     // The fields of a quarter of the picture, at its upper left.
-    let rect = bench.session.picture_rect;
+    let rect = bench.area.rect;
     let [across, down] = GRID;
     let field = (rect.area() / (across * down) as f32) as u32;
     let corner = |i: usize| i % across < across / 2 && i / across < down / 2;
     let counts = (0..across * down).map(|i| if corner(i) { field } else { 0 }).collect();
-    bench.session.clipping = Clipping::new(counts);
+    bench.session.facts.clipping = Clipping::new(counts);
     bench.settle();
     let folder = tempfile::tempdir().unwrap();
     let shown = |bench: &mut Bench| {

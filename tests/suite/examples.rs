@@ -56,7 +56,7 @@ fn unsaved_changes_are_asked_about_before_an_example_is_opened() {
         session.apply(Action::Edit(Edit::SceneName("Mine".to_owned())), &registry);
         let portrait = EXAMPLES.iter().position(|e| e.name == "Portrait").expect("shipped");
         session.apply(Action::OpenExample(portrait), &registry);
-        assert!(matches!(session.question, Some(Question::Unsaved { .. })));
+        assert!(matches!(session.questions.open, Some(Question::Unsaved { .. })));
         assert_eq!(session.title(), "Mine");
         session.apply(Action::Answer(answer), &registry);
         assert_eq!(session.title(), title);
@@ -69,10 +69,10 @@ fn the_strip_stands_below_the_picture_and_escape_closes_it() {
     bench.size = vec2(1280.0, 720.0);
     bench.settle();
     assert!(bench.find("Example: Portrait").is_none());
-    let whole = bench.session.picture_rect;
+    let whole = bench.area.rect;
     bench.apply(Action::View(ViewChange::Examples(true)));
     let card = bench.find("Example: Shapes and lights").expect("a card").rect;
-    let picture = bench.session.picture_rect;
+    let picture = bench.area.rect;
     assert!(picture.bottom() <= card.top() && whole.contains_rect(card), "{picture:?} {card:?}");
     assert!(picture.height() > 0.75 * whole.height(), "the picture keeps its room: {picture:?}");
     bench.click("Example: Shapes and lights");
@@ -80,7 +80,7 @@ fn the_strip_stands_below_the_picture_and_escape_closes_it() {
     assert!(bench.session.view.examples_open, "one looks at several");
     bench.key(Key::Escape, Modifiers::NONE);
     assert!(!bench.session.view.examples_open);
-    assert_eq!(bench.session.picture_rect, whole);
+    assert_eq!(bench.area.rect, whole);
 }
 
 #[test]

@@ -309,19 +309,15 @@ fn enter_closes_a_drop_down_list_and_its_button_has_the_focus() {
 #[test]
 fn f6_reaches_the_examples_and_the_badges_and_shows_that_the_picture_has_the_keys() {
     let mut bench = Bench::new(Session::default());
-    bench.session.badges = vec![Badge {
+    bench.session.disk.badge = Some(Badge {
         severity: Severity::Info,
         text: "Not what it seems".to_owned(),
         help: "The whole story.".to_owned(),
-    }];
+    });
     bench.apply(Action::View(ViewChange::Examples(true)));
     (0..5).for_each(|_| bench.key(Key::F6, Modifiers::NONE));
-    assert!(
-        focused(&bench).is_some_and(|r| r.top() > bench.session.picture_rect.bottom()),
-        "{}",
-        name(&bench)
-    );
-    let picture = bench.session.picture_rect;
+    assert!(focused(&bench).is_some_and(|r| r.top() > bench.area.rect.bottom()), "{}", name(&bench));
+    let picture = bench.area.rect;
     let around = |bench: &mut Bench| {
         rings(bench).into_iter().any(|r| picture.contains_rect(r) && r.width() > picture.width() - 8.0)
     };

@@ -31,7 +31,7 @@ fn every_knob_of_phong_is_seen_at_1280_by_720_without_scrolling() {
             let mut bench = laptop(model);
             bench.apply(Action::View(ViewChange::Theme(theme)));
             // The panel reaches from the bar at the top to the line at the bottom, as the picture does.
-            let seen = bench.session.picture_rect.y_range();
+            let seen = bench.area.rect.y_range();
             let labels = ["ambient coefficient", "diffuse coefficient", "specular coefficient", "shininess"];
             for label in labels {
                 let field = bench.field(label).rect;
@@ -127,7 +127,7 @@ fn model_and_shading_of_one_object_are_overridden_beside_the_name_of_the_model()
     let object = &bench.session.document.objects[0];
     assert_eq!((&object.reflection_model, &object.shading_model), (&None, &None));
     bench.apply(Action::Edit(Edit::Model("lambert".to_owned())));
-    bench.click_at(bench.session.picture_rect.center(), PointerButton::Primary);
+    bench.click_at(bench.area.rect.center(), PointerButton::Primary);
     assert!(bench.find(control).is_some());
 }
 

@@ -50,7 +50,7 @@ fn marked() -> Scene {
 
 fn bench(scene: Scene) -> Bench {
     let mut session = Session::new(scene);
-    (session.eye, session.camera) = (Vec3::new(5.0, 5.0, 9.5), glam::Quat::IDENTITY);
+    (session.facts.eye, session.facts.camera) = (Vec3::new(5.0, 5.0, 9.5), glam::Quat::IDENTITY);
     let mut bench = Bench::new(session);
     bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
     bench.settle();
@@ -77,7 +77,7 @@ fn every_line_stands_out_of_every_picture() {
         bench.apply(Action::View(ViewChange::Gizmos(false)));
         let without = shown(&mut bench, colour);
         bench.apply(Action::View(ViewChange::Gizmos(true)));
-        let rect = bench.session.picture_rect.shrink(4.0);
+        let rect = bench.area.rect.shrink(4.0);
         let columns = rect.left() as u32..rect.right() as u32;
         let pixels: Vec<_> = (rect.top() as u32..rect.bottom() as u32)
             .flat_map(|y| columns.clone().map(move |x| (x, y)))
@@ -99,10 +99,10 @@ fn every_line_stands_out_of_every_picture() {
 fn each_kind_of_light_in_view_has_its_mark_in_the_room() {
     let mut bench = bench(marked());
     let picture = shown(&mut bench, Color32::BLACK);
-    let lens = Lens::of(&bench.session, bench.session.picture_rect);
+    let lens = Lens::of(&bench.session, bench.area.rect);
     for light in &bench.session.document.lights {
         let at = anchor(light, &bench.session.document).and_then(|p| lens.project(p)).unwrap();
-        assert!(bench.session.picture_rect.contains(at), "{}: {at:?}", light.light_type);
+        assert!(bench.area.rect.contains(at), "{}: {at:?}", light.light_type);
         let (x, y) = (at.x as u32, at.y as u32);
         let yellow = |p: [u8; 3]| p[0] > 200 && p[1] > 190 && p[2] < 110;
         assert!(picture.count(x - 5..x + 5, y - 5..y + 5, yellow) > 20, "{} at {at:?}", light.light_type);
@@ -113,7 +113,7 @@ fn each_kind_of_light_in_view_has_its_mark_in_the_room() {
 #[test]
 fn a_light_outside_the_view_has_an_arrow_that_selects_it() {
     let mut bench = bench(Scene::default());
-    let rect = bench.session.picture_rect;
+    let rect = bench.area.rect;
     let arrow = bench.find("Outside the view: Point 1").map(|s| s.rect.center()).unwrap();
     // It stands at the upper right.
     assert!(arrow.x > rect.center().x && arrow.y < rect.center().y, "{arrow:?}");
@@ -121,7 +121,7 @@ fn a_light_outside_the_view_has_an_arrow_that_selects_it() {
     assert!(rect.contains(arrow) && !edge.contains(arrow), "{arrow:?} in {rect:?}");
     bench.frame(vec![Event::PointerMoved(arrow)]);
     bench.settle();
-    assert!(!bench.session.pointer_in_picture, "a drag there does not turn the camera");
+    assert!(!bench.area.has_pointer, "a drag there does not turn the camera");
     bench.click_at(arrow, PointerButton::Primary);
     assert_eq!(bench.session.selection, Selection::Light(0));
     bench.hover(arrow);
@@ -175,7 +175,7 @@ fn a_new_directional_light_has_its_mark_in_the_view() {
         bench.settle();
         bench.apply(Action::AddLight("directional".to_owned()));
         let light = bench.session.document.lights.last().unwrap();
-        let rect = bench.session.picture_rect;
+        let rect = bench.area.rect;
         let lens = Lens::of(&bench.session, rect);
         let at = place(light, &bench.session.document, &lens).and_then(|p| lens.project(p)).unwrap();
         assert!(rect.shrink(20.0).contains(at), "{}: {at:?} in {rect:?}", example.file);

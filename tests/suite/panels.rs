@@ -9,6 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use bevy::ecs::world::World;
 use bevy_egui::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, TextureId, accesskit, epaint, pos2,
     vec2,
@@ -20,7 +21,7 @@ use lights_camera_models::{
         self, Dialogs, Panels,
         author::ModelCommand,
         state::{
-            Action, Answer, Badge, Effect, MissingPart, Question, Session, Severity, Shaders, ThemeChoice,
+            Action, Answer, Effect, MissingPart, PictureArea, Question, Session, Severity, ThemeChoice,
             ViewChange,
         },
     },
@@ -162,6 +163,7 @@ fn crowd() -> Registry {
 pub struct Bench {
     pub ctx: egui::Context,
     pub session: Session,
+    pub area: PictureArea,
     pub registry: Registry,
     pub panels: Panels,
     pub dialogs: Dialogs,
@@ -201,6 +203,7 @@ impl Bench {
         let mut bench = Self {
             ctx,
             session,
+            area: PictureArea::default(),
             registry,
             panels: Panels::builtin(),
             dialogs: Dialogs::default(),
@@ -232,10 +235,11 @@ impl Bench {
             ..RawInput::default()
         };
         let mut effects = Vec::new();
-        let (session, registry, panels, dialogs) =
-            (&mut self.session, &self.registry, &self.panels, &mut self.dialogs);
-        let mut output =
-            self.ctx.run_ui(input, |ui| effects.extend(panel::show(ui, session, registry, panels, dialogs)));
+        let (session, area, registry) = (&mut self.session, &mut self.area, &self.registry);
+        let (panels, dialogs) = (&self.panels, &mut self.dialogs);
+        let mut output = self.ctx.run_ui(input, |ui| {
+            effects.extend(panel::show(ui, &mut *session, area, registry, panels, dialogs));
+        });
         self.effects.extend(effects);
         if let Some(update) = output.platform_output.accesskit_update.take() {
             self.tree = update
@@ -613,24 +617,24 @@ fn panels_have_the_widths_of_before_when_everything_is_as_large_as_before() {
     let mut bench = Bench::new(Session::default());
     bench.size = vec2(1280.0, 720.0);
     bench.settle();
-    let before = bench.session.picture_rect;
+    let before = bench.area.rect;
     bench.apply(Action::View(ViewChange::Scale(200)));
-    assert_ne!(bench.session.picture_rect, before);
+    assert_ne!(bench.area.rect, before);
     bench.apply(Action::View(ViewChange::Scale(100)));
-    assert_eq!(bench.session.picture_rect, before);
+    assert_eq!(bench.area.rect, before);
 }
 
 #[test]
 fn a_click_that_closes_a_menu_does_nothing_else() {
     let mut bench = Bench::new(Session::default());
-    assert!(!bench.session.popup_open);
+    assert!(!bench.area.popup_open);
     bench.click("Edit");
-    assert!(bench.session.popup_open, "the picture is told so");
-    let at = bench.session.picture_rect.center();
+    assert!(bench.area.popup_open, "the picture is told so");
+    let at = bench.area.rect.center();
     bench.click_at(at, PointerButton::Primary);
-    assert!(!bench.session.popup_open && !bench.says("New reflection model…"));
+    assert!(!bench.area.popup_open && !bench.says("New reflection model…"));
     bench.apply(Action::View(ViewChange::Chooser(true)));
-    assert!(bench.session.popup_open);
+    assert!(bench.area.popup_open);
 }
 
 #[test]
@@ -676,7 +680,7 @@ fn nothing_is_lost_without_a_question() {
         assert!(bench.effects.is_empty(), "{action:?}");
         assert!(bench.says("Save the changes?"), "{action:?}");
         bench.key(Key::Escape, Modifiers::NONE);
-        assert_eq!(bench.session.question, None);
+        assert_eq!(bench.session.questions.open, None);
         assert_eq!(bench.session.document.shading_model, "flat", "cancelling keeps everything");
         assert!(bench.effects.is_empty(), "{action:?}");
     }
@@ -701,7 +705,7 @@ fn missing_parts_are_named_and_defaults_used_on_yes_only() {
         let scene = Box::new(Scene { shading_model: "phong".to_owned(), ..Scene::default() });
         let parts =
             vec![MissingPart { name: "the scene size".to_owned(), default: "10 × 10 × 10 m".to_owned() }];
-        bench.session.ask(Question::MissingParts { path: PathBuf::from("c.json"), scene, parts });
+        bench.session.questions.ask(Question::MissingParts { path: PathBuf::from("c.json"), scene, parts });
         bench.settle();
     };
     let mut bench = Bench::new(Session::default());
@@ -724,7 +728,11 @@ fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
         bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
         let scene = Box::new(Scene { shading_model: "phong".to_owned(), ..Scene::default() });
         let version = Stamp::of(b"another content");
-        bench.session.ask(Question::NewerOnDisk { path: PathBuf::from("room.json"), scene, version });
+        bench.session.questions.ask(Question::NewerOnDisk {
+            path: PathBuf::from("room.json"),
+            scene,
+            version,
+        });
         bench.settle();
         bench.effects.clear();
         assert!(bench.says("room.json was changed by another program"));
@@ -744,7 +752,7 @@ fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
     // To leave the question is to decide later, and the picture says that there is something to decide.
     let (mut bench, _) = ask();
     bench.key(Key::Escape, Modifiers::NONE);
-    assert!(bench.effects.is_empty() && bench.session.question.is_none());
+    assert!(bench.effects.is_empty() && bench.session.questions.open.is_none());
     assert_eq!(bench.session.document.shading_model, "flat");
     assert!(bench.session.disk.badge.as_ref().is_some_and(|b| b.text.contains("room.json changed on disk")));
 }
@@ -1021,7 +1029,7 @@ fn nothing_but_the_question_can_be_used_while_it_is_open() {
     bench.apply(Action::New);
     bench.letter(Key::P, "p");
     assert_eq!(bench.session.document.shading_model, "flat");
-    assert!(!bench.session.pointer_in_picture);
+    assert!(!bench.area.has_pointer);
     bench.apply(Action::Answer(Answer::Discard));
     assert_eq!(*bench.session.document, Scene::default());
 }
@@ -1031,7 +1039,7 @@ fn nothing_but_the_question_can_be_used_while_it_is_open() {
 #[test]
 fn the_pointer_belongs_to_the_picture_only_over_the_picture() {
     let mut bench = Bench::new(Session::default());
-    let rect = bench.session.picture_rect;
+    let rect = bench.area.rect;
     assert!(rect.width() > 500.0 && rect.height() > 500.0);
     for (at, expected) in [
         (rect.center(), true),
@@ -1041,14 +1049,14 @@ fn the_pointer_belongs_to_the_picture_only_over_the_picture() {
     ] {
         bench.frame(vec![Event::PointerMoved(at)]);
         bench.frame(Vec::new());
-        assert_eq!(bench.session.pointer_in_picture, expected, "{at:?}");
+        assert_eq!(bench.area.has_pointer, expected, "{at:?}");
     }
     bench.apply(Action::View(ViewChange::Chooser(true)));
     let Some(search) = bench.find("Search reflection models") else { panic!("not open") };
     let inside = search.rect.center() + vec2(0.0, 60.0);
     bench.frame(vec![Event::PointerMoved(inside)]);
     bench.frame(Vec::new());
-    assert!(!bench.session.pointer_in_picture, "a popup over the picture is not the picture");
+    assert!(!bench.area.has_pointer, "a popup over the picture is not the picture");
 }
 
 #[test]
@@ -1168,12 +1176,6 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
                 "The settings cannot be written to /home/x/.config: no space left on device.",
             );
             b.session.say(Severity::Error, "scenes/room.json:14:20: objects[0].material.k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1. This one is long, so that it has to be broken into two lines at the least, and must not push the buttons out of the window.");
-            b.session.badges.push(Badge {
-                severity: Severity::Error,
-                text: "stale shader".to_owned(),
-                help: String::new(),
-            });
-            b.session.status.shaders = Shaders::Stale;
             b.type_into("position x", "12");
         }),
         ("knob-error", (1280.0, 900.0), |b| {
@@ -1235,7 +1237,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
                 default: default.to_owned(),
             };
             let parts = vec![part("the scene size", "10 × 10 × 10 m"), part("the shading model", "Gouraud")];
-            b.session.ask(Question::MissingParts {
+            b.session.questions.ask(Question::MissingParts {
                 path: PathBuf::from("scenes/room.json"),
                 scene: Box::default(),
                 parts,
@@ -1296,7 +1298,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
     ];
     fn everything(b: &mut Bench) {
         b.registry = crowd();
-        b.session.fill_model_slots(&b.registry);
+        b.session.model_slots.fill(&b.registry);
         b.apply(Action::Edit(Edit::Model("everything".to_owned())));
     }
     fn scroll(b: &mut Bench, by: f32) {
@@ -1325,10 +1327,10 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         });
         scene.objects[0].material.set("base_colour", Value::Colour([204, 96, 64]));
         let mut session = Session::new(scene);
-        session.status.frame_ms = 16.6;
-        session.status.backend = "Vulkan".to_owned();
-        session.status.adapter = "llvmpipe (LLVM 15.0.6, 256 bits)".to_owned();
-        session.camera = glam::Quat::from_euler(glam::EulerRot::YXZ, 0.5, -0.4, 0.0);
+        session.facts.frame_ms = 16.6;
+        session.facts.backend = "Vulkan".to_owned();
+        session.facts.adapter = "llvmpipe (LLVM 15.0.6, 256 bits)".to_owned();
+        session.facts.camera = glam::Quat::from_euler(glam::EulerRot::YXZ, 0.5, -0.4, 0.0);
         let mut bench = Bench::new(session);
         bench.size = vec2(*width, *height);
         bench.settle();
@@ -1454,4 +1456,57 @@ fn sample(texture: &egui::ColorImage, u: f32, v: f32) -> [f32; 4] {
     std::array::from_fn(|i| {
         (a[i] * (1.0 - fx) + b[i] * fx) * (1.0 - fy) + (c[i] * (1.0 - fx) + d[i] * fx) * fy
     })
+}
+
+// ── changes ──
+
+/// Runs frames of the window of a bench with these events; the number of those that changed its state.
+fn changes(bench: &mut Bench, frames: impl IntoIterator<Item = Vec<Event>>) -> usize {
+    let mut world = World::new();
+    world.insert_resource(std::mem::take(&mut bench.session));
+    let mut count = 0;
+    for events in frames {
+        world.clear_trackers();
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, bench.size)),
+            focused: true,
+            events,
+            ..RawInput::default()
+        };
+        let (registry, panels) = (&bench.registry, &bench.panels);
+        let (area, dialogs) = (&mut bench.area, &mut bench.dialogs);
+        let mut session = world.resource_mut::<Session>();
+        let _ = bench.ctx.run_ui(input, |ui| {
+            assert_eq!(panel::show(ui, session.reborrow(), area, registry, panels, dialogs), []);
+        });
+        count += usize::from(world.is_resource_changed::<Session>());
+    }
+    bench.session = world.remove_resource().expect("it is there");
+    count
+}
+
+#[test]
+fn the_state_changes_only_when_something_does() {
+    let mut bench = Bench::with_everything();
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::BottomTab("messages".to_owned())));
+    bench.session.say(Severity::Warning, "A message.");
+    bench.settle();
+    assert_eq!(changes(&mut bench, (0..30).map(|_| Vec::new())), 0, "at rest");
+    let places = (0..24).flat_map(|k| [(60, k), (1100, k), (300 + 30 * k, 23), (600, k)]);
+    let places: Vec<_> = places.map(|(x, y)| pos2(x as f32, 30.0 * y as f32)).collect();
+    let moves = places.into_iter().map(|at| vec![Event::PointerMoved(at)]);
+    assert_eq!(changes(&mut bench, moves), 0, "under a pointer");
+    let before = bench.session.document.scene().clone();
+    let key = |pressed| Event::Key {
+        key: Key::Num2,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    bench.session.model_slots.fill(&bench.registry);
+    let pressed = changes(&mut bench, [vec![key(true)], vec![key(false)], Vec::new(), Vec::new()]);
+    assert!((1..=2).contains(&pressed), "a step, and the end of a gesture: {pressed}");
+    assert_ne!(bench.session.document, before);
 }

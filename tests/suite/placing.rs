@@ -39,7 +39,7 @@ fn touches_nothing(what: &str, session: &Session, added: usize, registry: &Regis
     for light in session.document.lights.iter().filter_map(|l| l.position) {
         assert!(object.position.distance(light) > r, "{added} is around a light");
     }
-    assert!(object.position.distance(session.eye) > r);
+    assert!(object.position.distance(session.facts.eye) > r);
     assert!(session.document.scene_size.contains(object.position));
 }
 
@@ -54,8 +54,8 @@ fn labs() -> Vec<Session> {
     small.observer.position = Vec3::new(0.75, 0.5, 0.95);
     let mut turned = Session::default();
     // From the right, above.
-    turned.eye = Vec3::new(9.5, 7.5, 5.0);
-    turned.camera = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2) * Quat::from_rotation_x(-0.5);
+    turned.facts.eye = Vec3::new(9.5, 7.5, 5.0);
+    turned.facts.camera = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2) * Quat::from_rotation_x(-0.5);
     vec![Session::default(), Session::new(low), Session::new(small), turned]
 }
 

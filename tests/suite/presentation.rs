@@ -54,12 +54,9 @@ fn at_every_scale_the_panels_fill_the_window_and_the_bar_can_be_reached() {
         for percent in SCALES {
             bench.apply(Action::View(ViewChange::Scale(percent)));
             let zoom = f32::from(percent) / 100.0;
-            let (session, whole) = (&bench.session, bench.size / zoom);
-            assert_eq!(session.zoom, zoom);
-            assert!(
-                session.picture_rect.width() > 100.0 && session.picture_rect.bottom() > whole.y - 60.0,
-                "{percent}"
-            );
+            let (area, whole) = (bench.area, bench.size / zoom);
+            assert_eq!(area.zoom, zoom);
+            assert!(area.rect.width() > 100.0 && area.rect.bottom() > whole.y - 60.0, "{percent}");
             let bar: Vec<_> = bench
                 .tree
                 .iter()
@@ -101,7 +98,7 @@ fn a_presentation_is_the_picture_alone_and_the_keys_go_on() {
     bench.key(Key::F5, Modifiers::NONE);
     assert!(!bench.says("Point 1"), "no marks over the picture");
     assert!(bench.session.view.presenting && bench.session.view.fullscreen);
-    assert_eq!(bench.session.picture_rect.size(), vec2(1280.0, 720.0));
+    assert_eq!(bench.area.rect.size(), vec2(1280.0, 720.0));
     for gone in ["File", "Observer", "diffuse coefficient"] {
         assert!(bench.find(gone).is_none(), "{gone} is still there");
     }
@@ -111,7 +108,7 @@ fn a_presentation_is_the_picture_alone_and_the_keys_go_on() {
     assert_ne!(bench.session.view.terms, TermSelection::All);
     bench.letter(Key::H, "h");
     assert!(bench.effects.contains(&Effect::HomeView));
-    bench.session.fill_model_slots(&bench.registry.clone());
+    bench.session.model_slots.fill(&bench.registry.clone());
     let model = bench.session.model_slots[1].clone();
     bench.letter(Key::Num2, "2");
     assert_eq!(bench.session.document.reflection_model, model);
@@ -154,7 +151,7 @@ fn a_presentation_can_be_read_from_the_last_row() {
             let mut bench = bench(size, model);
             bench.apply(Action::View(ViewChange::Scale(scale)));
             bench.apply(Action::View(ViewChange::Presenting(true)));
-            let height = bench.session.picture_rect.height();
+            let height = bench.area.rect.height();
             let capitals = capitals(&mut bench);
             assert!(capitals.iter().any(|(_, text)| text.contains("shading")), "no caption");
             assert!(capitals.iter().any(|(_, text)| text == "I" || text == "L"), "no equation: {capitals:?}");
@@ -206,15 +203,15 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
             for (_, text) in definitions(d.equation) {
                 assert!(shown.iter().any(|s| s == text), "{}: {text} is not among {shown:?}", d.id);
             }
-            let height = 720.0 / bench.session.zoom;
+            let height = 720.0 / bench.area.zoom;
             for (high, text) in capitals(&mut bench) {
                 // Indices may be smaller: those of P_L and F_V are capitals.
                 let least = if text.chars().count() == 1 { 0.017 } else { 0.025 };
                 assert!(high >= least * height, "{}, {scale} %: {text}: {high} of {height}", d.id);
             }
-            let picture = bench.session.picture_frame;
+            let picture = bench.area.frame;
             assert!(
-                picture.width() * picture.height() > 0.2 * 1280.0 * 720.0 / bench.session.zoom.powi(2),
+                picture.width() * picture.height() > 0.2 * 1280.0 * 720.0 / bench.area.zoom.powi(2),
                 "{}: {picture:?}",
                 d.id
             );
@@ -244,7 +241,7 @@ fn lines_of_a_presentation_have_the_same_size_at_every_scale() {
             let mut bench = bench((1280.0, 720.0), "blinn_phong");
             bench.apply(Action::View(ViewChange::Scale(scale)));
             bench.apply(Action::View(ViewChange::Presenting(true)));
-            let zoom = bench.session.zoom;
+            let zoom = bench.area.zoom;
             let terms = capitals(&mut bench).into_iter().filter(|(_, text)| text == "I");
             terms.map(|(high, _)| (high * zoom).round() as i32).collect::<Vec<_>>()
         })
@@ -268,7 +265,7 @@ fn a_presentation_of_many_models_shows_the_equation_of_none() {
 fn badges_of_a_presentation_are_as_large_as_the_rest() {
     let mut bench = bench((1280.0, 720.0), "phong");
     let all = GRID[0] * GRID[1];
-    bench.session.clipping = Clipping::new(vec![50; all]);
+    bench.session.facts.clipping = Clipping::new(vec![50; all]);
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
     bench.apply(Action::View(ViewChange::Presenting(true)));
     let capitals = capitals(&mut bench);
@@ -293,7 +290,7 @@ fn pictures_of_presentations() -> Result<(), Box<dyn std::error::Error>> {
         ("blinn_phong", (1280.0, 720.0), 200),
     ] {
         let mut bench = bench(size, model);
-        bench.session.clipping = Clipping::new(vec![50; GRID[0] * GRID[1]]);
+        bench.session.facts.clipping = Clipping::new(vec![50; GRID[0] * GRID[1]]);
         bench.apply(Action::View(ViewChange::Scale(scale)));
         bench.apply(Action::View(ViewChange::Presenting(true)));
         bench.picture(&folder.join(format!("presentation-{model}.png")), egui::Color32::from_gray(46))?;

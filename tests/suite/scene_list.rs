@@ -269,7 +269,7 @@ fn saving_says_where_and_offers_to_keep_the_view() {
     assert!(!bench.session.is_dirty());
     assert!(bench.says("Saved to /somewhere/lecture.json"), "in sight without unfolding anything");
     assert!(bench.find("Set observer to this view").is_none(), "the view is the observer's");
-    bench.session.camera_left = true;
+    bench.session.facts.camera_left = true;
     bench.session.saved(path.clone(), &bench.registry);
     bench.settle();
     assert_eq!(bench.session.messages.len(), 1, "the last time counts");
@@ -330,8 +330,8 @@ fn the_caption_is_broken_between_its_parts_and_never_long() {
             let mut bench = Bench::with_model(model);
             bench.size = size.into();
             bench.apply(Action::View(ViewChange::Scale(scale)));
-            let foot = bench.session.picture_rect.with_min_y(bench.session.picture_rect.bottom() - 60.0);
-            let right = bench.session.picture_rect.right() - 90.0;
+            let foot = bench.area.rect.with_min_y(bench.area.rect.bottom() - 60.0);
+            let right = bench.area.rect.right() - 90.0;
             let texts: Vec<_> = (bench.shapes().into_iter())
                 .filter_map(|shape| match shape {
                     Shape::Text(t) if foot.contains(t.pos) && t.pos.x < right => {
@@ -377,8 +377,8 @@ fn a_badge_brings_hidden_terms_back_whatever_is_selected() {
 #[test]
 fn the_observer_is_offered_no_place_outside_the_room() {
     let mut bench = Bench::new(Session::default());
-    bench.session.camera_left = true;
-    bench.session.eye = glam::Vec3::new(5.0, 5.0, 14.0);
+    bench.session.facts.camera_left = true;
+    bench.session.facts.eye = glam::Vec3::new(5.0, 5.0, 14.0);
     bench.session.saved(PathBuf::from("/somewhere/lecture.json"), &bench.registry);
     bench.settle();
     assert!(bench.says("The view is outside the room"));
@@ -387,7 +387,7 @@ fn the_observer_is_offered_no_place_outside_the_room() {
     let button = bench.find("Set observer to this view").cloned().unwrap();
     assert!(button.disabled);
     bench.hover(button.rect.center());
-    bench.session.eye.z = 9.0;
+    bench.session.facts.eye.z = 9.0;
     bench.settle();
     assert!(!bench.find("Set observer to this view").unwrap().disabled);
 }

@@ -169,7 +169,7 @@ fn an_edit_elsewhere_becomes_the_document_and_the_view_stays() {
     // The next save has nothing to ask.
     desk.change();
     desk.act(Action::Save);
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
     assert!(!desk.session.is_dirty());
     assert_eq!(
         load::from_text(&desk.on_disk(), "", &desk.registry, Defaults::Refuse).unwrap().scene.objects[1].size,
@@ -344,7 +344,7 @@ fn saving_over_a_broken_file_asks() {
     desk.edited("{ broken");
     desk.change();
     desk.act(Action::Save);
-    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.questions.open, Some(Question::ChangedOnDisk { .. })));
     assert_eq!(desk.on_disk(), "{ broken");
     desk.act(Action::Answer(Answer::Overwrite));
     assert_eq!(desk.badge(), "", "what was saved is good");
@@ -361,7 +361,7 @@ fn missing_parts_are_not_taken_unasked() {
     let mut desk = Desk::new();
     desk.edited(&lacking(&grown(0, 2.0), "shading_model"));
     assert_eq!(desk.session.document, three());
-    assert_eq!(desk.session.question, None, "who types elsewhere is not stopped by a question");
+    assert_eq!(desk.session.questions.open, None, "who types elsewhere is not stopped by a question");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
     assert_eq!(desk.said("shading_model is missing"), 1);
     // Who agreed to a default has agreed.
@@ -400,7 +400,10 @@ fn a_deleted_file_leaves_the_scene_which_is_unsaved_then() {
     assert_eq!(desk.said("no longer there"), 1);
     assert_eq!(desk.session.document, three());
     desk.act(Action::Quit);
-    assert!(matches!(desk.session.question, Some(Question::Unsaved { .. })), "nobody else has the scene");
+    assert!(
+        matches!(desk.session.questions.open, Some(Question::Unsaved { .. })),
+        "nobody else has the scene"
+    );
     desk.act(Action::Answer(Answer::Cancel));
     // It comes back.
     desk.edited(&text(&three()));
@@ -416,7 +419,7 @@ fn a_deleted_file_leaves_the_scene_which_is_unsaved_then() {
     fs::remove_file(desk.path()).unwrap();
     assert!(desk.report() && !desk.report());
     desk.act(Action::Save);
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
     assert_eq!(desk.on_disk(), text(&grown(0, 2.0)));
     assert_eq!((desk.badge(), desk.session.is_dirty()), ("", false));
     assert!(!desk.report());
@@ -431,7 +434,7 @@ fn saving_a_deleted_file_does_not_overwrite_what_came_in_its_place() {
     desk.write(&other);
     // Before the watcher says so.
     desk.act(Action::Save);
-    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.questions.open, Some(Question::ChangedOnDisk { .. })));
     assert_eq!(desk.on_disk(), other);
 }
 
@@ -440,8 +443,8 @@ fn conflict() -> Desk {
     let mut desk = Desk::new();
     desk.change();
     desk.edited(&text(&grown(0, 2.0)));
-    let Some(Question::NewerOnDisk { scene, .. }) = &desk.session.question else {
-        panic!("{:?}", desk.session.question)
+    let Some(Question::NewerOnDisk { scene, .. }) = &desk.session.questions.open else {
+        panic!("{:?}", desk.session.questions.open)
     };
     assert_eq!(**scene, grown(0, 2.0));
     assert_eq!(desk.session.document, grown(1, 0.5), "nothing is lost without a question");
@@ -455,14 +458,14 @@ fn unsaved_changes_are_kept_when_the_user_says_so_and_saving_replaces_the_file()
     assert_eq!(desk.session.document, grown(1, 0.5));
     assert!(desk.session.is_dirty());
     assert!(!desk.report());
-    assert_eq!(desk.session.question, None, "asked once about a version");
+    assert_eq!(desk.session.questions.open, None, "asked once about a version");
     assert_eq!(desk.badge(), "");
     // Yet another version is another question.
     desk.edited(&text(&grown(0, 3.0)));
-    assert!(matches!(desk.session.question, Some(Question::NewerOnDisk { .. })));
+    assert!(matches!(desk.session.questions.open, Some(Question::NewerOnDisk { .. })));
     desk.act(Action::Answer(Answer::Keep));
     desk.act(Action::Save);
-    assert_eq!(desk.session.question, None, "saving was what was meant");
+    assert_eq!(desk.session.questions.open, None, "saving was what was meant");
     assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
     assert!(!desk.session.is_dirty());
 }
@@ -482,11 +485,11 @@ fn unsaved_changes_are_lost_only_on_yes() {
     desk.act(Action::Answer(Answer::Reload));
     assert_eq!(desk.session.document, grown(0, 2.0));
     assert!(!desk.session.is_dirty());
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
     assert!(!desk.left.contains(&Effect::DocumentChanged), "the camera stays");
     desk.change();
     desk.act(Action::Save);
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
 }
 
 #[test]
@@ -511,9 +514,9 @@ fn who_decides_later_is_asked_when_saving() {
     assert_eq!(desk.badge(), "room.json changed on disk: showing yours");
     assert_eq!(desk.session.document, grown(1, 0.5));
     assert!(!desk.report());
-    assert_eq!(desk.session.question, None, "not asked again about the same version");
+    assert_eq!(desk.session.questions.open, None, "not asked again about the same version");
     desk.act(Action::Save);
-    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.questions.open, Some(Question::ChangedOnDisk { .. })));
     assert_eq!(desk.on_disk(), text(&grown(0, 2.0)), "not overwritten");
     desk.act(Action::Answer(Answer::Overwrite));
     assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
@@ -522,7 +525,7 @@ fn who_decides_later_is_asked_when_saving() {
     let mut desk = conflict();
     desk.act(Action::Answer(Answer::Cancel));
     desk.edited(&text(&three()));
-    assert_eq!((desk.badge(), &desk.session.question), ("", &None));
+    assert_eq!((desk.badge(), &desk.session.questions.open), ("", &None));
     assert_eq!(desk.session.document, grown(1, 0.5));
 }
 
@@ -531,16 +534,16 @@ fn where_both_did_the_same_or_only_the_layout_changed_there_is_nothing_to_ask() 
     let mut desk = Desk::new();
     desk.change();
     desk.edited(&text(&grown(1, 0.5)));
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
     assert!(!desk.session.is_dirty(), "the file holds what is shown");
     let mut desk = Desk::new();
     desk.change();
     desk.edited(&text(&three()).replace("  ", "\t"));
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
     assert_eq!(desk.session.document, grown(1, 0.5));
     assert!(desk.session.is_dirty());
     desk.act(Action::Save);
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
 }
 
 #[test]
@@ -549,20 +552,20 @@ fn news_wait_for_the_answer_to_an_open_question() {
     desk.change();
     desk.act(Action::Quit);
     desk.edited(&text(&grown(0, 2.0)));
-    assert!(matches!(desk.session.question, Some(Question::Unsaved { .. })), "the question stays");
+    assert!(matches!(desk.session.questions.open, Some(Question::Unsaved { .. })), "the question stays");
     desk.act(Action::Answer(Answer::Cancel));
-    assert!(matches!(desk.session.question, Some(Question::NewerOnDisk { .. })), "then comes the next");
+    assert!(matches!(desk.session.questions.open, Some(Question::NewerOnDisk { .. })), "then comes the next");
     desk.act(Action::Answer(Answer::Keep));
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
     // Saving finds the change by itself, and one question is enough.
     let mut desk = Desk::new();
     desk.change();
     desk.act(Action::Quit);
     desk.edited(&text(&grown(0, 2.0)));
     desk.act(Action::Answer(Answer::Save));
-    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.questions.open, Some(Question::ChangedOnDisk { .. })));
     desk.act(Action::Answer(Answer::Overwrite));
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
     assert!(desk.left.contains(&Effect::Quit));
     assert_eq!(desk.on_disk(), text(&grown(1, 0.5)));
 }
@@ -604,7 +607,7 @@ fn recovered(copy: &Scene, known: &str) -> Desk {
         when: String::new(),
         scene: Ok(copy.clone()),
     };
-    desk.session.ask(Question::Recover(Box::new(offer)));
+    desk.session.questions.ask(Question::Recover(Box::new(offer)));
     desk.act(Action::Answer(Answer::Recover));
     desk.files.expect(&path, Some(Stamp::of(known.as_bytes())));
     assert!(desk.session.is_dirty());
@@ -615,9 +618,9 @@ fn recovered(copy: &Scene, known: &str) -> Desk {
 fn what_is_recovered_is_saved_to_its_file_if_nobody_changed_that() {
     let mut desk = recovered(&grown(1, 0.5), &text(&three()));
     assert!(!desk.report());
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
     desk.act(Action::Save);
-    assert_eq!((&desk.session.question, desk.on_disk()), (&None, text(&grown(1, 0.5))));
+    assert_eq!((&desk.session.questions.open, desk.on_disk()), (&None, text(&grown(1, 0.5))));
     assert!(!desk.session.is_dirty());
 }
 
@@ -629,9 +632,9 @@ fn what_is_recovered_never_replaces_the_changes_of_others_unasked() {
         desk.write(&text(&other));
         desk.report();
         assert!(
-            matches!(desk.session.question, Some(Question::NewerOnDisk { .. })),
+            matches!(desk.session.questions.open, Some(Question::NewerOnDisk { .. })),
             "{:?}",
-            desk.session.question
+            desk.session.questions.open
         );
         assert_eq!(desk.session.document, grown(1, 0.5));
         desk.act(Action::Answer(Answer::Keep));
@@ -642,7 +645,7 @@ fn what_is_recovered_never_replaces_the_changes_of_others_unasked() {
     // Before the watcher says so.
     let mut desk = recovered(&grown(1, 0.5), "as it was");
     desk.act(Action::Save);
-    assert!(matches!(desk.session.question, Some(Question::ChangedOnDisk { .. })));
+    assert!(matches!(desk.session.questions.open, Some(Question::ChangedOnDisk { .. })));
     assert_eq!(desk.on_disk(), text(&three()));
 }
 
@@ -650,6 +653,6 @@ fn what_is_recovered_never_replaces_the_changes_of_others_unasked() {
 fn what_is_recovered_and_on_disk_by_now_is_saved() {
     let mut desk = recovered(&three(), "as it was");
     desk.report();
-    assert_eq!(desk.session.question, None);
+    assert_eq!(desk.session.questions.open, None);
     assert!(!desk.session.is_dirty());
 }

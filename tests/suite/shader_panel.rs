@@ -91,7 +91,7 @@ fn the_picture_says_that_it_is_not_what_the_shader_says() {
     for word in ["last good version of Lambert", "reflection/lambert.wgsl:12:36", "invalid field accessor"] {
         assert!(said.contains(word), "{said}");
     }
-    assert!(bench.session.picture_rect.contains_rect(rect), "on the picture");
+    assert!(bench.area.rect.contains_rect(rect), "on the picture");
     bench.session.shaders.troubles.clear();
     bench.settle();
     assert_eq!(badge(&bench), None, "gone with the error");
@@ -108,14 +108,14 @@ fn the_badge_leads_to_the_errors_and_is_not_the_picture() {
     let (_, rect) = badge(&bench).expect("a badge");
     bench.frame(vec![Event::PointerMoved(rect.center())]);
     bench.frame(Vec::new());
-    assert!(!bench.session.pointer_in_picture, "a click there must not turn the camera");
+    assert!(!bench.area.has_pointer, "a click there must not turn the camera");
     bench.click_at(rect.center(), PointerButton::Primary);
     assert!(bench.session.view.bottom_open);
     assert_eq!(bench.session.view.bottom_tab, "shader");
     let below = pos2(rect.center().x, rect.bottom() + 40.0);
     bench.frame(vec![Event::PointerMoved(below)]);
     bench.frame(Vec::new());
-    assert!(bench.session.pointer_in_picture, "beside it, the picture is the picture");
+    assert!(bench.area.has_pointer, "beside it, the picture is the picture");
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn many_models_and_long_messages_stay_on_the_picture() {
         bench.size = size.into();
         bench.apply(Action::View(ViewChange::Scale(if large { 150 } else { 100 })));
         let (_, rect) = badge(&bench).expect("a badge");
-        let picture = bench.session.picture_rect;
+        let picture = bench.area.rect;
         assert!(picture.contains_rect(rect), "{size:?} {large}: {rect:?} in {picture:?}");
     }
 }
@@ -635,7 +635,7 @@ fn a_model_without_equation_source_and_laws_is_shown_as_it_is() {
 
 /// Asserts that these are whole within the strip.
 fn whole(bench: &Bench, labels: &[&str]) {
-    let scale = bench.session.zoom;
+    let scale = bench.area.zoom;
     let bottom = (720.0 - 22.0) / scale;
     for label in labels {
         let all: Vec<_> = bench.tree.iter().filter(|s| s.label.starts_with(label)).map(|s| s.rect).collect();
@@ -784,8 +784,8 @@ fn pictures_of_the_shader_panel() -> Result<(), Box<dyn std::error::Error>> {
         }
         let mut bench = bench_with(Vec::new());
         bench.size = (*size).into();
-        bench.session.status.frame_ms = 16.6;
-        bench.session.status.backend = "Vulkan".to_owned();
+        bench.session.facts.frame_ms = 16.6;
+        bench.session.facts.backend = "Vulkan".to_owned();
         for setup in *setups {
             setup(&mut bench);
             bench.settle();

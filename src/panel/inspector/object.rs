@@ -28,167 +28,161 @@ pub(super) fn object(
     actions: &mut Vec<Action>,
 ) {
     let Some(object) = session.document.objects.get(i) else { return };
-    let set: Set = &|field| Action::Edit(Edit::Object(i, field));
     header(ui, session, registry, Selection::Object(i), object.name.as_deref(), actions);
-
     let model = registry.model(session.document.model_of(object));
-    section(ui, "Reflection", true, |ui| reflection(ui, session, registry, object, model, set, actions));
-    section(ui, "Material", true, |ui| material(ui, session, registry, object, model, set, actions));
-    section(ui, "Shape and position", true, |ui| geometry(ui, session, registry, object, set, actions));
+    let shown = Shown { session, registry, object, model };
+    let mut fields = Vec::new();
+    section(ui, "Reflection", true, |ui| shown.reflection(ui, &mut fields, actions));
+    section(ui, "Material", true, |ui| shown.material(ui, &mut fields));
+    section(ui, "Shape and position", true, |ui| shown.geometry(ui, &mut fields));
+    actions.extend(fields.into_iter().map(|field| Action::Edit(Edit::Object(i, field))));
 }
 
-/// An edit of the object from a new value of one of its fields.
-type Set<'a> = &'a dyn Fn(ObjectField) -> Action;
+/// The object that is shown, and its surroundings. The methods show it, and add new values of its fields.
+struct Shown<'a> {
+    session: &'a Session,
+    registry: &'a Registry,
+    object: &'a Object,
+    model: Option<&'a ModelEntry>,
+}
 
-/// The model with its equation and terms, and the stage that evaluates it.
-fn reflection(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    object: &Object,
-    model: Option<&ModelEntry>,
-    set: Set,
-    actions: &mut Vec<Action>,
-) {
-    ui.horizontal(|ui| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            actions.extend(model_override::control(ui, session, registry, object).map(set));
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                if let Some(model) = model {
-                    model_header(ui, model);
-                }
+impl Shown<'_> {
+    /// The model with its equation and terms, and the stage that evaluates it.
+    fn reflection(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
+        let Self { session, registry, object, model } = *self;
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                fields.extend(model_override::control(ui, session, registry, object));
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    if let Some(model) = model {
+                        model_header(ui, model);
+                    }
+                });
             });
         });
-    });
-    match model {
-        Some(model) => {
-            equation(ui, model);
-            terms(ui, session, registry, actions);
+        match model {
+            Some(model) => {
+                equation(ui, model);
+                terms(ui, session, registry, actions);
+            }
+            None => missing_model(ui, session, registry, session.document.model_of(object), actions),
         }
-        None => missing_model(ui, session, registry, session.document.model_of(object), actions),
+        if let Some(shading) = registry.shading_model(session.document.shading_model_of(object)) {
+            stage(ui, shading);
+        }
     }
-    if let Some(shading) = registry.shading_model(session.document.shading_model_of(object)) {
-        stage(ui, shading);
-    }
-}
 
-/// The knobs of the parameters of the model, and the parameters that it does not use.
-fn material(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    object: &Object,
-    model: Option<&ModelEntry>,
-    set: Set,
-    actions: &mut Vec<Action>,
-) {
-    let Some(model) = model else {
-        ui.label(theme::small(ui, "The parameters come back with the model."));
-        return;
-    };
-    if let Some(values) = measured(ui, registry, model, object) {
-        actions.push(set(ObjectField::Preset(values)));
-    }
-    for p in model.parameters {
-        let unused = usage::unused(model.parameters, p, &object.material);
-        if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref()) {
-            actions.push(set(ObjectField::Material(p.name, v)));
+    /// The knobs of the parameters of the model, and the parameters that it does not use.
+    fn material(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
+        let Self { registry, object, model, .. } = *self;
+        let Some(model) = model else {
+            ui.label(theme::small(ui, "The parameters come back with the model."));
+            return;
+        };
+        if let Some(values) = measured(ui, registry, model, object) {
+            fields.push(ObjectField::Preset(values));
+        }
+        for p in model.parameters {
+            let unused = usage::unused(model.parameters, p, &object.material);
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref()) {
+                fields.push(ObjectField::Material(p.name, v));
+            }
+        }
+        if model.parameters.is_empty() {
+            ui.label(theme::small(ui, "This model has no knobs."));
+        }
+        self.readouts(ui, model);
+        let unused: Vec<_> = registry
+            .material_parameters()
+            .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
+            .collect();
+        if !unused.is_empty() {
+            let reason = format!("Not used by {}", model.declaration.name);
+            ui.add_space(4.0);
+            ui.label(theme::small(ui, format!("{reason} (values kept)")));
+            ui.add_space(2.0);
+            for p in unused {
+                knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
+            }
         }
     }
-    if model.parameters.is_empty() {
-        ui.label(theme::small(ui, "This model has no knobs."));
-    }
-    readouts(ui, session, model, object);
-    let unused: Vec<_> = registry
-        .material_parameters()
-        .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
-        .collect();
-    if !unused.is_empty() {
-        let reason = format!("Not used by {}", model.declaration.name);
-        ui.add_space(4.0);
-        ui.label(theme::small(ui, format!("{reason} (values kept)")));
-        ui.add_space(2.0);
-        for p in unused {
-            knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
-        }
-    }
-}
 
-/// The object type, its size and its place.
-fn geometry(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    object: &Object,
-    set: Set,
-    actions: &mut Vec<Action>,
-) {
-    let types: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
-    let names: Vec<_> = types.iter().map(|d| d.name).collect();
-    let chosen = types.iter().position(|d| d.id == object.object_type);
-    let help = chosen.map_or("", |k| types[k].summary);
-    let caption = Caption { label: "type", help, ..Caption::default() };
-    if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
-        actions.push(set(ObjectField::Type(types[k].id.to_owned())));
-    }
-    let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
-    let size_limits = limits::object_size(session.document.scene_size);
-    let default = f64::from(crate::scene::DEFAULT_SIZE);
-    if let Some(v) =
-        knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
-    {
-        actions.push(set(ObjectField::Size(v as f32)));
-    }
-    let caption = Caption {
-        label: "position",
-        unit: "m",
-        help: "Position of the centre; y is up, the origin is a corner of the room.",
-        ..Caption::default()
-    };
-    if let Some(p) = knob::vector_knob(
-        ui,
-        "position",
-        &caption,
-        object.position,
-        &position_limits(session.document.scene_size),
-    ) {
-        actions.push(set(ObjectField::Position(p)));
-    }
-    let caption = Caption {
-        label: "rotation",
-        unit: "°",
-        help: "Turned about x first, then y, then z of the room.",
-        ..Caption::default()
-    };
-    if let Some(r) = knob::vector_knob(ui, "rotation", &caption, object.rotation, &thrice(limits::rotation()))
-    {
-        actions.push(set(ObjectField::Rotation(r)));
-    }
-    if let Some(shape) = registry.shape(&object.object_type) {
-        let d = shape.declaration;
-        let caption = Caption { label: "tessellation", help: d.tessellation_help, ..Caption::default() };
-        let value = f64::from(shape.tessellation(object.tessellation));
-        let default = f64::from(d.default_tessellation);
+    /// The object type, its size and its place.
+    fn geometry(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
+        let Self { session, registry, object, .. } = *self;
+        let types: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
+        let names: Vec<_> = types.iter().map(|d| d.name).collect();
+        let chosen = types.iter().position(|d| d.id == object.object_type);
+        let help = chosen.map_or("", |k| types[k].summary);
+        let caption = Caption { label: "type", help, ..Caption::default() };
+        if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
+            fields.push(ObjectField::Type(types[k].id.to_owned()));
+        }
+        let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
+        let size_limits = limits::object_size(session.document.scene_size);
+        let default = f64::from(crate::scene::DEFAULT_SIZE);
         if let Some(v) =
-            knob::number_knob(ui, "tessellation", &caption, value, Some(default), &limits::tessellation(d))
+            knob::number_knob(ui, "size", &caption, f64::from(object.size), Some(default), &size_limits)
         {
-            actions.push(set(ObjectField::Tessellation(
-                Some(v as u32).filter(|n| *n != d.default_tessellation),
-            )));
+            fields.push(ObjectField::Size(v as f32));
+        }
+        let caption = Caption {
+            label: "position",
+            unit: "m",
+            help: "Position of the centre; y is up, the origin is a corner of the room.",
+            ..Caption::default()
+        };
+        if let Some(p) = knob::vector_knob(
+            ui,
+            "position",
+            &caption,
+            object.position,
+            &position_limits(session.document.scene_size),
+        ) {
+            fields.push(ObjectField::Position(p));
+        }
+        let caption = Caption {
+            label: "rotation",
+            unit: "°",
+            help: "Turned about x first, then y, then z of the room.",
+            ..Caption::default()
+        };
+        if let Some(r) =
+            knob::vector_knob(ui, "rotation", &caption, object.rotation, &thrice(limits::rotation()))
+        {
+            fields.push(ObjectField::Rotation(r));
+        }
+        if let Some(shape) = registry.shape(&object.object_type) {
+            let d = shape.declaration;
+            let caption = Caption { label: "tessellation", help: d.tessellation_help, ..Caption::default() };
+            let value = f64::from(shape.tessellation(object.tessellation));
+            let default = f64::from(d.default_tessellation);
+            if let Some(v) = knob::number_knob(
+                ui,
+                "tessellation",
+                &caption,
+                value,
+                Some(default),
+                &limits::tessellation(d),
+            ) {
+                fields
+                    .push(ObjectField::Tessellation(Some(v as u32).filter(|n| *n != d.default_tessellation)));
+            }
         }
     }
-}
 
-/// The values derived from those of the knobs.
-fn readouts(ui: &mut Ui, session: &Session, model: &ModelEntry, object: &Object) {
-    let readouts = model.instantiate(&object.material, session.document.display.encoding).readouts();
-    if readouts.is_empty() {
-        return;
+    /// The values derived from those of the knobs.
+    fn readouts(&self, ui: &mut Ui, model: &ModelEntry) {
+        let readouts =
+            model.instantiate(&self.object.material, self.session.document.display.encoding).readouts();
+        if readouts.is_empty() {
+            return;
+        }
+        ui.add_space(2.0);
+        ui.label(theme::small(ui, "Derived values"));
+        for readout in &readouts {
+            knob::readout(ui, readout);
+        }
+        ui.add_space(4.0);
     }
-    ui.add_space(2.0);
-    ui.label(theme::small(ui, "Derived values"));
-    for readout in &readouts {
-        knob::readout(ui, readout);
-    }
-    ui.add_space(4.0);
 }

@@ -1,0 +1,240 @@
+//! The actions of a user, and their dispatch.
+
+use std::path::PathBuf;
+
+use super::{Answer, Effect, Session, Severity, ViewChange};
+use crate::{
+    document::{Edit, Extent, LightField, ObjectField, Selection, limits},
+    optics::TermSelection,
+    panel::author::ModelCommand,
+    registry::Registry,
+    scene::{Display, Scene},
+};
+
+/// An action of a user. Panels return these.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Start a new default scene.
+    New,
+    /// Choose a file to open.
+    OpenDialog,
+    /// Open a file.
+    Open(PathBuf),
+    /// Open one of [`EXAMPLES`](crate::scene::examples::EXAMPLES) as a document that is in no file.
+    OpenExample(usize),
+    /// Read the file again.
+    Reload,
+    /// Save to the file of the document, or choose one.
+    Save,
+    /// Choose a file and save to it.
+    SaveAsDialog,
+    /// Save to a file.
+    SaveAs(PathBuf),
+    /// Forget the list of recent files.
+    ClearRecent,
+    /// Close the window.
+    Quit,
+    /// Answer the open question.
+    Answer(Answer),
+    /// Select a part of the scene.
+    Select(Selection),
+    /// Select the next object.
+    SelectNext,
+    /// Select the object before.
+    SelectPrevious,
+    /// Add a light of this type.
+    AddLight(String),
+    /// Add an object of this type.
+    AddObject(String),
+    /// Add another one like this.
+    Duplicate(Selection),
+    /// Remove a light or an object.
+    Remove(Selection),
+    /// Hide an object or show it again; switch a light off or on.
+    Toggle(Selection),
+    /// Begin typing the name of a part in the tree.
+    BeginRename(Selection),
+    /// Stop typing without a change.
+    CancelRename,
+    /// Change the scene.
+    Edit(Edit),
+    /// Take the last step back.
+    Undo,
+    /// Do the step again that was taken back last.
+    Redo,
+    /// Take steps back, or do them again, until so many are done.
+    GoToStep(usize),
+    /// Choose the n-th of the recent models, from 0.
+    RecentModel(usize),
+    /// Change the exposure by so many EV.
+    Expose(f32),
+    /// Show the next term of the equation alone.
+    NextTerms,
+    /// Change what is shown.
+    View(ViewChange),
+    /// Put the camera where the observer is.
+    HomeView,
+    /// Let the camera look at what is selected.
+    FocusSelection,
+    /// Make the place of the camera that of the observer.
+    ObserverFromView,
+    /// Move the camera a little.
+    Steer(Steer),
+    /// Put text on the clipboard.
+    Copy(String),
+    /// Something about custom models and shaders.
+    Model(ModelCommand),
+    /// Say something.
+    Say(Severity, String),
+    /// Remove a message.
+    Dismiss(usize),
+    /// Remove all messages.
+    DismissAll,
+}
+
+/// A small movement of the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steer {
+    /// Around what is looked at: to the right and up, degrees.
+    Turn(f32, f32),
+    /// To the right and up, in steps of a twentieth of the distance.
+    Move(f32, f32),
+    /// The distance to what is looked at times this.
+    Zoom(f32),
+}
+
+impl Session {
+    /// Carries out an action. Returns what needs files, entities or the operating system.
+    pub fn apply(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
+        let effects = self.carry_out(action, registry);
+        // It would undo something else.
+        self.messages.check_undo(&self.last_step());
+        effects
+    }
+
+    pub(super) fn carry_out(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
+        match action {
+            Action::New => return self.unless_unsaved(Action::New, |session| session.start_new()),
+            Action::Quit => return self.unless_unsaved(Action::Quit, |_| vec![Effect::Quit]),
+            Action::OpenDialog => return self.unless_unsaved(Action::OpenDialog, |_| vec![Effect::PickOpen]),
+            Action::Open(path) if std::mem::take(&mut self.questions.may_discard) => {
+                return vec![Effect::OpenFile(path)];
+            }
+            Action::Open(path) => {
+                let again = Action::Open(path.clone());
+                return self.unless_unsaved(again, |_| vec![Effect::OpenFile(path)]);
+            }
+            Action::OpenExample(i) => {
+                return self
+                    .unless_unsaved(Action::OpenExample(i), |session| session.open_example(i, registry));
+            }
+            Action::Reload => {
+                return match self.path.clone() {
+                    Some(path) => self.unless_unsaved(Action::Reload, |_| vec![Effect::OpenFile(path)]),
+                    None => Vec::new(),
+                };
+            }
+            Action::Save => {
+                return match self.path.clone() {
+                    Some(path) => vec![Effect::SaveFile { path, overwrite: false }],
+                    None => vec![Effect::PickSave],
+                };
+            }
+            Action::SaveAsDialog => return vec![Effect::PickSave],
+            Action::SaveAs(path) => {
+                // The default scene is called as its file from now on.
+                if self.path.is_none() && self.document.name == Scene::default().name {
+                    self.document
+                        .change("Name of the scene", Extent::Rest, self.selection, |scene| scene.name = None);
+                }
+                // The dialog adds an extension to whatever is typed, and asked about that file only.
+                let typed =
+                    path.to_str().and_then(|p| p.strip_suffix(".json")).filter(|p| p.ends_with(".json"));
+                return vec![match typed.map(PathBuf::from) {
+                    Some(path) => Effect::SaveFile { path, overwrite: false },
+                    None => Effect::SaveFile { path, overwrite: true },
+                }];
+            }
+            Action::ClearRecent => {
+                self.recent_files.clear();
+                return vec![Effect::SaveSettings];
+            }
+            Action::Answer(answer) => {
+                let mut effects = self.answer(answer, registry);
+                if self.questions.open.is_none() && std::mem::take(&mut self.disk.deferred) {
+                    effects.push(Effect::LookAtFile { discard: false });
+                }
+                return effects;
+            }
+            Action::Select(selection) => self.select(selection),
+            Action::SelectNext => self.step_selection(1),
+            Action::SelectPrevious => self.step_selection(-1),
+            Action::AddLight(id) => self.add_light(&id, registry),
+            Action::AddObject(id) => self.add_object(&id, registry),
+            Action::Duplicate(part) => self.duplicate(part, registry),
+            Action::Remove(part) => self.remove(part, registry),
+            Action::Toggle(part) => match part {
+                Selection::Light(i) if self.exists(part) => {
+                    let on = !self.document.lights[i].enabled;
+                    self.edit(Edit::Light(i, LightField::Enabled(on)), registry);
+                }
+                Selection::Object(i) if self.exists(part) => {
+                    let on = !self.document.objects[i].visible;
+                    self.edit(Edit::Object(i, ObjectField::Visible(on)), registry);
+                }
+                _ => self.say(Severity::Info, "Select an object to hide it, or a light to switch it off."),
+            },
+            Action::BeginRename(part) => {
+                self.select(part);
+                self.renaming = Some(part);
+            }
+            Action::CancelRename => self.renaming = None,
+            Action::Edit(edit) => self.edit(edit, registry),
+            Action::Undo => match self.document.done().checked_sub(1) {
+                Some(done) => self.go_to_step(done, registry),
+                None => self.say(Severity::Info, "There is nothing to undo."),
+            },
+            Action::Redo if self.document.done() == self.document.steps().len() => {
+                self.say(Severity::Info, "There is nothing to redo.");
+            }
+            Action::Redo => self.go_to_step(self.document.done() + 1, registry),
+            Action::GoToStep(done) => self.go_to_step(done, registry),
+            Action::RecentModel(slot) => {
+                if let Some(edit) = self.model_slots.get(slot).map(|id| self.edit_model(id)) {
+                    self.edit(edit, registry);
+                }
+            }
+            Action::Expose(ev) => {
+                let exposure = self.document.display.exposure + ev;
+                if limits::exposure().allows(f64::from(exposure)) {
+                    self.edit(Edit::Display(Display { exposure, ..self.document.display }), registry);
+                }
+            }
+            Action::NextTerms => {
+                let offered = self.offered_terms(registry);
+                let next = match offered.iter().position(|t| *t == self.view.terms) {
+                    Some(at) => offered[(at + 1) % offered.len()],
+                    None => TermSelection::All,
+                };
+                if offered.len() == 1 && self.view.terms == next {
+                    self.say(
+                        Severity::Info,
+                        "The equation has one term here: there is nothing to take apart.",
+                    );
+                }
+                self.view.terms = next;
+            }
+            Action::View(change) => return self.change_view(change),
+            Action::HomeView => return vec![Effect::HomeView],
+            Action::FocusSelection => return vec![Effect::FocusSelection],
+            Action::ObserverFromView => return vec![Effect::ObserverFromView],
+            Action::Steer(steer) => return vec![Effect::Steer(steer)],
+            Action::Copy(text) => return vec![Effect::CopyText(text)],
+            Action::Model(ask) => return self.author(ask, registry),
+            Action::Say(severity, text) => self.say(severity, text),
+            Action::Dismiss(index) => self.messages.dismiss(index),
+            Action::DismissAll => self.messages.clear(),
+        }
+        Vec::new()
+    }
+}

@@ -1,0 +1,35 @@
+//! The place that the panels leave to the picture.
+
+use bevy::ecs::resource::Resource;
+use bevy_egui::egui;
+
+/// The place that the panels leave to the picture, and the input that is the picture's. Written by the panels.
+#[derive(Clone, Copy, Debug, PartialEq, Resource)]
+pub struct PictureArea {
+    /// The rectangle of the picture, points of the panels.
+    pub rect: egui::Rect,
+    /// The part of it that shows what the observer sees; around it the picture goes on.
+    pub frame: egui::Rect,
+    /// Points of the window per point of the panels.
+    pub zoom: f32,
+    /// True if the pointer is over the picture with no panel, menu or dialog between. What turns the camera must ask
+    /// here first.
+    pub has_pointer: bool,
+    /// True if keys may steer the picture: no field has the focus and no question is open.
+    pub has_keys: bool,
+    /// True if a menu or a list is open, which the next click elsewhere closes and does nothing else.
+    pub popup_open: bool,
+}
+
+impl Default for PictureArea {
+    fn default() -> Self {
+        Self {
+            rect: egui::Rect::NOTHING,
+            frame: egui::Rect::NOTHING,
+            zoom: 1.0,
+            has_pointer: false,
+            has_keys: true,
+            popup_open: false,
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Changes of the scene, and the way back.
+
+use super::{Session, Severity, messages::Step};
+use crate::{
+    document::{Edit, LightField, ObjectField, Selection},
+    panel::follow::follow_registry,
+    registry::Registry,
+    scene::{Object, Scene},
+};
+
+/// A choice of the scene that objects may override.
+const MODEL: &str = "reflection model";
+
+impl Session {
+    pub(super) fn edit(&mut self, edit: Edit, registry: &Registry) {
+        let model = match &edit {
+            Edit::Model(id) | Edit::Object(_, ObjectField::Model(Some(id))) => Some(id.clone()),
+            _ => None,
+        };
+        let scene_choice = match &edit {
+            Edit::Model(_) => Some(MODEL),
+            Edit::ShadingModel(_) => Some("shading model"),
+            _ => None,
+        };
+        let named =
+            matches!(edit, Edit::Light(_, LightField::Name(_)) | Edit::Object(_, ObjectField::Name(_)));
+        let done = match edit {
+            Edit::Light(i, LightField::Type(id)) if registry.light(&id).is_some() => {
+                self.change_light_type(i, &id, registry);
+                Ok(())
+            }
+            edit => self.document.edit(edit, self.selection, registry),
+        };
+        if let Err(why) = done {
+            return self.say(Severity::Warning, why);
+        }
+        if let Some(id) = model {
+            self.model_slots.take(&id);
+        }
+        if let Some(what) = scene_choice {
+            let own = |o: &Object| match what {
+                MODEL => o.reflection_model.is_some(),
+                _ => o.shading_model.is_some(),
+            };
+            if self.document.shown().next().is_some() && self.document.shown().all(own) {
+                let text = format!(
+                    "Every visible object overrides the {what}, so the scene’s does not show. Select an object to change its own."
+                );
+                self.say(Severity::Info, text);
+            }
+        }
+        if named {
+            self.renaming = None;
+        }
+    }
+
+    /// Takes over a change made outside the panels: by a system that changed a component.
+    ///
+    /// # Errors
+    /// The reason for a refusal; the document stays as it is.
+    pub fn submit(&mut self, scene: Scene, registry: &Registry) -> Result<(), String> {
+        self.document.submit(scene, self.selection, registry)?;
+        if !self.exists(self.selection) {
+            self.selection = Selection::Room;
+        }
+        Ok(())
+    }
+
+    /// The number of steps that are done, and the name of the last one.
+    pub(super) fn last_step(&self) -> Step {
+        let done = self.document.done();
+        let last = done.checked_sub(1).and_then(|last| self.document.steps().nth(last));
+        (done, last.map(str::to_owned))
+    }
+
+    pub(super) fn change_light_type(&mut self, i: usize, id: &str, registry: &Registry) {
+        let Some(light) = self.document.lights.get(i) else { return };
+        let stand = self.stand(registry);
+        let position = light.position.unwrap_or_else(|| stand.light(None));
+        let direction = light.direction.unwrap_or_else(|| stand.towards_middle(position));
+        self.document.change_light_type(i, id, (position, direction), self.selection, registry);
+    }
+
+    /// Takes a step back, or does it again, until so many are done.
+    pub(super) fn go_to_step(&mut self, done: usize, registry: &Registry) {
+        let model = self.document.reflection_model.clone();
+        while self.document.done() != done.min(self.document.steps().len()) {
+            let step = if self.document.done() > done { self.document.undo() } else { self.document.redo() };
+            let Some((_, selection)) = step else { break };
+            self.selection = selection;
+        }
+        if !self.exists(self.selection) {
+            self.selection = Selection::Room;
+        }
+        self.renaming = None;
+        if self.document.reflection_model != model {
+            self.model_slots.take(&self.document.reflection_model);
+        }
+        // The models may be others than when the step was made.
+        follow_registry(self, registry);
+    }
+}

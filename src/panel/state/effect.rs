@@ -1,0 +1,93 @@
+//! Effects: work that needs files, entities or the operating system.
+
+use std::path::PathBuf;
+
+use bevy::ecs::message::Message;
+
+use super::Steer;
+use crate::{panel::recovery::Choice, scene::load::Stamp};
+
+/// Work that needs files, entities or the operating system; the app carries it out.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Show the dialog that chooses a file to open.
+    PickOpen,
+    /// Show the dialog that chooses a file to save to.
+    PickSave,
+    /// Read a file; see [`files::run`](crate::panel::files::run).
+    OpenFile(PathBuf),
+    /// Write the document; see [`files::run`](crate::panel::files::run).
+    SaveFile {
+        /// The file.
+        path: PathBuf,
+        /// True to replace a file that changed on disk since it was read, or that was never read.
+        overwrite: bool,
+    },
+    /// The document is another one: forget what belonged to the one before.
+    DocumentChanged,
+    /// Look whether the document's file changed on disk; see [`reload::look`](crate::panel::reload::look).
+    LookAtFile {
+        /// True to lose unsaved changes for it: the user was asked.
+        discard: bool,
+    },
+    /// The same after a moment, since a file may be in the middle of being written.
+    LookAgain(PathBuf),
+    /// The user knows of this state of a file: saving may replace it.
+    ExpectFile {
+        /// The file.
+        path: PathBuf,
+        /// Its state.
+        version: Stamp,
+    },
+    /// The fate of the recovery copy that the question was about.
+    Recovery(Choice),
+    /// Write to standard error, for those who watch it.
+    Complain(String),
+    /// End the program.
+    Quit,
+    /// Put the camera where the observer is.
+    HomeView,
+    /// Let the camera look at what is selected.
+    FocusSelection,
+    /// Write the place of the camera into the observer.
+    ObserverFromView,
+    /// Move the camera a little.
+    Steer(Steer),
+    /// Put text on the clipboard.
+    CopyText(String),
+    /// Write the settings.
+    SaveSettings,
+    /// Write the file of a new custom model.
+    NewModel {
+        /// Its id, which is also the name of the file.
+        id: String,
+        /// Its name for people.
+        name: String,
+    },
+    /// Write a model as the file of a custom model.
+    DuplicateModel {
+        /// Id of the model that is copied.
+        model: String,
+        /// Id of the copy, which is also the name of the file.
+        id: String,
+        /// Its name for people.
+        name: String,
+    },
+    /// Open a file in an editor.
+    OpenInEditor {
+        /// The file.
+        path: PathBuf,
+        /// The line to go to, from 1.
+        line: usize,
+    },
+    /// Try to find the laws of a model broken.
+    CheckLaws(String),
+    /// Show the dialog that chooses a folder for the shaders.
+    PickShaderFolder,
+    /// Write the shaders into a folder, to be edited there.
+    ExportShaders(PathBuf),
+}
+
+/// An [`Effect`] on its way to the systems that carry it out.
+#[derive(Clone, Debug, PartialEq, Message)]
+pub struct LabEffect(pub Effect);

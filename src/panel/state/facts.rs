@@ -1,0 +1,44 @@
+//! Facts that the app feeds to the panels.
+
+use glam::{Quat, Vec3};
+
+use crate::{
+    panel::clipping::Clipping,
+    scene::{Observer, observer::rotation},
+};
+
+/// Facts that the app feeds to the panels, as often as in every frame.
+///
+/// Whoever writes them bypasses change detection: those who follow the session have no use for them, and the panels
+/// read them whenever they are drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Facts {
+    /// The orientation of the camera.
+    pub camera: Quat,
+    /// The position of the camera.
+    pub eye: Vec3,
+    /// True if the camera has left the observer.
+    pub camera_left: bool,
+    /// The clipped parts of the picture; `None` where nothing clips.
+    pub clipping: Option<Clipping>,
+    /// Mean time per frame, milliseconds; 0 when not yet known.
+    pub frame_ms: f32,
+    /// The interface to the GPU: "Vulkan", "Metal", …
+    pub backend: String,
+    /// The GPU.
+    pub adapter: String,
+}
+
+impl Facts {
+    /// A camera at the observer, and nothing else known.
+    #[must_use]
+    pub fn at(observer: &Observer) -> Self {
+        Self { camera: rotation(observer.direction), eye: observer.position, ..Self::default() }
+    }
+
+    /// Frames per second; 0 when not yet known.
+    #[must_use]
+    pub fn fps(&self) -> f32 {
+        if self.frame_ms > 0.0 { 1000.0 / self.frame_ms } else { 0.0 }
+    }
+}

@@ -1,0 +1,103 @@
+//! The document and its file: opening, saving, replacing.
+
+use std::path::{Path, PathBuf};
+
+use super::{Action, Effect, Note, Session, Severity};
+use crate::{
+    document::Document,
+    optics::TermSelection,
+    registry::Registry,
+    scene::{Scene, examples::EXAMPLES},
+};
+
+/// The most files that the list of recent files holds.
+pub const RECENT_FILES: usize = 10;
+
+impl Session {
+    /// True if the document differs from its file.
+    #[must_use]
+    pub fn is_dirty(&self) -> bool {
+        self.disk.lacks_document() || self.document.differs()
+    }
+
+    /// The scene of a file has been read: it becomes the document.
+    pub fn opened(&mut self, path: PathBuf, scene: Scene) -> Vec<Effect> {
+        self.view.examples_open = false;
+        self.remember_file(&path);
+        self.replace_document(Some(path), scene);
+        vec![Effect::DocumentChanged, Effect::SaveSettings]
+    }
+
+    /// The document has been written. Returns what waited for it.
+    pub fn saved(&mut self, path: PathBuf, registry: &Registry) -> Vec<Effect> {
+        self.remember_file(&path);
+        self.note_saved(&path);
+        self.path = Some(path);
+        self.document.mark_saved();
+        self.disk_saved();
+        let mut effects = vec![Effect::SaveSettings];
+        if let Some(action) = self.questions.after_save.take() {
+            effects.extend(self.apply(action, registry));
+        }
+        effects
+    }
+
+    pub(super) fn note_saved(&mut self, path: &Path) {
+        let mut note = Note::new(Severity::Info, format!("Saved to {}.", path.display()));
+        if self.facts.camera_left {
+            note.text.push_str(" The view you turned to is not in the file: it has the observer’s.");
+            match self.observer_problem() {
+                None => note = note.offering("Set observer to this view", Action::ObserverFromView),
+                Some(why) => note.text.push_str(&format!(" {why}")),
+            }
+        }
+        self.messages.retain(|m| m.severity != Severity::Info || !m.text.starts_with("Saved to "));
+        self.note(note);
+    }
+
+    pub(super) fn start_new(&mut self) -> Vec<Effect> {
+        self.replace_document(None, Scene::default());
+        vec![Effect::DocumentChanged]
+    }
+
+    pub(super) fn open_example(&mut self, i: usize, registry: &Registry) -> Vec<Effect> {
+        match EXAMPLES.get(i).map(|example| example.scene(registry)) {
+            Some(Ok(scene)) => {
+                self.replace_document(None, scene);
+                vec![Effect::DocumentChanged]
+            }
+            Some(Err(error)) => {
+                self.say(Severity::Error, error.to_string());
+                Vec::new()
+            }
+            None => Vec::new(),
+        }
+    }
+
+    pub(super) fn replace_document(&mut self, path: Option<PathBuf>, scene: Scene) {
+        self.document = Document::new(scene);
+        self.path = path;
+        self.stashed.clear();
+        self.renaming = None;
+        self.questions.not_saved();
+        self.questions.not_opened();
+        self.disk_saved();
+        self.view.terms = TermSelection::All;
+        self.select_first();
+        self.model_slots.take(&self.document.reflection_model);
+    }
+
+    /// The scene of a recovery copy becomes the document; it is unsaved.
+    pub(in crate::panel) fn recovered(&mut self, path: Option<PathBuf>, scene: Scene) {
+        self.replace_document(path, scene);
+        self.disk.recovered = true;
+    }
+
+    pub(super) fn remember_file(&mut self, path: &Path) {
+        // The next start may be in another folder.
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        self.recent_files.retain(|p| *p != path);
+        self.recent_files.insert(0, path);
+        self.recent_files.truncate(RECENT_FILES);
+    }
+}

@@ -1,0 +1,157 @@
+//! Messages to the user, and badges of the picture.
+
+use std::ops::Deref;
+
+use super::{Action, Session};
+use crate::{files::printable, panel::messages::MESSAGES_TAB};
+
+/// The most messages that are kept; the oldest give way.
+pub const MAX_MESSAGES: usize = 500;
+
+/// A message to the user.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Note {
+    /// Its severity.
+    pub severity: Severity,
+    /// The event, its place, and the remedy.
+    pub text: String,
+    /// A button beside it, and its action.
+    pub offer: Option<(&'static str, Box<Action>)>,
+}
+
+impl Note {
+    /// A message without what names of files may hold that is not to be shown.
+    #[must_use]
+    pub fn new(severity: Severity, text: impl Into<String>) -> Self {
+        Self { severity, text: printable(&text.into()).into_owned(), offer: None }
+    }
+
+    /// The same with a button beside it.
+    #[must_use]
+    pub fn offering(self, label: &'static str, action: Action) -> Self {
+        Self { offer: Some((label, Box::new(action))), ..self }
+    }
+}
+
+/// Severity of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Severity {
+    /// Good to know.
+    Info,
+    /// Something is not as asked, and the picture is still right.
+    Warning,
+    /// Something failed.
+    Error,
+}
+
+impl Severity {
+    /// The word for it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Info => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// A remark of the picture on itself in its corner, such as "Clipped: 5 % of the picture".
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Badge {
+    /// Its severity.
+    pub severity: Severity,
+    /// A few words.
+    pub text: String,
+    /// The whole story, for the tooltip.
+    pub help: String,
+}
+
+/// The messages, oldest first; each stays until it is dismissed, or until [`MAX_MESSAGES`] newer ones are there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Messages {
+    notes: Vec<Note>,
+    /// The step that a message offers to undo: the number of steps done with it, and its name.
+    undo: Option<Step>,
+}
+
+/// The number of steps that are done, and the name of the last one.
+pub(super) type Step = (usize, Option<String>);
+
+impl Deref for Messages {
+    type Target = [Note];
+
+    fn deref(&self) -> &[Note] {
+        &self.notes
+    }
+}
+
+impl Messages {
+    /// Adds a message, unless the last one says the same.
+    pub fn add(&mut self, note: Note) {
+        if self.last() == Some(&note) {
+            return;
+        }
+        if self.len() >= MAX_MESSAGES {
+            self.notes.remove(0);
+        }
+        self.notes.push(note);
+    }
+
+    /// Adds a message that offers to undo the last step.
+    pub(super) fn offer_undo(&mut self, text: String, step: Step) {
+        self.withdraw_undo();
+        self.undo = Some(step);
+        self.add(Note::new(Severity::Info, text).offering("Undo", Action::Undo));
+    }
+
+    /// Offers no undo that would undo something else than the step which was done `last`.
+    pub(super) fn check_undo(&mut self, last: &Step) {
+        if self.undo.as_ref().is_some_and(|step| step != last) {
+            self.withdraw_undo();
+        }
+    }
+
+    fn withdraw_undo(&mut self) {
+        let undo = |note: &Note| note.offer.as_ref().is_some_and(|(_, action)| **action == Action::Undo);
+        self.notes.iter_mut().filter(|note| undo(note)).for_each(|note| note.offer = None);
+        self.undo = None;
+    }
+
+    /// Removes a message.
+    pub fn dismiss(&mut self, index: usize) {
+        if index < self.len() {
+            self.notes.remove(index);
+        }
+    }
+
+    /// Removes all messages but those that `keep` is true for.
+    pub fn retain(&mut self, keep: impl FnMut(&Note) -> bool) {
+        self.notes.retain(keep);
+    }
+
+    /// Removes all messages.
+    pub fn clear(&mut self) {
+        self.notes.clear();
+    }
+
+    /// The worst severity among the messages.
+    #[must_use]
+    pub fn worst(&self) -> Option<Severity> {
+        self.iter().map(|note| note.severity).max()
+    }
+}
+
+impl Session {
+    /// Adds a message; an error unfolds the strip that shows it.
+    pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
+        self.note(Note::new(severity, text));
+    }
+
+    pub(in crate::panel) fn note(&mut self, note: Note) {
+        if note.severity == Severity::Error {
+            self.view.unfold(MESSAGES_TAB);
+        }
+        self.messages.add(note);
+    }
+}

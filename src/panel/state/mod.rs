@@ -1,0 +1,130 @@
+//! The state of the window: the document, what is selected, what is shown; and the actions that
+//! change it.
+//!
+//! [`Session`] is a Bevy resource, and knows nothing of Bevy otherwise: panels read it and return
+//! [`Action`]s, [`Session::apply`] carries them out and returns the [`Effect`]s that need files, entities
+//! or the operating system. All of it can be driven without a window.
+
+use std::path::PathBuf;
+
+use bevy::ecs::resource::Resource;
+
+pub use action::{Action, Steer};
+pub use area::PictureArea;
+pub use effect::{Effect, LabEffect};
+pub use facts::Facts;
+pub use files::RECENT_FILES;
+pub use messages::{Badge, MAX_MESSAGES, Messages, Note, Severity};
+pub use question::{Answer, MissingPart, Question, Questions};
+pub use slots::{MODEL_SLOTS, ModelSlots};
+pub use view::{ThemeChoice, View, ViewChange};
+
+use super::{
+    PanelInfo,
+    author::{LawCheck, ModelDraft},
+    follow::StashedValues,
+    reload::OnDisk,
+    terms::KnownTerms,
+};
+use crate::{
+    document::{Document, Selection},
+    library::status::ShaderStatus,
+    scene::Scene,
+};
+
+mod action;
+mod area;
+mod edit;
+mod effect;
+mod facts;
+mod files;
+mod messages;
+mod parts;
+mod question;
+mod selection;
+mod shown;
+mod slots;
+mod view;
+
+/// The state of the window.
+#[derive(Clone, Debug, Resource)]
+pub struct Session {
+    /// The document: the scene and the way to it.
+    pub document: Document,
+    /// The file that the document came from or was last saved to.
+    pub path: Option<PathBuf>,
+    /// Facts about the document's file on disk.
+    pub disk: OnDisk,
+    /// Values that the document had and no model takes at present.
+    pub(super) stashed: StashedValues,
+    /// The part that the inspector shows.
+    pub selection: Selection,
+    /// The part whose name is being typed in the tree.
+    pub renaming: Option<Selection>,
+    /// The choice of what is shown, and how.
+    pub view: View,
+    /// Messages to the user.
+    pub messages: Messages,
+    /// Questions to the user.
+    pub questions: Questions,
+    /// Files opened or saved, latest first.
+    pub recent_files: Vec<PathBuf>,
+    /// The models that keys 1–9 choose.
+    pub model_slots: ModelSlots,
+    /// Facts that the app feeds without marking the session as changed.
+    pub facts: Facts,
+    /// The folders of the shaders and the problems in them, fed by the app.
+    pub shaders: ShaderStatus,
+    /// The problems of the shaders in the frame before, by file and message.
+    pub(super) seen_troubles: Vec<(String, String)>,
+    /// The custom model that is about to be written.
+    pub draft: Option<ModelDraft>,
+    /// The model that is chosen as soon as it is known: one whose file was just written.
+    pub wanted_model: Option<String>,
+    /// The last check of the laws of a model.
+    pub laws: Option<LawCheck>,
+    /// The panels that there are, for the menus; written when they are shown.
+    pub panels: Vec<PanelInfo>,
+    /// A dialog that something other than the panels wants opened: what waited for the document to be
+    /// saved.
+    pub wanted_dialog: Option<Effect>,
+    known_terms: KnownTerms,
+}
+
+impl Default for Session {
+    fn default() -> Self {
+        Self::new(Scene::default())
+    }
+}
+
+impl Session {
+    /// A window on a scene that is in no file.
+    #[must_use]
+    pub fn new(scene: Scene) -> Self {
+        let mut session = Self {
+            path: None,
+            disk: OnDisk::default(),
+            stashed: StashedValues::default(),
+            selection: Selection::Room,
+            renaming: None,
+            view: View::default(),
+            messages: Messages::default(),
+            questions: Questions::default(),
+            recent_files: Vec::new(),
+            model_slots: ModelSlots::default(),
+            facts: Facts::at(&scene.observer),
+            shaders: ShaderStatus::default(),
+            seen_troubles: Vec::new(),
+            draft: None,
+            wanted_model: None,
+            laws: None,
+            panels: Vec::new(),
+            wanted_dialog: None,
+            known_terms: KnownTerms::default(),
+            document: Document::new(scene),
+        };
+        session.select_first();
+        session.model_slots.take(&session.document.reflection_model);
+        session
+    }
+}

@@ -1,0 +1,127 @@
+//! Adding, copying and removing lights and objects.
+
+use super::{Session, Severity};
+use crate::{
+    document::{Selection, names::free_name},
+    light::MAX_LIGHTS,
+    panel::placing::Stand,
+    registry::Registry,
+    scene::{Light, MAX_OBJECTS, Object},
+};
+
+impl Session {
+    pub(super) fn add_light(&mut self, id: &str, registry: &Registry) {
+        let Some(entry) = registry.light(id) else { return };
+        if self.document.lights.len() >= MAX_LIGHTS {
+            self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
+            return;
+        }
+        let d = entry.declaration;
+        let stand = self.stand(registry);
+        let position = stand.light(None);
+        let mut light = Light {
+            light_type: id.to_owned(),
+            position: d.has_position.then_some(position),
+            direction: d.has_direction.then(|| stand.towards_middle(position)),
+            intensity: d.default_intensity,
+            ..Light::default()
+        };
+        let (intensity, clips) = stand.intensity(&light, entry);
+        light.intensity = intensity;
+        let at = self.document.lights.len();
+        self.document.insert_light(at, light, "Add", self.selection, registry);
+        self.select_new(Selection::Light(at));
+        if clips {
+            let name = self.name_of(self.selection, registry);
+            let text = format!("With {name} the picture clips: lower the exposure, or dim another light.");
+            self.say(Severity::Info, text);
+        }
+    }
+
+    pub(super) fn add_object(&mut self, id: &str, registry: &Registry) {
+        if registry.shape(id).is_none() {
+            return;
+        }
+        if self.document.objects.len() >= MAX_OBJECTS {
+            self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
+            return;
+        }
+        let (position, size) = self.stand(registry).object(id);
+        let object = Object { object_type: id.to_owned(), position, size, ..Object::default() };
+        let at = self.document.objects.len();
+        self.document.insert_object(at, object, "Add", self.selection, registry);
+        self.select_new(Selection::Object(at));
+    }
+
+    pub(super) fn duplicate(&mut self, part: Selection, registry: &Registry) {
+        match part {
+            Selection::Light(i) if i < self.document.lights.len() => {
+                if self.document.lights.len() >= MAX_LIGHTS {
+                    self.say(Severity::Info, format!("A scene has at most {MAX_LIGHTS} lights."));
+                    return;
+                }
+                let mut copy = self.document.lights[i].clone();
+                copy.position = copy.position.map(|p| self.stand(registry).light(Some(p)));
+                copy.name = copy.name.map(|n| free_name(&self.document, &n));
+                self.document.insert_light(i + 1, copy, "Duplicate", self.selection, registry);
+                self.select_new(Selection::Light(i + 1));
+            }
+            Selection::Object(i) if i < self.document.objects.len() => {
+                if self.document.objects.len() >= MAX_OBJECTS {
+                    self.say(Severity::Info, format!("A scene has at most {MAX_OBJECTS} objects."));
+                    return;
+                }
+                let mut copy = self.document.objects[i].clone();
+                copy.position = self.stand(registry).copy(&copy);
+                copy.name = copy.name.map(|n| free_name(&self.document, &n));
+                let from = self.document.object_id(i);
+                self.document.insert_object(i + 1, copy, "Duplicate", self.selection, registry);
+                if let Some((from, to)) = from.zip(self.document.object_id(i + 1)) {
+                    self.stashed.copied(from, to);
+                }
+                self.select_new(Selection::Object(i + 1));
+            }
+            _ => self.say(Severity::Info, "Select a light or an object to duplicate it."),
+        }
+    }
+
+    pub(super) fn remove(&mut self, part: Selection, registry: &Registry) {
+        match part {
+            Selection::Light(_) if self.document.lights.len() <= 1 => {
+                self.say(
+                    Severity::Info,
+                    "The last light stays: a scene needs at least one to show anything.",
+                );
+            }
+            Selection::Object(_) if self.document.objects.len() <= 1 => {
+                self.say(Severity::Info, "Can’t delete the last object: a scene needs at least one.");
+            }
+            Selection::Light(_) | Selection::Object(_) if self.exists(part) => {
+                let text = format!("Deleted “{}”.", self.name_of(part, registry));
+                self.document.remove(part, registry);
+                // What was selected stays so; in the place of what is gone comes its neighbour.
+                let (lights, objects) = (self.document.lights.len(), self.document.objects.len());
+                self.select_new(match (self.selection, part) {
+                    (Selection::Light(at), Selection::Light(gone)) => {
+                        Selection::Light((at - usize::from(at > gone)).min(lights - 1))
+                    }
+                    (Selection::Object(at), Selection::Object(gone)) => {
+                        Selection::Object((at - usize::from(at > gone)).min(objects - 1))
+                    }
+                    (other, _) => other,
+                });
+                self.renaming = None;
+                self.messages.offer_undo(text, self.last_step());
+            }
+            Selection::Observer => {
+                self.say(Severity::Info, "The observer stays: a scene has exactly one.");
+            }
+            _ => self.say(Severity::Info, "Select a light or an object to remove it."),
+        }
+    }
+
+    /// The scene before the camera, as a place for what is added.
+    pub(super) fn stand<'a>(&'a self, registry: &'a Registry) -> Stand<'a> {
+        Stand::new(&self.document, registry, self.facts.eye, self.facts.camera)
+    }
+}

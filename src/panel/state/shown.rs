@@ -1,0 +1,110 @@
+//! The document as the window shows it.
+
+use super::Session;
+use crate::{
+    document::{Edit, ObjectField, Selection},
+    files::printable,
+    optics::TermSelection,
+    registry::Registry,
+    scene::check::same_place,
+};
+
+impl Session {
+    /// The title of the document: the name of the scene, else the name of the file.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let file = || Some(printable(&self.path.as_ref()?.file_stem()?.to_string_lossy()).into_owned());
+        self.document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
+    }
+
+    /// The title of the window: that of the document, and the file if it has another name.
+    #[must_use]
+    pub fn window_title(&self) -> String {
+        let title = self.title();
+        match self.path.as_ref().filter(|p| p.file_stem().is_none_or(|stem| *stem != *title)) {
+            Some(path) => {
+                let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+                format!("{title} — {}", printable(&file))
+            }
+            None => title,
+        }
+    }
+
+    /// The name of a part of the scene for people: its own, or its type and its number among its type.
+    #[must_use]
+    pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
+        self.document.name_of(part, registry)
+    }
+
+    /// The selected object, if it has a reflection model of its own: the choice at the top is then about
+    /// that one, since a choice for the scene would not reach it.
+    #[must_use]
+    pub fn model_override(&self) -> Option<(usize, &str)> {
+        let Selection::Object(i) = self.selection else { return None };
+        Some((i, self.document.objects.get(i)?.reflection_model.as_deref()?))
+    }
+
+    /// The same for its shading model.
+    #[must_use]
+    pub fn shading_override(&self) -> Option<(usize, &str)> {
+        let Selection::Object(i) = self.selection else { return None };
+        Some((i, self.document.objects.get(i)?.shading_model.as_deref()?))
+    }
+
+    /// Id of the reflection model that the top of the window shows and changes.
+    #[must_use]
+    pub fn model_shown(&self) -> &str {
+        self.model_override().map_or(&self.document.reflection_model, |(_, id)| id)
+    }
+
+    /// Id of the shading model that the top of the window shows and changes.
+    #[must_use]
+    pub fn shading_shown(&self) -> &str {
+        self.shading_override().map_or(&self.document.shading_model, |(_, id)| id)
+    }
+
+    /// The edit that chooses another reflection model at the top of the window.
+    #[must_use]
+    pub fn edit_model(&self, id: &str) -> Edit {
+        match self.model_override() {
+            Some((i, _)) => Edit::Object(i, ObjectField::Model(Some(id.to_owned()))),
+            None => Edit::Model(id.to_owned()),
+        }
+    }
+
+    /// The edit that chooses another shading model at the top of the window.
+    #[must_use]
+    pub fn edit_shading_model(&self, id: &str) -> Edit {
+        match self.shading_override() {
+            Some((i, _)) => Edit::Object(i, ObjectField::ShadingModel(Some(id.to_owned()))),
+            None => Edit::ShadingModel(id.to_owned()),
+        }
+    }
+
+    /// The terms that the picture can show alone, and all of them; the terms that are 0 everywhere are left out.
+    #[must_use]
+    pub fn offered_terms(&self, registry: &Registry) -> Vec<TermSelection> {
+        self.known_terms.offered(&self.document, registry)
+    }
+
+    /// True if nothing of the picture has the term that is shown alone.
+    #[must_use]
+    pub fn lacks_term(&self, registry: &Registry) -> bool {
+        let shown = self.view.terms;
+        shown != TermSelection::All && !self.known_terms.present(&self.document, registry).contains(&shown)
+    }
+
+    /// The reason why the observer can't be where the camera is.
+    #[must_use]
+    pub fn observer_problem(&self) -> Option<&'static str> {
+        let scene = &self.document;
+        let taken = (scene.lights.iter().filter_map(|l| l.position))
+            .chain(scene.objects.iter().map(|o| o.position))
+            .any(|p| same_place(p, self.facts.eye));
+        match scene.scene_size.contains(self.facts.eye) {
+            false => Some("The view is outside the room."),
+            true if taken => Some("The view is from the place of a light or an object."),
+            true => None,
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! The choice of what is shown, and how.
+
+use super::{Effect, RECENT_FILES, Session};
+use crate::{
+    optics::TermSelection,
+    panel::{
+        messages::MESSAGES_TAB,
+        settings::{SCALES, Settings, nearest_scale},
+    },
+};
+
+/// Light or dark.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ThemeChoice {
+    /// Near-black panels: for judging pictures.
+    #[default]
+    Dark,
+    /// Near-white panels: for bright rooms and projectors.
+    Light,
+}
+
+/// The choice of what is shown, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// Light or dark.
+    pub theme: ThemeChoice,
+    /// The size of everything, per cent: one of [`SCALES`].
+    pub scale: u16,
+    /// True if the strip of examples is below the picture.
+    pub examples_open: bool,
+    /// The picture fills the screen, with the equation over it; the panels are hidden.
+    pub presenting: bool,
+    /// True if the window fills the screen.
+    pub fullscreen: bool,
+    /// The same before the presentation began.
+    pub fullscreen_before: bool,
+    /// True if lights have gizmos in the picture.
+    pub show_gizmos: bool,
+    /// True if the outline of the room is drawn.
+    pub show_room: bool,
+    /// True if clipped pixels are marked.
+    pub show_clipping: bool,
+    /// The terms of the equation that the picture shows.
+    pub terms: TermSelection,
+    /// True if the strip at the bottom is unfolded.
+    pub bottom_open: bool,
+    /// Id of the panel that the strip at the bottom shows.
+    pub bottom_tab: String,
+    /// True if the tree at the left is shown.
+    pub left_open: bool,
+    /// True if the inspector at the right is shown.
+    pub right_open: bool,
+    /// Width of the tree, points.
+    pub left_width: f32,
+    /// Width of the inspector, points.
+    pub right_width: f32,
+    /// Height of the strip at the bottom, points.
+    pub bottom_height: f32,
+    /// True if the list of keys is open.
+    pub keys_open: bool,
+    /// True if "about" is open.
+    pub about_open: bool,
+    /// True if the chooser of reflection models is open.
+    pub chooser_open: bool,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            theme: ThemeChoice::Dark,
+            scale: 100,
+            examples_open: false,
+            presenting: false,
+            fullscreen: false,
+            fullscreen_before: false,
+            show_gizmos: true,
+            show_room: true,
+            show_clipping: false,
+            terms: TermSelection::All,
+            bottom_open: false,
+            bottom_tab: MESSAGES_TAB.to_owned(),
+            left_open: true,
+            right_open: true,
+            left_width: 208.0,
+            right_width: 344.0,
+            bottom_height: 144.0,
+            keys_open: false,
+            about_open: false,
+            chooser_open: false,
+        }
+    }
+}
+
+/// A change of what is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ViewChange {
+    /// See [`View::theme`].
+    Theme(ThemeChoice),
+    /// See [`View::scale`]; the nearest of [`SCALES`] is taken.
+    Scale(u16),
+    /// The next of [`SCALES`].
+    Larger,
+    /// The one before.
+    Smaller,
+    /// See [`View::examples_open`].
+    Examples(bool),
+    /// See [`View::presenting`].
+    Presenting(bool),
+    /// See [`View::fullscreen`].
+    Fullscreen(bool),
+    /// See [`View::show_gizmos`].
+    Gizmos(bool),
+    /// See [`View::show_room`].
+    Room(bool),
+    /// See [`View::show_clipping`].
+    Clipping(bool),
+    /// See [`View::terms`].
+    Terms(TermSelection),
+    /// True if the strip at the bottom is unfolded.
+    Bottom(bool),
+    /// Shows a panel in the strip at the bottom, and unfolds it.
+    BottomTab(String),
+    /// See [`View::left_open`].
+    Left(bool),
+    /// See [`View::right_open`].
+    Right(bool),
+    /// The widths of the panels after dragging: tree, inspector, height of the strip.
+    Sizes {
+        /// See [`View::left_width`].
+        left: f32,
+        /// See [`View::right_width`].
+        right: f32,
+        /// See [`View::bottom_height`].
+        bottom: f32,
+    },
+    /// See [`View::keys_open`].
+    Keys(bool),
+    /// See [`View::about_open`].
+    About(bool),
+    /// See [`View::chooser_open`].
+    Chooser(bool),
+}
+
+impl View {
+    /// Unfolds the strip at the bottom with a panel.
+    pub fn unfold(&mut self, tab: &str) {
+        self.bottom_open = true;
+        tab.clone_into(&mut self.bottom_tab);
+    }
+
+    fn change(&mut self, change: ViewChange) {
+        match change {
+            ViewChange::Theme(theme) => self.theme = theme,
+            ViewChange::Scale(percent) => self.scale = nearest_scale(percent),
+            ViewChange::Larger => {
+                self.scale = SCALES.into_iter().find(|s| *s > self.scale).unwrap_or(self.scale)
+            }
+            ViewChange::Smaller => {
+                self.scale = SCALES.into_iter().rfind(|s| *s < self.scale).unwrap_or(self.scale);
+            }
+            ViewChange::Examples(on) => self.examples_open = on,
+            ViewChange::Presenting(on) if on != self.presenting => {
+                let before = std::mem::replace(&mut self.fullscreen_before, self.fullscreen);
+                self.fullscreen = on || before;
+                self.presenting = on;
+            }
+            ViewChange::Presenting(_) => {}
+            ViewChange::Fullscreen(on) => self.fullscreen = on,
+            ViewChange::Gizmos(on) => self.show_gizmos = on,
+            ViewChange::Room(on) => self.show_room = on,
+            ViewChange::Clipping(on) => self.show_clipping = on,
+            ViewChange::Terms(terms) => self.terms = terms,
+            ViewChange::Bottom(open) => self.bottom_open = open,
+            ViewChange::BottomTab(id) => {
+                self.unfold(&id);
+            }
+            ViewChange::Left(open) => self.left_open = open,
+            ViewChange::Right(open) => self.right_open = open,
+            ViewChange::Sizes { left, right, bottom } => {
+                (self.left_width, self.right_width, self.bottom_height) = (left, right, bottom);
+            }
+            ViewChange::Keys(open) => self.keys_open = open,
+            ViewChange::About(open) => self.about_open = open,
+            ViewChange::Chooser(open) => self.chooser_open = open,
+        }
+    }
+}
+
+impl Session {
+    /// The change that folds the strip at the bottom away, or unfolds it with the messages.
+    #[must_use]
+    pub fn strip_change(&self) -> ViewChange {
+        if self.view.bottom_open {
+            ViewChange::Bottom(false)
+        } else {
+            ViewChange::BottomTab(MESSAGES_TAB.to_owned())
+        }
+    }
+
+    /// The settings that survive a restart.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        Settings {
+            theme: self.view.theme,
+            scale: self.view.scale,
+            left_width: self.view.left_width,
+            right_width: self.view.right_width,
+            bottom_height: self.view.bottom_height,
+            recent_files: self.recent_files.clone(),
+        }
+    }
+
+    /// Takes over the settings that survived a restart.
+    pub fn adopt(&mut self, settings: Settings) {
+        self.view.theme = settings.theme;
+        self.view.scale = settings.scale;
+        self.view.left_width = settings.left_width;
+        self.view.right_width = settings.right_width;
+        self.view.bottom_height = settings.bottom_height;
+        self.recent_files = settings.recent_files;
+        self.recent_files.truncate(RECENT_FILES);
+    }
+
+    pub(super) fn change_view(&mut self, change: ViewChange) -> Vec<Effect> {
+        let before = self.settings();
+        self.view.change(change);
+        if before == self.settings() { Vec::new() } else { vec![Effect::SaveSettings] }
+    }
+}

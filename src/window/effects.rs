@@ -1,0 +1,89 @@
+//! Carries out what needs files, entities or the operating system.
+
+use bevy::{
+    app::AppExit,
+    ecs::prelude::*,
+    winit::{EventLoopProxyWrapper, WinitUserEvent},
+};
+
+use super::{authoring, camera, editor, files, laws, recovery, shaders, watching};
+use crate::{
+    panel::{
+        files::run as run_files,
+        state::{Effect, LabEffect, Session, Severity},
+    },
+    registry::Registry,
+};
+
+/// Carries out what the panels asked for.
+pub(super) fn carry_out(
+    mut effects: MessageReader<LabEffect>,
+    mut session: ResMut<Session>,
+    registry: Res<Registry>,
+    mut files: ResMut<files::DiskFiles>,
+    mut camera: camera::CameraControl,
+    watch: Res<watching::FileWatch>,
+    mut exit: MessageWriter<AppExit>,
+    editors: Res<editor::Editors>,
+    laws: Res<laws::LawChecks>,
+    proxy: Option<Res<EventLoopProxyWrapper>>,
+    mut recovery: ResMut<recovery::Recovery>,
+    mut commands: Commands,
+) {
+    for complaint in editors.take() {
+        session.say(Severity::Error, complaint);
+    }
+    if let Some((model, outcome)) = laws.take() {
+        session.laws_checked(&model, outcome);
+    }
+    let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
+    pending.reverse();
+    while let Some(effect) = pending.pop() {
+        match effect {
+            Effect::HomeView => camera.home(),
+            Effect::FocusSelection => camera.focus(&session),
+            Effect::Steer(steer) => camera.steer(steer),
+            Effect::ObserverFromView => camera.place_observer(&mut session, &registry),
+            Effect::DocumentChanged => {
+                files.document_changed(session.path.as_deref());
+                camera.home();
+            }
+            Effect::Quit => {
+                recovery.farewell.close();
+                exit.write(AppExit::Success);
+            }
+            Effect::Recovery(choice) => recovery.answer(choice, &mut session, &mut files, &registry),
+            Effect::LookAgain(path) => watch.0.report_later(&path, watching::GRACE),
+            Effect::Complain(text) => watching::complain(&text),
+            // The clipboard belongs to the panels, and so do the dialogs.
+            Effect::CopyText(_) => {}
+            dialog @ (Effect::PickOpen | Effect::PickSave | Effect::PickShaderFolder) => {
+                session.wanted_dialog = Some(dialog);
+            }
+            Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {
+                if let Some(folder) = authoring::write(&effect, &mut session, &registry) {
+                    commands.queue(move |world: &mut World| shaders::move_to(world, &folder));
+                }
+            }
+            Effect::OpenInEditor { path, line } => {
+                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
+                let variable = std::env::var(editor::EDITOR_VARIABLE).ok();
+                editors.open(variable.as_deref(), &path, line, move || {
+                    // The window sleeps; without it there is nobody to tell.
+                    proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
+                });
+            }
+            Effect::CheckLaws(model) => {
+                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
+                laws.begin(&model, registry.folders(), move || {
+                    proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
+                });
+            }
+            other => {
+                let more = run_files(&mut session, &registry, other.clone(), &mut *files);
+                // What comes back unchanged is nobody's.
+                pending.extend(more.into_iter().rev().filter(|e| *e != other));
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The picture between the panels: its camera, its size and its place.
+
+use bevy::{
+    camera::{
+        Camera, Camera2d, CameraMainTextureUsages, ClearColorConfig, Hdr, RenderTarget,
+        visibility::RenderLayers,
+    },
+    color::Color,
+    core_pipeline::tonemapping::Tonemapping,
+    ecs::prelude::*,
+    math::URect,
+    render::{render_resource::TextureUsages, renderer::RenderAdapterInfo, view::Msaa},
+    window::{PrimaryWindow, Window},
+};
+use bevy_egui::{PrimaryEguiContext, egui::Rect};
+use bevy_panorbit_camera::ActiveCameraData;
+use glam::{UVec2, Vec2};
+
+use super::{WindowView, camera};
+use crate::{
+    panel::{
+        state::{PictureArea, Session},
+        theme::Palette,
+    },
+    render::{
+        camera::{PictureCamera, picture_camera},
+        show::Shows,
+        view::{Drawing, View, texture_of},
+    },
+};
+
+pub(super) fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>) {
+    let software = adapter.is_some_and(|a| a.device_type == wgpu::DeviceType::Cpu);
+    // Four samples double the cost of a frame where the GPU is a program on the CPU.
+    let samples = if software { 1 } else { 4 };
+    commands
+        .spawn((picture_camera(samples), Hdr, RenderTarget::None { size: UVec2::ONE }, camera::orbit()))
+        .insert((
+            PictureCamera { follows_observer: true, fits_width: true },
+            WindowView,
+            // The panels say how large.
+            View::for_display(UVec2::ZERO),
+        ));
+    commands.spawn((
+        Camera2d,
+        Camera { order: 1, ..Camera::default() },
+        Shows::default(),
+        CameraMainTextureUsages::default().with(TextureUsages::COPY_DST),
+        Msaa::Off,
+        Tonemapping::None,
+        RenderLayers::none(),
+        PrimaryEguiContext,
+    ));
+}
+
+/// The picture has the size of the room that the panels leave, and is shown there.
+pub(super) fn fit_picture(
+    session: Res<Session>,
+    area: Res<PictureArea>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    mut views: Query<(Entity, &mut View, &mut Drawing, &mut Camera), With<WindowView>>,
+    mut controls: ResMut<ActiveCameraData>,
+    mut room: Local<Option<bool>>,
+) {
+    let Ok((entity, mut view, mut drawing, mut camera)) = views.single_mut() else { return };
+    let place = PicturePlace::of(&area, &window);
+    if place.size.min_element() == 0 {
+        return;
+    }
+    let frame = PicturePlace::of_rect(area.frame, area.zoom, &window);
+    let at = frame.at.saturating_sub(place.at);
+    let inset = (frame != place).then(|| URect::from_corners(at, at + frame.size));
+    view.set_if_neq(View { inset, ..View::for_display(place.size) });
+    // In the light theme the surround is light.
+    let grey = Palette::of(&session.view).surround;
+    let surround = Color::srgb_u8(grey.r(), grey.g(), grey.b());
+    if !matches!(camera.clear_color, ClearColorConfig::Custom(known) if known == surround) {
+        camera.clear_color = ClearColorConfig::Custom(surround);
+    }
+    if room.replace(session.view.show_room) != Some(session.view.show_room) {
+        drawing.redraw();
+    }
+    controls.set_if_neq(ActiveCameraData {
+        entity: Some(entity),
+        viewport_size: Some(place.size.as_vec2() / window.scale_factor()),
+        window_size: Some(window.size()),
+        manual: true,
+    });
+}
+
+/// Shows the picture's texture in its place.
+pub(super) fn show_picture(
+    area: Res<PictureArea>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    views: Query<&RenderTarget, With<WindowView>>,
+    mut shows: Single<&mut Shows, With<PrimaryEguiContext>>,
+) {
+    let at = PicturePlace::of(&area, &window).at;
+    let pictures = views.iter().filter_map(texture_of).map(|texture| (texture.clone(), at)).collect();
+    shows.set_if_neq(Shows(pictures));
+}
+
+/// The place of the picture in the window, pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct PicturePlace {
+    at: UVec2,
+    size: UVec2,
+}
+
+impl PicturePlace {
+    pub(super) fn of(area: &PictureArea, window: &Window) -> Self {
+        Self::of_rect(area.rect, area.zoom, window)
+    }
+
+    fn of_rect(rect: Rect, zoom: f32, window: &Window) -> Self {
+        let limit = window.physical_size();
+        if !rect.is_finite() || !rect.is_positive() || limit.min_element() == 0 {
+            return Self { at: UVec2::ZERO, size: UVec2::ZERO };
+        }
+        let pixels = |points: f32| (points * zoom * window.scale_factor()).round().max(0.0) as u32;
+        let at = UVec2::new(pixels(rect.min.x), pixels(rect.min.y)).min(limit.saturating_sub(UVec2::ONE));
+        let end = UVec2::new(pixels(rect.max.x), pixels(rect.max.y)).min(limit);
+        Self { at, size: end.saturating_sub(at).max(UVec2::ONE) }
+    }
+
+    /// The place in the picture of a place in the window, pixels.
+    pub(super) fn within(self, window: &Window, point: Vec2) -> Vec2 {
+        point * window.scale_factor() - self.at.as_vec2()
+    }
+}

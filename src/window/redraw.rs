@@ -1,0 +1,89 @@
+//! Asks for another frame while something changes, and for none when nothing does.
+
+use std::time::Duration;
+
+use bevy::{
+    asset::AssetEvent,
+    ecs::prelude::*,
+    image::Image,
+    transform::components::Transform,
+    window::RequestRedraw,
+    winit::{UpdateMode, WinitSettings},
+};
+
+use super::WindowView;
+use crate::{
+    panel::state::{PictureArea, Session},
+    render::{entities::CurrentScene, live::LiveShaders, plugin::ShownTerms, trial::Bench, view::Drawing},
+};
+
+/// The longest sleep of the window when nothing happens; it wakes for input at once.
+const SLEEP: Duration = Duration::from_secs(3600);
+/// Frames that are drawn after the last change: the panels lay themselves out anew in the first and
+/// settle in the second.
+pub(super) const SETTLING_FRAMES: u32 = 3;
+
+/// The window sleeps when nothing happens.
+pub(super) fn sleepy() -> WinitSettings {
+    WinitSettings {
+        focused_mode: UpdateMode::reactive(SLEEP),
+        unfocused_mode: UpdateMode::reactive_low_power(SLEEP),
+    }
+}
+
+/// Frames that are still to be drawn because something changed.
+#[derive(Resource)]
+pub(super) struct Settling(u32);
+
+impl Default for Settling {
+    fn default() -> Self {
+        Self(10)
+    }
+}
+
+impl Settling {
+    /// Something changed: at least so many frames are drawn.
+    pub(super) fn draw(&mut self, frames: u32) {
+        self.0 = self.0.max(frames);
+    }
+
+    /// True if another frame follows at once.
+    pub(super) fn goes_on(&self) -> bool {
+        self.0 > 0
+    }
+}
+
+/// Asks for another frame while something changes.
+pub(super) fn redraw(
+    session: Res<Session>,
+    area: Res<PictureArea>,
+    scene: Res<CurrentScene>,
+    terms: Res<ShownTerms>,
+    live: Res<LiveShaders>,
+    bench: Res<Bench>,
+    cameras: Query<&Transform, With<WindowView>>,
+    drawings: Query<&Drawing>,
+    mut textures: MessageReader<AssetEvent<Image>>,
+    mut seen_from: Local<Option<Transform>>,
+    mut settling: ResMut<Settling>,
+    mut requests: MessageWriter<RequestRedraw>,
+) {
+    // New letters reach the GPU one frame after they are asked for.
+    let letters = textures.read().count() > 0;
+    let camera = cameras.iter().next().copied();
+    let moved = std::mem::replace(&mut *seen_from, camera) != camera;
+    // An edit of the panels reaches the scene in the next frame.
+    let changed = session.is_changed() || area.is_changed() || scene.is_changed() || terms.is_changed();
+    // Problems are told after a while, and what is not on the picture is tried one in a frame.
+    let busy = live.is_busy() && !bench.is_waiting() && !live.is_reading();
+    if letters || moved || changed || busy {
+        settling.draw(SETTLING_FRAMES);
+    }
+    if drawings.iter().any(|drawing| drawing.draws() && !drawing.is_done()) {
+        settling.draw(1);
+    }
+    if settling.goes_on() {
+        settling.0 -= 1;
+        requests.write(RequestRedraw);
+    }
+}
