@@ -17,7 +17,7 @@ use crate::{
 pub enum Edit {
     /// The name of the scene; empty for none.
     SceneName(String),
-    /// What the scene shows; empty for none.
+    /// The description of the scene; empty for none.
     SceneDescription(String),
     /// The extent of the room.
     SceneSize(SceneSize),
@@ -44,9 +44,9 @@ pub enum LightField {
     Enabled(bool),
     /// The type.
     Type(String),
-    /// Where it stands.
+    /// The position.
     Position(Vec3),
-    /// Where it shines.
+    /// The direction of its light.
     Direction(Vec3),
     /// Colour, instead of a colour temperature.
     Colour([u8; 3]),
@@ -69,17 +69,17 @@ pub enum ObjectField {
     Visible(bool),
     /// The type.
     Type(String),
-    /// Where its centre is.
+    /// Position of the centre.
     Position(Vec3),
     /// Largest extent.
     Size(f32),
     /// Euler angles XYZ, degrees.
     Rotation(Vec3),
-    /// How finely it is cut; `None` for the default of the type.
+    /// The tessellation; `None` for the default of the type.
     Tessellation(Option<u32>),
-    /// Its own reflection model; `None` for the scene's.
+    /// The override of the reflection model; `None` for the scene's.
     Model(Option<String>),
-    /// Its own shading model; `None` for the scene's.
+    /// The override of the shading model; `None` for the scene's.
     ShadingModel(Option<String>),
     /// A parameter of the material.
     Material(&'static str, Value),
@@ -87,13 +87,13 @@ pub enum ObjectField {
     Preset(Vec<(&'static str, Value)>),
 }
 
-/// A text as a name; nothing is none.
+/// A text as a name; `None` if it is blank.
 fn named(text: &str) -> Option<String> {
     Some(text.trim().to_owned()).filter(|text| !text.is_empty())
 }
 
 impl LightField {
-    /// The words for it in the name of a step.
+    /// Its name within that of a step.
     fn label(&self, light: &Light, registry: &Registry) -> String {
         match self {
             Self::Name(_) => "Name",
@@ -116,7 +116,7 @@ impl LightField {
     }
 
     fn put(self, light: &mut Light, registry: &Registry) {
-        // A field that is not given has the value that it has when the file is read again.
+        // A field that is absent gets the value that it has when the file is read again.
         match self {
             Self::Name(name) => light.name = named(&name),
             Self::Enabled(on) => light.enabled = on,
@@ -139,7 +139,7 @@ impl LightField {
 }
 
 impl ObjectField {
-    /// The words for it in the name of a step.
+    /// Its name within that of a step.
     fn label(&self, registry: &Registry) -> String {
         match self {
             Self::Name(_) => "Name",
@@ -163,7 +163,7 @@ impl ObjectField {
             Self::Name(name) => o.name = named(&name),
             Self::Visible(on) => o.visible = on,
             Self::Type(id) => {
-                // The number counts something else in each type.
+                // Each type counts something else.
                 o.tessellation = None;
                 o.object_type = id;
             }
@@ -198,7 +198,7 @@ impl Document {
         name_of(&self.scene, part, registry)
     }
 
-    /// Makes a change, if the rules of scenes allow it. `selection` is what is selected now.
+    /// Makes a change, if the rules of scenes allow it. `selection` is the present one.
     ///
     /// # Errors
     /// Why it is refused; the scene stays as it is.
@@ -256,7 +256,7 @@ impl Document {
         Ok(())
     }
 
-    /// Makes a light one of another type. What the type needs and the light lacks is `position` and `direction`.
+    /// Changes the type of a light. `position` and `direction` are for types that need them.
     pub fn change_light_type(
         &mut self,
         i: usize,
@@ -276,7 +276,7 @@ impl Document {
         });
     }
 
-    /// Adds a light at a place in the list. `verb` says how: "Add", "Duplicate".
+    /// Inserts a light into the list. `verb` begins the name of the step: "Add", "Duplicate".
     pub fn insert_light(
         &mut self,
         i: usize,
@@ -293,7 +293,7 @@ impl Document {
         });
     }
 
-    /// Adds an object at a place in the list.
+    /// Inserts an object into the list.
     pub fn insert_object(
         &mut self,
         i: usize,
@@ -343,8 +343,8 @@ impl Document {
         });
     }
 
-    /// Changes which parts there are, or of which types: those that stay keep their names. `change` does the same to
-    /// scene, ids and names; a part without a name there is new.
+    /// Changes the lists of parts, or their types; parts that stay keep their names. `change` does the same to scene,
+    /// ids and names; a part without a name there is new.
     fn change_parts(
         &mut self,
         name: String,
@@ -353,10 +353,9 @@ impl Document {
         change: impl FnOnce(&mut Self, &mut Names),
     ) {
         let mut names = Names::of(&self.scene, registry);
-        let (mut old, ids) = (self.scene.clone(), self.ids.clone());
-        change(self, &mut names);
-        names.keep(&mut self.scene, registry);
-        let patch = super::Patch::between((&mut old, &ids), (&mut self.scene, &self.ids));
-        self.history.record(name, self.gesture, patch, selection);
+        self.step(name, Extent::All, selection, |document| {
+            change(document, &mut names);
+            names.keep(&mut document.scene, registry);
+        });
     }
 }

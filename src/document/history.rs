@@ -2,12 +2,14 @@
 //!
 //! A step holds what it changed and nothing else, so that moving one of ten thousand objects costs one object.
 
-use super::{PartId, Selection};
+use std::ops::Range;
+
+use super::{Extent, PartId, Selection};
 use crate::scene::{Light, Object, Scene};
 
-/// As many steps are kept; the oldest give way.
+/// The most steps that are kept; the oldest are dropped.
 const MOST_STEPS: usize = 500;
-/// As many lights and objects are kept in all steps together, so that memory is bounded.
+/// The most lights and objects in all steps together, so that memory is bounded.
 const MOST_PARTS: usize = 200_000;
 
 /// The lights and objects by id, in the order of the scene.
@@ -15,6 +17,18 @@ const MOST_PARTS: usize = 200_000;
 pub(super) struct Ids {
     pub(super) lights: Vec<PartId>,
     pub(super) objects: Vec<PartId>,
+}
+
+/// The stretches in which two lists of these lengths differ, without their common beginning and end. `same` compares
+/// an entry of the first with one of the second.
+pub(crate) fn difference(
+    [old, new]: [usize; 2],
+    mut same: impl FnMut(usize, usize) -> bool,
+) -> [Range<usize>; 2] {
+    let shorter = old.min(new);
+    let start = (0..shorter).take_while(|i| same(*i, *i)).count();
+    let end = (0..shorter - start).take_while(|i| same(old - 1 - i, new - 1 - i)).count();
+    [start..old - end, start..new - end]
 }
 
 /// A stretch of a list, before and after.
@@ -29,17 +43,20 @@ impl<T: Clone + PartialEq> Splice<T> {
     /// The difference between two versions of a list, without their common beginning and end.
     fn between(old: (&[T], &[PartId]), new: (&[T], &[PartId])) -> Option<Self> {
         let same = |i: usize, j: usize| old.1[i] == new.1[j] && old.0[i] == new.0[j];
-        let shorter = old.0.len().min(new.0.len());
-        let at = (0..shorter).take_while(|i| same(*i, *i)).count();
-        let (m, n) = (old.0.len(), new.0.len());
-        let end = (0..shorter - at).take_while(|i| same(m - 1 - i, n - 1 - i)).count();
-        if at == m && at == n {
+        let [gone, come] = difference([old.0.len(), new.0.len()], same);
+        if gone.is_empty() && come.is_empty() {
             return None;
         }
-        let stretch = |(parts, ids): (&[T], &[PartId]), to: usize| {
-            (at..to).map(|i| (ids[i], parts[i].clone())).collect::<Vec<_>>()
+        let at = gone.start;
+        let stretch = |(parts, ids): (&[T], &[PartId]), range: Range<usize>| {
+            range.map(|i| (ids[i], parts[i].clone())).collect::<Vec<_>>()
         };
-        Some(Self { at, old: stretch(old, m - end), new: stretch(new, n - end) })
+        Some(Self { at, old: stretch(old, gone), new: stretch(new, come) })
+    }
+
+    /// The difference between two versions of one part.
+    fn of_one(at: usize, id: PartId, old: T, new: T) -> Option<Self> {
+        (old != new).then(|| Self { at, old: vec![(id, old)], new: vec![(id, new)] })
     }
 
     fn put(&self, parts: &mut Vec<T>, ids: &mut Vec<PartId>, back: bool) {
@@ -53,22 +70,44 @@ impl<T: Clone + PartialEq> Splice<T> {
     fn parts(&self) -> usize {
         self.old.len() + self.new.len()
     }
+
+    /// True if it gives one part another value.
+    fn is_of_one(&self) -> bool {
+        (self.old.len(), self.new.len()) == (1, 1)
+    }
 }
 
 /// Everything of a scene but its lights and objects.
-pub(super) fn rest_of(scene: &mut Scene) -> Scene {
-    let lists = (std::mem::take(&mut scene.lights), std::mem::take(&mut scene.objects));
-    let rest = scene.clone();
-    (scene.lights, scene.objects) = lists;
-    rest
+pub(super) fn rest_of(scene: &Scene) -> Scene {
+    let Scene { name, description, scene_size, reflection_model, shading_model, observer, display, .. } =
+        scene;
+    Scene {
+        name: name.clone(),
+        description: description.clone(),
+        scene_size: *scene_size,
+        reflection_model: reflection_model.clone(),
+        shading_model: shading_model.clone(),
+        lights: Vec::new(),
+        observer: *observer,
+        objects: Vec::new(),
+        display: *display,
+    }
 }
 
-/// The difference between two versions of a scene.
+/// Makes everything but lights and objects equal to that of another scene.
+pub(super) fn copy_rest(from: &Scene, to: &mut Scene) {
+    let lists = (std::mem::take(&mut to.lights), std::mem::take(&mut to.objects));
+    *to = rest_of(from);
+    (to.lights, to.objects) = lists;
+}
+
+/// The difference between two versions of a scene: of lights and objects one stretch each, or single ones in the order
+/// of the scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Patch {
     rest: Option<Box<[Scene; 2]>>,
-    lights: Option<Splice<Light>>,
-    objects: Option<Splice<Object>>,
+    lights: Vec<Splice<Light>>,
+    objects: Vec<Splice<Object>>,
 }
 
 impl Patch {
@@ -80,20 +119,19 @@ impl Patch {
 
     /// The difference between two versions of one light.
     pub(super) fn of_light(at: usize, id: PartId, old: Light, new: Light) -> Self {
-        let lights = (old != new).then(|| Splice { at, old: vec![(id, old)], new: vec![(id, new)] });
-        Self { lights, ..Self::default() }
+        Self { lights: Splice::of_one(at, id, old, new).into_iter().collect(), ..Self::default() }
     }
 
     /// The difference between two versions of one object.
     pub(super) fn of_object(at: usize, id: PartId, old: Object, new: Object) -> Self {
-        let objects = (old != new).then(|| Splice { at, old: vec![(id, old)], new: vec![(id, new)] });
-        Self { objects, ..Self::default() }
+        Self { objects: Splice::of_one(at, id, old, new).into_iter().collect(), ..Self::default() }
     }
 
     /// The difference between any two versions.
-    pub(super) fn between(old: (&mut Scene, &Ids), new: (&mut Scene, &Ids)) -> Self {
+    pub(super) fn between(old: (&Scene, &Ids), new: (&Scene, &Ids)) -> Self {
         let lights = Splice::between((&old.0.lights, &old.1.lights), (&new.0.lights, &new.1.lights));
         let objects = Splice::between((&old.0.objects, &old.1.objects), (&new.0.objects, &new.1.objects));
+        let (lights, objects) = (lights.into_iter().collect(), objects.into_iter().collect());
         Self { lights, objects, ..Self::of_rest(rest_of(old.0), rest_of(new.0)) }
     }
 
@@ -103,43 +141,61 @@ impl Patch {
 
     fn put(&self, scene: &mut Scene, ids: &mut Ids, back: bool) {
         if let Some(versions) = &self.rest {
-            let lists = (std::mem::take(&mut scene.lights), std::mem::take(&mut scene.objects));
-            *scene = versions[usize::from(!back)].clone();
-            (scene.lights, scene.objects) = lists;
+            copy_rest(&versions[usize::from(!back)], scene);
         }
-        if let Some(splice) = &self.lights {
-            splice.put(&mut scene.lights, &mut ids.lights, back);
-        }
-        if let Some(splice) = &self.objects {
-            splice.put(&mut scene.objects, &mut ids.objects, back);
+        self.lights.iter().for_each(|splice| splice.put(&mut scene.lights, &mut ids.lights, back));
+        self.objects.iter().for_each(|splice| splice.put(&mut scene.objects, &mut ids.objects, back));
+    }
+
+    /// The part that it changes.
+    fn extent(&self) -> Extent {
+        match (&self.rest, &self.lights[..], &self.objects[..]) {
+            (Some(_), [], []) => Extent::Rest,
+            (None, [one], []) if one.is_of_one() => Extent::Light(one.at),
+            (None, [], [one]) if one.is_of_one() => Extent::Object(one.at),
+            _ => Extent::All,
         }
     }
 
     fn parts(&self) -> usize {
-        self.lights.as_ref().map_or(0, Splice::parts) + self.objects.as_ref().map_or(0, Splice::parts)
+        self.lights.iter().map(Splice::parts).sum::<usize>()
+            + self.objects.iter().map(Splice::parts).sum::<usize>()
     }
 
-    /// This change with another one behind it, if both are of the same place.
-    fn with(&self, later: &Self) -> Option<Self> {
-        let rest = match (&self.rest, &later.rest) {
-            (Some(a), Some(b)) => (a[0] != b[1]).then(|| Box::new([a[0].clone(), b[1].clone()])),
-            (None, None) => None,
-            _ => return None,
+    /// Makes this change and a later one a single change, which may be none. Hands the later one back if that is
+    /// impossible: both move parts, to different places.
+    pub(super) fn join(&mut self, later: Self) -> Result<(), Self> {
+        if !(joinable(&self.lights, &later.lights) && joinable(&self.objects, &later.objects)) {
+            return Err(later);
+        }
+        self.rest = match (self.rest.take(), later.rest) {
+            (Some(a), Some(b)) => {
+                let ([old, _], [_, new]) = (*a, *b);
+                (old != new).then(|| Box::new([old, new]))
+            }
+            (a, b) => a.or(b),
         };
-        let (lights, objects) =
-            (joined(&self.lights, &later.lights)?, joined(&self.objects, &later.objects)?);
-        Some(Self { rest, lights, objects })
+        join(&mut self.lights, later.lights);
+        join(&mut self.objects, later.objects);
+        Ok(())
     }
 }
 
-/// Two changes of one stretch as one, which may be none; outer `None` if they are of different stretches.
-fn joined<T: Clone + PartialEq>(a: &Option<Splice<T>>, b: &Option<Splice<T>>) -> Option<Option<Splice<T>>> {
+fn joinable<T: Clone + PartialEq>(a: &[Splice<T>], b: &[Splice<T>]) -> bool {
     match (a, b) {
-        (Some(a), Some(b)) if a.at == b.at && a.new.len() == b.old.len() => {
-            Some((a.old != b.new).then(|| Splice { at: a.at, old: a.old.clone(), new: b.new.clone() }))
+        ([], _) | (_, []) => true,
+        ([a], [b]) if a.at == b.at && a.new.len() == b.old.len() => true,
+        _ => a.iter().chain(b).all(Splice::is_of_one),
+    }
+}
+
+fn join<T: Clone + PartialEq>(a: &mut Vec<Splice<T>>, b: Vec<Splice<T>>) {
+    for later in b {
+        match a.binary_search_by_key(&later.at, |splice| splice.at) {
+            Ok(i) if a[i].old == later.new => drop(a.remove(i)),
+            Ok(i) => a[i].new = later.new,
+            Err(i) => a.insert(i, later),
         }
-        (None, None) => Some(None),
-        _ => None,
     }
 }
 
@@ -168,17 +224,16 @@ impl History {
             return;
         }
         self.steps.truncate(self.done);
-        let mut step = Step { name, gesture, patch, before: selection, after: selection };
-        if let Some(last) = self.steps.last()
-            && last.name == step.name
-            && last.gesture == gesture
-            && let Some(patch) = last.patch.with(&step.patch)
-        {
-            step = Step { patch, before: last.before, ..step };
-            self.steps.pop();
-        }
-        if !step.patch.is_empty() {
-            self.steps.push(step);
+        let joined = match self.steps.last_mut() {
+            Some(last) if last.name == name && last.gesture == gesture => {
+                last.patch.join(patch).map(|()| last.after = selection)
+            }
+            _ => Err(patch),
+        };
+        match joined {
+            Ok(()) if self.steps.last().is_some_and(|step| step.patch.is_empty()) => drop(self.steps.pop()),
+            Ok(()) => {}
+            Err(patch) => self.steps.push(Step { name, gesture, patch, before: selection, after: selection }),
         }
         let mut parts: usize = self.steps.iter().map(|step| step.patch.parts()).sum();
         while self.steps.len() > 1 && (self.steps.len() > MOST_STEPS || parts > MOST_PARTS) {
@@ -187,7 +242,7 @@ impl History {
         self.done = self.steps.len();
     }
 
-    /// Calls the last step by a name that was not known before it.
+    /// Names the last step, where the name follows from the change.
     pub(super) fn rename_last(&mut self, name: String) {
         if let Some(step) = self.steps.last_mut() {
             step.name = name;
@@ -201,20 +256,20 @@ impl History {
         }
     }
 
-    /// Takes the last step back. Returns its name and the selection before it.
-    pub(super) fn undo(&mut self, scene: &mut Scene, ids: &mut Ids) -> Option<(&str, Selection)> {
+    /// Undoes the last step. Returns its name, the selection before it, and the part that it changed.
+    pub(super) fn undo(&mut self, scene: &mut Scene, ids: &mut Ids) -> Option<(String, Selection, Extent)> {
         let step = self.steps.get(self.done.checked_sub(1)?)?;
         step.patch.put(scene, ids, true);
         self.done -= 1;
-        Some((&step.name, step.before))
+        Some((step.name.clone(), step.before, step.patch.extent()))
     }
 
-    /// Does the step again that was taken back last. Returns its name and the selection after it.
-    pub(super) fn redo(&mut self, scene: &mut Scene, ids: &mut Ids) -> Option<(&str, Selection)> {
+    /// Redoes the step that was undone last. Returns its name, the selection after it, and the part that it changed.
+    pub(super) fn redo(&mut self, scene: &mut Scene, ids: &mut Ids) -> Option<(String, Selection, Extent)> {
         let step = self.steps.get(self.done)?;
         step.patch.put(scene, ids, false);
         self.done += 1;
-        Some((&step.name, step.after))
+        Some((step.name.clone(), step.after, step.patch.extent()))
     }
 
     pub(super) fn names(&self) -> impl ExactSizeIterator<Item = &str> {

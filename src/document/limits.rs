@@ -1,5 +1,5 @@
-//! What the fields of a scene may hold: one place for the widgets, which show the rule while a value
-//! is typed, and for [`Document::edit`](super::Document::edit), which refuses what breaks it.
+//! The legal values of the fields of a scene, in one place for the widgets, which show the rule while a value
+//! is typed, and for [`Document::edit`](super::Document::edit), which refuses values that break it.
 
 use crate::{
     light,
@@ -19,9 +19,9 @@ pub struct Limits {
     pub min: f64,
     /// Largest legal value; infinite when there is none.
     pub max: f64,
-    /// Where the slider begins.
+    /// Lower end of the slider.
     pub slider_min: f64,
-    /// Where the slider ends.
+    /// Upper end of the slider.
     pub slider_max: f64,
     /// True if only whole numbers are legal.
     pub whole: bool,
@@ -70,7 +70,7 @@ impl Limits {
         self.min == f64::from(ABOVE_ZERO)
     }
 
-    /// What is legal, as the end of "must be …".
+    /// The rule, as the end of "must be …".
     #[must_use]
     pub fn rule(&self) -> String {
         let what = if self.whole { "a whole number " } else { "" };
@@ -141,7 +141,7 @@ pub fn object_size(size: SceneSize) -> Limits {
     Limits::above_zero(f64::from(check::MAX_SIZE)).slider(0.0, f64::from(size.corner().max_element()))
 }
 
-/// How finely an object is cut.
+/// The tessellation of an object.
 #[must_use]
 pub fn tessellation(shape: &shape::Declaration) -> Limits {
     let range = &shape.tessellation;

@@ -1,7 +1,14 @@
-//! The document: the one writer of the scene. Whatever wants to change the scene submits it here, where it is checked,
-//! recorded for undoing, and becomes the new value. Parts have ids that outlive changes of their place in the list.
+//! The document: the one writer of the scene. Every change of the scene is submitted here, checked, and recorded for
+//! undo. Parts have ids that survive changes of their place in the list.
 
-use std::ops::Deref;
+use std::{
+    collections::VecDeque,
+    ops::Deref,
+    sync::{
+        OnceLock,
+        atomic::{AtomicU64, Ordering},
+    },
+};
 
 use crate::{
     registry::Registry,
@@ -15,20 +22,23 @@ pub mod names;
 mod rules;
 
 pub use edit::{Edit, LightField, ObjectField};
+pub(crate) use history::difference;
 use history::{History, Ids, Patch, rest_of};
 
 /// The gesture of all that systems change.
 const SYSTEMS: u64 = u64::MAX;
+/// The most changes that [`Document::changes_since`] looks back.
+const RECENT: usize = 64;
 
-/// A light or an object for as long as the document is open: it keeps its id when others come and go, when it is
-/// removed and comes back by undoing, and when the file is read again.
+/// Identifies a light or an object while the document is open: it keeps its id when others come and go, when undo
+/// brings it back, and when the file is reloaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct PartId(u64);
 
 /// A part of the scene, by its place in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Selection {
-    /// The room and the display: what is there when nothing in particular is selected.
+    /// The room and the display: the selection when no part is selected.
     #[default]
     Room,
     /// The observer.
@@ -39,7 +49,7 @@ pub enum Selection {
     Object(usize),
 }
 
-/// The part of a scene that a change is confined to.
+/// The part of a scene to which a change is confined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// Everything but lights and objects.
@@ -48,11 +58,31 @@ pub enum Extent {
     Light(usize),
     /// One object.
     Object(usize),
-    /// Any of it; which lights and objects there are stays.
+    /// Any of it.
     All,
 }
 
-/// A scene and the way to it.
+impl Extent {
+    /// Makes this part of a scene equal to that of another. Lists of other lengths stay as they are.
+    pub(crate) fn copy(self, from: &Scene, to: &mut Scene) {
+        match self {
+            Self::Rest => history::copy_rest(from, to),
+            Self::Light(i) => {
+                if let (Some(to), Some(from)) = (to.lights.get_mut(i), from.lights.get(i)) {
+                    to.clone_from(from);
+                }
+            }
+            Self::Object(i) => {
+                if let (Some(to), Some(from)) = (to.objects.get_mut(i), from.objects.get(i)) {
+                    to.clone_from(from);
+                }
+            }
+            Self::All => to.clone_from(from),
+        }
+    }
+}
+
+/// A scene and its history.
 ///
 /// It reads as the [`Scene`] that it holds.
 #[derive(Clone, Debug)]
@@ -63,8 +93,24 @@ pub struct Document {
     next: u64,
     /// The scene as it is in the file.
     saved: Scene,
+    /// True if the two differ; unset until it is needed.
+    differs: OnceLock<bool>,
     history: History,
     gesture: u64,
+    revision: Revision,
+    /// The last changes: the revision before each, and the part that it changed.
+    recent: VecDeque<(Revision, Extent)>,
+}
+
+/// The number of a value of a document. No two values have the same, whichever documents they are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Revision(u64);
+
+impl Revision {
+    fn next() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
 }
 
 impl Deref for Document {
@@ -90,8 +136,11 @@ impl Document {
             scene,
             ids: Ids::default(),
             next: 0,
+            differs: OnceLock::new(),
             history: History::default(),
             gesture: 0,
+            revision: Revision::next(),
+            recent: VecDeque::new(),
         };
         document.ids.lights = (0..document.scene.lights.len()).map(|_| document.next_id()).collect();
         document.ids.objects = (0..document.scene.objects.len()).map(|_| document.next_id()).collect();
@@ -118,17 +167,46 @@ impl Document {
     /// True if the scene is not as it is in the file.
     #[must_use]
     pub fn differs(&self) -> bool {
-        self.scene != self.saved
+        *self.differs.get_or_init(|| self.scene != self.saved)
+    }
+
+    /// The number of the present value: another one as soon as anything changes.
+    #[must_use]
+    pub fn revision(&self) -> Revision {
+        self.revision
+    }
+
+    /// The parts that may have changed since a revision; `None` if that may be anything.
+    #[must_use]
+    pub fn changes_since(&self, revision: Revision) -> Option<Vec<Extent>> {
+        if revision == self.revision {
+            return Some(Vec::new());
+        }
+        let first = self.recent.iter().position(|(before, _)| *before == revision)?;
+        let parts: Vec<_> = self.recent.range(first..).map(|(_, part)| *part).collect();
+        (!parts.contains(&Extent::All)).then_some(parts)
+    }
+
+    /// A part of the scene has another value.
+    fn touch(&mut self, part: Extent) {
+        if self.recent.len() == RECENT {
+            self.recent.pop_front();
+        }
+        self.recent.push_back((self.revision, part));
+        self.revision = Revision::next();
+        self.differs.take();
     }
 
     /// The scene was written to the file.
     pub fn mark_saved(&mut self) {
         self.saved = self.scene.clone();
+        self.differs.take();
     }
 
     /// The file holds another scene than was known.
     pub fn set_saved(&mut self, scene: Scene) {
         self.saved = scene;
+        self.differs.take();
     }
 
     /// The id of an object, by its index.
@@ -164,43 +242,48 @@ impl Document {
         selection: Selection,
         change: impl FnOnce(&mut Scene),
     ) {
-        let patch = match extent {
+        self.step(name.into(), extent, selection, |document| change(&mut document.scene));
+    }
+
+    /// Changes a part of the document, as one step.
+    fn step(&mut self, name: String, part: Extent, selection: Selection, change: impl FnOnce(&mut Self)) {
+        let patch = self.patch(part, change);
+        self.history.record(name, self.gesture, patch, selection);
+    }
+
+    /// Changes a part of the document. Returns the difference.
+    fn patch(&mut self, part: Extent, change: impl FnOnce(&mut Self)) -> Patch {
+        let patch = match part {
             Extent::Rest => {
-                let old = rest_of(&mut self.scene);
-                change(&mut self.scene);
-                Patch::of_rest(old, rest_of(&mut self.scene))
+                let old = rest_of(&self.scene);
+                change(self);
+                Patch::of_rest(old, rest_of(&self.scene))
             }
             Extent::Light(i) => {
-                let Some((old, id)) = self.scene.lights.get(i).cloned().zip(self.light_id(i)) else { return };
-                change(&mut self.scene);
-                let new = self.scene.lights.get(i).cloned().unwrap_or_else(|| old.clone());
-                Patch::of_light(i, id, old, new)
+                let Some((old, id)) = self.scene.lights.get(i).cloned().zip(self.light_id(i)) else {
+                    return Patch::default();
+                };
+                change(self);
+                Patch::of_light(i, id, old, self.scene.lights[i].clone())
             }
             Extent::Object(i) => {
                 let Some((old, id)) = self.scene.objects.get(i).cloned().zip(self.object_id(i)) else {
-                    return;
+                    return Patch::default();
                 };
-                change(&mut self.scene);
-                let new = self.scene.objects.get(i).cloned().unwrap_or_else(|| old.clone());
-                Patch::of_object(i, id, old, new)
+                change(self);
+                Patch::of_object(i, id, old, self.scene.objects[i].clone())
             }
-            Extent::All => return self.change_list(name, selection, |scene, _| change(scene)),
+            Extent::All => {
+                let (old, ids) = (self.scene.clone(), self.ids.clone());
+                change(self);
+                self.give_ids();
+                Patch::between((&old, &ids), (&self.scene, &self.ids))
+            }
         };
-        self.history.record(name.into(), self.gesture, patch, selection);
-    }
-
-    /// Changes anything, ids included.
-    fn change_list(
-        &mut self,
-        name: impl Into<String>,
-        selection: Selection,
-        change: impl FnOnce(&mut Scene, &mut Ids),
-    ) {
-        let (mut old, ids) = (self.scene.clone(), self.ids.clone());
-        change(&mut self.scene, &mut self.ids);
-        self.give_ids();
-        let patch = Patch::between((&mut old, &ids), (&mut self.scene, &self.ids));
-        self.history.record(name.into(), self.gesture, patch, selection);
+        if !patch.is_empty() {
+            self.touch(part);
+        }
+        patch
     }
 
     /// Every part has an id, whatever a change did to the lists.
@@ -217,14 +300,15 @@ impl Document {
         }
     }
 
-    /// Changes values without a step: what the models that are known make necessary, and what comes back with them.
+    /// Changes values without a step, as models that come and go require.
     pub fn amend(&mut self, change: impl FnOnce(&mut Scene)) {
         change(&mut self.scene);
         self.give_ids();
+        self.touch(Extent::All);
     }
 
-    /// Another version of the scene takes the place of this one, as one step: parts that are equal, or have the same
-    /// name, or else the same place, keep their ids.
+    /// Replaces the scene by another version of it, as one step: parts that are equal, or have the same name, or else the
+    /// same place, keep their ids.
     pub fn replace(&mut self, name: impl Into<String>, selection: Selection, scene: Scene) {
         let lights =
             self.matched(&self.scene.lights, &scene.lights, &self.ids.lights, |l: &Light| l.name.as_deref());
@@ -234,40 +318,62 @@ impl Document {
             lights: lights.into_iter().map(|id| id.unwrap_or_else(|| self.next_id())).collect(),
             objects: objects.into_iter().map(|id| id.unwrap_or_else(|| self.next_id())).collect(),
         };
-        self.change_list(name, selection, |current, known| {
-            *current = scene;
-            *known = ids;
+        self.step(name.into(), Extent::All, selection, |document| {
+            (document.scene, document.ids) = (scene, ids);
         });
     }
 
-    /// Takes over what a system changed, if the rules of scenes allow it. All such changes that follow each other are
-    /// one step: a system may change something in every frame.
+    /// Adopts what a system changed in these parts, if the rules of scenes allow it. All such changes that follow each
+    /// other are one step: a system may change something in every frame.
     ///
     /// # Errors
     /// Why it is refused; the scene stays as it is.
-    pub fn submit(&mut self, scene: Scene, selection: Selection, registry: &Registry) -> Result<(), String> {
-        if let Some(problem) = self.problem_in(&scene, registry) {
+    pub fn submit(
+        &mut self,
+        scene: &Scene,
+        parts: &[Extent],
+        selection: Selection,
+        registry: &Registry,
+    ) -> Result<(), String> {
+        if let Some(problem) = self.problem_in(scene, parts, registry) {
             return Err(format!("A change of a component was refused: {problem}."));
         }
+        const NAME: &str = "Change by a system";
         let gesture = std::mem::replace(&mut self.gesture, SYSTEMS);
-        self.replace("Change by a system", selection, scene);
+        if parts.contains(&Extent::All) {
+            self.replace(NAME, selection, scene.clone());
+        } else {
+            let mut all = Patch::default();
+            for part in parts {
+                // A part that is changed twice is one of one place.
+                let _ = all.join(self.patch(*part, |document| part.copy(scene, &mut document.scene)));
+            }
+            self.history.record(NAME.to_owned(), self.gesture, all, selection);
+        }
         self.gesture = gesture;
         Ok(())
     }
 
-    /// The first problem of the parts in which a scene differs from this one.
-    fn problem_in(&self, scene: &Scene, registry: &Registry) -> Option<Problem> {
+    /// The first problem of the parts in which a scene may differ from this one.
+    fn problem_in(&self, scene: &Scene, parts: &[Extent], registry: &Registry) -> Option<Problem> {
         if (scene.lights.len(), scene.objects.len()) != (self.lights.len(), self.objects.len()) {
             return check::scene(scene, registry).into_iter().next();
         }
-        let lights = (0..scene.lights.len()).filter(|i| scene.lights[*i] != self.lights[*i]);
-        let objects = (0..scene.objects.len()).filter(|i| scene.objects[*i] != self.objects[*i]);
-        let observer = (scene.observer != self.observer).then(|| check::observer(scene, registry));
-        lights
-            .flat_map(|i| check::light(scene, i, registry))
-            .chain(objects.flat_map(|i| check::object(scene, i, registry)))
-            .chain(observer.into_iter().flatten())
-            .next()
+        let problems = |part: &Extent| match *part {
+            Extent::Rest if scene.observer == self.observer => Vec::new(),
+            Extent::Rest => check::observer(scene, registry),
+            Extent::Light(i) if scene.lights.get(i) == self.lights.get(i) => Vec::new(),
+            Extent::Light(i) => check::light(scene, i, registry),
+            Extent::Object(i) if scene.objects.get(i) == self.objects.get(i) => Vec::new(),
+            Extent::Object(i) => check::object(scene, i, registry),
+            Extent::All => Vec::new(),
+        };
+        if !parts.contains(&Extent::All) {
+            return parts.iter().flat_map(problems).next();
+        }
+        let lights = (0..scene.lights.len()).map(Extent::Light);
+        let objects = (0..scene.objects.len()).map(Extent::Object);
+        lights.chain(objects).chain([Extent::Rest]).flat_map(|part| problems(&part)).next()
     }
 
     /// The ids of the parts of a new list that are parts of the old one.
@@ -278,25 +384,21 @@ impl Document {
         ids: &[PartId],
         name: impl Fn(&T) -> Option<&str>,
     ) -> Vec<Option<PartId>> {
-        let shorter = old.len().min(new.len());
-        let start = (0..shorter).take_while(|i| old[*i] == new[*i]).count();
-        let end =
-            (0..shorter - start).take_while(|i| old[old.len() - 1 - i] == new[new.len() - 1 - i]).count();
+        let [gone, middle] = difference([old.len(), new.len()], |i, j| old[i] == new[j]);
         let mut found = vec![None; new.len()];
         let mut free: Vec<bool> = vec![false; old.len()];
-        free[start..old.len() - end].fill(true);
-        (0..start).for_each(|i| found[i] = Some(ids[i]));
-        (1..=end).for_each(|i| found[new.len() - i] = Some(ids[old.len() - i]));
-        let middle = start..new.len() - end;
+        free[gone.clone()].fill(true);
+        (0..gone.start).for_each(|i| found[i] = Some(ids[i]));
+        (middle.end..new.len()).zip(gone.end..old.len()).for_each(|(i, j)| found[i] = Some(ids[j]));
         // In a file of thousands of new parts, place decides.
         const MOST: usize = 2000;
-        let few = middle.len() <= MOST && old.len() - end - start <= MOST;
+        let few = middle.len() <= MOST && gone.len() <= MOST;
         let same: [&dyn Fn(&T, &T) -> bool; 2] =
             [&|a, b| a == b, &|a, b| name(a).is_some() && name(a) == name(b)];
         for same in same.into_iter().filter(|_| few) {
             for i in middle.clone() {
                 if found[i].is_none()
-                    && let Some(j) = (start..old.len() - end).find(|j| free[*j] && same(&old[*j], &new[i]))
+                    && let Some(j) = gone.clone().find(|j| free[*j] && same(&old[*j], &new[i]))
                 {
                     (found[i], free[j]) = (Some(ids[j]), false);
                 }
@@ -312,7 +414,7 @@ impl Document {
 
     // ── steps ──
 
-    /// Everything up to here was one gesture: steps of one name are joined within a gesture only.
+    /// Ends a gesture. Only within a gesture are steps of one name joined.
     pub fn end_gesture(&mut self) {
         self.gesture += 1;
     }
@@ -323,23 +425,25 @@ impl Document {
         self.history.gesture() == Some(self.gesture)
     }
 
-    /// The selection after the last step is this.
+    /// Sets the selection after the last step.
     pub fn selected(&mut self, selection: Selection) {
         self.history.selected(selection);
     }
 
-    /// Takes the last step back. Returns its name, and what was selected before it.
+    /// Undoes the last step. Returns its name and the selection before it.
     pub fn undo(&mut self) -> Option<(String, Selection)> {
         self.end_gesture();
-        let (name, selection) = self.history.undo(&mut self.scene, &mut self.ids)?;
-        Some((name.to_owned(), selection))
+        let (name, selection, part) = self.history.undo(&mut self.scene, &mut self.ids)?;
+        self.touch(part);
+        Some((name, selection))
     }
 
-    /// Does the step again that was taken back last. Returns its name, and what was selected after it.
+    /// Redoes the step that was undone last. Returns its name and the selection after it.
     pub fn redo(&mut self) -> Option<(String, Selection)> {
         self.end_gesture();
-        let (name, selection) = self.history.redo(&mut self.scene, &mut self.ids)?;
-        Some((name.to_owned(), selection))
+        let (name, selection, part) = self.history.redo(&mut self.scene, &mut self.ids)?;
+        self.touch(part);
+        Some((name, selection))
     }
 
     /// The names of all steps, the oldest first; those from [`done`](Self::done) on are undone.
@@ -347,7 +451,7 @@ impl Document {
         self.history.names()
     }
 
-    /// How many of the steps are done.
+    /// The number of steps that are done.
     #[must_use]
     pub fn done(&self) -> usize {
         self.history.done()

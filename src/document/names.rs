@@ -1,12 +1,12 @@
-//! What the window calls the parts of a scene. A part without a name of its own is called by its type and number, and
-//! keeps that for life: when others come and go, it is written down.
+//! The names of the parts of a scene. A part without a name is called by its type and number, and keeps that name for
+//! life: it is written down when others come and go.
 
 use std::collections::{HashMap, HashSet};
 
 use super::Selection;
 use crate::{registry::Registry, scene::Scene};
 
-/// The name of a part: its own, or its type and its number among its type.
+/// The name of a part, else its type and its number among parts of that type.
 #[must_use]
 pub fn name_of(scene: &Scene, part: Selection, registry: &Registry) -> String {
     match part {

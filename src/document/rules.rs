@@ -16,7 +16,7 @@ impl Document {
         limits::dimension(&self.scene, axis, |part| name_of(&self.scene, part, registry))
     }
 
-    /// True to the rules of scenes, or why an edit is refused; the widgets ask the same limits before.
+    /// Checks an edit against the rules of scenes, with the limits that widgets show.
     pub(super) fn check(&self, edit: &Edit, registry: &Registry) -> Result<(), String> {
         let light = |i: usize| self.scene.lights.get(i).ok_or_else(|| "there is no such light".to_owned());
         let object = |i: usize| self.scene.objects.get(i).ok_or_else(|| "there is no such object".to_owned());
@@ -80,7 +80,13 @@ impl Document {
                 match field {
                     LightField::Name(_) | LightField::Enabled(_) | LightField::Colour(_) => Ok(()),
                     LightField::Type(id) => known(registry.light(id).is_some(), "light type", id),
+                    LightField::Position(_) if declaration.is_some_and(|d| !d.has_position) => {
+                        Err(format!("{} has no position.", name(part)))
+                    }
                     LightField::Position(p) => place(part, *p),
+                    LightField::Direction(_) if declaration.is_some_and(|d| !d.has_direction) => {
+                        Err(format!("{} has no direction.", name(part)))
+                    }
                     LightField::Direction(d) => direction(part, *d),
                     LightField::Intensity(v) => match declaration {
                         Some(d) => legal(format!("{}: the intensity", name(part)), *v, limits::intensity(d)),
@@ -143,7 +149,7 @@ impl Document {
     }
 }
 
-/// Where everything stands that has a place.
+/// The positions of all parts that have one.
 fn places(scene: &Scene) -> impl Iterator<Item = (Selection, Vec3)> + '_ {
     let lights =
         scene.lights.iter().enumerate().filter_map(|(i, l)| Some((Selection::Light(i), l.position?)));
@@ -151,7 +157,7 @@ fn places(scene: &Scene) -> impl Iterator<Item = (Selection, Vec3)> + '_ {
     lights.chain(objects).chain([(Selection::Observer, scene.observer.position)])
 }
 
-/// Which parts must not stand in the same place: lights, objects and the observer exclude each other;
+/// True if two parts must not stand in the same place: lights, objects and the observer exclude each other;
 /// two lights or two objects may share theirs.
 fn may_not_meet(a: Selection, b: Selection) -> bool {
     std::mem::discriminant(&a) != std::mem::discriminant(&b)

@@ -243,6 +243,7 @@ impl Session {
             self.model_slots.take(&scene.reflection_model);
         }
         self.document.set_saved(scene.clone());
+        let before = self.document.revision();
         self.document.replace("Reload from disk", self.selection, scene);
         self.document.end_gesture();
         let selection = match self.selection {
@@ -262,7 +263,9 @@ impl Session {
             self.renaming = None;
         }
         self.selection = selection;
-        self.document.selected(selection);
+        if self.document.revision() != before {
+            self.document.selected(selection);
+        }
         self.disk.recovered = false;
         self.disk.defaulted = defaulted;
     }

@@ -1,7 +1,7 @@
 //! The thread that keeps the copy of a window up to date.
 //!
-//! Whoever asks for something never waits for a disk, and the copy never waits for the window: it is written even
-//! while that hangs in a driver.
+//! Callers never wait for a disk, and the copy never waits for the window: it is written even while the window hangs
+//! in a driver.
 
 use std::{
     io,
@@ -23,9 +23,9 @@ pub struct Keeper(Arc<Shared>);
 
 struct Shared {
     state: Mutex<State>,
-    /// There is something to do.
+    /// Signalled when there is something to do.
     work: Condvar,
-    /// Something was done.
+    /// Signalled when something was done.
     done: Condvar,
 }
 
@@ -40,13 +40,13 @@ struct State {
     settled: u64,
     /// The time of the first change that is not on disk.
     since: Option<Instant>,
-    /// Somebody waits.
+    /// A caller waits.
     urgent: bool,
     /// The copy that is on disk.
     copy: Option<PathBuf>,
     /// The reason why there is none.
     problem: Option<String>,
-    /// The window knows of the problem.
+    /// True if the problem was reported to the window.
     told: bool,
 }
 
@@ -141,8 +141,7 @@ impl Keeper {
         news
     }
 
-    /// Brings the disk up to date now, waits for it no longer than so long, and says what became of the unsaved
-    /// changes.
+    /// Brings the disk up to date now, waits for it at most `within`, and returns the fate of the unsaved changes.
     #[must_use]
     pub fn settle(&self, within: Duration) -> Settled {
         let shared = &self.0;
@@ -219,7 +218,7 @@ impl Shared {
         }
     }
 
-    /// Waits until there is something to do, and somebody waits or enough time has passed.
+    /// Waits until there is something to do, and a caller waits or enough time has passed.
     fn next(&self) -> (u64, Option<Arc<Document>>, Option<Journal>) {
         let mut state = self.lock();
         loop {

@@ -22,7 +22,7 @@ mod store;
 pub use keeper::{Keeper, Settled};
 pub use store::{Journal, Left, MAX_COPIES, Store};
 
-/// The document behind a copy.
+/// Facts about the document of a copy.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct About {

@@ -18,9 +18,9 @@ use crate::{
     },
 };
 
-/// The most copies that are kept; the oldest give way.
+/// The most copies that are kept; the oldest are dropped.
 pub const MAX_COPIES: usize = 20;
-/// The folder of the copies within the user's data.
+/// Name of the folder of the copies within the user's data.
 const FOLDER: &str = "recovery";
 /// The names of the files of a journal.
 const SCENE: &str = "scene.json";
@@ -153,7 +153,7 @@ fn lock(folder: &Path, create: bool) -> io::Result<Option<File>> {
     }
 }
 
-/// Makes the lock of a new journal. It is held before it gets its name: nobody else can have it first.
+/// Makes the lock of a new journal. It is held before it gets its name, so that no other process can hold it first.
 fn first_lock(folder: &Path) -> io::Result<File> {
     let hidden = folder.join(format!(".{LOCK}"));
     let file = OpenOptions::new().read(true).write(true).create_new(true).open(&hidden)?;

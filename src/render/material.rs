@@ -1,7 +1,7 @@
 //! The Material implementation, generic over the model (rule 3): one Material type per model.
 //!
 //! A material holds the table of the parameters of all objects under its model, whose layout follows
-//! from the declaration, the shared buffer of lights, and the composed shader of its model and shading
+//! from the declaration, the shared buffer of lights, and the composed shader of its model and
 //! shading model, which is part of the pipeline key. Each object knows its row of the table by its mesh tag, so
 //! all objects under one model and shading model share one material and are drawn together.
 
@@ -56,7 +56,7 @@ pub struct MaterialInputs {
     pub faces: bool,
 }
 
-/// The material of objects under the model `M`; models from files share [`CustomFile`].
+/// The material of objects under the model `M`; custom models share [`CustomFile`].
 #[derive(Asset, AsBindGroup, Clone, Debug)]
 #[bind_group_data(PipelineKey)]
 pub struct ModelMaterial<M: Clone + 'static> {
@@ -157,7 +157,7 @@ pub struct Attachment {
     pub attach: fn(&mut EntityWorldMut, MaterialInputs),
     /// Takes the material off.
     pub detach: fn(&mut EntityWorldMut),
-    /// Lets go of the materials that a light buffer lit.
+    /// Drops the materials that a light buffer lit.
     pub(super) forget: fn(&mut World, AssetId<ShaderBuffer>),
 }
 
@@ -165,7 +165,7 @@ pub struct Attachment {
 #[derive(Default, Resource)]
 pub struct Attachments {
     by_id: HashMap<&'static str, Attachment>,
-    /// That of all models from files, whose ids come and go.
+    /// That of all custom models, whose ids come and go.
     own: Option<Attachment>,
 }
 
@@ -185,7 +185,7 @@ impl Attachments {
 pub trait MaterialApp {
     /// Makes the Material type of the model `M` known.
     fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self;
-    /// Makes the Material type of all models from files known.
+    /// Makes the Material type of all custom models known.
     fn add_custom_material(&mut self) -> &mut Self;
 }
 

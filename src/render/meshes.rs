@@ -21,7 +21,11 @@ use crate::{
 /// the vertices of each polygon apart for shading models that calculate per polygon. Both are made together, so
 /// that changing the shading model finds its mesh ready.
 #[derive(Default, Resource)]
-pub struct ShapeMeshes(HashMap<(&'static str, u32), MeshPair>);
+pub struct ShapeMeshes {
+    known: HashMap<(&'static str, u32), MeshPair>,
+    /// True if meshes were added since unused ones were last dropped.
+    grown: bool,
+}
 
 #[derive(Clone)]
 pub(super) struct MeshPair {
@@ -37,11 +41,13 @@ impl ShapeMeshes {
         tessellation: u32,
         assets: &mut Assets<Mesh>,
     ) -> MeshPair {
+        let grown = &mut self.grown;
         let make = || {
+            *grown = true;
             let mesh = shape.mesh(tessellation);
             MeshPair { shared: assets.add(shared_mesh(&mesh)), faces: assets.add(face_mesh(&mesh)) }
         };
-        self.0.entry((shape.declaration.id, tessellation)).or_insert_with(make).clone()
+        self.known.entry((shape.declaration.id, tessellation)).or_insert_with(make).clone()
     }
 }
 
@@ -98,10 +104,13 @@ fn arrays(vectors: &[glam::Vec3]) -> Vec<[f32; 3]> {
     vectors.iter().map(|v| v.to_array()).collect()
 }
 
-/// Lets go of meshes that no object has any more: a slider over the tessellation makes hundreds.
+/// Drops meshes that no object uses: a slider over the tessellation makes hundreds.
 pub(super) fn forget_unused_meshes(world: &mut World, registry: &Registry) {
-    /// As many may stay for a change back.
+    /// The most that stay for a change back.
     const SPARE: usize = 16;
+    if !std::mem::take(&mut world.resource_mut::<ShapeMeshes>().grown) {
+        return;
+    }
     let mut query = world.query::<&LitObject>();
     let used: HashSet<_> = query
         .iter(world)
@@ -111,7 +120,7 @@ pub(super) fn forget_unused_meshes(world: &mut World, registry: &Registry) {
         })
         .collect();
     let mut meshes = world.resource_mut::<ShapeMeshes>();
-    if meshes.0.len() > used.len() + SPARE {
-        meshes.0.retain(|key, _| used.contains(key));
+    if meshes.known.len() > used.len() + SPARE {
+        meshes.known.retain(|key, _| used.contains(key));
     }
 }

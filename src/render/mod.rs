@@ -4,6 +4,7 @@
 pub mod camera;
 pub mod capture;
 pub mod entities;
+mod exchange;
 pub mod illumination;
 pub mod live;
 pub mod material;

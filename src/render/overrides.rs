@@ -1,4 +1,4 @@
-//! Views that show the scene otherwise than it says: under another reflection model, with other parameters, in
+//! Views that show the scene differently: under another reflection model, with other parameters, in
 //! another exposure.
 //!
 //! Such a view has a [`Stage`]: a render layer with a stand-in for every object, which has the material of the
@@ -25,7 +25,7 @@ use crate::{
     scene::{Display, MAX_OBJECTS, Object, Scene},
 };
 
-/// What a view shows other than the scene says. Stands beside the camera of the view.
+/// The differences between a view and the scene. Stands beside the camera of the view.
 #[derive(Clone, Component, Debug, Default, PartialEq)]
 pub struct Overrides {
     /// The reflection model of every object.
@@ -73,7 +73,7 @@ impl Overrides {
     }
 }
 
-/// What a view with overrides has of its own. Comes and goes with its [`Overrides`].
+/// The layer, the lights and the stand-ins of a view with overrides. Comes and goes with its [`Overrides`].
 #[derive(Component, Debug)]
 #[component(on_remove = strike)]
 pub struct Stage {
@@ -81,6 +81,8 @@ pub struct Stage {
     pub(super) illumination: Handle<ShaderBuffer>,
     /// By object.
     stand_ins: EntityHashMap<Entity>,
+    /// The [list](SceneEntities::list) of objects that have them.
+    list: Option<u64>,
 }
 
 impl Stage {
@@ -96,7 +98,7 @@ pub struct StandIn {
     pub view: Entity,
 }
 
-/// Gives views with overrides their stages, and takes them from views that have none any more.
+/// Adds stages to views with overrides, and removes them from views without.
 pub(super) fn set_stages(
     new: Query<Entity, (With<Overrides>, Without<Stage>)>,
     done: Query<Entity, (With<Stage>, Without<Overrides>)>,
@@ -119,12 +121,13 @@ pub(super) fn set_stages(
             layer,
             illumination: IlluminationBuffer::without_lights(&mut buffers).0,
             stand_ins: EntityHashMap::default(),
+            list: None,
         };
         commands.entity(view).insert((stage, RenderLayers::from_layers(&[layer, GIZMO_LAYER])));
     }
 }
 
-/// Takes down what only this view needed.
+/// Removes what only this view needed.
 fn strike(mut world: DeferredWorld, context: HookContext) {
     let view = context.entity;
     let Some(stage) = world.get::<Stage>(view) else { return };
@@ -144,10 +147,13 @@ fn strike(mut world: DeferredWorld, context: HookContext) {
 
 /// Makes the stand-ins of a view for objects that have none.
 pub(super) fn stand_ins(world: &mut World, view: Entity) {
-    let Some(mut stage) = world.get_mut::<Stage>(view) else { return };
+    let list = Some(world.resource::<SceneEntities>().list());
+    let Some(mut stage) = world.get_mut::<Stage>(view).filter(|stage| stage.list != list) else { return };
     let (layer, mut known) = (stage.layer, std::mem::take(&mut stage.bypass_change_detection().stand_ins));
-    world.resource_scope(|world, entities: Mut<SceneEntities>| {
+    world.resource_scope(|world, mut entities: Mut<SceneEntities>| {
+        let entities = entities.bypass_change_detection();
         let objects = &entities.objects[..entities.objects.len().min(MAX_OBJECTS)];
+        entities.visits += objects.len() as u64;
         if known.len() > objects.len() {
             known.retain(|_, stand_in| world.get_entity(*stand_in).is_ok());
         }
@@ -166,6 +172,7 @@ pub(super) fn stand_ins(world: &mut World, view: Entity) {
         }
     });
     if let Some(mut stage) = world.get_mut::<Stage>(view) {
-        stage.bypass_change_detection().stand_ins = known;
+        let stage = stage.bypass_change_detection();
+        (stage.stand_ins, stage.list) = (known, list);
     }
 }

@@ -19,7 +19,7 @@ use super::{
     meshes::ShapeMeshes,
     overrides::{Overrides, Stage, set_stages},
     swap::swap,
-    tables::ParameterTables,
+    tables::TablesPlugin,
     view::ViewPlugin,
 };
 use crate::{
@@ -51,7 +51,7 @@ pub enum LabSystems {
     Capture,
 }
 
-/// Which terms of the equation are shown.
+/// The terms of the equation that are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
 pub struct ShownTerms(pub TermSelection);
 
@@ -68,7 +68,6 @@ impl Plugin for ScenePlugin {
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()
             .init_resource::<ShapeMeshes>()
-            .init_resource::<ParameterTables>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
             // Two of our systems that touch the same data must say who comes first.
@@ -101,11 +100,11 @@ impl Plugin for ScenePlugin {
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
             )
-            .add_plugins((LiveShadersPlugin, ViewPlugin));
+            .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin));
     }
 }
 
-/// Writes the lights and how they are shown into the buffers of the views when any of it changed.
+/// Writes lights and display settings into the buffers of the views when any of them changed.
 fn upload_lights(
     scene: Res<CurrentScene>,
     terms: Res<ShownTerms>,

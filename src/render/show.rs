@@ -1,5 +1,4 @@
-//! How views reach the window: their textures are copied to where they are seen, and the panels are drawn over
-//! them in one pass.
+//! Views in the window: their textures are copied to their places, and the panels are drawn over them in one pass.
 
 use bevy::{
     app::{App, Plugin},

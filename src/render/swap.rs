@@ -1,7 +1,7 @@
 //! Exchanging models, shading models, parameters and shapes at run time: the frame after the choice shows the
 //! new one, and no frame is without the object.
 
-use std::cell::LazyCell;
+use std::iter;
 
 use bevy::{
     asset::Assets,
@@ -17,29 +17,29 @@ use super::{
     live::LiveShaders,
     material::{Attachments, MaterialInputs},
     meshes::{ShapeMeshes, forget_unused_meshes},
-    overrides::{Overrides, Stage, stand_ins},
+    overrides::{Overrides, Stage, StandIn, stand_ins},
     tables::{ParameterTables, Row},
 };
 use crate::{
     optics::colour::Encoding,
     reflection::ModelEntry,
     registry::Registry,
-    scene::{MAX_OBJECTS, Object, shines_from_everywhere},
+    scene::{MAX_OBJECTS, Object, Scene, shines_from_everywhere},
     shading,
 };
 
-/// What an object is drawn with at present.
+/// The model, shading model and settings with which an object is drawn.
 #[derive(Clone, Component, Debug, Default, PartialEq)]
 pub struct Drawn {
     model: String,
     shading: String,
     encoding: Encoding,
     everywhere: bool,
-    /// The version of the model: a file that is read again makes another.
+    /// Version of the model; a file that is read again makes another.
     version: u64,
 }
 
-/// An object whose new shader is still being tried: it stays as it is for so long.
+/// An object whose new shader is still being tried: until then it stays as it is.
 #[derive(Clone, Component, Copy, Debug, Default)]
 pub struct AwaitsShader;
 
@@ -62,37 +62,74 @@ struct Pending {
     /// The view with overrides in which it is seen; none for all others.
     view: Option<Entity>,
     object: Entity,
-    /// What is drawn: the object itself, or its stand-in in the view.
+    /// The object itself, or its stand-in in the view.
     drawable: Entity,
     /// The object as the view shows it.
     shown: Object,
     now: Drawn,
 }
 
-/// What changed since the last frame.
-#[derive(Clone, Copy)]
-struct Changed {
-    /// Every row has to be written.
-    all: bool,
-    /// The scene or what is known of models.
-    scene: bool,
+/// The settings that all objects share.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Common {
+    model: String,
+    shading: String,
+    encoding: Encoding,
+    everywhere: bool,
 }
 
-/// Gives every object whose shape, model, shading model or parameters changed its mesh and its material. Exclusive, so that
-/// mesh and material change in one step.
-pub fn swap(world: &mut World) {
+/// Drawables that have never been drawn, or that wait for their shader.
+type Unfinished = (Or<(With<LitObject>, With<StandIn>)>, Or<(Without<Drawn>, With<AwaitsShader>)>);
+
+/// The objects that a frame visits.
+enum Suspects {
+    /// All: a table or a view is another one.
+    All,
+    /// All, to be drawn only if they are to be drawn otherwise.
+    Different,
+    /// Those that changed, by the entities of the objects.
+    Some(Vec<Entity>),
+}
+
+/// Gives every object whose shape, model, shading model or parameters changed its mesh and its material. Exclusive, so
+/// that mesh and material change in one step.
+pub fn swap(
+    world: &mut World,
+    mut last: Local<Option<Common>>,
+    changed: &mut QueryState<Entity, Changed<LitObject>>,
+    unfinished: &mut QueryState<(Entity, Option<(&'static StandIn, &'static ChildOf)>), Unfinished>,
+    views: &mut QueryState<Entity, (With<Stage>, With<Overrides>)>,
+) {
     let objects = world.resource::<SceneEntities>().objects.len().min(MAX_OBJECTS);
-    let changed = Changed {
-        all: world.resource_mut::<ParameterTables>().bypass_change_detection().hold(objects),
-        scene: world.is_resource_changed::<CurrentScene>() || world.is_resource_changed::<Registry>(),
-    };
+    let all = world.resource_mut::<ParameterTables>().bypass_change_detection().hold(objects);
+    let models_changed = world.is_resource_changed::<Registry>();
+    let mut different = models_changed;
+    if models_changed || world.is_resource_changed::<CurrentScene>() || last.is_none() {
+        let now = common(&world.resource::<CurrentScene>().0, world.resource::<Registry>());
+        different |= last.as_ref() != Some(&now);
+        *last = Some(now);
+    }
+    let Some(common) = &*last else { return };
+    let changed: Vec<_> = changed.iter(world).collect();
     let mut pending = Vec::new();
-    find(world, None, changed, &mut pending);
-    let mut views = world.query_filtered::<Entity, (With<Stage>, With<Overrides>)>();
     let views: Vec<_> = views.iter(world).collect();
-    for view in views {
-        stand_ins(world, view);
-        find(world, Some(view), changed, &mut pending);
+    for view in iter::once(None).chain(views.into_iter().map(Some)) {
+        let anew = view.is_some_and(|view| {
+            stand_ins(world, view);
+            world.entity(view).get_ref::<Overrides>().is_some_and(|o| o.is_changed())
+        });
+        let suspects = if all || anew {
+            Suspects::All
+        } else if different {
+            Suspects::Different
+        } else {
+            let waiting = unfinished.iter(world).filter_map(|(entity, stands)| match stands {
+                Some((stands, object)) => (Some(stands.view) == view).then(|| object.parent()),
+                None => view.is_none().then_some(entity),
+            });
+            Suspects::Some(changed.iter().copied().chain(waiting).collect())
+        };
+        find(world, view, common, suspects, &mut pending);
     }
     if pending.is_empty() {
         return;
@@ -113,51 +150,74 @@ pub fn swap(world: &mut World) {
     }
     forget_unused_meshes(world, &registry);
     world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
-        tables.upload(&mut world.resource_mut::<Assets<ShaderBuffer>>());
+        tables.bypass_change_detection().upload(world.resource::<Assets<ShaderBuffer>>());
     });
 }
 
-/// Finds what is drawn anew, in all views without overrides or in one with.
-fn find(world: &mut World, view: Option<Entity>, changed: Changed, pending: &mut Vec<Pending>) {
-    let mut objects = world.query::<Ref<LitObject>>();
-    let mut drawables = world.query::<(Option<&Drawn>, Has<AwaitsShader>)>();
+fn common(scene: &Scene, registry: &Registry) -> Common {
+    Common {
+        model: scene.reflection_model.clone(),
+        shading: scene.shading_model.clone(),
+        encoding: scene.display.encoding,
+        everywhere: shines_from_everywhere(scene, registry),
+    }
+}
+
+/// Finds the objects that are drawn anew, in all views without overrides or in one with.
+fn find(
+    world: &mut World,
+    view: Option<Entity>,
+    common: &Common,
+    suspects: Suspects,
+    pending: &mut Vec<Pending>,
+) {
     let scene = &world.resource::<CurrentScene>().0;
     let registry = world.resource::<Registry>();
+    let entities = world.resource::<SceneEntities>();
     let stage = view.and_then(|view| world.get::<Stage>(view));
-    let overrides = view.and_then(|view| world.entity(view).get_ref::<Overrides>());
-    let all = changed.all || overrides.as_ref().is_some_and(|o| o.is_changed());
-    let overrides = overrides.as_deref();
-    let encoding = overrides.map_or(scene.display, |o| o.display_of(scene)).encoding;
-    // Asked only where something changed: most frames change nothing.
-    let everywhere = LazyCell::new(|| shines_from_everywhere(scene, registry));
+    let overrides = view.and_then(|view| world.get::<Overrides>(view));
+    let encoding = overrides.and_then(|o| o.display).map_or(common.encoding, |display| display.encoding);
+    let only_different = matches!(suspects, Suspects::Different);
     // More objects than a table has rows are no legal scene; what is beyond is not drawn.
-    for &entity in world.resource::<SceneEntities>().objects.iter().take(MAX_OBJECTS) {
-        let drawable = stage.map_or(Some(entity), |stage| stage.stand_in(entity));
-        let Some(Ok((drawn, waits))) = drawable.map(|d| drawables.get(world, d)) else { continue };
-        let (Some(drawable), Ok(object)) = (drawable, objects.get(world, entity)) else { continue };
-        let now = || {
-            let (model, shading) = overrides.map_or_else(
-                || (scene.model_of(&object.0), scene.shading_model_of(&object.0)),
-                |o| (o.model_of(scene, &object.0), o.shading_model_of(scene, &object.0)),
-            );
-            Drawn {
-                model: model.to_owned(),
-                shading: shading.to_owned(),
-                encoding,
-                everywhere: *everywhere,
-                version: registry.model(model).map_or(0, ModelEntry::version),
-            }
-        };
-        if all || waits || object.is_changed() || drawn.is_none() || (changed.scene && drawn != Some(&now()))
-        {
-            let now = now();
-            let mut shown = object.0.clone();
-            if let Some(overrides) = overrides {
-                overrides.dress(&mut shown);
-            }
-            pending.push(Pending { view, object: entity, drawable, shown, now });
+    let objects = match suspects {
+        Suspects::All | Suspects::Different => entities.objects.iter().take(MAX_OBJECTS).copied().collect(),
+        Suspects::Some(objects) => {
+            let place = |object: &Entity| entities.place_of(*object).filter(|i| *i < MAX_OBJECTS);
+            let mut places: Vec<_> = objects.iter().filter_map(place).collect();
+            places.sort_unstable();
+            places.dedup();
+            places.into_iter().map(|i| entities.objects[i]).collect::<Vec<_>>()
         }
+    };
+    let visits = objects.len() as u64;
+    for entity in objects {
+        let drawable = stage.map_or(Some(entity), |stage| stage.stand_in(entity));
+        let Some(drawable) = drawable.and_then(|d| world.get_entity(d).ok()) else { continue };
+        let (drawn, waits) = (drawable.get::<Drawn>(), drawable.contains::<AwaitsShader>());
+        let Some(object) = world.get_entity(entity).ok().and_then(|e| e.get_ref::<LitObject>()) else {
+            continue;
+        };
+        let (model, shading) = overrides.map_or_else(
+            || (scene.model_of(&object.0), scene.shading_model_of(&object.0)),
+            |o| (o.model_of(scene, &object.0), o.shading_model_of(scene, &object.0)),
+        );
+        let now = Drawn {
+            model: model.to_owned(),
+            shading: shading.to_owned(),
+            encoding,
+            everywhere: common.everywhere,
+            version: registry.model(model).map_or(0, ModelEntry::version),
+        };
+        if only_different && !waits && !object.is_changed() && drawn == Some(&now) {
+            continue;
+        }
+        let mut shown = object.0.clone();
+        if let Some(overrides) = overrides {
+            overrides.dress(&mut shown);
+        }
+        pending.push(Pending { view, object: entity, drawable: drawable.id(), shown, now });
     }
+    world.resource_mut::<SceneEntities>().bypass_change_detection().visits += visits;
 }
 
 /// Gives an object its mesh and its material.
@@ -190,7 +250,7 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     let illumination = view
         .and_then(|view| world.get::<Stage>(view))
         .map_or_else(|| world.resource::<IlluminationBuffer>().0.clone(), |stage| stage.illumination.clone());
-    let ingredients = MaterialInputs { parameters, illumination, shader, faces };
+    let inputs = MaterialInputs { parameters, illumination, shader, faces };
     let attachments = world.resource::<Attachments>();
     let old = world
         .get::<Drawn>(drawable)
@@ -201,7 +261,7 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     if let Some(old) = old {
         (old.detach)(&mut entity);
     }
-    (new.attach)(&mut entity, ingredients);
+    (new.attach)(&mut entity, inputs);
     let mesh = if faces { pair.faces } else { pair.shared };
     if entity.get::<Mesh3d>().map(|m| &m.0) != Some(&mesh) {
         entity.insert(Mesh3d(mesh));

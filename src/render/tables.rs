@@ -1,11 +1,17 @@
 //! The parameters of objects, in tables that shaders read.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, ops::Range};
 
 use bevy::{
+    app::{App, Plugin},
     asset::{AssetId, Assets, Handle, RenderAssetUsages},
     ecs::{lifecycle::HookContext, prelude::*, world::DeferredWorld},
-    render::storage::ShaderBuffer,
+    render::{
+        ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems,
+        render_asset::RenderAssets,
+        renderer::RenderQueue,
+        storage::{GpuShaderBuffer, ShaderBuffer},
+    },
 };
 
 use crate::{reflection::ModelEntry, scene::MAX_OBJECTS};
@@ -26,25 +32,87 @@ fn free(mut world: DeferredWorld, context: HookContext) {
 /// The model of a table, and [what it declares](ModelEntry::declared), from which the layout follows.
 type TableKey = (&'static str, u64);
 
-/// The parameters of all objects, one table for each model in use, and for each view with overrides. A table
-/// that changed is uploaded whole: a buffer that never grows is replaced without touching any material. So that
-/// a slider moves no megabytes in a room of few objects, there is room for the next power of two above their
-/// number; when a scene outgrows that, all tables are made anew, and every object takes its material again.
+/// The parameters of all objects, one table for each model in use, and for each view with overrides. Rows that
+/// changed are written into the buffer, which no material notices. There is room for the next power of two above
+/// the number of objects; when a scene outgrows that, all tables are made anew, and every object takes its material
+/// again.
 #[derive(Default, Resource)]
 pub struct ParameterTables {
-    /// By the view with overrides, if it is one's own.
+    /// By model, and by view for views with overrides.
     tables: HashMap<(Option<Entity>, TableKey), Table>,
     rows: usize,
     /// Rows from here on have never been used.
     next: usize,
     /// Rows of objects that are gone.
     free: Vec<Row>,
+    /// To be handed to the renderer in this frame.
+    uploads: Vec<Upload>,
+    /// Bytes handed over since the start.
+    uploaded: u64,
 }
 
 struct Table {
-    bytes: Vec<u8>,
     buffer: Handle<ShaderBuffer>,
-    changed: bool,
+    row_bytes: usize,
+    /// Made in this frame: the renderer takes it whole.
+    new: bool,
+    /// Rows that the renderer has yet to get.
+    changed: Vec<u32>,
+}
+
+impl Table {
+    /// The stretches of bytes that hold the rows that changed. Short gaps are bridged: a few rows are copied sooner
+    /// than another copy is begun.
+    fn stretches(&mut self) -> Vec<Range<usize>> {
+        const GAP: u32 = 16;
+        self.changed.sort_unstable();
+        let near = |a: &u32, b: &u32| b - a <= GAP;
+        let bytes = |rows: &[u32]| {
+            rows[0] as usize * self.row_bytes..(rows[rows.len() - 1] as usize + 1) * self.row_bytes
+        };
+        self.changed.chunk_by(near).map(bytes).collect()
+    }
+}
+
+/// Bytes for the middle of a buffer.
+struct Upload {
+    buffer: AssetId<ShaderBuffer>,
+    at: usize,
+    bytes: Vec<u8>,
+}
+
+/// Hands tables to the renderer: whole when they are new, row by row after that.
+pub(super) struct TablesPlugin;
+
+impl Plugin for TablesPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<ParameterTables>();
+        if let Some(render) = app.get_sub_app_mut(RenderApp) {
+            render
+                .init_resource::<Uploads>()
+                .add_systems(ExtractSchedule, extract)
+                .add_systems(Render, write.in_set(RenderSystems::PrepareResources));
+        }
+    }
+}
+
+/// In the renderer's world.
+#[derive(Default, Resource)]
+struct Uploads(Vec<Upload>);
+
+fn extract(mut main: ResMut<MainWorld>, mut uploads: ResMut<Uploads>) {
+    if let Some(mut tables) = main.get_resource_mut::<ParameterTables>() {
+        uploads.0.append(&mut tables.bypass_change_detection().uploads);
+    }
+}
+
+fn write(mut uploads: ResMut<Uploads>, buffers: Res<RenderAssets<GpuShaderBuffer>>, queue: Res<RenderQueue>) {
+    for Upload { buffer, at, bytes } in uploads.0.drain(..) {
+        // One that is not there yet comes whole, as it is then.
+        if let Some(gpu) = buffers.get(buffer) {
+            queue.write_buffer(&gpu.buffer, at as u64, &bytes);
+        }
+    }
 }
 
 impl ParameterTables {
@@ -85,28 +153,44 @@ impl ParameterTables {
         let table = self.tables.entry((view, (id, declared))).or_insert_with(|| {
             let bytes = vec![0; parameters.len() * self.rows];
             let buffer = buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()));
-            Table { bytes, buffer, changed: true }
+            Table { buffer, row_bytes: parameters.len(), new: true, changed: Vec::new() }
         });
         let start = row.0 as usize * parameters.len();
-        let place = &mut table.bytes[start..start + parameters.len()];
-        if place != parameters {
+        // Without an event, after which the renderer would take the whole buffer.
+        let bytes = buffers.get_mut_untracked(&table.buffer).and_then(|buffer| buffer.data.as_mut());
+        if let Some(place) = bytes.and_then(|bytes| bytes.get_mut(start..start + parameters.len()))
+            && place != parameters
+        {
             place.copy_from_slice(parameters);
-            table.changed = true;
+            table.changed.push(row.0);
         }
         table.buffer.clone()
     }
 
-    /// Hands what changed to the renderer.
-    pub(super) fn upload(&mut self, buffers: &mut Assets<ShaderBuffer>) {
-        for table in self.tables.values_mut().filter(|t| t.changed) {
-            table.changed = false;
-            if let Some(mut buffer) = buffers.get_mut(&table.buffer) {
-                buffer.data = Some(table.bytes.clone());
+    /// Hands the rows that changed to the renderer.
+    pub(super) fn upload(&mut self, buffers: &Assets<ShaderBuffer>) {
+        for table in self.tables.values_mut() {
+            if !table.new
+                && let Some(data) = buffers.get(&table.buffer).and_then(|buffer| buffer.data.as_ref())
+            {
+                for stretch in table.stretches() {
+                    let (buffer, at, bytes) = (table.buffer.id(), stretch.start, data[stretch].to_vec());
+                    self.uploaded += bytes.len() as u64;
+                    self.uploads.push(Upload { buffer, at, bytes });
+                }
             }
+            table.new = false;
+            table.changed.clear();
         }
     }
 
-    /// Lets go of the tables of a view that has no overrides any more.
+    /// Bytes of rows that were written into tables since the start; tables that came whole are not counted.
+    #[must_use]
+    pub fn uploaded(&self) -> u64 {
+        self.uploaded
+    }
+
+    /// Drops the tables of a view that no longer has overrides.
     pub(super) fn forget(&mut self, view: Entity) {
         self.tables.retain(|(of, _), _| *of != Some(view));
     }

@@ -36,10 +36,10 @@ use super::{
 };
 use crate::registry::Registry;
 
-/// So many pictures are drawn after a change: what the renderer could not prepare in the first is in the second.
+/// The pictures that are drawn after a change: the second has what the renderer could not prepare for the first.
 const PICTURES: u32 = 2;
 
-/// Gives views their textures and lets them rest.
+/// Gives views their textures, and draws them only when something changed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ViewPlugin;
 
@@ -70,7 +70,7 @@ pub struct ViewSystems;
 pub struct View {
     /// The size of the picture in pixels. Where it is zero, nothing is drawn.
     pub size: UVec2,
-    /// What the texture holds.
+    /// Format of the texture.
     pub format: TextureFormat,
     /// The part of the picture that shows what the lens says, in pixels; around it the picture goes on. `None` if it
     /// is all of it.
@@ -85,13 +85,13 @@ impl View {
     }
 }
 
-/// How far a view is with its picture.
+/// The state of a view's picture.
 #[derive(Component, Clone, Debug)]
 pub struct Drawing {
     last: Option<Look>,
-    /// How many pictures are still to be drawn.
+    /// Pictures that are still to be drawn.
     due: u32,
-    /// How many have been drawn.
+    /// Pictures that have been drawn.
     drawn: u64,
     /// One is drawn in this frame.
     draws: bool,
@@ -121,14 +121,14 @@ impl Drawing {
         self.due == 0
     }
 
-    /// How many pictures have been drawn.
+    /// The number of pictures drawn so far.
     #[must_use]
     pub fn drawn(&self) -> u64 {
         self.drawn
     }
 }
 
-/// What a camera shows, beside the scene.
+/// Everything that a camera shows, beside the scene.
 #[derive(Clone, Debug, PartialEq)]
 struct Look {
     view: View,
@@ -188,7 +188,7 @@ fn frame(mut views: Query<(&Camera, &GlobalTransform, &Projection, &mut Frustum)
     }
 }
 
-/// The sources of changes that say so themselves.
+/// Everything that reports its changes.
 #[derive(SystemParam)]
 struct Changes<'w, 's> {
     scene: Res<'w, CurrentScene>,
@@ -228,7 +228,7 @@ impl Changes<'_, '_> {
     }
 }
 
-/// Decides which views are drawn in this frame.
+/// Chooses the views that this frame draws.
 fn rest(
     mut changes: Changes,
     mut views: Query<(
@@ -314,7 +314,7 @@ mod tests {
         app
     }
 
-    /// Which views the next frame draws.
+    /// For each view, true if the next frame draws it.
     fn drawn(app: &mut App) -> Vec<bool> {
         app.update();
         let world = app.world_mut();

@@ -245,7 +245,7 @@ fn a_component_that_a_system_changes_is_checked_and_a_step() {
     for i in 0..50 {
         let mut scene = session.document.scene().clone();
         scene.lights[0].intensity = 10.0 + i as f32;
-        assert_eq!(session.submit(scene, &registry), Ok(()));
+        assert_eq!(session.submit(&scene, &[Extent::All], &registry), Ok(()));
     }
     assert_eq!(
         session.document.steps().collect::<Vec<_>>(),
@@ -255,7 +255,7 @@ fn a_component_that_a_system_changes_is_checked_and_a_step() {
     let good = session.document.scene().clone();
     let mut scene = good.clone();
     scene.objects[0].size = -1.0;
-    let why = session.submit(scene, &registry).expect_err("a size is above 0");
+    let why = session.submit(&scene, &[Extent::All], &registry).expect_err("a size is above 0");
     assert!(why.contains("size"), "{why}");
     assert!(*session.document.scene() == good);
     session.apply(Action::Undo, &registry);

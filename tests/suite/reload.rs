@@ -707,7 +707,7 @@ fn split_tokens(text: &str) -> Vec<&str> {
 }
 
 /// Random numbers that are the same in every run (PCG of M. O'Neill 2014).
-mod random {
+pub mod random {
     pub struct Random(pub u64);
 
     impl Random {

@@ -158,40 +158,7 @@ impl LobeAlbedo {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::albedo::directional;
-
-    /// GGX with height-correlated Smith masking and F = 1 (B. Walter et al. 2007; E. Heitz 2014), in forms without
-    /// cancellation.
-    fn ggx(alpha: f32, correlated: bool) -> impl Fn(Vec3, Vec3) -> f32 {
-        move |l, v| {
-            if l.z <= 0.0 || v.z <= 0.0 {
-                return 0.0;
-            }
-            let h = (l + v).normalize();
-            let tan2 = (h.x * h.x + h.y * h.y) / (h.z * h.z);
-            let a2 = alpha * alpha;
-            let d = a2 / (std::f32::consts::PI * h.z.powi(4) * (a2 + tan2).powi(2));
-            let lambda = |w: Vec3| 0.5 * ((1.0 + a2 * (w.x * w.x + w.y * w.y) / (w.z * w.z)).sqrt() - 1.0);
-            let g = if correlated {
-                1.0 / (1.0 + lambda(l) + lambda(v))
-            } else {
-                1.0 / ((1.0 + lambda(l)) * (1.0 + lambda(v)))
-            };
-            std::f32::consts::PI * d * g / (4.0 * v.z)
-        }
-    }
-
-    fn specular(response: impl Fn(Vec3, Vec3) -> f32) -> impl Fn(Vec3, Vec3) -> Terms {
-        move |l, v| Terms { specular: Vec3::splat(response(l, v)), ..Terms::default() }
-    }
-
-    fn view(mu: f32) -> Vec3 {
-        Vec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu)
-    }
-
-    fn albedo(response: impl Fn(Vec3, Vec3) -> Terms, mu: f32) -> f64 {
-        directional(|l| response(l, view(mu)), view(mu), &Frame::LOCAL).x
-    }
+    use crate::optics::albedo::tests::{albedo, ggx, specular, view};
 
     #[test]
     fn curves_are_the_quadrature() {

@@ -70,7 +70,7 @@ mod tests {
 
     /// GGX with height-correlated Smith masking and F = 1 (B. Walter et al. 2007; E. Heitz 2014), in forms without
     /// cancellation.
-    fn ggx(alpha: f32, correlated: bool) -> impl Fn(Vec3, Vec3) -> f32 {
+    pub(super) fn ggx(alpha: f32, correlated: bool) -> impl Fn(Vec3, Vec3) -> f32 {
         move |l, v| {
             if l.z <= 0.0 || v.z <= 0.0 {
                 return 0.0;
@@ -89,15 +89,15 @@ mod tests {
         }
     }
 
-    fn specular(response: impl Fn(Vec3, Vec3) -> f32) -> impl Fn(Vec3, Vec3) -> Terms {
+    pub(super) fn specular(response: impl Fn(Vec3, Vec3) -> f32) -> impl Fn(Vec3, Vec3) -> Terms {
         move |l, v| Terms { specular: Vec3::splat(response(l, v)), ..Terms::default() }
     }
 
-    fn view(mu: f32) -> Vec3 {
+    pub(super) fn view(mu: f32) -> Vec3 {
         Vec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu)
     }
 
-    fn albedo(response: impl Fn(Vec3, Vec3) -> Terms, mu: f32) -> f64 {
+    pub(super) fn albedo(response: impl Fn(Vec3, Vec3) -> Terms, mu: f32) -> f64 {
         directional(|l| response(l, view(mu)), view(mu), &Frame::LOCAL).x
     }
 

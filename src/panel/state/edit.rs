@@ -2,7 +2,7 @@
 
 use super::{Session, Severity, messages::Step};
 use crate::{
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, Extent, LightField, ObjectField, Selection},
     panel::follow::follow_registry,
     registry::Registry,
     scene::{Object, Scene},
@@ -54,12 +54,12 @@ impl Session {
         }
     }
 
-    /// Takes over a change made outside the panels: by a system that changed a component.
+    /// Adopts a change of these parts made outside the panels: by a system that changed a component.
     ///
     /// # Errors
     /// The reason for a refusal; the document stays as it is.
-    pub fn submit(&mut self, scene: Scene, registry: &Registry) -> Result<(), String> {
-        self.document.submit(scene, self.selection, registry)?;
+    pub fn submit(&mut self, scene: &Scene, parts: &[Extent], registry: &Registry) -> Result<(), String> {
+        self.document.submit(scene, parts, self.selection, registry)?;
         if !self.exists(self.selection) {
             self.selection = Selection::Room;
         }

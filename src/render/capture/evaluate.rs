@@ -80,9 +80,9 @@ const PAIR_BYTES: usize = 32;
 /// Bytes of `Terms` in `terms.wgsl`: three vec3, each padded to 16.
 const ANSWER_BYTES: usize = 48;
 
-/// As many pairs are asked for at a time, so that the bound on time is one on a part of the work.
+/// Pairs of a batch, so that the bound on time is one on a part of the work.
 const BATCH: usize = 1 << 16;
-/// So long a batch may take; a slow model takes a second on two cores.
+/// The longest that a batch may take; a slow model takes a second on two cores.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A model on the GPU, ready to be asked again and again with one set of parameters after the other.
@@ -184,7 +184,7 @@ impl Evaluator {
     /// # Errors
     /// As [`evaluate`](Self::evaluate).
     pub fn albedos(&self, views: &[Vec3]) -> Result<Vec<DVec3>, GpuError> {
-        /// As many views have their batches in memory at a time.
+        /// The most views with batches in memory at a time.
         const VIEWS: usize = 64;
         let mut albedos = Vec::with_capacity(views.len());
         for views in views.chunks(VIEWS) {

@@ -79,7 +79,7 @@ pub enum GpuError {
     Copy(String),
 }
 
-/// What is known of the adapter that draws.
+/// Facts about the adapter that draws.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterFacts {
     /// The name that the driver gives, e.g. "llvmpipe (LLVM 15.0.6, 256 bits)".
@@ -149,10 +149,10 @@ pub(super) fn device() -> Result<RenderResources, GpuError> {
         .ok_or(GpuError::NoAdapter)
 }
 
-/// What the target holds.
+/// The content of the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Output {
-    /// What people see: tone mapped, sRGB-encoded, 8 bits.
+    /// For people: tone mapped, sRGB-encoded, 8 bits.
     Display,
     /// Linear 32-bit floats, unclamped, for measurements. One sample per pixel.
     Linear,
@@ -291,7 +291,7 @@ impl GpuRenderer {
         }
     }
 
-    /// What keeps the picture from being what the shader files say, if anything does.
+    /// The problem that keeps the picture from following the shader files, if there is one.
     #[must_use]
     pub fn shader_problem(&self) -> Option<ShaderProblem> {
         self.app.world().get_resource::<LiveShaders>()?.refused().cloned()

@@ -60,7 +60,7 @@ pub fn encode(
     to.flush()
 }
 
-/// What the system says keeps its kind.
+/// Keeps the kind of errors of the system.
 fn plain(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(error) => error,

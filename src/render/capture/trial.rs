@@ -50,7 +50,7 @@ const ROW: usize = 1 << 16;
 /// The longest that drawing it again may take: a picture of the window has a thousand times its pixels, and the
 /// shipped models take a hundredth of this.
 const SLOWEST: Duration = Duration::from_millis(150);
-/// So many more pictures may be drawn to find one that is fast enough.
+/// The most further pictures that are drawn to find one that is fast enough.
 const PATIENCE: usize = 5;
 
 /// Answers requests until there are no more, or until the renderer failed: then a new process is better.

@@ -73,7 +73,7 @@ impl Bench {
 }
 
 thread_local! {
-    /// True if a panic of this thread is expected, and nobody's business.
+    /// True if a panic of this thread is expected, and not reported.
     static EXPECTED: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -120,7 +120,7 @@ fn library(tools: Tools) -> ShaderCache<Module, ()> {
 /// The asset that candidates have in the cache.
 const CANDIDATE: AssetId<Shader> = AssetId::Uuid { uuid: Uuid::from_u128(0x4c43_4d05) };
 
-/// What Bevy tells every shader about the device.
+/// Adds the limits of the device, as Bevy does for every shader.
 fn with_limits(mut shader: Shader, device: &RenderDevice) -> Shader {
     let buffers = device.limits().max_storage_buffers_per_shader_stage;
     shader.shader_defs.push(ShaderDefVal::UInt("AVAILABLE_STORAGE_BUFFER_BINDINGS".to_owned(), buffers));

@@ -34,7 +34,7 @@ pub(super) fn unknown_import(composed: &Composed, name: &str, tools: Tools) -> B
     locate(composed, used, format!("`{name}` is used, but no `#import` brings it"))
 }
 
-/// What the composer says, in terms of the author's file.
+/// The composer's error, in terms of the author's file.
 pub(super) fn refusal(composed: &Composed, error: &ComposerError) -> Refusal {
     let offset = match &error.source {
         ErrSource::Constructing { offset, .. } => *offset,
@@ -96,7 +96,7 @@ pub(super) fn located(
     Refusal::Problem(locate(composed, place, message))
 }
 
-/// How far positions in a composed module are behind those in our text: what most functions say.
+/// The distance between positions in a composed module and in our text, by the majority of functions.
 pub(super) fn offset(module: &Module, text: &str) -> usize {
     let mut offsets: Vec<usize> = module
         .functions
@@ -111,13 +111,13 @@ pub(super) fn offset(module: &Module, text: &str) -> usize {
     runs.max_by_key(|run| run.len()).and_then(|run| run.first()).copied().unwrap_or(0)
 }
 
-/// What the driver has against a composed source, in terms of the author's file.
+/// The driver's error about a composed source, in terms of the author's file.
 pub(crate) fn refused(composed: &Composed, error: &wgpu::Error) -> Box<ShaderProblem> {
     let (place, message) = explain(composed, &deepest(error));
     locate(composed, place, message)
 }
 
-/// The last two links of a chain of errors: what does not fit, and why.
+/// The last two links of a chain of errors: the mismatch and its reason.
 pub(super) fn deepest(error: &dyn std::error::Error) -> String {
     let links: Vec<_> =
         std::iter::successors(error.source(), |e| e.source()).map(ToString::to_string).collect();
@@ -127,7 +127,7 @@ pub(super) fn deepest(error: &dyn std::error::Error) -> String {
     }
 }
 
-/// What the driver says, and the line of the composed text that it means: it names numbers of bindings,
+/// The driver's error, and the line of the composed text that it means: it names numbers of bindings,
 /// locations and entry points, but no lines.
 pub(super) fn explain(composed: &Composed, complaint: &str) -> (Option<(usize, usize)>, String) {
     let line_of = |what: &str| {

@@ -39,10 +39,10 @@ use process::TrialProcess;
 
 /// The mark in the pipelines of our materials, by which one is found as an example.
 pub const MARK: &str = "LAB_SURFACE";
-/// How the paths of our own composed shaders begin.
+/// The prefix of the paths of our own composed shaders.
 pub const COMPOSED: &str = "composed/";
 
-/// What became of trying.
+/// The result of a trial.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// It can be drawn with.
@@ -106,7 +106,7 @@ fn find_example(example: Res<SharedExample>, cache: Res<PipelineCache>) {
     }
 }
 
-/// Where shaders are tried.
+/// The place where shaders are tried.
 #[derive(Resource)]
 pub struct Bench {
     example: SharedExample,
@@ -122,12 +122,12 @@ impl std::fmt::Debug for Bench {
     }
 }
 
-/// What the renderer lends for a trial.
+/// The parts of the renderer that a trial needs.
 #[derive(Clone, Copy)]
 pub struct Tools<'a> {
     /// The graphics device.
     pub device: &'a RenderDevice,
-    /// Where it comes from.
+    /// The adapter of the device.
     pub adapter: &'a RenderAdapter,
     /// All shaders that are loaded, Bevy's own among them.
     pub shaders: &'a Assets<Shader>,

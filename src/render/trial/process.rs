@@ -30,14 +30,14 @@ use crate::{
 pub const COMMAND: &str = "try-shaders";
 /// The longest that a process may take until it is ready: software Vulkan starts within a second.
 const START: Duration = Duration::from_secs(30);
-/// So often a process that works is looked after.
+/// The interval at which a working process is checked.
 const WATCH: Duration = Duration::from_millis(10);
-/// Many answers are told of together, at most so often.
+/// The shortest interval between reports of answers.
 const PACE: Duration = Duration::from_millis(50);
-/// As many answers are kept for those who ask again.
+/// The most answers that are kept in case they are asked for again.
 const KEPT: usize = 256;
 
-/// What one trial may cost.
+/// The limits of one trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
     /// From the request to the answer.
@@ -66,7 +66,7 @@ pub struct Request {
     pub row: Vec<u8>,
 }
 
-/// What the process says.
+/// The answer of the process.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Answer {
     /// It can be asked.
@@ -92,7 +92,7 @@ struct Shared {
 #[derive(Debug, Default)]
 struct State {
     queue: VecDeque<Waiting>,
-    /// What is being tried.
+    /// The request that is being tried.
     current: Option<u64>,
     answers: HashMap<u64, Kept>,
     frame: u64,
@@ -223,7 +223,7 @@ struct Worker {
 }
 
 impl Worker {
-    /// The next shader to try; none when nobody asks any more.
+    /// The next shader to try; `None` when there will be none.
     fn next(&mut self) -> Option<(u64, Request)> {
         let mut state = self.shared.lock();
         loop {
@@ -305,7 +305,7 @@ fn refused(request: &Request, message: String) -> Verdict {
     Verdict::Bad(refused_whole(request, message))
 }
 
-/// A problem of a shader as a whole, told at the file of the model if the user wrote that.
+/// A problem of a shader as a whole, reported at the file of the model if the user wrote that.
 #[must_use]
 pub fn refused_whole(request: &Request, message: String) -> Box<ShaderProblem> {
     let composed = Composed { text: request.text.clone(), map: request.map.clone(), ..Composed::default() };
@@ -318,7 +318,7 @@ pub fn refused_whole(request: &Request, message: String) -> Box<ShaderProblem> {
     locate(&composed, place, message)
 }
 
-/// What became of a request.
+/// The outcome of a request.
 enum Fate {
     Answered(Answer),
     TooSlow,

@@ -1,0 +1,142 @@
+//! What a change of one object of ten thousand costs, counted rather than timed.
+
+use bevy::ecs::{prelude::*, system::RunSystemOnce as _};
+use glam::Vec3;
+use lights_camera_models::{
+    document::{Document, Edit, ObjectField, Selection},
+    parameter::Value,
+    registry::Registry,
+    render::{
+        camera::picture_camera,
+        capture::gpu::{GpuRenderer, Output},
+        entities::{CurrentScene, LitObject, SceneEntities},
+        overrides::Overrides,
+        tables::ParameterTables,
+        view::View,
+    },
+    scene::{Object, Scene},
+};
+
+const OBJECTS: usize = 10_000;
+const SIZE: u32 = 96;
+/// More bytes than any row of a table has.
+const ROW: u64 = 1024;
+
+fn scene() -> Scene {
+    let object = |i: usize| {
+        let place = Vec3::new((i % 100) as f32, (i / 100) as f32, 0.0) * 0.09 + Vec3::new(0.5, 0.5, 2.0);
+        let mut object =
+            Object { object_type: "cube".to_owned(), size: 0.05, position: place, ..Object::default() };
+        object.material.set("base_colour", Value::Colour([(i % 251) as u8, (i % 241) as u8, 90]));
+        object
+    };
+    Scene { objects: (0..OBJECTS).map(object).collect(), ..Scene::default() }
+}
+
+fn renderer(scene: &Scene) -> GpuRenderer {
+    let mut renderer =
+        GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed");
+    renderer.set_scene(scene.clone());
+    renderer.settle().expect("the GPU draws");
+    renderer
+}
+
+/// Objects that are looked at and bytes that are handed to the renderer in a frame after a change, and in the next.
+fn cost(renderer: &mut GpuRenderer, change: impl FnOnce(&mut World)) -> [(u64, u64); 2] {
+    let counts = |renderer: &mut GpuRenderer| {
+        let world = renderer.app().world();
+        (world.resource::<SceneEntities>().visits(), world.resource::<ParameterTables>().uploaded())
+    };
+    change(renderer.app().world_mut());
+    [0, 1].map(|_| {
+        let before = counts(renderer);
+        renderer.step();
+        let after = counts(renderer);
+        (after.0 - before.0, after.1 - before.1)
+    })
+}
+
+/// The document is shown, as the window does it.
+fn show(world: &mut World, document: &Document) {
+    let document = document.clone();
+    world
+        .run_system_once(move |mut entities: ResMut<SceneEntities>, scene: ResMut<CurrentScene>| {
+            entities.show(&document, scene);
+        })
+        .expect("both are there");
+}
+
+#[test]
+fn a_change_of_one_object_of_ten_thousand_is_work_for_that_one() {
+    let registry = Registry::builtin();
+    let mut document = Document::new(scene());
+    let mut renderer = renderer(&document);
+    // Views without overrides alone, then one with beside them.
+    for views in [1, 2] {
+        if views == 2 {
+            renderer.draw_on_demand();
+            let overrides = Overrides { shading_model: Some("flat".to_owned()), ..Overrides::default() };
+            let view = View::for_display(glam::UVec2::splat(SIZE));
+            let target = bevy::camera::RenderTarget::None { size: glam::UVec2::ONE };
+            let camera = (picture_camera(1), bevy::camera::Hdr, target, view, overrides);
+            renderer.app().world_mut().spawn(camera);
+            renderer.settle().expect("the GPU draws");
+        }
+        cost(&mut renderer, |world| show(world, &document));
+        assert_eq!(cost(&mut renderer, |_| {}), [(0, 0); 2], "nothing");
+        assert_eq!(cost(&mut renderer, |world| show(world, &document)), [(0, 0); 2], "the same scene");
+        let one = |what: &str, uploads: bool, costs: [(u64, u64); 2]| {
+            let [now, later] = costs;
+            // The entity is written, compared, and drawn in each kind of view.
+            assert!((1..=2 + views).contains(&now.0), "{what}: {} objects are looked at", now.0);
+            assert!(later.0 <= 1 && later.1 == 0, "{what}: {later:?}");
+            let bytes = if uploads { 1..=views * ROW } else { 0..=0 };
+            assert!(bytes.contains(&now.1), "{what}: {} bytes", now.1);
+        };
+        let costs = cost(&mut renderer, |world| {
+            let object = world.resource::<SceneEntities>().objects[17];
+            let mut object = world.get_mut::<LitObject>(object).expect("it is an object");
+            object.0.material.set("base_colour", Value::Colour([1, 2, views as u8]));
+        });
+        one("a component", true, costs);
+        // The document learns of it.
+        let shown = renderer.app().world().resource::<CurrentScene>().0.clone();
+        document.replace("Change by a system", Selection::Room, shown);
+        let costs = cost(&mut renderer, |world| show(world, &document));
+        assert_eq!(costs[1], (0, 0));
+        for (field, uploads) in [
+            (ObjectField::Material("base_colour", Value::Colour([200, 2, views as u8])), true),
+            (ObjectField::Position(Vec3::new(0.5, 0.5, 1.0 + views as f32)), false),
+            (ObjectField::Size(0.25 * views as f32), false),
+        ] {
+            let what = format!("{field:?}");
+            document.end_gesture();
+            document.edit(Edit::Object(OBJECTS / 2, field), Selection::Room, &registry).expect("legal");
+            let costs = cost(&mut renderer, |world| show(world, &document));
+            one(&what, uploads, costs);
+        }
+        document.undo().expect("a step");
+        let costs = cost(&mut renderer, |world| show(world, &document));
+        one("undoing", false, costs);
+        document.undo().expect("a step");
+    }
+    show(renderer.app().world_mut(), &document);
+    renderer.settle().expect("the GPU draws");
+    let picture = renderer.read().expect("the picture can be read");
+    let mut alone = self::renderer(&document);
+    assert!(picture == alone.read().expect("the picture can be read"), "what is drawn is the document");
+}
+
+#[test]
+fn rows_that_change_together_are_handed_over_together() {
+    let mut scene = scene();
+    let mut renderer = renderer(&scene);
+    for object in &mut scene.objects {
+        object.material.set("base_colour", Value::Colour([9, 9, 9]));
+    }
+    let costs = cost(&mut renderer, |world| world.resource_mut::<CurrentScene>().0.clone_from(&scene));
+    assert!(costs[0].1 >= 16 * OBJECTS as u64 && costs[1] == (0, 0), "{costs:?}");
+    let picture = renderer.read().expect("the picture can be read");
+    let mut alone = self::renderer(&scene);
+    assert!(picture == alone.read().expect("the picture can be read"));
+}
