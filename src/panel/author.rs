@@ -224,7 +224,7 @@ impl Session {
 }
 
 /// The reason why a file can't be opened.
-pub const BUILT_IN: &str = "The shaders are built in, so there is no file to open. Write them out for editing first: \
+pub const BUILT_IN: &str = "The shaders are built in, so there is no file to open. Export the shaders first: \
      Edit, “Export shaders for editing…”. Or copy the model as a file.";
 
 /// The buttons about custom models, for the chooser and the panel.

@@ -295,6 +295,9 @@ pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> 
         .right_text(RichText::new("▾").color(palette.weak))
         .min_size(vec2(132.0, 24.0))
         .truncate();
+    // Also where the bar has no room to say it: this is the model of one object.
+    let of = session.model_override().is_some().then(|| session.name_of(session.selection, registry));
+    let button = if of.is_some() { button.stroke(Stroke::new(1.5, palette.accent)) } else { button };
     let response = ui.add_sized(vec2(WIDTH, 24.0), button);
     response
         .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Reflection model: {name}")));
@@ -306,6 +309,9 @@ pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> 
         if let Some(model) = current {
             response.on_hover_ui(|ui| {
                 ui.set_max_width(320.0);
+                if let Some(name) = &of {
+                    ui.label(format!("The model of {name} alone, in place of the scene’s."));
+                }
                 about(ui, model);
                 ui.label(theme::small(ui, "key R chooses another"));
             });

@@ -42,6 +42,11 @@ pub(super) fn remember_regions(ctx: &Context) {
     });
 }
 
+/// What F6 leads to in the part of the window where it is, in place of the first: the row that is selected.
+pub(super) fn first(ctx: &Context, id: Id) {
+    ctx.data_mut(|d| d.insert_temp(memory().with("first"), id));
+}
+
 /// The widgets that can have the focus, in the order of the Tab key, as shown last; also those scrolled out of sight.
 fn drawn(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
     let mut stops: Vec<WidgetRect> = ctx.viewport(|viewport| {
@@ -83,6 +88,7 @@ fn picture() -> Id {
 /// and from there it goes to what is over the picture.
 pub(super) fn next_region(ctx: &Context, back: bool) {
     let Regions(regions) = ctx.data(|d| d.get_temp(memory())).unwrap_or_default();
+    let selected: Option<Id> = ctx.data(|d| d.get_temp(memory().with("first")));
     let firsts: Vec<Option<WidgetRect>> = regions
         .iter()
         .map(|(region, rect)| {
@@ -95,7 +101,7 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
             };
             // From the first one over the picture, Tab reaches all of them.
             let all = if *region == Region::Picture { drawn(ctx, within) } else { stops(ctx, within) };
-            all.first().copied()
+            all.iter().find(|w| Some(w.id) == selected).or(all.first()).copied()
         })
         .collect();
     let here = focused(ctx).and_then(|w| regions.iter().position(|(_, r)| r.contains(w.rect.center())));

@@ -1,6 +1,9 @@
 //! The list of keys, and "about".
 
-use bevy_egui::egui::{self, Grid, Id, RichText, ScrollArea, Ui, Window};
+use bevy_egui::egui::{
+    self, Align2, Color32, Id, Label, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType,
+    Window, vec2,
+};
 
 use super::{
     keys,
@@ -27,6 +30,7 @@ pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<
         .default_pos(screen.center())
         .show(ctx, |ui| {
             ScrollArea::vertical()
+                .auto_shrink([false, true])
                 .min_scrolled_height(screen.height() - 140.0)
                 .max_height(screen.height() - 140.0)
                 .show(ui, |ui| key_list(ui, session, registry));
@@ -87,20 +91,33 @@ fn key_list(ui: &mut Ui, session: &Session, registry: &Registry) {
         count += size;
     }
     ui.spacing_mut().interact_size.y = 20.0;
+    // The scroll bar floats over this margin.
+    ui.set_width(ui.available_width() - 12.0);
     // Where there is no room for two, the second goes on below the first.
     let narrow = ui.ctx().content_rect().width() < TWO_COLUMNS;
-    ui.columns(if narrow { 1 } else { 2 }, |columns| {
-        for (i, groups) in [left, right].into_iter().enumerate() {
-            let ui = &mut columns[if narrow { 0 } else { i }];
+    let columns = if narrow { vec![[left, right].concat()] } else { vec![left, right] };
+    let font = TextStyle::Body.resolve(ui.style());
+    let line = ui.text_style_height(&TextStyle::Body);
+    ui.columns(columns.len(), |uis| {
+        for (ui, groups) in uis.iter_mut().zip(columns) {
+            // Descriptions begin in line in all groups.
+            let here = rows.iter().filter(|row| groups.contains(&row.0));
+            let width = |key: &str| {
+                let text = ui.painter().layout_no_wrap(key.to_owned(), font.clone(), Color32::WHITE);
+                text.size().x
+            };
+            let keys = here.map(|row| width(&row.1)).fold(0.0, f32::max).ceil();
             for group in groups {
                 ui.label(theme::strong(ui, group));
-                Grid::new(group).num_columns(2).min_col_width(88.0).show(ui, |ui| {
-                    for (_, key, label) in rows.iter().filter(|r| r.0 == group) {
-                        ui.label(RichText::new(key).color(theme::Palette::here(ui).accent));
-                        ui.label(label);
-                        ui.end_row();
-                    }
-                });
+                for (_, key, label) in rows.iter().filter(|row| row.0 == group) {
+                    ui.horizontal_top(|ui| {
+                        let colour = theme::Palette::here(ui).accent;
+                        let (place, response) = ui.allocate_exact_size(vec2(keys, line), Sense::hover());
+                        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, key));
+                        ui.painter().text(place.min, Align2::LEFT_TOP, key, font.clone(), colour);
+                        ui.add(Label::new(label).wrap());
+                    });
+                }
                 ui.add_space(10.0);
             }
         }

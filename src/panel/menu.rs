@@ -15,6 +15,11 @@ fn entered() -> Id {
     Id::new("menu entered by key")
 }
 
+/// The entry of a list that is chosen now, and the list: where arrow keys begin.
+fn current() -> Id {
+    Id::new("entry that is chosen")
+}
+
 fn enter(ctx: &Context, menu: Id) {
     let last = ctx.cumulative_pass_nr() + PATIENCE;
     ctx.data_mut(|d| d.insert_temp(entered(), (menu, last)));
@@ -78,6 +83,9 @@ pub(super) fn submenu<'a>(ui: &mut Ui, text: impl IntoAtoms<'a>, content: impl F
 pub(super) fn choice(ui: &mut Ui, chosen: bool, text: impl Into<String>, by_key: &mut bool) -> Response {
     let text: String = text.into();
     let response = ui.selectable_label(chosen, text);
+    if chosen {
+        ui.data_mut(|d| d.insert_temp(current(), (response.layer_id.id, response.id)));
+    }
     if response.clicked() {
         *by_key = response.has_focus();
         ui.close();
@@ -141,8 +149,11 @@ pub(super) fn walk(ctx: &Context) {
     }
     ctx.data_mut(|d| d.remove::<(Id, u64)>(entered()));
     let count = stops.len() as isize;
+    let chosen = ctx.data(|d| d.get_temp::<(Id, Id)>(current())).filter(|(list, _)| Some(*list) == menu);
     let at = now
-        .and_then(|now| stops.iter().position(|s| s.id == now.id))
+        .map(|now| now.id)
+        .or(chosen.map(|(_, entry)| entry))
+        .and_then(|id| stops.iter().position(|s| s.id == id))
         .map_or_else(|| if step > 0 { 0 } else { count - 1 }, |at| (at as isize + step).rem_euclid(count));
     // Else egui moves it once more, by geometry.
     ctx.memory_mut(|m| {

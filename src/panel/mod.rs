@@ -20,7 +20,7 @@ use bevy::{
 };
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
-    egui::{self, Button, Frame, Id, LayerId, Margin, Rect, Ui, UiBuilder, vec2},
+    egui::{self, Button, Frame, Id, LayerId, Margin, Pos2, Rect, Ui, UiBuilder, vec2},
 };
 
 use crate::registry::Registry;
@@ -28,6 +28,7 @@ pub use dialogs::Dialogs;
 use focus::Region;
 use state::{Action, Effect, LabEffect, PictureArea, Session, Severity, ViewChange};
 use theme::Palette;
+use widths::Widths;
 
 pub mod author;
 pub mod caption;
@@ -67,6 +68,7 @@ pub mod top;
 pub mod tree;
 pub mod typeset;
 pub mod welcome;
+mod widths;
 
 /// The built-in panels, in the order in which they are laid out. The one list.
 pub fn register_builtin(to: &mut Panels) {
@@ -222,16 +224,16 @@ pub fn show(
     }
     // Each size of everything has widths of its own. It takes effect a frame after it was chosen.
     let zoom = zoom_percent(&ctx);
-    let mut sizes = (session.view.left_width, session.view.right_width, session.view.bottom_height);
+    let widths = Widths::of(&ctx, &session, whole.width());
+    let mut sizes = (widths.left.default, widths.right.default, session.view.bottom_height);
     if session.view.bottom_open && !presenting {
         bottom(ui, &session, registry, panels, &palette, whole, &mut sizes.2, &mut actions);
     }
     if session.view.left_open && !presenting {
-        let most = 0.26 * whole.width();
         let panel = egui::Panel::left(Id::new(("left", zoom)))
             .frame(theme::panel_frame(&palette, vec2(0.0, 4.0)))
-            .default_size(sizes.0.min(most))
-            .size_range(120f32.min(most)..=most);
+            .default_size(widths.left.default)
+            .size_range(widths.left.range);
         let response = panel.show(ui, |ui| {
             for panel in panels.at(Place::Left) {
                 actions.extend(panel.show(ui, &session, registry));
@@ -241,7 +243,6 @@ pub fn show(
         sizes.0 = response.response.rect.width();
     }
     if session.view.right_open && !presenting {
-        let most = 0.45 * whole.width();
         let panel = egui::Panel::right(Id::new(("right", zoom)))
             .frame(Frame::new().fill(palette.panel).inner_margin(Margin {
                 left: 12,
@@ -249,8 +250,8 @@ pub fn show(
                 top: 8,
                 bottom: 4,
             }))
-            .default_size(sizes.1.min(most))
-            .size_range(300f32.min(most)..=most);
+            .default_size(widths.right.default)
+            .size_range(widths.right.range);
         let response = panel.show(ui, |ui| {
             for panel in panels.at(Place::Right) {
                 actions.extend(panel.show(ui, &session, registry));
@@ -259,7 +260,7 @@ pub fn show(
         focus::region(&ctx, Region::Panel(Place::Right), response.response.rect);
         sizes.1 = response.response.rect.width();
     }
-    remember_sizes(&ctx, &session, sizes, &mut actions);
+    actions.extend(widths.dragged(&ctx, &session, sizes));
 
     if !presenting {
         actions.extend(welcome::strip(ui, &session, registry));
@@ -272,7 +273,7 @@ pub fn show(
     actions.extend(asked);
     actions.extend(question::show(&ctx, &session));
     actions.extend(dialogs.update(&ctx, &mut session, registry));
-    *area = picture_area(&ctx, &session, [rect, frame], &covered, dialogs.is_open());
+    *area = picture_area(&ctx, &session, [rect, frame], covered, dialogs.is_open());
     focus::remember_regions(&ctx);
     focus::show(&ctx, &palette, frame);
 
@@ -373,22 +374,27 @@ fn bottom(
     }
 }
 
-/// Sizes that the user dragged are kept, once the dragging is over.
-fn remember_sizes(ctx: &egui::Context, session: &Session, sizes: (f32, f32, f32), actions: &mut Vec<Action>) {
-    let v = &session.view;
-    let moved = [(sizes.0, v.left_width), (sizes.1, v.right_width), (sizes.2, v.bottom_height)]
-        .iter()
-        .any(|(a, b)| (a - b).abs() > 1.0);
-    let dragged = Id::new("panel dragged");
-    if ctx.input(|i| i.pointer.any_down()) && ctx.dragged_id().is_some() && moved {
-        ctx.data_mut(|d| d.insert_temp(dragged, true));
-    } else if ctx.data(|d| d.get_temp(dragged)).unwrap_or(false) && !ctx.input(|i| i.pointer.any_down()) {
-        ctx.data_mut(|d| d.remove::<bool>(dragged));
-        if moved {
-            let (left, right, bottom) = sizes;
-            actions.push(Action::View(ViewChange::Sizes { left, right, bottom }));
-        }
-    }
+/// What keeps the pointer from the picture, as it was shown last.
+#[derive(Clone, Debug, Default)]
+struct Cover {
+    /// Places over the picture that can be clicked.
+    places: Vec<Rect>,
+    /// A question or a dialog waits for an answer.
+    busy: bool,
+}
+
+/// True if the pointer at this place, in points of the panels, is over the picture with no panel, menu or dialog
+/// between; `frame` is that of its [`PictureArea`]. Asked with what was shown last: a press counts where it was made,
+/// also before the next frame.
+#[must_use]
+pub fn is_over_picture(ctx: &egui::Context, frame: Rect, at: Pos2) -> bool {
+    let cover: Cover = ctx.data(|d| d.get_temp(Id::new("cover of the picture"))).unwrap_or_default();
+    // Panels are no layers of their own; menus, popups, windows and dialogs are.
+    frame.contains(at)
+        && !cover.busy
+        && !cover.places.iter().any(|place| place.contains(at))
+        && ctx.layer_id_at(at).is_none_or(|layer| layer.order == egui::Order::Background)
+        && !ctx.egui_is_using_pointer()
 }
 
 /// The place of the picture, and if pointer and keys are its own. What is clicked in `covered` is not the picture.
@@ -396,22 +402,17 @@ fn picture_area(
     ctx: &egui::Context,
     session: &Session,
     [rect, frame]: [Rect; 2],
-    covered: &[Rect],
+    covered: Vec<Rect>,
     dialog: bool,
 ) -> PictureArea {
-    let pointer = ctx.input(|i| i.pointer.latest_pos());
     let busy = session.questions.open.is_some() || dialog;
-    // Panels are no layers of their own; menus, popups, windows and dialogs are.
-    let over = pointer.is_some_and(|p| {
-        frame.contains(p)
-            && !covered.iter().any(|c| c.contains(p))
-            && ctx.layer_id_at(p).is_none_or(|l| l.order == egui::Order::Background)
-    });
+    ctx.data_mut(|d| d.insert_temp(Id::new("cover of the picture"), Cover { places: covered, busy }));
+    let pointer = ctx.input(|i| i.pointer.latest_pos());
     PictureArea {
         rect,
         frame,
         zoom: ctx.zoom_factor(),
-        has_pointer: over && !busy && !ctx.egui_is_using_pointer(),
+        has_pointer: pointer.is_some_and(|at| is_over_picture(ctx, frame, at)),
         has_keys: !busy && ctx.memory(|m| m.focused()).is_none(),
         // The chooser opens and closes by an action, and is not among egui's.
         popup_open: egui::Popup::is_any_open(ctx) || session.view.chooser_open,

@@ -1,6 +1,7 @@
-//! The model and the shading that one object has in place of the scene's: one button beside the model's name.
+//! The model and the shading that one object has in place of the scene's: one button beside the model's name, and a
+//! hint at the top.
 
-use bevy_egui::egui::{Button, Popup, RichText, Ui, WidgetInfo, WidgetType};
+use bevy_egui::egui::{Button, Popup, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType};
 
 use super::{
     chooser, knob,
@@ -10,6 +11,45 @@ use super::{
 };
 use crate::document::ObjectField;
 use crate::{registry::Registry, scene::Object};
+
+/// The points that the frame rate takes.
+const RATE: f32 = 96.0;
+
+/// Says that the choices at the top are about the selected object alone, where it has its own.
+pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
+    let what = match (session.model_override().is_some(), session.shading_override().is_some()) {
+        (true, true) => "reflection and shading",
+        (true, false) => "reflection",
+        (false, true) => "shading",
+        (false, false) => return,
+    };
+    let palette = Palette::here(ui);
+    ui.add_space(6.0);
+    let name = session.name_of(session.selection, registry);
+    let text = format!("“{name}” overrides {what}");
+    // The frame rate keeps its place where there is room for both.
+    let all = ui.available_width();
+    let room = if all - RATE >= 40.0 { all - RATE } else { all };
+    if room < 20.0 {
+        return;
+    }
+    let shown = if theme::small_width(ui, &text) <= room { &text } else { "override" };
+    let galley = theme::elided(ui, shown, TextStyle::Small, palette.accent, room);
+    let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
+    ui.painter().galley(rect.min, galley, palette.accent);
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
+    response.on_hover_ui(|ui| {
+        ui.set_max_width(320.0);
+        ui.label(format!(
+            "{name} has its own {what}, so the choice here changes that of {name} alone. At the end of the \
+             panel at the right it can be made to follow the scene again."
+        ));
+        let model = registry.model(&session.document.reflection_model).map_or("–", |m| m.declaration.name);
+        let shading =
+            registry.shading_model(&session.document.shading_model).map_or("–", |m| m.declaration.name);
+        ui.label(theme::small(ui, format!("The scene: {model}, {shading} shading")));
+    });
+}
 
 /// The button, and what it opens. Returns the change that was asked for.
 pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Object) -> Option<ObjectField> {

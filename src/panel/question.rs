@@ -83,22 +83,26 @@ fn words(session: &Session, question: &Question) -> Words {
         Question::ChangedOnDisk { path } => (
             "The file has changed",
             format!(
-                "{} was changed by another program since it was read. Replace it with what is on screen, or read it again and lose what is on screen?",
+                "{} was changed by another program since it was read. Replace it with what is on screen, or reload it and lose what is on screen?",
                 path.display()
             ),
             Vec::new(),
-            vec![("Cancel", Answer::Cancel), ("Read again", Answer::Reload), ("Replace", Answer::Overwrite)],
+            vec![
+                ("Cancel", Answer::Cancel),
+                ("Reload from disk", Answer::Reload),
+                ("Replace", Answer::Overwrite),
+            ],
         ),
         Question::NewerOnDisk { path, .. } => (
-            "Read the file again?",
+            "Reload from disk?",
             format!(
-                "{} was changed by another program, and there are changes here that are not saved. Read it again and lose your changes, or keep them? If you keep them, saving overwrites the file.",
+                "{} was changed by another program, and there are changes here that are not saved. Reload it and lose your changes, or keep them? If you keep them, saving overwrites the file.",
                 path.display()
             ),
             Vec::new(),
             vec![
                 ("Keep mine", Answer::Keep),
-                ("Read again", Answer::Reload),
+                ("Reload from disk", Answer::Reload),
                 ("Decide when saving", Answer::Cancel),
             ],
         ),

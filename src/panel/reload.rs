@@ -68,7 +68,7 @@ pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &m
     match files.look(&path, registry) {
         Looked::Same => {
             session.disk.suspect = None;
-            // A message that it was read again stays until it is dismissed.
+            // A message that it was reloaded stays until it is dismissed.
             if session.disk.badge.is_some() {
                 session.disk_settled();
             }
@@ -125,8 +125,7 @@ fn take(
     let news = session.document != scene;
     session.reloaded(scene, defaulted);
     if news {
-        session
-            .say_of_disk(Severity::Info, format!("{} was read again: it changed on disk.", path.display()));
+        session.say_of_disk(Severity::Info, format!("{} was reloaded: it changed on disk.", path.display()));
     }
     Vec::new()
 }
@@ -157,7 +156,7 @@ fn doubt(
             format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.display());
         session.disk.badge = badge(
             Severity::Warning,
-            &format!("{} was deleted: showing its last version", file_name(&path)),
+            &format!("{} was deleted: only this window has the scene", file_name(&path)),
             &text,
         );
         session.say_of_disk(Severity::Warning, text);

@@ -8,8 +8,9 @@ use super::{
     chooser,
     history::HISTORY_TAB,
     keys::{self, Binding},
-    menu,
+    maths, menu,
     messages::MESSAGES_TAB,
+    model_override,
     state::{Action, Session, ThemeChoice, ViewChange},
     theme::{self, Palette},
     welcome,
@@ -59,7 +60,7 @@ impl Panel for TopBar {
                 caption(ui, CAPTIONS[1]);
             }
             shading(ui, session, registry, &names, apart, &mut actions);
-            whose(ui, session, registry);
+            model_override::whose(ui, session, registry);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, session));
         });
         actions
@@ -104,7 +105,7 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     response.on_hover_ui(|ui| {
         ui.label(theme::strong(ui, session.title()));
         if let Some(description) = &session.document.description {
-            ui.label(description);
+            ui.label(maths::prose(ui, description, egui::TextStyle::Body));
         }
         let file = session.path.as_ref().map_or("in no file yet".to_owned(), |p| p.display().to_string());
         ui.label(theme::small(ui, format!("{file}; {state}")));
@@ -132,6 +133,10 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
         let mut on = on;
         ui.horizontal(|ui| {
             if ui.checkbox(&mut on, text).clicked() {
+                // A presentation has no menus.
+                if matches!(action, Action::View(ViewChange::Presenting(true))) {
+                    ui.close();
+                }
                 actions.push(action);
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.weak(keys));
@@ -162,7 +167,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                 ui.separator();
                 item(ui, "Clear the list", Action::ClearRecent, actions);
             });
-            menu::submenu(ui, "Examples", |ui| welcome::menu(ui, registry, actions));
+            let right = ui.max_rect().right();
+            menu::submenu(ui, "Examples", |ui| welcome::menu(ui, right, registry, actions));
             ui.separator();
             item(ui, "Save", Action::Save, actions);
             item(ui, "Save as…", Action::SaveAsDialog, actions);
@@ -301,7 +307,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                         }
                     }
                 });
-                item(ui, "Presentation", view(ViewChange::Presenting(!v.presenting)), actions);
+                let presenting = view(ViewChange::Presenting(!v.presenting));
+                check(ui, "Presentation", v.presenting, "F5", presenting, actions);
                 check(
                     ui,
                     "Full screen",
@@ -366,40 +373,6 @@ fn shading(
     if let Some(i) = picked {
         actions.push(Action::Edit(session.edit_shading_model(registry.shading_models()[i].declaration.id)));
     }
-}
-
-/// Says that the choices at the top are about the selected object alone, where it has its own.
-fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
-    let what = match (session.model_override().is_some(), session.shading_override().is_some()) {
-        (true, true) => "reflection and shading",
-        (true, false) => "reflection",
-        (false, true) => "shading",
-        (false, false) => return,
-    };
-    let palette = Palette::here(ui);
-    ui.add_space(6.0);
-    let name = session.name_of(session.selection, registry);
-    let text = format!("“{name}” overrides {what}");
-    // The frame rate keeps its place.
-    let room = ui.available_width() - 96.0;
-    if room < 40.0 {
-        return;
-    }
-    let galley = theme::elided(ui, &text, egui::TextStyle::Small, palette.accent, room);
-    let (rect, response) = ui.allocate_exact_size(galley.size(), egui::Sense::hover());
-    ui.painter().galley(rect.min, galley, palette.accent);
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
-    response.on_hover_ui(|ui| {
-        ui.set_max_width(320.0);
-        ui.label(format!(
-            "{name} has its own {what}, so the choice here changes that of {name} alone. At the end of the \
-             panel at the right it can be made to follow the scene again."
-        ));
-        let model = registry.model(&session.document.reflection_model).map_or("–", |m| m.declaration.name);
-        let shading =
-            registry.shading_model(&session.document.shading_model).map_or("–", |m| m.declaration.name);
-        ui.label(theme::small(ui, format!("The scene: {model}, {shading} shading")));
-    });
 }
 
 /// Width of one of several choices: as when it is chosen, so that nothing moves when the choice does.
@@ -474,6 +447,9 @@ fn prepare_digits(ui: &Ui) {
 }
 
 fn renderer(ui: &mut Ui, session: &Session) {
+    if ui.available_width() < 40.0 {
+        return;
+    }
     let facts = &session.facts;
     let mut parts = Vec::new();
     if facts.fps() > 0.0 {

@@ -6,7 +6,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    Panel, Place,
+    Panel, Place, focus,
     icon::{self, Icon},
     knob,
     state::{Action, Session},
@@ -56,6 +56,7 @@ impl Panel for Tree {
             i => Row::Part(Selection::Object(i - 4 - lights)),
         };
         actions.extend(step(ui, session).map(Action::Select));
+        focus::first(ui.ctx(), row_id(session.selection));
         let height = 26.0;
         ui.spacing_mut().item_spacing.y = 0.0;
         let total = 4 + lights + objects;

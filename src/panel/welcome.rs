@@ -8,7 +8,7 @@ use bevy_egui::egui::{
 use super::{
     focus::{self, Region},
     icon::{self, Icon},
-    keys,
+    keys, maths,
     preview::{self, Source},
     state::{Action, PictureArea, Session, ViewChange},
     theme::{self, Palette},
@@ -17,12 +17,14 @@ use crate::{registry::Registry, scene::examples::EXAMPLES};
 
 /// The size of a picture in the strip, points.
 const CARD: egui::Vec2 = vec2(112.0, 63.0);
+/// The height of two lines below it, and of the scroll bar.
+const TITLE: f32 = 42.0;
 /// The size of one in the menu.
 const ROW: egui::Vec2 = vec2(96.0, 54.0);
 /// The least height of strip and picture together, points.
 const LEAST: f32 = 320.0;
-/// Width of the menu.
-const MENU: f32 = 440.0;
+/// Width of the menu, at most and at least.
+const MENU: [f32; 2] = [440.0, 260.0];
 
 /// The strip below the picture.
 pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
@@ -48,13 +50,16 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
                 });
             });
         });
+        // Wheels turn up and down.
+        ui.style_mut().always_scroll_the_only_direction = true;
         ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| {
             ui.horizontal_top(|ui| {
                 for (i, example) in EXAMPLES.iter().enumerate() {
-                    let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, 20.0), Sense::click());
+                    let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, TITLE), Sense::click());
                     let picture = Rect::from_min_size(rect.min, CARD);
                     face(ui, i, picture, &response, registry);
-                    let galley = theme::elided(ui, &example.name, TextStyle::Small, palette.text, CARD.x);
+                    let font = TextStyle::Small.resolve(ui.style());
+                    let galley = ui.painter().layout(example.name.clone(), font, palette.text, CARD.x);
                     ui.painter().galley(picture.left_bottom() + vec2(0.0, 4.0), galley, palette.text);
                     frame(ui, picture, &response);
                     if response.clicked() {
@@ -63,7 +68,7 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
                     response.on_hover_ui(|ui| {
                         ui.set_max_width(320.0);
                         ui.label(theme::strong(ui, &example.name));
-                        ui.label(&example.description);
+                        ui.label(maths::prose(ui, &example.description, TextStyle::Body));
                     });
                 }
             });
@@ -79,45 +84,36 @@ pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Acti
     left.then_some(Action::View(ViewChange::Examples(false)))
 }
 
-/// The menu of the examples.
-pub fn menu(ui: &mut Ui, registry: &Registry, actions: &mut Vec<Action>) {
-    ui.set_width(MENU.min(ui.ctx().content_rect().width() - 180.0));
+/// The menu of the examples, beside one that ends at `left`.
+pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Action>) {
+    let [most, least] = MENU;
+    ui.set_width((ui.ctx().content_rect().right() - left - 40.0).clamp(least, most));
     let most = 0.75 * ui.ctx().content_rect().height();
     ScrollArea::vertical().max_height(most).show(ui, |ui| {
         for (i, example) in EXAMPLES.iter().enumerate() {
             let palette = Palette::here(ui);
-            let (rect, response) =
-                ui.allocate_exact_size(vec2(ui.available_width(), ROW.y + 8.0), Sense::click());
+            let left = 4.0 + ROW.x + 10.0;
+            let width = ui.available_width() - left - 12.0;
+            let font = egui::FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+            let name = theme::elided(ui, &example.name, font, palette.text, width);
+            let mut job = maths::prose(ui, &example.description, TextStyle::Small);
+            job.wrap.max_width = width;
+            let words = ui.painter().layout_job(job);
+            let below = name.size().y + 3.0;
+            let height = (below + words.size().y + 2.0).max(ROW.y) + 8.0;
+            let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
             if response.hovered() || response.has_focus() {
                 ui.painter().rect_filled(rect, 4.0, palette.hovered);
             }
             let picture = Rect::from_min_size(rect.min + vec2(4.0, 4.0), ROW);
             face(ui, i, picture, &response, registry);
             frame(ui, picture, &response);
-            let left = picture.right() + 10.0;
-            let width = rect.right() - left - 4.0;
-            let font = egui::FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-            let name = theme::elided(ui, &example.name, font, palette.text, width);
-            let mut job = egui::text::LayoutJob::simple(
-                example.description.clone(),
-                TextStyle::Small.resolve(ui.style()),
-                palette.text,
-                width,
-            );
-            job.wrap.max_rows = 2;
-            let words = ui.painter().layout_job(job);
-            let at = egui::pos2(left, rect.top() + 5.0);
-            ui.painter().galley(at + vec2(0.0, name.size().y + 3.0), words.clone(), palette.text);
+            let at = rect.min + vec2(left, 5.0);
+            ui.painter().galley(at + vec2(0.0, below), words, palette.text);
             ui.painter().galley(at, name, palette.text);
             if response.clicked() {
                 actions.push(Action::OpenExample(i));
                 ui.close();
-            }
-            if words.elided {
-                response.on_hover_ui(|ui| {
-                    ui.set_max_width(320.0);
-                    ui.label(&example.description);
-                });
             }
         }
     });

@@ -14,7 +14,7 @@ use bevy_egui::EguiPostUpdateSet;
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraSystemSet};
 use glam::{Quat, Vec3};
 
-use super::WindowView;
+use super::{WindowView, pointer::OverPicture};
 use crate::{
     document::{Edit, Selection},
     panel::state::{Action, PictureArea, Session, Steer},
@@ -80,7 +80,7 @@ fn put_at(camera: &mut PanOrbitCamera, transform: &mut Transform, place: Transfo
 /// The picture gets the mouse only where nothing else wants it; and a camera that is moved no longer
 /// stands at the observer.
 pub(super) fn gate(
-    area: Res<PictureArea>,
+    over: Res<OverPicture>,
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
     mut wheel: MessageReader<MouseWheel>,
@@ -89,15 +89,12 @@ pub(super) fn gate(
     mut cameras: Query<(&mut PanOrbitCamera, &mut PictureCamera), With<WindowView>>,
 ) {
     let pressed = [MouseButton::Left, MouseButton::Right];
-    if area.has_pointer && buttons.any_just_pressed(pressed) {
-        *dragging = true;
-    } else if !buttons.any_pressed(pressed) {
-        *dragging = false;
-    }
+    let begins = over.pressed.is_some() && buttons.any_just_pressed(pressed);
+    *dragging = buttons.any_pressed(pressed) && (*dragging || begins);
     let moved = motion.read().count() > 0;
-    let wheeled = wheel.read().count() > 0 && area.has_pointer;
+    let wheeled = wheel.read().count() > 0 && over.now;
     // A drag that began in the picture goes on outside; one that began outside never gets in.
-    let enabled = *dragging || (area.has_pointer && !buttons.any_pressed(pressed));
+    let enabled = *dragging || (over.now && !buttons.any_pressed(pressed));
     let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
     for (mut orbit, mut picture) in &mut cameras {
         if orbit.enabled != enabled {

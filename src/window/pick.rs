@@ -11,7 +11,7 @@ use bevy::{
 };
 use glam::Vec2;
 
-use super::{WindowView, picture::PicturePlace};
+use super::{WindowView, picture::PicturePlace, pointer::OverPicture};
 use crate::{
     document::Selection,
     panel::{
@@ -30,6 +30,7 @@ const CLICK_SLACK: f32 = 4.0;
 /// Selects the light whose mark, or else the object whose surface, was clicked.
 pub(super) fn pick(
     buttons: Res<ButtonInput<MouseButton>>,
+    over: Res<OverPicture>,
     window: Single<&Window, With<PrimaryWindow>>,
     cameras: Query<(&Camera, &GlobalTransform), With<WindowView>>,
     scene: Res<CurrentScene>,
@@ -43,7 +44,7 @@ pub(super) fn pick(
 ) {
     let pointer = window.cursor_position();
     if buttons.just_pressed(MouseButton::Left) {
-        *pressed_at = pointer.filter(|_| area.has_pointer && !area.popup_open);
+        *pressed_at = over.pressed.filter(|_| !area.popup_open);
     }
     if !buttons.just_released(MouseButton::Left) {
         return;
@@ -144,6 +145,7 @@ mod tests {
             let mut world = World::new();
             world.insert_resource(session);
             world.insert_resource(area);
+            world.insert_resource(OverPicture { now: true, pressed: Some(at) });
             world.insert_resource(CurrentScene(scene));
             world.insert_resource(Registry::builtin());
             world.init_resource::<SceneEntities>();

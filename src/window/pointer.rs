@@ -3,32 +3,49 @@
 //!
 //! Only where the cursor stands still, as at the edge of the screen, does the way of the device count. The two do not
 //! always come in the same frame, so it counts one frame later.
+//!
+//! Pens, fingers and remote desktops send a move and a press at once: the place of the press tells whose it is, and
+//! what came before it turns nothing.
 
 use bevy::{
     app::{App, Plugin, PreUpdate},
-    ecs::{
-        message::{MessageCursor, Messages},
-        prelude::*,
-    },
+    ecs::{message::Messages, prelude::*},
     input::{
         ButtonInput, InputSystems,
         mouse::{MouseButton, MouseMotion},
     },
-    window::{CursorMoved, RequestRedraw},
+    window::{RequestRedraw, WindowEvent},
 };
+use bevy_egui::{EguiContext, PrimaryEguiContext, egui::pos2};
 use glam::Vec2;
+
+use crate::panel::{is_over_picture, state::PictureArea};
 
 pub(super) struct PointerPlugin;
 
 impl Plugin for PointerPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(PreUpdate, follow_cursor.after(InputSystems).before(super::camera::gate));
+        app.init_resource::<OverPicture>()
+            .add_systems(PreUpdate, follow_cursor.after(InputSystems).before(super::camera::gate));
     }
+}
+
+/// Whose the pointer is, by the input of this frame.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub(super) struct OverPicture {
+    /// It is over the picture.
+    pub(super) now: bool,
+    /// Its place in the window when a button was pressed last, if that was over the picture.
+    pub(super) pressed: Option<Vec2>,
 }
 
 /// The state of the pointer.
 #[derive(Default)]
 struct Pointer {
+    /// Its place in the window.
+    place: Option<Vec2>,
+    /// A button is held.
+    held: bool,
     /// The way of the device for which no cursor has moved so far.
     pending: Option<Vec2>,
     /// The cursor moved in the frame before.
@@ -36,39 +53,64 @@ struct Pointer {
 }
 
 impl Pointer {
-    /// The way that counts, from those of the device and of the cursor in a frame; a button is `held` in a drag.
-    fn frame(&mut self, device: Option<Vec2>, cursor: Option<Vec2>, held: bool) -> Option<Vec2> {
+    /// The way that counts, from those of the device and of the cursor in a frame, and whether the cursor `moved` in
+    /// it at all; a button is `held` in a drag.
+    fn frame(&mut self, device: Option<Vec2>, cursor: Option<Vec2>, moved: bool, held: bool) -> Option<Vec2> {
         let before = self.pending.take();
-        let moved = std::mem::replace(&mut self.moved, cursor.is_some());
-        if cursor.is_some() {
+        let earlier = std::mem::replace(&mut self.moved, moved);
+        if moved {
             return cursor;
         }
-        self.pending = device.filter(|_| held && !moved);
+        self.pending = device.filter(|_| held && !earlier);
         before
     }
 }
 
 fn follow_cursor(
+    mut events: MessageReader<WindowEvent>,
     mut motion: ResMut<Messages<MouseMotion>>,
-    mut read: Local<MessageCursor<MouseMotion>>,
-    mut cursor: MessageReader<CursorMoved>,
     buttons: Res<ButtonInput<MouseButton>>,
+    area: Option<Res<PictureArea>>,
+    mut contexts: Query<&mut EguiContext, With<PrimaryEguiContext>>,
     mut pointer: Local<Pointer>,
+    mut over: ResMut<OverPicture>,
     mut requests: MessageWriter<RequestRedraw>,
 ) {
-    let sum = |ways: &mut dyn Iterator<Item = Vec2>| {
-        let way: Vec2 = ways.sum();
-        Some(way).filter(|way| *way != Vec2::ZERO)
+    let context = contexts.iter_mut().next().map(|mut context| context.get_mut().clone());
+    let is_over = |place: Option<Vec2>| {
+        let (Some(context), Some(area), Some(place)) = (&context, &area, place) else { return false };
+        let place = place / area.zoom;
+        is_over_picture(context, area.frame, pos2(place.x, place.y))
     };
-    let device = sum(&mut read.read(&motion).map(|m| m.delta));
-    let moved = sum(&mut cursor.read().filter_map(|c| c.delta));
-    let held = buttons.get_pressed().next().is_some();
+    let (mut device, mut cursor, mut moved) = (Vec2::ZERO, Vec2::ZERO, false);
+    for event in events.read() {
+        match event {
+            WindowEvent::MouseMotion(way) if pointer.held => device += way.delta,
+            WindowEvent::CursorMoved(to) => {
+                let way = to.delta.unwrap_or_default();
+                moved |= way != Vec2::ZERO;
+                if pointer.held {
+                    cursor += way;
+                }
+                pointer.place = Some(to.position);
+            }
+            WindowEvent::CursorLeft(_) if !pointer.held => pointer.place = None,
+            WindowEvent::MouseButtonInput(button) if button.state.is_pressed() => {
+                pointer.held = true;
+                over.pressed = pointer.place.filter(|place| is_over(Some(*place)));
+            }
+            _ => {}
+        }
+    }
+    // What was let go within the frame has turned nothing.
+    pointer.held = buttons.get_pressed().next().is_some();
+    over.now = is_over(pointer.place);
+    let some = |way: Vec2| Some(way).filter(|way| *way != Vec2::ZERO);
+    let held = pointer.held;
     motion.clear();
-    if let Some(delta) = pointer.frame(device, moved, held) {
+    if let Some(delta) = pointer.frame(some(device), some(cursor), moved, held) {
         motion.write(MouseMotion { delta });
     }
-    // What is written here is not news here.
-    read.clear(&motion);
     if pointer.pending.is_some() {
         // The next frame decides.
         requests.write(RequestRedraw);
@@ -82,6 +124,7 @@ mod tests {
         camera::Projection,
         input::{ButtonState, InputPlugin, mouse::MouseButtonInput},
         transform::components::Transform,
+        window::CursorMoved,
     };
     use bevy_panorbit_camera::{ActiveCameraData, PanOrbitCamera, PanOrbitCameraPlugin};
     use glam::Vec3;
@@ -94,15 +137,16 @@ mod tests {
 
     /// The camera after a drag with this button.
     fn drag(button: MouseButton, frames: &[Sent]) -> Transform {
-        drag_after(None, button, frames)
+        drag_after(None, false, button, frames)
     }
 
-    /// The same after the cursor came into the picture.
-    fn drag_after(hover: Option<Vec2>, button: MouseButton, frames: &[Sent]) -> Transform {
+    /// The same after the cursor came into the picture, in the frame of the press if both are sent `at_once`.
+    fn drag_after(hover: Option<Vec2>, at_once: bool, button: MouseButton, frames: &[Sent]) -> Transform {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, InputPlugin, PanOrbitCameraPlugin))
-            .add_message::<CursorMoved>()
+            .add_message::<WindowEvent>()
             .add_message::<RequestRedraw>()
+            .init_resource::<OverPicture>()
             .add_systems(PreUpdate, follow_cursor.after(InputSystems));
         let window = app.world_mut().spawn_empty().id();
         let place = Transform::from_xyz(0.0, 0.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y);
@@ -117,18 +161,22 @@ mod tests {
         app.update();
         let moved = |delta| CursorMoved { window, position: Vec2::ZERO, delta };
         if hover.is_some() {
-            app.world_mut().write_message(moved(hover));
-            app.update();
+            app.world_mut().write_message(WindowEvent::from(moved(hover)));
+            if !at_once {
+                app.update();
+            }
         }
-        let state = ButtonState::Pressed;
-        app.world_mut().write_message(MouseButtonInput { button, state, window });
+        let press = MouseButtonInput { button, state: ButtonState::Pressed, window };
+        app.world_mut().write_message(press);
+        app.world_mut().write_message(WindowEvent::from(press));
         app.update();
         for (told, cursor) in frames {
             if let Some(delta) = *told {
                 app.world_mut().write_message(MouseMotion { delta });
+                app.world_mut().write_message(WindowEvent::from(MouseMotion { delta }));
             }
             if cursor.is_some() {
-                app.world_mut().write_message(moved(*cursor));
+                app.world_mut().write_message(WindowEvent::from(moved(*cursor)));
             }
             app.update();
         }
@@ -176,9 +224,11 @@ mod tests {
     fn what_the_cursor_went_before_the_drag_turns_nothing() {
         let way = Some(Vec2::new(15.0, 0.0));
         for frames in [[(None, way); 3], [(way, way); 3]] {
-            let there = drag_after(Some(Vec2::new(200.0, 100.0)), MouseButton::Left, &frames);
             let mouse = drag(MouseButton::Left, &[(way, way); 3]);
-            assert!(near(there, mouse), "{there:?} and {mouse:?}");
+            for at_once in [false, true] {
+                let there = drag_after(Some(Vec2::new(200.0, 100.0)), at_once, MouseButton::Left, &frames);
+                assert!(near(there, mouse), "{there:?} and {mouse:?}");
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use bevy_egui::egui::{Key, Modifiers, vec2};
+use bevy_egui::egui::{self, Event, Key, Modifiers, Shape, vec2};
 use lights_camera_models::{
     document::Edit,
     panel::{
@@ -84,6 +84,73 @@ fn the_strip_stands_below_the_picture_and_escape_closes_it() {
 }
 
 #[test]
+fn the_wheel_scrolls_the_strip_and_titles_are_whole() {
+    for size in [vec2(1280.0, 720.0), vec2(1920.0, 1080.0)] {
+        let mut bench = Bench::new(Session::default());
+        bench.size = size;
+        bench.apply(Action::View(ViewChange::Examples(true)));
+        let left = |bench: &Bench| bench.find("Example: Default scene").expect("a card").rect.left();
+        let before = left(&bench);
+        let cut = |bench: &mut Bench| {
+            let names: Vec<_> = EXAMPLES.iter().map(|e| e.name.as_str()).collect();
+            let mut texts = 0;
+            for shape in bench.shapes() {
+                if let Shape::Text(text) = shape
+                    && names.contains(&text.galley.text())
+                {
+                    assert!(!text.galley.elided, "{} at {size:?}", text.galley.text());
+                    texts += 1;
+                }
+            }
+            assert!(texts >= 5, "{texts}");
+        };
+        cut(&mut bench);
+        let at = bench.find("Example: Shapes and lights").expect("a card").rect.center();
+        bench.frame(vec![Event::PointerMoved(at)]);
+        let wheel = Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: vec2(0.0, -4000.0),
+            phase: egui::TouchPhase::Move,
+            modifiers: Modifiers::NONE,
+        };
+        bench.frame(vec![wheel]);
+        (0..10).for_each(|_| bench.settle());
+        let visible = size.x - 208.0 - 344.0;
+        let scrolls = EXAMPLES.len() as f32 * 120.0 > visible;
+        assert!(!scrolls || left(&bench) < before - 50.0, "{} at {size:?}", left(&bench));
+        cut(&mut bench);
+        let last = EXAMPLES.last().expect("there are some");
+        let card = bench.find(&format!("Example: {}", last.name)).expect("a card").rect;
+        assert!(bench.area.rect.x_range().contains(card.center().x), "the last is reached");
+    }
+}
+
+#[test]
+fn the_menu_of_the_examples_says_all_of_them_and_leaves_the_menu_before_it_free() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::Scale(150)));
+    bench.click("File");
+    bench.click("Examples ⏵");
+    let file =
+        bench.find("Quit").or(bench.tree.iter().find(|s| s.label.starts_with("Quit"))).expect("an entry");
+    let first = bench.find("Example: Default scene").expect("an entry").rect;
+    assert!(first.left() >= file.rect.right(), "{first:?} lies over {:?}", file.rect);
+    assert!(first.right() < 1280.0 / 1.5, "{first:?}");
+    let texts: Vec<_> = bench
+        .shapes()
+        .into_iter()
+        .filter_map(|shape| match shape {
+            Shape::Text(text) => Some(text.galley.clone()),
+            _ => None,
+        })
+        .collect();
+    let wraps = texts.iter().find(|t| t.text().starts_with("Left to right: Lambert")).expect("shown");
+    assert!(!wraps.elided && wraps.text().ends_with("the same without the square."), "{}", wraps.text());
+    assert!(texts.iter().all(|t| !t.text().contains("k_d") && !t.text().contains('`')));
+}
+
+#[test]
 fn every_example_gets_its_small_picture() {
     let mut bench = Bench::new(Session::default());
     let registry = bench.registry.clone();
@@ -117,7 +184,7 @@ fn the_window_shows_the_examples_when_it_opens_without_a_file() {
     use crate::screen::Screen;
     let screen = Screen::new(1280, 720);
     // The strip has the colour of the panels where else the picture's surround would be.
-    let panel = |p: &crate::screen::Picture| p.count(300..700, 582..590, |c| c == [21, 21, 21]) > 1500;
+    let panel = |p: &crate::screen::Picture| p.count(300..700, 567..575, |c| c == [21, 21, 21]) > 1500;
     let scene = format!("{}/scenes/default.json", env!("CARGO_MANIFEST_DIR"));
     screen.start(&["view", "--size", "1280x720"]).until("the examples", panel);
     let mut window = screen.start(&["view", &scene, "--size", "1280x720"]);

@@ -180,7 +180,7 @@ fn arrows_in_the_scene_list_select_the_row_they_lead_to() {
     let scene = Scene { objects: vec![Object::default(); 60], ..Scene::default() };
     let mut bench = Bench::new(Session::new(scene));
     bench.size = vec2(1280.0, 480.0);
-    bench.settle();
+    bench.apply(Action::Select(Selection::Room));
     (0..2).for_each(|_| bench.key(Key::F6, Modifiers::NONE));
     for i in 0..40 {
         bench.key(Key::ArrowDown, Modifiers::NONE);
@@ -332,4 +332,35 @@ fn f6_reaches_the_examples_and_the_badges_and_shows_that_the_picture_has_the_key
     assert!(bench.says("The whole story.") && !around(&mut bench));
     bench.key(Key::F6, Modifiers::NONE);
     assert!(focused(&bench).is_some_and(|r| r.top() < 40.0), "the first panel again");
+}
+
+#[test]
+fn f6_to_the_scene_list_leads_to_the_row_that_is_selected() {
+    let mut bench = Bench::new(Session::default());
+    for (part, row) in [(Selection::Light(0), "Point 1"), (Selection::Observer, "Observer")] {
+        bench.apply(Action::Select(part));
+        (0..2).for_each(|_| bench.key(Key::F6, Modifiers::NONE));
+        assert_eq!(name(&bench), row);
+        assert_eq!(bench.session.selection, part, "to look is not to select");
+        bench.key(Key::Escape, Modifiers::NONE);
+    }
+}
+
+#[test]
+fn arrows_in_a_drop_down_list_begin_at_what_is_chosen() {
+    let mut bench = Bench::new(Session::default());
+    bench.apply(Action::Select(Selection::Light(0)));
+    let types: Vec<_> = bench.registry.lights().iter().map(|l| l.declaration.name).collect();
+    let id = &bench.session.document.lights[0].light_type;
+    let chosen = bench.registry.light_index(id).expect("known") as usize;
+    let count = types.len();
+    for (key, expected) in
+        [(Key::ArrowDown, (chosen + 1) % count), (Key::ArrowUp, (chosen + count - 1) % count)]
+    {
+        let button = bench.tree.iter().find(|s| s.label.starts_with("type: ")).expect("a list").rect;
+        bench.click_at(button.center(), PointerButton::Primary);
+        bench.key(key, Modifiers::NONE);
+        assert_eq!(name(&bench), types[expected], "{key:?} from {}", types[chosen]);
+        bench.key(Key::Escape, Modifiers::NONE);
+    }
 }

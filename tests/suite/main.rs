@@ -28,6 +28,7 @@ mod keyboard;
 mod knobs;
 mod law_check;
 mod laws;
+mod layout;
 mod links;
 mod marks;
 mod memory;

@@ -747,7 +747,7 @@ fn a_file_that_changed_beside_unsaved_changes_is_a_question_of_three_answers() {
     bench.key(Key::Enter, Modifiers::NONE);
     assert_eq!(bench.effects, keep(version));
     let (mut bench, _) = ask();
-    bench.click("Read again");
+    bench.click("Reload from disk");
     assert_eq!(bench.effects, [Effect::LookAtFile { discard: true }]);
     // To leave the question is to decide later, and the picture says that there is something to decide.
     let (mut bench, _) = ask();

@@ -423,16 +423,16 @@ mod on_screen {
             keyboard.press(&[Key::Control, Key::Equals]);
             window.rest();
         }
-        // At 150 % the panels begin at 764 pixels; up to there is the picture.
-        window.until("the larger panels", |p| is(p, 770..780, 100..600, PANEL));
+        // At 150 % the panels begin at 842 pixels; up to there is the picture.
+        window.until("the larger panels", |p| is(p, 849..859, 100..600, PANEL));
         let shown = window.rest();
-        assert!(is(&shown, 745..760, 80..500, SURROUND), "the picture ends before the panel begins");
+        assert!(is(&shown, 824..839, 80..500, SURROUND), "the picture ends before the panel begins");
         assert!(is(&shown, 320..750, 668..676, SURROUND), "the picture ends above the line at the bottom");
         keyboard.press(&[Key::F5]);
         window.until("the presentation", |p| {
             is(p, 10..60, 100..400, SURROUND) && is(p, 1200..1270, 150..400, SURROUND)
         });
         keyboard.press(&[Key::Escape]);
-        window.until("the panels", |p| is(p, 770..780, 100..600, PANEL));
+        window.until("the panels", |p| is(p, 849..859, 100..600, PANEL));
     }
 }

@@ -157,11 +157,11 @@ fn an_edit_elsewhere_becomes_the_document_and_the_view_stays() {
     assert_eq!(desk.session.view.terms, TermSelection::Diffuse);
     // Neither back to the observer nor to another document.
     assert!(desk.left.is_empty(), "{:?}", desk.left);
-    assert_eq!(desk.said("room.json was read again"), 1);
+    assert_eq!(desk.said("room.json was reloaded"), 1);
     assert_eq!(desk.session.messages[0].severity, Severity::Info);
     // Many editors touch the file once more; that changes nothing.
     assert!(!desk.report());
-    assert_eq!(desk.said("room.json was read again"), 1);
+    assert_eq!(desk.said("room.json was reloaded"), 1);
     // Another version: the message is not piled up.
     desk.edited(&text(&grown(0, 3.0)));
     assert_eq!(desk.session.document, grown(0, 3.0));
@@ -335,7 +335,7 @@ fn a_broken_file_leaves_the_scene_and_says_where() {
     desk.edited(&text(&grown(0, 2.0)));
     assert_eq!(desk.badge(), "");
     assert_eq!(desk.session.messages.len(), 1);
-    assert_eq!(desk.said("was read again"), 1);
+    assert_eq!(desk.said("was reloaded"), 1);
 }
 
 #[test]
@@ -396,7 +396,7 @@ fn a_deleted_file_leaves_the_scene_which_is_unsaved_then() {
     assert!(desk.report(), "some editors delete the file and write it anew");
     assert_eq!(desk.badge(), "");
     assert!(!desk.report());
-    assert_eq!(desk.badge(), "room.json was deleted: showing its last version");
+    assert_eq!(desk.badge(), "room.json was deleted: only this window has the scene");
     assert_eq!(desk.said("no longer there"), 1);
     assert_eq!(desk.session.document, three());
     desk.act(Action::Quit);

@@ -21,7 +21,7 @@ use lights_camera_models::{
         theme::Palette,
     },
     registry::{Folders, Registry},
-    scene::Scene,
+    scene::{Light, Scene},
     shader::check::ShaderProblem,
     window::{
         authoring::{write, write_new},
@@ -314,7 +314,7 @@ fn built_in_shaders_can_be_written_out_and_not_opened() {
     assert!(bench.says("The shaders are built in."));
     assert!(!bench.says("Open reflection/lambert.wgsl in an editor"));
     assert!(bench.find("Open in editor").expect("there").disabled);
-    bench.click("Write them out for editing…");
+    bench.click("Export shaders for editing…");
     assert!(bench.dialogs.is_open());
     let folder = PathBuf::from("/tmp/shaders");
     bench.effects.clear();
@@ -324,6 +324,61 @@ fn built_in_shaders_can_be_written_out_and_not_opened() {
     bench.key(Key::E, Modifiers::COMMAND | Modifiers::CTRL);
     assert_eq!(bench.effects, []);
     assert!(bench.session.messages[0].text.contains("built in"));
+}
+
+#[test]
+fn all_of_the_panel_is_in_the_window_however_large_everything_is() {
+    for (scale, model) in
+        [(100, "lambert"), (150, "disney"), (150, "blinn_phong_normalised"), (200, "disney")]
+    {
+        let mut bench = Bench::with_model(model);
+        bench.size = vec2(1280.0, 720.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
+        let right = 1280.0 / bench.ctx.zoom_factor();
+        let place = |label: &str| bench.find(label).unwrap_or_else(|| panic!("no {label}")).rect;
+        let export = place("Export shaders for editing…");
+        let first = place("New model…");
+        assert!(export.right() < first.left(), "{model} at {scale} %: {export:?} {first:?}");
+        for label in ["Check laws", "New model…", "Duplicate as a file…", "Open in editor"] {
+            assert!(place(label).right() < right, "{model} at {scale} %: {label} {:?}", place(label));
+        }
+        let explained =
+            bench.tree.iter().find(|s| s.label.starts_with("To change how the picture is computed"));
+        assert!(explained.expect("shown").rect.right() < right, "{model} at {scale} %");
+    }
+}
+
+#[test]
+fn the_names_of_files_are_shown_whole() {
+    let mut scene = Scene::default();
+    scene.lights[0] = Light { light_type: "directional".to_owned(), ..scene.lights[0].clone() };
+    for scale in [100, 150] {
+        let mut bench = Bench::new(Session::new(scene.clone()));
+        bench.size = vec2(1280.0, 720.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.session.view.bottom_height = 420.0;
+        bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
+        let mut names = 0;
+        for shape in bench.shapes() {
+            if let Shape::Text(text) = shape
+                && text.galley.text().starts_with("the light type: ")
+            {
+                assert!(!text.galley.elided, "{} at {scale} %", text.galley.text());
+                names += 1;
+            }
+        }
+        assert!(names > 0, "{scale} %");
+    }
+}
+
+#[test]
+fn a_model_in_a_file_is_not_called_built_in() {
+    let mut bench = bare();
+    bench.session.shaders.folders.shaders = None;
+    bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
+    assert!(bench.says("Bare · ") && !bench.says("The shaders are built in."));
+    assert!(bench.says("All but the model is built in."));
 }
 
 #[test]
@@ -775,7 +830,7 @@ fn pictures_of_the_shader_panel() -> Result<(), Box<dyn std::error::Error>> {
         ("chooser-own", (1280.0, 720.0), 46, &[|b| b.key(Key::R, Modifiers::NONE)]),
         ("chooser-own-large", (1280.0, 720.0), 46, &[large, |b| b.key(Key::R, Modifiers::NONE)]),
         ("edit-menu", (1280.0, 720.0), 46, &[|b| b.click("Edit")]),
-        ("export", (1280.0, 720.0), 46, &[built_in, |b| b.click("Write them out for editing…")]),
+        ("export", (1280.0, 720.0), 46, &[built_in, |b| b.click("Export shaders for editing…")]),
     ];
     let only = std::env::var("LCM_PANEL_ONLY").ok().filter(|o| !o.is_empty());
     for (name, size, ground, setups) in states {

@@ -54,7 +54,7 @@ pub(super) fn header(
             Selection::Object(i) => Action::Edit(Edit::Object(i, ObjectField::Name(text))),
             _ => Action::Edit(Edit::SceneName(text)),
         };
-        text_field(ui, "name", "Name", own.unwrap_or_default(), &name, width, true, |text| {
+        text_field(ui, "name", "Name", own.unwrap_or_default(), &name, width, Text::Heading, |text| {
             actions.push(rename(text))
         });
         // At the right edge, and for the Tab key in this order.
@@ -73,7 +73,16 @@ pub(super) fn header(
     ui.add_space(4.0);
 }
 
-/// A field for text; the change counts when the field is left.
+/// What a field for text holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Text {
+    /// A name, in the size of headings.
+    Heading,
+    /// Sentences, in as many lines as they need.
+    Sentences,
+}
+
+/// A field for text; the change counts when the field is left, which Enter does.
 pub(super) fn text_field(
     ui: &mut Ui,
     salt: &str,
@@ -81,7 +90,7 @@ pub(super) fn text_field(
     value: &str,
     hint: &str,
     width: f32,
-    heading: bool,
+    kind: Text,
     mut set: impl FnMut(String),
 ) {
     let palette = Palette::here(ui);
@@ -91,11 +100,16 @@ pub(super) fn text_field(
     let focused = ui.memory(|m| m.has_focus(id));
     // A stroke of another width would move what stands below.
     let stroke = egui::Stroke::new(1.0, if focused { palette.accent } else { palette.line });
-    let style = if heading { egui::TextStyle::Heading } else { egui::TextStyle::Body };
-    let edit = TextEdit::singleline(&mut text)
+    let (edit, style) = match kind {
+        Text::Heading => (TextEdit::singleline(&mut text), egui::TextStyle::Heading),
+        Text::Sentences => {
+            (TextEdit::multiline(&mut text).desired_rows(2).return_key(None), egui::TextStyle::Body)
+        }
+    };
+    let edit = edit
         .id(id)
-        .font(style)
-        .hint_text(if heading { RichText::new(hint).heading() } else { RichText::new(hint) })
+        .font(style.clone())
+        .hint_text(RichText::new(hint).text_style(style))
         .desired_width(width - 14.0)
         .frame(
             egui::Frame::new()
@@ -110,6 +124,9 @@ pub(super) fn text_field(
         info.label = Some(label.to_owned());
         info
     });
+    if kind == Text::Sentences && response.has_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
+        response.surrender_focus();
+    }
     if response.changed() {
         ui.data_mut(|d| d.insert_temp(draft_id, text.clone()));
     }

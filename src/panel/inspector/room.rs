@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::{self, Ui};
 
-use super::part::{section, text_field};
+use super::part::{Text, section, text_field};
 use crate::{
     document::{Edit, limits},
     optics::{colour::Encoding, tone::ToneMapping},
@@ -26,7 +26,7 @@ pub(super) fn room(ui: &mut Ui, session: &Session, registry: &Registry, actions:
         s.name.as_deref().unwrap_or_default(),
         "Untitled scene",
         width,
-        true,
+        Text::Heading,
         |text| {
             actions.push(Action::Edit(Edit::SceneName(text)));
         },
@@ -37,9 +37,9 @@ pub(super) fn room(ui: &mut Ui, session: &Session, registry: &Registry, actions:
         "description",
         "What the scene shows",
         s.description.as_deref().unwrap_or_default(),
-        "What the scene shows, in one line",
+        "What the scene shows, in a sentence or two",
         width,
-        false,
+        Text::Sentences,
         |text| {
             actions.push(Action::Edit(Edit::SceneDescription(text)));
         },

@@ -17,9 +17,11 @@ use crate::reflection::{EquationPart, Term};
 
 mod atom;
 mod meaning;
+mod prose;
 
 pub use atom::{Atom, parse, parse_symbol, same_symbol};
 pub use meaning::{definition, definitions, meaning};
+pub use prose::prose;
 
 /// A run of characters, and where it stands.
 #[derive(Clone)]

@@ -1,5 +1,7 @@
 //! The list of the shader files that the picture is made of.
 
+use std::path::Path;
+
 use bevy_egui::egui::{
     self, Align, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
 };
@@ -67,38 +69,62 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
         ui.add(egui::Label::new(missing_model(session, registry, session.model_shown())).wrap());
         return;
     };
+    let files = crate::registry::compose::files(registry.sources(), model, shading, registry.lights());
+    let title = format!("{} · {}", model.declaration.name, shading.declaration.name);
     ui.horizontal(|ui| {
-        let title = format!("{} · {}", model.declaration.name, shading.declaration.name);
-        ui.label(theme::strong(ui, title)).on_hover_text("The picture is made of these files.");
-        folder(ui, session, actions);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            match &session.shaders.folders.shaders {
+                Some(folder) => watched(ui, session, folder, actions),
+                None => export(ui, actions),
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let label = egui::Label::new(theme::strong(ui, title)).truncate();
+                ui.add(label).on_hover_text("The picture is made of these files.");
+                if session.shaders.folders.shaders.is_none() {
+                    let own = files.iter().any(|file| file.path.starts_with("models/"));
+                    let text =
+                        if own { "All but the model is built in." } else { "The shaders are built in." };
+                    if theme::small_width(ui, text) <= ui.available_width() {
+                        ui.label(theme::small(ui, text));
+                    }
+                }
+            });
+        });
     });
+    // Paths begin in line, after the longest name.
+    let font = TextStyle::Body.resolve(ui.style());
+    let width = |text: String| ui.painter().layout_no_wrap(text, font.clone(), egui::Color32::WHITE).size().x;
+    let names = files.iter().map(|file| width(words(file.part, &file.path).0)).fold(0.0, f32::max);
     ScrollArea::vertical().id_salt("files").auto_shrink(false).show(ui, |ui| {
         // The scroll bar floats over this margin.
         ui.set_width(ui.available_width() - 8.0);
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = ROW;
-        for file in crate::registry::compose::files(registry.sources(), model, shading, registry.lights()) {
-            self::file(ui, session, &file, actions);
+        let names = (names.ceil() + 4.0).min(0.6 * ui.available_width());
+        for file in files {
+            self::file(ui, session, &file, names, actions);
         }
     });
 }
 
-/// The folder that is watched, or a button that exports one.
-fn folder(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let Some(folder) = &session.shaders.folders.shaders else {
-        ui.label(theme::small(ui, "The shaders are built in."));
-        let button = ui.button("Write them out for editing…").on_hover_text(
-            "Copies every shader file into a folder that you choose. A file saved there is reloaded at once.",
-        );
-        if button.clicked() {
-            actions.push(Action::Model(ModelCommand::ExportDialog));
-        }
-        return;
-    };
+/// The button that makes a folder of shaders.
+fn export(ui: &mut Ui, actions: &mut Vec<Action>) {
+    let button = ui.button("Export shaders for editing…").on_hover_text(
+        "Copies every shader file into a folder that you choose. A file saved there is reloaded at once.",
+    );
+    if button.clicked() {
+        actions.push(Action::Model(ModelCommand::ExportDialog));
+    }
+}
+
+/// The folder that is watched; from right to left.
+fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
     let text = folder.display().to_string();
-    ui.label(theme::small(ui, "watched:"));
-    let room = ui.available_width() - 36.0;
+    if icon::button(ui, Icon::Copy, "Copy the path of the folder").clicked() {
+        actions.push(Action::Copy(text.clone()));
+    }
+    let room = 0.5 * ui.available_width();
     let shown = tail(ui, &text, TextStyle::Small, room);
     let path = ui.label(RichText::new(shown).small().color(palette.text));
     let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
@@ -106,9 +132,7 @@ fn folder(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         help += &format!("\nCustom models: {}", models.display());
     }
     path.on_hover_text(help);
-    if icon::button(ui, Icon::Copy, "Copy the path of the folder").clicked() {
-        actions.push(Action::Copy(text.clone()));
-    }
+    ui.label(theme::small(ui, "watched:"));
 }
 
 /// A path that is cut off at its beginning where it is too long: its end says more.
@@ -128,7 +152,8 @@ fn tail(ui: &Ui, text: &str, style: TextStyle, room: f32) -> String {
 /// The height of a row of the list, points.
 const ROW: f32 = 22.0;
 
-pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, actions: &mut Vec<Action>) {
+/// The row of a file; `names` points for its name.
+pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, names: f32, actions: &mut Vec<Action>) {
     let File { part, ref path, edited } = *file;
     let palette = Palette::here(ui);
     let (name, help) = words(part, path);
@@ -141,7 +166,7 @@ pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, actions: &mut Ve
         if trouble.is_some() {
             icon::severity(ui.painter(), sign.center(), 5.5, Severity::Error, &palette);
         }
-        let (place, label) = ui.allocate_exact_size(vec2(140.0, ROW), Sense::hover());
+        let (place, label) = ui.allocate_exact_size(vec2(names, ROW), Sense::hover());
         let galley = theme::elided(ui, &name, TextStyle::Body, palette.text, place.width());
         let at = egui::pos2(place.left(), place.center().y - galley.size().y / 2.0);
         ui.painter().galley(at, galley, palette.text);

@@ -1,6 +1,6 @@
 //! The panel of the shaders: the files that the picture is made of, and their errors.
 
-use bevy_egui::egui::{self, Align, Layout, ScrollArea, Sense, Ui, vec2};
+use bevy_egui::egui::{self, Align, Layout, Rect, ScrollArea, Ui, UiBuilder};
 
 use super::{
     Panel, Place, author, laws,
@@ -46,26 +46,23 @@ impl Panel for Shader {
         // What is wrong comes first where there is little room.
         let share = if session.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
         let left = (share * whole.width()).clamp(240.0, 620.0);
-        ui.horizontal_top(|ui| {
-            ui.spacing_mut().item_spacing.x = 0.0;
-            let column = |ui: &mut Ui, width: f32, add: &mut dyn FnMut(&mut Ui)| {
-                ui.allocate_ui_with_layout(vec2(width, whole.height()), Layout::top_down(Align::Min), |ui| {
-                    ui.spacing_mut().item_spacing.x = theme::UNIT;
-                    ui.set_width(width);
-                    add(ui);
-                });
-            };
-            column(ui, left, &mut |ui| files(ui, session, registry, &mut actions));
-            let (line, _) = ui.allocate_exact_size(vec2(2.0 * gap, whole.height()), Sense::hover());
-            ui.painter().vline(line.center().x, whole.y_range(), egui::Stroke::new(1.0, palette.line));
-            let right = (whole.width() - left - 2.0 * gap).max(64.0);
-            column(ui, right, &mut |ui| {
-                if session.shaders.troubles.is_empty() {
-                    well(ui, session, registry, &mut actions);
-                } else {
-                    troubles(ui, session, &mut actions);
-                }
-            });
+        let columns = whole.split_left_right_at_x(whole.left() + left + gap);
+        ui.painter().vline(columns.1.left(), whole.y_range(), egui::Stroke::new(1.0, palette.line));
+        // A column keeps its width, whatever is in it.
+        let column = |ui: &mut Ui, rect: Rect, add: &mut dyn FnMut(&mut Ui)| {
+            let builder = UiBuilder::new().max_rect(rect).layout(Layout::top_down(Align::Min));
+            ui.scope_builder(builder, |ui| add(ui));
+        };
+        let (mut list, mut text) = columns;
+        list.max.x -= gap;
+        text.min.x = (text.min.x + gap).min(text.max.x - 64.0);
+        column(ui, list, &mut |ui| files(ui, session, registry, &mut actions));
+        column(ui, text, &mut |ui| {
+            if session.shaders.troubles.is_empty() {
+                well(ui, session, registry, &mut actions);
+            } else {
+                troubles(ui, session, &mut actions);
+            }
         });
         actions
     }

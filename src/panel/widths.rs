@@ -1,0 +1,84 @@
+//! The widths of the panels beside the picture: where there is little room, those that the user has not dragged give
+//! way to the picture.
+
+use bevy_egui::egui::{Context, Id, Rangef};
+
+use super::state::{Action, Session, View, ViewChange};
+
+/// The share of the window that the picture keeps, unless the user makes the panels wider.
+const PICTURE: f32 = 0.45;
+
+/// The width of a panel, points.
+pub(super) struct Width {
+    pub(super) default: f32,
+    pub(super) range: Rangef,
+}
+
+/// The widths of the panels beside the picture.
+pub(super) struct Widths {
+    pub(super) left: Width,
+    pub(super) right: Width,
+}
+
+/// A panel beside the picture.
+struct Side {
+    open: bool,
+    /// As wide as the user made it.
+    own: Option<f32>,
+    usual: f32,
+    least: f32,
+    most: f32,
+}
+
+/// True while the user drags the edge of a panel.
+fn dragging() -> Id {
+    Id::new("panel dragged")
+}
+
+impl Widths {
+    /// Those in a window of so many points.
+    pub(super) fn of(ctx: &Context, session: &Session, whole: f32) -> Self {
+        let (view, usual) = (&session.view, View::default());
+        let side = |open, wanted: f32, usual: f32, least: f32, most| Side {
+            open,
+            own: (wanted != usual).then_some(wanted.min(most)),
+            usual: usual.min(most),
+            least: least.min(most),
+            most,
+        };
+        let sides = [
+            side(view.left_open, view.left_width, usual.left_width, 120.0, 0.26 * whole),
+            side(view.right_open, view.right_width, usual.right_width, 280.0, 0.45 * whole),
+        ];
+        // One that is dragged takes nothing from the other.
+        let taken: f32 = sides.iter().filter(|side| side.open).map(|side| side.usual).sum();
+        let share = ((1.0 - PICTURE) * whole / taken.max(1.0)).min(1.0);
+        let dragged = ctx.data(|d| d.get_temp(dragging())).unwrap_or(false)
+            || ctx.input(|i| i.pointer.any_down()) && ctx.dragged_id().is_some();
+        let [left, right] = sides.map(|Side { own, usual, least, most, .. }| {
+            let default = own.unwrap_or((share * usual).max(least));
+            let range =
+                if own.is_some() || dragged { Rangef::new(least, most) } else { Rangef::point(default) };
+            Width { default, range }
+        });
+        Self { left, right }
+    }
+
+    /// The widths, and the height of the strip at the bottom, that the user dragged, once the dragging is over; `sizes`
+    /// are those on screen.
+    pub(super) fn dragged(&self, ctx: &Context, session: &Session, sizes: (f32, f32, f32)) -> Option<Action> {
+        let v = &session.view;
+        let kept = |size: f32, given: f32, known: f32| if (size - given).abs() > 1.0 { size } else { known };
+        let left = kept(sizes.0, self.left.default, v.left_width);
+        let right = kept(sizes.1, self.right.default, v.right_width);
+        let bottom = kept(sizes.2, v.bottom_height, v.bottom_height);
+        let moved = (left, right, bottom) != (v.left_width, v.right_width, v.bottom_height);
+        let down = ctx.input(|i| i.pointer.any_down());
+        if down && ctx.dragged_id().is_some() && moved {
+            ctx.data_mut(|d| d.insert_temp(dragging(), true));
+            return None;
+        }
+        let over = !down && ctx.data_mut(|d| d.remove_temp::<bool>(dragging())).unwrap_or(false);
+        (over && moved).then_some(Action::View(ViewChange::Sizes { left, right, bottom }))
+    }
+}
