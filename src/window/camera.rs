@@ -17,7 +17,7 @@ use glam::{Quat, Vec3};
 use super::{WindowView, pointer::OverPicture};
 use crate::{
     document::{Edit, Selection},
-    panel::state::{Action, PictureArea, Session, Steer},
+    panel::state::{Action, Session, Steer},
     registry::Registry,
     render::{camera::PictureCamera, entities::CurrentScene},
     scene::{Observer, Scene, observer::rotation},
