@@ -266,11 +266,16 @@ pub fn show(
     session.picture_rect = rect;
     let rect = stage.as_ref().map_or(rect, |stage| stage.picture);
     session.picture_frame = rect;
-    let (asked, covered) = picture::overlays(ui, rect, stage.as_ref(), session, registry);
-    actions.extend(asked);
+    let over = picture::overlays(ui, rect, stage.as_ref(), session, registry);
+    actions.extend(over.actions);
+    if session.overlays != over.written {
+        // The marks keep clear of it from the next frame on.
+        session.overlays = over.written;
+        ctx.request_repaint();
+    }
     actions.extend(question::show(&ctx, session));
     actions.extend(dialogs.update(&ctx, session, registry));
-    steering(&ctx, session, rect, &covered, dialogs.is_open());
+    steering(&ctx, session, rect, &over.places, dialogs.is_open());
     focus::remember_regions(&ctx);
     focus::show(&ctx, &palette, rect);
 

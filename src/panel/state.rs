@@ -88,6 +88,8 @@ pub struct Session {
     pub picture_rect: egui::Rect,
     /// The part of it that shows what the observer sees; around it the picture goes on. Written by the panels.
     pub picture_frame: egui::Rect,
+    /// What is written over it: marks keep clear of that; written by the panels.
+    pub overlays: Vec<egui::Rect>,
     /// How many points of the window are a point of the panels; written by them.
     pub zoom: f32,
     /// True if the pointer is over the picture with no panel, menu or dialog between; written by the
@@ -617,6 +619,7 @@ impl Session {
             question: None,
             picture_rect: egui::Rect::NOTHING,
             picture_frame: egui::Rect::NOTHING,
+            overlays: Vec::new(),
             zoom: 1.0,
             pointer_in_picture: false,
             popup_open: false,

@@ -57,7 +57,7 @@ pub(super) fn pick(
     let light = session
         .view
         .show_gizmos
-        .then(|| nearest_light(&scene, &session, camera, place, end, reach))
+        .then(|| nearest_light(&scene, &session, &registry, camera, place, end, reach))
         .flatten();
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
@@ -78,21 +78,17 @@ pub(super) fn pick(
 fn nearest_light(
     scene: &CurrentScene,
     session: &Session,
+    registry: &Registry,
     camera: &Camera,
     place: &GlobalTransform,
     pointer: Vec2,
     reach: f32,
 ) -> Option<usize> {
     let lens = Lens::of(session, session.picture_frame);
-    scene
-        .0
-        .lights
-        .iter()
+    marks::places(&scene.0, registry, &lens, &session.overlays)
+        .into_iter()
         .enumerate()
-        .filter_map(|(i, light)| {
-            let at = camera.world_to_viewport(place, marks::place(light, &scene.0, &lens)?).ok()?;
-            Some((i, at.distance(pointer)))
-        })
+        .filter_map(|(i, at)| Some((i, camera.world_to_viewport(place, at?).ok()?.distance(pointer))))
         .filter(|(_, distance)| *distance <= reach)
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(i, _)| i)
