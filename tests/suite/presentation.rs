@@ -238,6 +238,28 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
 }
 
 #[test]
+fn no_definition_of_a_presentation_is_broken_within_brackets() {
+    for (size, scale) in [((1280.0, 720.0), 100), ((1280.0, 720.0), 200), ((1920.0, 1080.0), 100)] {
+        for model in Registry::builtin().models() {
+            let mut bench = bench(size, model.declaration.id);
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::View(ViewChange::Presenting(true)));
+            let mut open: HashMap<i32, i32> = HashMap::new();
+            for shape in bench.shapes() {
+                let Shape::Text(text) = shape else { continue };
+                let Some(glyph) = text.galley.rows.first().and_then(|r| r.glyphs.first()) else { continue };
+                // Brackets that are as tall as fractions are no text, and come in pairs.
+                let line = (text.pos.y + glyph.pos.y).round() as i32;
+                let signs = text.galley.text().chars().map(|c| i32::from(c == '(') - i32::from(c == ')'));
+                *open.entry(line).or_default() += signs.sum::<i32>();
+            }
+            let torn: Vec<_> = open.iter().filter(|(_, count)| **count != 0).collect();
+            assert!(torn.is_empty(), "{}, {size:?}, {scale} %: {torn:?}", model.declaration.id);
+        }
+    }
+}
+
+#[test]
 fn lines_of_a_presentation_have_the_same_size_at_every_scale() {
     let sizes: Vec<_> = [100, 150, 200]
         .map(|scale| {
