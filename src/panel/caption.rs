@@ -116,10 +116,12 @@ fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<Part> {
         let (symbol, text) = match (object.material.get(p), &p.kind) {
             (Value::Number(v), _) => (p.symbol, number(f64::from(v))),
             (Value::Integer(v), _) => (p.symbol, v.to_string()),
-            // The name of a distribution needs no letter.
+            // The name of a distribution needs no letter; “None” alone says nothing.
             (Value::Choice(id), ParameterKind::Choice { options, .. }) => {
                 let name = options.iter().find(|(o, _)| **o == *id).map_or(&*id, |(_, name)| *name);
-                ("", name.split(" (").next().unwrap_or(name).to_owned())
+                let name = name.split(" (").next().unwrap_or(name);
+                let none = name.eq_ignore_ascii_case("none");
+                ("", if none { format!("no {}", p.label) } else { name.to_owned() })
             }
             _ => return None,
         };

@@ -135,12 +135,14 @@ pub(super) fn terms(nodes: &[Node]) -> Vec<&[Node]> {
     })
 }
 
-/// The pieces between factors as well.
+/// The pieces between factors as well, which have a space or nothing but their brackets between them.
 pub(super) fn factors(nodes: &[Node]) -> Vec<&[Node]> {
     split(nodes, |i| {
         let after = nodes.get(i + 1).is_some_and(|n| is_sign(n, "=≈≤≥<>×·,"));
-        let before = i.checked_sub(1).is_some_and(|k| is_sign(&nodes[k], "=≈≤≥<>+−×·"));
-        is_space(&nodes[i]) && !before && !after
+        let before = i.checked_sub(1).map(|k| &nodes[k]);
+        let behind_sign = before.is_some_and(|n| is_sign(n, "=≈≤≥<>+−×·"));
+        let group = |n: &Node| matches!(n, Node::Group(..));
+        is_space(&nodes[i]) && !behind_sign && !after || group(&nodes[i]) && before.is_some_and(group)
     })
 }
 

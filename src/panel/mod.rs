@@ -269,11 +269,16 @@ pub fn show(
     let stage = presenting.then(|| presentation::Stage::of(ui, rect, &session, registry));
     focus::region(&ctx, Region::Picture, rect);
     let frame = stage.as_ref().map_or(rect, |stage| stage.picture);
-    let (asked, covered) = picture::overlays(ui, [rect, frame], stage.as_ref(), &session, registry);
-    actions.extend(asked);
+    let over = picture::overlays(ui, [rect, frame], &area.written, stage.as_ref(), &session, registry);
+    actions.extend(over.actions);
     actions.extend(question::show(&ctx, &session));
     actions.extend(dialogs.update(&ctx, &mut session, registry));
-    *area = picture_area(&ctx, &session, [rect, frame], covered, dialogs.is_open());
+    let now = picture_area(&ctx, &session, [rect, frame], over.places, over.written, dialogs.is_open());
+    if area.written != now.written {
+        // The marks keep clear of it from the next frame on.
+        ctx.request_repaint();
+    }
+    *area = now;
     focus::remember_regions(&ctx);
     focus::show(&ctx, &palette, frame);
 
@@ -403,6 +408,7 @@ fn picture_area(
     session: &Session,
     [rect, frame]: [Rect; 2],
     covered: Vec<Rect>,
+    written: Vec<Rect>,
     dialog: bool,
 ) -> PictureArea {
     let busy = session.questions.open.is_some() || dialog;
@@ -416,6 +422,7 @@ fn picture_area(
         has_keys: !busy && ctx.memory(|m| m.focused()).is_none(),
         // The chooser opens and closes by an action, and is not among egui's.
         popup_open: egui::Popup::is_any_open(ctx) || session.view.chooser_open,
+        written,
     }
 }
 
@@ -450,7 +457,7 @@ pub fn show_panels(
         Id::new("lab"),
         UiBuilder::new().layer_id(LayerId::background()).max_rect(ctx.viewport_rect()),
     );
-    let mut now = *area;
+    let mut now = area.clone();
     let asked = show(&mut ui, session, &mut now, &registry, &panels, &mut dialogs);
     effects.write_batch(asked.into_iter().map(LabEffect));
     area.set_if_neq(now);

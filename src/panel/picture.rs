@@ -25,40 +25,55 @@ use crate::{
 /// The least width of a picture with axes: in a narrower one they would hide more than they say.
 const AXES: f32 = 240.0;
 
-/// Paints the overlays into the picture, which goes on in `whole`, and around it what a presentation says. Returns what was
-/// asked for there, and the places that can be clicked, which do not belong to the picture.
+/// The result of painting the overlays.
+#[derive(Debug, Default)]
+pub struct Overlaid {
+    /// The actions asked for there.
+    pub actions: Vec<Action>,
+    /// The places that can be clicked, which do not belong to the picture.
+    pub places: Vec<Rect>,
+    /// The places of badges, caption and axes.
+    pub written: Vec<Rect>,
+}
+
+/// Paints the overlays into the picture, which goes on in `whole`, and around it what a presentation says. Marks keep clear
+/// of what was `written` over the picture in the frame before.
 pub fn overlays(
     ui: &mut Ui,
     [whole, rect]: [Rect; 2],
+    written: &[Rect],
     stage: Option<&Stage>,
     session: &Session,
     registry: &Registry,
-) -> (Vec<Action>, Vec<Rect>) {
+) -> Overlaid {
+    let mut all = Overlaid::default();
     if rect.width() < 80.0 || rect.height() < 80.0 {
-        return (Vec::new(), Vec::new());
+        return all;
     }
     clipping::paint(&ui.painter_at(whole), whole, session, ui.pixels_per_point());
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
-    let (mut actions, mut places) =
-        if stage.is_some() { Default::default() } else { marks::marks(ui, rect, session, registry) };
+    if stage.is_none() {
+        let (asked, places) = marks::marks(ui, rect, written, session, registry);
+        all.actions.extend(asked);
+        all.places.extend(places);
+    }
     ui.scope(|ui| {
         let free = stage.map_or(rect, |stage| stage.paint(ui));
         let (asked, covered) = stale(ui, free, session, registry);
-        actions.extend(asked);
+        all.actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
-        let (asked, clicked) = badges(ui, free, top, whole, session, registry);
-        actions.extend(asked);
-        places.extend(clicked);
-        places.push(covered);
+        badges(ui, free, top, whole, session, registry, &mut all);
+        all.places.push(covered);
+        all.written.push(covered);
         hint(ui, rect, session);
     });
     if stage.is_none() {
-        caption(ui, rect, session, registry);
+        all.written.push(caption(ui, rect, session, registry));
         if rect.width() >= AXES {
-            axes(ui, rect, session);
+            all.written.push(axes(ui, rect, session));
         }
     }
-    (actions, places)
+    all
 }
 
 /// The words of the picture while a shader has an error: a heading, and the places of the errors. The model
@@ -185,7 +200,7 @@ fn hidden_terms(session: &Session, registry: &Registry) -> Option<Sign> {
     Some((badge, Some(Action::View(ViewChange::Terms(TermSelection::All)))))
 }
 
-/// The badges of a picture. Returns what was asked for there, and the places that can be clicked.
+/// The badges of a picture.
 fn badges(
     ui: &mut Ui,
     rect: Rect,
@@ -193,7 +208,8 @@ fn badges(
     picture: Rect,
     session: &Session,
     registry: &Registry,
-) -> (Vec<Action>, Vec<Rect>) {
+    to: &mut Overlaid,
+) {
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
@@ -202,7 +218,6 @@ fn badges(
     let toggle = Action::View(ViewChange::Clipping(!session.view.show_clipping));
     let told = session.disk.badge.iter().map(|badge| (badge.clone(), None));
     let all = hidden_terms(session, registry).into_iter().chain(told);
-    let (mut actions, mut places) = (Vec::new(), Vec::new());
     let mut at = pos2(rect.left() + 8.0, top);
     for (i, (badge, action)) in all.chain(clipped.map(|badge| (badge, Some(toggle)))).enumerate() {
         let place = plate(ui, rect, Align2::LEFT_TOP, at, &badge.text, font.clone(), 18.0 * scale);
@@ -217,9 +232,10 @@ fn badges(
         let role = if action.is_some() { WidgetType::Button } else { WidgetType::Label };
         response.widget_info(|| WidgetInfo::labeled(role, true, &badge.text));
         if let Some(action) = action {
-            places.push(place);
-            actions.extend(response.clicked().then_some(action));
+            to.places.push(place);
+            to.actions.extend(response.clicked().then_some(action));
         }
+        to.written.push(place);
         let pointer = if sense.senses_click() { CursorIcon::PointingHand } else { CursorIcon::Default };
         let response = response.on_hover_cursor(pointer);
         if !badge.help.is_empty() {
@@ -231,10 +247,9 @@ fn badges(
         }
         at.y = place.bottom() + 4.0;
     }
-    (actions, places)
 }
 
-fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) {
+fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect {
     let palette = Palette::here(ui);
     let term = match session.view.terms {
         TermSelection::All => None,
@@ -262,10 +277,11 @@ fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) {
         let at = pos2(place.left() + 8.0 + 4.0, place.center().y);
         ui.painter().circle_filled(at, 4.0, palette.term_text(term));
     }
+    place
 }
 
 /// The directions of the room as the camera sees them; the letters tell them apart.
-fn axes(ui: &Ui, rect: Rect, session: &Session) {
+fn axes(ui: &Ui, rect: Rect, session: &Session) -> Rect {
     let palette = Palette::here(ui);
     let painter = ui.painter_at(rect);
     let radius = 34.0;
@@ -286,6 +302,7 @@ fn axes(ui: &Ui, rect: Rect, session: &Session) {
             if outward.length() > 0.2 { end + outward.normalized() * 7.0 } else { centre + vec2(8.0, 8.0) };
         painter.text(place, Align2::CENTER_CENTER, name, FontId::new(12.0, theme::maths_italic()), colour);
     }
+    Rect::from_center_size(centre, vec2(2.0, 2.0) * radius)
 }
 
 /// Advice where there is no picture.

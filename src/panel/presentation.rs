@@ -29,8 +29,10 @@ const CAPTION: f32 = 0.036;
 const BODY: f32 = 0.035;
 /// The part of the height that the equation covers at most, if it can.
 const MOST: f32 = 0.4;
-/// The width of an equation that stands beside the objects, as a part of the screen's.
-const BESIDE: f32 = 0.34;
+/// The same if it would be broken within brackets otherwise, with the space around it.
+const TALLEST: f32 = 0.54;
+/// The widths of an equation that stands beside the objects, as parts of the screen's; the first that is wide enough.
+const BESIDE: [f32; 3] = [0.34, 0.42, 0.5];
 /// The part of the objects that may be hidden.
 const HIDDEN: f32 = 0.005;
 /// Time for which it tells the way out, seconds.
@@ -52,6 +54,8 @@ struct Block {
     columns: Vec<(Range<usize>, f32, f32)>,
     /// True if terms are as small as definitions.
     even: bool,
+    /// True if definitions are broken within brackets.
+    torn: bool,
     size: Vec2,
 }
 
@@ -105,11 +109,20 @@ impl Stage {
         let room = whole.with_max_y(caption.top());
         let mut ui = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(whole).invisible());
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * whole.height()));
-        let mut block = |columns, width, even| Block::of(&mut ui, &equation, columns, width, even);
-        let narrow = block(1, BESIDE * whole.width(), false);
+        let block = |columns, width, even| Block::of(&ui, &equation, columns, width, even);
+        let narrow = BESIDE.map(|part| block(1, part * whole.width(), false));
+        let narrow = narrow.iter().find(|b| !b.torn).unwrap_or(&narrow[0]).clone();
         let mut wide = vec![block(1, most, false), block(2, most, false)];
-        if wide.iter().all(|b| b.size.y > MOST * whole.height()) {
-            wide.extend([block(2, most, true), block(3, most, true)]);
+        let limit = MOST * whole.height();
+        if wide.iter().all(|b| b.torn || b.size.y > limit) {
+            wide.extend([block(2, most, true), block(3, most, true), block(4, most, true)]);
+        }
+        // What is broken within brackets cannot be read: rather it is higher.
+        let mut all: Vec<&Block> = wide.iter().chain([&narrow]).collect();
+        let tall = TALLEST * whole.height() - 2.0 * padding.y;
+        let limit = [limit, tall].into_iter().find(|l| all.iter().any(|b| !b.torn && b.size.y <= *l));
+        if let Some(limit) = limit {
+            all.retain(|b| !b.torn && b.size.y <= limit);
         }
         let discs = discs(session, whole);
         let hidden = |plate: Rect| {
@@ -117,13 +130,12 @@ impl Stage {
                 |d: &(Pos2, f32)| if covers(plate, *d) || covers(caption, *d) { d.1 * d.1 } else { 0.0 };
             discs.iter().map(share).sum::<f32>() / discs.iter().map(|d| d.1 * d.1).sum::<f32>().max(1.0)
         };
-        let low = |b: &&Block| b.size.y <= MOST * whole.height();
-        let mut over = wide.iter().chain([&narrow]).filter(low).flat_map(|block| {
+        let mut over = all.iter().filter(|b| b.size.y <= tall).flat_map(|block| {
             [Align2::LEFT_TOP, Align2::RIGHT_TOP, Align2::LEFT_BOTTOM]
                 .map(|corner| (block, corner.align_size_within_rect(block.size_with(padding), room)))
         });
         if let Some((block, plate)) = over.find(|(_, plate)| hidden(*plate) <= HIDDEN) {
-            let block = block.clone();
+            let block = (*block).clone();
             return Self { whole, picture: whole, equation, block, plate, caption, parts };
         }
         // At the side, or above; where the picture is larger.
@@ -136,8 +148,10 @@ impl Stage {
             (b.clone(), plate, room.with_min_y(plate.bottom().min(room.bottom() - 0.2 * room.height())))
         };
         let scale = |r: &Rect| (r.width() / whole.width()).min(r.height() / whole.height());
-        let sides = Some(&narrow).filter(|b| b.size.y <= 1.2 * MOST * whole.height()).map(beside);
-        let (block, plate, picture) = (sides.into_iter().chain(wide.iter().map(above)))
+        let fits = |b: &&Block| b.size.y <= tall && (!b.torn || limit.is_none());
+        let sides = Some(&narrow).filter(fits).map(beside);
+        let above = all.iter().filter(|b| b.columns != narrow.columns).map(|b| above(b));
+        let (block, plate, picture) = (sides.into_iter().chain(above))
             .max_by(|a, b| scale(&a.2).total_cmp(&scale(&b.2)))
             .unwrap_or_else(|| (narrow.clone(), Rect::NOTHING, whole));
         Self { whole, picture, equation, block, plate, caption, parts }
@@ -181,11 +195,12 @@ fn padding(whole: Rect) -> Vec2 {
 
 impl Block {
     /// Sets an equation in so many columns of the same width, as narrow as they can be without being higher.
-    fn of(ui: &mut Ui, all: &[Definition], columns: usize, width: f32, even: bool) -> Self {
+    fn of(ui: &Ui, all: &[Definition], columns: usize, width: f32, even: bool) -> Self {
         let gap = 0.04 * width;
         let sizes = Sizes { column: true, even };
         let each = (width - gap * (columns - 1) as f32) / columns as f32;
-        let heights: Vec<_> = (0..all.len()).map(|i| measured(ui, &all[i..=i], each, sizes)).collect();
+        let heights: Vec<_> =
+            (0..all.len()).map(|i| maths::measured(ui, &all[i..=i], sizes, each).0).collect();
         let whole: f32 = heights.iter().sum();
         // The lowest height at which they are no more than so many.
         let fill = |most: f32| {
@@ -206,17 +221,19 @@ impl Block {
         let mut at = 0.0;
         for range in ranges.into_iter().filter(|r| !r.is_empty()) {
             let part = &all[range.clone()];
-            let mut height = |width| measured(ui, part, width, sizes);
-            let high = height(each);
+            let height = |width| maths::measured(ui, part, sizes, width);
+            let (high, torn) = height(each);
             let (mut narrow, mut wide) = (0.0, each);
             while wide - narrow > 4.0 {
                 let middle = 0.5 * (narrow + wide);
                 // Lower would be without stacked fractions, broken anywhere.
-                let same = (height(middle) - high).abs() < 0.5;
+                let (here, worse) = height(middle);
+                let same = (here - high).abs() < 0.5 && (torn || !worse);
                 *(if same { &mut wide } else { &mut narrow }) = middle;
             }
             block.columns.push((range, at, wide));
             block.size = vec2(at + wide, block.size.y.max(high));
+            block.torn |= torn;
             at += wide + gap;
         }
         block
@@ -225,13 +242,6 @@ impl Block {
     fn size_with(&self, padding: Vec2) -> Vec2 {
         if self.columns.is_empty() { Vec2::ZERO } else { self.size + 2.0 * padding }
     }
-}
-
-/// Height of definitions, wide enough or not.
-fn measured(ui: &mut Ui, parts: &[Definition], width: f32, sizes: Sizes) -> f32 {
-    let room = Rect::from_min_size(ui.max_rect().min, vec2(width, f32::INFINITY));
-    let mut trial = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(room).invisible());
-    maths::equation_of(&mut trial, parts, sizes, |_| None).rect.height()
 }
 
 /// The objects as the camera sees them: discs, without what is far outside the picture.

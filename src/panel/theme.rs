@@ -200,6 +200,35 @@ pub fn elided(
     ui.painter().layout_job(job)
 }
 
+/// A line of text, with … in its middle where it is wider than this: the ends of names tell them apart.
+#[must_use]
+pub fn elided_within(
+    ui: &egui::Ui,
+    text: &str,
+    font: &FontId,
+    colour: Color32,
+    width: f32,
+) -> (Arc<egui::Galley>, bool) {
+    let line = |text: String| ui.painter().layout_no_wrap(text, font.clone(), colour);
+    let whole = line(text.to_owned());
+    if whole.size().x <= width {
+        return (whole, false);
+    }
+    let letters: Vec<char> = text.chars().collect();
+    let with = |kept: usize| {
+        let (head, tail) = (&letters[..kept.div_ceil(2)], &letters[letters.len() - kept / 2..]);
+        let [head, tail]: [String; 2] = [head, tail].map(|part| part.iter().collect());
+        line(format!("{}…{}", head.trim_end(), tail.trim_start()))
+    };
+    // The most letters that fit.
+    let (mut fits, mut over) = (0, letters.len());
+    while over - fits > 1 {
+        let middle = fits.midpoint(over);
+        *(if with(middle).size().x <= width { &mut fits } else { &mut over }) = middle;
+    }
+    (with(fits), true)
+}
+
 /// The colour on screen of a linear reflectance.
 #[must_use]
 pub fn swatch(reflectance: glam::Vec3) -> Color32 {

@@ -245,8 +245,7 @@ fn part_row(
     let right = ground.right() - if nested { 48.0 } else { 8.0 };
     let there = is_there(session, part);
     let colour = if there { palette.text } else { palette.weak };
-    let galley = theme::elided(ui, &name, body, colour, (right - text_left).max(8.0));
-    let cut = galley.elided;
+    let (galley, cut) = theme::elided_within(ui, &name, &body, colour, (right - text_left).max(8.0));
     painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
     if let Some(rgb) = dot {
         let centre = |from_right: f32| pos2(ground.right() - from_right, rect.center().y);

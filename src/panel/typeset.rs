@@ -35,6 +35,8 @@ pub struct Set {
     pub ascent: f32,
     /// The room below.
     pub descent: f32,
+    /// True if it is a part of something that was broken within brackets or fractions, since no line was long enough.
+    pub torn: bool,
 }
 
 impl Set {
@@ -162,6 +164,7 @@ impl Setter<'_> {
             width,
             ascent: up * self.size,
             descent: down * self.size,
+            torn: false,
         }
     }
 
@@ -209,6 +212,7 @@ impl Setter<'_> {
             width: BRACKET * self.size,
             ascent: up,
             descent: down,
+            torn: false,
         };
         let mut set = tall(sign(open));
         set.append(inside);
@@ -239,6 +243,7 @@ impl Setter<'_> {
             width: ROOT * self.size,
             ascent: up + 0.08 * self.size,
             descent: down,
+            torn: false,
         };
         set.append(inside);
         set.width += 0.08 * self.size;
@@ -289,6 +294,9 @@ impl Setter<'_> {
             let nodes = if flat { flattened(nodes) } else { nodes.to_vec() };
             let pieces = if flat { nodes.chunks(1).collect() } else { factors(&nodes) };
             lines = setter.broken(&pieces, width);
+            // In single signs, a line ends anywhere.
+            let torn = flat && lines.len() > 1;
+            lines.iter_mut().for_each(|line| line.torn = torn);
             if fits(&lines) {
                 break;
             }

@@ -119,7 +119,7 @@ pub const REFLECTANCE: Parameter = Parameter {
     symbol: "s",
     label: "reflectance",
     unit: "",
-    help: "The reflectance of the non-metallic part at normal incidence: F_0 = 0.16 s². 0.5 gives 4 %, typical of plastic and glass; water 0.36, diamond 1.",
+    help: "The reflectance of the non-metallic part at normal incidence: 0.16 s². 0.5 gives 4 %, typical of plastic and glass; water 0.36, diamond 1.",
     kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
     used_when: None,
 };

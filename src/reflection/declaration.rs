@@ -1,6 +1,6 @@
 //! The declaration of a reflection model: name, source, equation, laws.
 
-use crate::shader::Source;
+use crate::{optics::TermSelection, shader::Source};
 
 /// The name, the source and the claims of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +61,19 @@ pub enum Term {
     Diffuse,
     /// `I_s`.
     Specular,
+}
+
+impl Term {
+    /// The choice that shows it alone; none for the sum.
+    #[must_use]
+    pub fn alone(self) -> Option<TermSelection> {
+        match self {
+            Self::Total => None,
+            Self::Ambient => Some(TermSelection::Ambient),
+            Self::Diffuse => Some(TermSelection::Diffuse),
+            Self::Specular => Some(TermSelection::Specular),
+        }
+    }
 }
 
 /// A family of models.

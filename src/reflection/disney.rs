@@ -44,7 +44,7 @@ const SPECULAR: Parameter = fraction(
     "s",
     "specular",
     0.5,
-    "The reflectance of the non-metallic part at normal incidence: F_0 = 0.08 s. 0.5 gives 4 %, typical of plastic and glass.",
+    "The reflectance of the non-metallic part at normal incidence: 0.08 s. 0.5 gives 4 %, typical of plastic and glass.",
 );
 const SPECULAR_TINT: Parameter = fraction(
     "specular_tint",
@@ -58,7 +58,7 @@ const ANISOTROPIC: Parameter = fraction(
     "a",
     "anisotropic",
     0.0,
-    "From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal: α_x is ten times α_y.",
+    "From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal: ten times as long as across.",
 );
 const SHEEN: Parameter = fraction(
     "sheen",

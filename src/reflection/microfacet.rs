@@ -24,7 +24,7 @@ const DISTRIBUTION: Parameter = Parameter {
     symbol: "D",
     label: "distribution",
     unit: "",
-    help: "The distribution of microfacet normals: the shape of the highlight. With t = tan θ_h / α and c = cos θ_h: Blinn–Phong D = (n + 2)/(2π) cⁿ, n = 2/α² − 2; Beckmann D = exp(−t²)/(π α² c⁴); GGX D = 1/(π α² c⁴ (1 + t²)²), with longer tails; GTR has γ in place of the 2 and chooses its tails.",
+    help: "The distribution of microfacet normals: the shape of the highlight. With t = tan θ / α and c = cos θ, θ being the angle between N and H: Blinn–Phong D = (n + 2)/(2π) cⁿ, n = 2/α² − 2; Beckmann D = exp(−t²)/(π α² c⁴); GGX D = 1/(π α² c⁴ (1 + t²)²), with longer tails; GTR has γ in place of the 2 and chooses its tails.",
     kind: ParameterKind::Choice {
         options: &[("blinn_phong", "Blinn–Phong"), ("beckmann", "Beckmann"), ("ggx", "GGX"), ("gtr", "GTR")],
         default: 2,

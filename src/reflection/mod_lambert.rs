@@ -15,7 +15,7 @@ const WRAP_EXPONENT: Parameter = Parameter {
     symbol: "p",
     label: "wrap exponent",
     unit: "",
-    help: "The power of the wrapped cosine: 2 is the equation as written and, with k_d = 0.5, Valve's Half-Lambert; 1 with k_d = 1 is Lambert.",
+    help: "The power of the wrapped cosine: 2 is the equation as written and, with a diffuse coefficient of 0.5, Valve's Half-Lambert; 1 is Lambert at a coefficient of 1.",
     kind: ParameterKind::Number { min: 1.0, max: 4.0, default: 2.0 },
     used_when: None,
 };
@@ -52,8 +52,8 @@ impl ReflectionModel for ModLambert {
         name: "Modified Lambert",
         family: Family::Basic,
         author: "Mitchell, McTaggart, Green 2006",
-        source: "J. Mitchell, M. McTaggart, C. Green (2006), Shading in Valve's Source Engine, SIGGRAPH course; as generalised in CA IM2",
-        summary: "Diffuse wrap: softens the edge of the shadow and lights the far side. Half-Lambert at k_d = 0.5.",
+        source: "J. Mitchell, M. McTaggart, C. Green (2006), Shading in Valve's Source Engine, SIGGRAPH course; generalised here: coefficient and exponent can be set",
+        summary: "Diffuse wrap: softens the edge of the shadow and lights the far side. Half-Lambert at a diffuse coefficient of 0.5.",
         equation: &[EquationPart {
             term: Term::Diffuse, text: "I_d = max(0, (N·L) k_d + (1 − k_d))^p C_b"
         }],

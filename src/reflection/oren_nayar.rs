@@ -82,6 +82,7 @@ impl ReflectionModel for OrenNayar {
             },
             EquationPart { term: Term::Diffuse, text: "C_3 = 0.125 σ^2/(σ^2 + 0.09) (4 α β/π^2)^2" },
             EquationPart { term: Term::Diffuse, text: "C_4 = σ^2/(σ^2 + 0.13) (1 − cos φ (2β/π)^2)" },
+            EquationPart { term: Term::Diffuse, text: "α = max(θ_i, θ_r), β = min(θ_i, θ_r)" },
         ],
         laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,

@@ -128,6 +128,15 @@ impl ReflectionModel for Strauss {
                 term: Term::Specular,
                 text: "r_j = min(1, r_n + (r_n + 0.1) F(α) G(α) G(γ)), r_n = s^3 (1 − t)",
             },
+            EquationPart {
+                term: Term::Specular,
+                text: "F(x) = (1/(x − 1.12)^2 − 1/1.12^2) / (1/0.12^2 − 1/1.12^2)",
+            },
+            EquationPart {
+                term: Term::Specular,
+                text: "G(x) = (1/0.01^2 − 1/(x − 1.01)^2) / (1/0.01^2 − 1/1.01^2)",
+            },
+            EquationPart { term: Term::Specular, text: "α = 2 θ_i / π, γ = 2 θ_r / π" },
         ],
         laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
         ambient: Ambient::Albedo,

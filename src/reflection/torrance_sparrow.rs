@@ -100,7 +100,7 @@ impl ReflectionModel for TorranceSparrow {
             EquationPart {
                 term: Term::Specular, text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))"
             },
-            EquationPart { term: Term::Specular, text: "F = Fresnel(n + ik, V·H)" },
+            EquationPart { term: Term::Specular, text: "F = Fresnel(n + i k, V·H)" },
         ],
         laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
         ambient: Ambient::Albedo,

@@ -59,7 +59,7 @@ pub(super) fn pick(
     let light = session
         .view
         .show_gizmos
-        .then(|| nearest_light(&scene, &session, &area, camera, place, end, reach))
+        .then(|| nearest_light(&scene, &session, &registry, &area, camera, place, end, reach))
         .flatten();
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
@@ -80,6 +80,7 @@ pub(super) fn pick(
 fn nearest_light(
     scene: &CurrentScene,
     session: &Session,
+    registry: &Registry,
     area: &PictureArea,
     camera: &Camera,
     place: &GlobalTransform,
@@ -87,15 +88,10 @@ fn nearest_light(
     reach: f32,
 ) -> Option<usize> {
     let lens = Lens::of(session, area.frame);
-    scene
-        .0
-        .lights
-        .iter()
+    marks::places(&scene.0, registry, &lens, &area.written)
+        .into_iter()
         .enumerate()
-        .filter_map(|(i, light)| {
-            let at = camera.world_to_viewport(place, marks::place(light, &scene.0, &lens)?).ok()?;
-            Some((i, at.distance(pointer)))
-        })
+        .filter_map(|(i, at)| Some((i, camera.world_to_viewport(place, at?).ok()?.distance(pointer))))
         .filter(|(_, distance)| *distance <= reach)
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(i, _)| i)

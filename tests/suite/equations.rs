@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use bevy_egui::egui::{Color32, Shape, vec2};
+use bevy_egui::egui::{Color32, FontFamily, Pos2, Shape, vec2};
 use lights_camera_models::{
     panel::{
         state::{Action, ThemeChoice, ViewChange},
@@ -56,6 +56,69 @@ fn no_dashes_stand_before_equations() {
         .filter(|s| matches!(s, Shape::LineSegment { stroke, .. } if colours.contains(&stroke.color)))
         .count();
     assert_eq!(lines, 0);
+}
+
+/// The families of the letters of an equation, and where they are.
+fn letters(bench: &mut Bench, letter: &str) -> Vec<(FontFamily, Pos2)> {
+    let run = |shape: &Shape| match shape {
+        Shape::Text(t) if t.galley.text() == letter => {
+            let format = &t.galley.job.sections.first()?.format;
+            Some((format.font_id.family.clone(), t.pos + 0.5 * t.galley.size()))
+        }
+        _ => None,
+    };
+    bench.shapes().iter().filter_map(run).collect()
+}
+
+#[test]
+fn variables_are_slanted_wherever_they_stand() {
+    // In a power, beside the imaginary unit, in a power with a fraction; and as often as they are written.
+    for (model, letter, least) in [
+        ("minnaert", "k", 3),
+        ("cook_torrance", "k", 1),
+        ("torrance_sparrow", "k", 1),
+        ("strauss", "s", 5),
+        ("blinn_phong_normalised", "α", 5),
+    ] {
+        let found = letters(&mut Bench::with_model(model), letter);
+        assert!(found.len() >= least, "{model}: {letter} is a word of its own {} times", found.len());
+        for (family, _) in found {
+            assert_eq!(family, theme::maths_italic(), "{model}: {letter}");
+        }
+    }
+}
+
+#[test]
+fn symbols_are_explained_on_hover() {
+    for (model, letter, meaning) in [
+        ("eon", "E", "albedo"),
+        ("strauss", "F", "defined here: F(x) ="),
+        ("strauss", "G", "defined here: G(x) ="),
+        ("strauss", "γ", "defined here: γ = 2"),
+        ("strauss", "α", "defined here: α = 2"),
+        ("oren_nayar", "α", "defined here: α = max"),
+        ("hapke", "H", "defined here: H(μ) ="),
+        ("microfacet", "D", "distribution: "),
+        ("microfacet", "G", "masking"),
+        ("microfacet", "F", "Fresnel"),
+        ("microfacet", "f", "diffuse base"),
+    ] {
+        let mut bench = Bench::with_model(model);
+        let (_, at) = letters(&mut bench, letter)[0].clone();
+        bench.hover(at);
+        assert!(bench.says(meaning), "{model}: {letter} does not say “{meaning}”");
+    }
+}
+
+#[test]
+fn tooltips_have_no_raw_symbols_and_no_names_of_drafts() {
+    for model in Registry::builtin().models() {
+        let d = model.declaration;
+        let parameters = model.parameters.iter().flat_map(|p| [p.label, p.help]);
+        for text in [d.summary, d.source, d.author, d.name].into_iter().chain(parameters) {
+            assert!(!text.contains('_') && !text.contains("CA IM"), "{}: {text}", d.id);
+        }
+    }
 }
 
 #[test]

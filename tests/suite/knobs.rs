@@ -1,12 +1,13 @@
 //! The lines of the knobs: what can be seen without scrolling, and that there is more where there is.
 
-use bevy_egui::egui::{PointerButton, Rect, Shape, accesskit::Role, vec2};
+use bevy_egui::egui::{PointerButton, Pos2, Rect, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
     document::{Edit, Selection},
     panel::{
         state::{Action, ThemeChoice, ViewChange},
         theme,
     },
+    registry::Registry,
 };
 
 use crate::panels::{Bench, Seen};
@@ -165,4 +166,41 @@ fn pictures_of_the_knobs() -> Result<(), Box<dyn std::error::Error>> {
         shot(&mut with("disney"), "disney")?;
     }
     Ok(())
+}
+
+/// The texts that are painted, each with its place and true if some of it is left out.
+fn painted(bench: &mut Bench) -> Vec<(String, Pos2, bool)> {
+    let text = |shape| match shape {
+        Shape::Text(t) => Some((t.galley.text().to_owned(), t.pos, t.galley.elided)),
+        _ => None,
+    };
+    bench.shapes().into_iter().filter_map(text).collect()
+}
+
+#[test]
+fn knobs_and_authors_are_named_in_full() {
+    for (size, scale) in [((1280.0, 4000.0), 100), ((1920.0, 4000.0), 100), ((1280.0, 4000.0), 150)] {
+        for model in Registry::builtin().models() {
+            let d = model.declaration;
+            let mut bench = Bench::with_model(d.id);
+            bench.size = size.into();
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            let panel = bench.area.rect.right();
+            let texts: Vec<_> = painted(&mut bench).into_iter().filter(|(_, at, _)| at.x > panel).collect();
+            let labels = model.parameters.iter().filter(|p| p.symbol != p.label).map(|p| p.label);
+            for label in labels.chain([d.author]) {
+                let whole = texts.iter().any(|(text, _, cut)| text == label && !cut);
+                assert!(whole, "{}, {scale} %: “{label}” is not there in full", d.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn derived_values_stand_in_line() {
+    let mut bench = Bench::with_model("blinn_phong");
+    let texts = painted(&mut bench);
+    let left = |word: &str| texts.iter().find(|(text, ..)| text == word).map(|(_, at, _)| at.x);
+    assert!(left("equivalent GGX α").is_some());
+    assert_eq!(left("equivalent GGX α"), left("equivalent roughness"));
 }

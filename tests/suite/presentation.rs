@@ -54,7 +54,7 @@ fn at_every_scale_the_panels_fill_the_window_and_the_bar_can_be_reached() {
         for percent in SCALES {
             bench.apply(Action::View(ViewChange::Scale(percent)));
             let zoom = f32::from(percent) / 100.0;
-            let (area, whole) = (bench.area, bench.size / zoom);
+            let (area, whole) = (bench.area.clone(), bench.size / zoom);
             assert_eq!(area.zoom, zoom);
             assert!(area.rect.width() > 100.0 && area.rect.bottom() > whole.y - 60.0, "{percent}");
             let bar: Vec<_> = bench
@@ -230,6 +230,28 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
                     r.rect
                 );
             }
+        }
+    }
+}
+
+#[test]
+fn no_definition_of_a_presentation_is_broken_within_brackets() {
+    for (size, scale) in [((1280.0, 720.0), 100), ((1280.0, 720.0), 200), ((1920.0, 1080.0), 100)] {
+        for model in Registry::builtin().models() {
+            let mut bench = bench(size, model.declaration.id);
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::View(ViewChange::Presenting(true)));
+            let mut open: HashMap<i32, i32> = HashMap::new();
+            for shape in bench.shapes() {
+                let Shape::Text(text) = shape else { continue };
+                let Some(glyph) = text.galley.rows.first().and_then(|r| r.glyphs.first()) else { continue };
+                // Brackets that are as tall as fractions are no text, and come in pairs.
+                let line = (text.pos.y + glyph.pos.y).round() as i32;
+                let signs = text.galley.text().chars().map(|c| i32::from(c == '(') - i32::from(c == ')'));
+                *open.entry(line).or_default() += signs.sum::<i32>();
+            }
+            let torn: Vec<_> = open.iter().filter(|(_, count)| **count != 0).collect();
+            assert!(torn.is_empty(), "{}, {size:?}, {scale} %: {torn:?}", model.declaration.id);
         }
     }
 }

@@ -10,7 +10,7 @@ use lights_camera_models::{
         caption::caption_text,
         state::{Action, Effect, Session, ViewChange},
     },
-    parameter::{BASE_COLOUR, Value},
+    parameter::{BASE_COLOUR, ParameterKind, Value},
     reference,
     registry::Registry,
     render::{
@@ -425,4 +425,75 @@ fn a_shading_model_has_one_name_everywhere() {
         let name = format!("Shading: {}", shading.declaration.name);
         assert!(bench.find(&name).is_some_and(|s| s.role == Role::RadioButton), "{name}");
     }
+}
+
+#[test]
+fn names_that_begin_alike_can_be_told_apart() {
+    let names = ["candle", "street lamp", "sun"].map(|what| format!("gold under the light of the {what}"));
+    let mut session = with_objects(&["sphere"; 3]);
+    session.document.amend(|scene| {
+        for (object, name) in scene.objects.iter_mut().zip(&names) {
+            object.name = Some(name.clone());
+        }
+    });
+    let mut bench = Bench::new(session);
+    bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
+    bench.apply(Action::Select(Selection::Room));
+    let shown: BTreeSet<_> = (bench.shapes().into_iter())
+        .filter_map(|shape| match shape {
+            // As it is painted: what is left out is in no glyph.
+            Shape::Text(t) if t.galley.text().starts_with("gold") => {
+                Some(t.galley.rows[0].glyphs.iter().map(|g| g.chr).collect::<String>())
+            }
+            _ => None,
+        })
+        .collect();
+    assert_eq!(shown.len(), 3, "{shown:?}");
+    for (name, end) in names.iter().zip(["andle", "lamp", "sun"]) {
+        assert!(shown.iter().any(|s| s.contains('…') && s.ends_with(end)), "{shown:?}");
+        let row = bench.find(name).expect("the whole name is there for screen readers").rect;
+        bench.hover(row.left_center() + bevy_egui::egui::vec2(60.0, 0.0));
+        let whole = |shape: &Shape| matches!(shape, Shape::Text(t) if t.galley.text() == name);
+        assert!(bench.shapes().iter().any(whole), "and in the tooltip");
+    }
+}
+
+#[test]
+fn the_caption_says_what_there_is_none_of() {
+    let registry = Registry::builtin();
+    for model in registry.models() {
+        let mut scene = Scene { reflection_model: model.declaration.id.to_owned(), ..Scene::default() };
+        for p in model.parameters {
+            if matches!(p.kind, ParameterKind::Choice { options, .. } if options.iter().any(|(id, _)| *id == "none"))
+            {
+                scene.objects[0].material.set(p.name, Value::Choice("none".into()));
+            }
+        }
+        let caption = caption_text(&Session::new(scene), &registry);
+        assert!(caption.split(" · ").all(|part| part != "None"), "{caption}");
+    }
+}
+
+#[test]
+fn the_row_of_terms_has_those_of_the_equation_above_it() {
+    let ambient = Light { light_type: "ambient".to_owned(), position: None, ..Light::default() };
+    let mut session = with_objects(&["sphere", "sphere", "sphere"]);
+    session.document.amend(|scene| {
+        scene.lights.push(ambient);
+        for (object, model) in scene.objects.iter_mut().zip(["phong", "modified_phong", "mod_lambert"]) {
+            object.reflection_model = Some(model.to_owned());
+        }
+    });
+    let mut bench = Bench::new(session);
+    let rows: Vec<BTreeSet<String>> = (0..3)
+        .map(|i| {
+            bench.apply(Action::Select(Selection::Object(i)));
+            let labels = bench.tree.iter().filter_map(|s| s.label.strip_prefix("Terms: ").map(str::to_owned));
+            labels.collect()
+        })
+        .collect();
+    let offered = |i: usize| rows[i].iter().map(String::as_str).collect::<Vec<_>>();
+    assert_eq!(offered(0), ["all", "ambient", "diffuse", "specular"]);
+    assert_eq!(offered(1), ["all", "diffuse", "specular"], "I = I_d + I_s");
+    assert_eq!(offered(2), [""; 0], "one term is all of it");
 }

@@ -15,23 +15,25 @@ use crate::{
     shading::ShadingEntry,
 };
 
-/// Name, author and year of a model; the whole story is the tooltip.
-pub(super) fn model_header(ui: &mut Ui, model: &ModelEntry) {
-    let d = model.declaration;
+/// The name of a model; the whole story is the tooltip.
+pub(super) fn model_name(ui: &mut Ui, model: &ModelEntry) {
     let palette = Palette::here(ui);
-    let name = theme::elided(ui, d.name, TextStyle::Heading, palette.text, ui.available_width());
-    ui.horizontal(|ui| {
-        ui.label(name);
-        // What does not fit is in the tooltip.
-        if !d.author.is_empty() && ui.available_width() > 48.0 {
-            ui.add(egui::Label::new(theme::small(ui, d.author)).truncate());
-        }
-    })
-    .response
-    .on_hover_ui(|ui| {
-        ui.set_max_width(320.0);
-        chooser::about(ui, model);
-    });
+    let name = model.declaration.name;
+    let name = theme::elided(ui, name, TextStyle::Heading, palette.text, ui.available_width());
+    ui.label(name).on_hover_ui(|ui| about(ui, model));
+}
+
+/// Its authors and the year, below the name.
+pub(super) fn model_author(ui: &mut Ui, model: &ModelEntry) {
+    let author = model.declaration.author;
+    if !author.is_empty() {
+        ui.add(egui::Label::new(theme::small(ui, author)).wrap()).on_hover_ui(|ui| about(ui, model));
+    }
+}
+
+fn about(ui: &mut Ui, model: &ModelEntry) {
+    ui.set_max_width(320.0);
+    chooser::about(ui, model);
 }
 
 /// The replacement for a model that is missing: its file is gone, or never worked.
@@ -86,9 +88,21 @@ pub(super) fn equation(ui: &mut Ui, model: &ModelEntry) {
     ui.add_space(4.0);
 }
 
-/// The choice of the term that the picture shows, where there is one.
-pub(super) fn terms(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+/// The choice of the term that the picture shows, where there is one: among those of the equation above it.
+pub(super) fn terms(
+    ui: &mut Ui,
+    session: &Session,
+    registry: &Registry,
+    model: &ModelEntry,
+    actions: &mut Vec<Action>,
+) {
+    let written: Vec<_> = model.declaration.equation.iter().filter_map(|p| p.term.alone()).collect();
     let mut options = session.offered_terms(registry);
+    options.retain(|t| written.is_empty() || *t == TermSelection::All || written.contains(t));
+    if options.len() == 2 {
+        // One term is the whole equation.
+        options.truncate(1);
+    }
     if !options.contains(&session.view.terms) {
         options.push(session.view.terms);
     }

@@ -4,7 +4,7 @@ use bevy_egui::egui::{Align, Layout, Ui};
 
 use super::{
     measured::measured,
-    model::{equation, missing_model, model_header, stage, terms},
+    model::{equation, missing_model, model_author, model_name, stage, terms},
     part::{header, position_limits, section, thrice},
 };
 use crate::{
@@ -55,15 +55,16 @@ impl Shown<'_> {
                 fields.extend(model_override::control(ui, session, registry, object));
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     if let Some(model) = model {
-                        model_header(ui, model);
+                        model_name(ui, model);
                     }
                 });
             });
         });
         match model {
             Some(model) => {
+                model_author(ui, model);
                 equation(ui, model);
-                terms(ui, session, registry, actions);
+                terms(ui, session, registry, model, actions);
             }
             None => missing_model(ui, session, registry, session.document.model_of(object), actions),
         }
@@ -180,8 +181,9 @@ impl Shown<'_> {
         }
         ui.add_space(2.0);
         ui.label(theme::small(ui, "Derived values"));
+        let indent = readouts.iter().map(|r| knob::symbol_column(ui, r.symbol)).fold(0.0, f32::max);
         for readout in &readouts {
-            knob::readout(ui, readout);
+            knob::readout(ui, readout, indent);
         }
         ui.add_space(4.0);
     }

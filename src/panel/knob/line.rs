@@ -23,6 +23,8 @@ pub struct Caption<'a> {
     pub help: &'a str,
     /// The reason why it is disabled, if it is.
     pub disabled: Option<&'a str>,
+    /// The room of the symbol where words stand in line with those of other knobs, points; 0 for as much as it needs.
+    pub indent: f32,
 }
 
 /// The room of symbol and word in the line of a knob.
@@ -44,40 +46,51 @@ pub(super) fn head<R>(
     let palette = Palette::here(ui);
     let marked = !caption.symbol.is_empty()
         && maths::highlighted(ui.ctx()).is_some_and(|m| maths::same_symbol(&m, caption.symbol));
-    let row = ui.horizontal(|ui| {
+    let symbol_column = symbol_column(ui, caption.symbol).max(caption.indent);
+    let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
+    let room = match words {
+        Words::Leave(points) => (ui.available_width() - points).max(symbol_column + 40.0),
+        Words::Column => (COLUMN * ui.available_width()).max(symbol_column + 40.0).floor(),
+    };
+    // A parameter without a symbol of its own has its name for one, and need not say it twice.
+    let word = if caption.symbol == caption.label { "" } else { caption.label };
+    let font = TextStyle::Body.resolve(ui.style());
+    // The last words tell some parameters apart.
+    let mut job = egui::text::LayoutJob::simple(word.to_owned(), font, colour, room - symbol_column);
+    job.wrap.max_rows = ROWS;
+    let galley = ui.painter().layout_job(job);
+    let line = vec2(ui.available_width(), ui.spacing().interact_size.y.max(galley.size().y));
+    let row = ui.allocate_ui_with_layout(line, egui::Layout::left_to_right(Align::Center), |ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let height = 22.0;
-        let symbol_size = 16.0;
-        let symbol_column = if caption.symbol.is_empty() {
-            0.0
-        } else {
-            (maths::symbol_width(ui, caption.symbol, symbol_size) + 6.0).max(28.0)
-        };
-        let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
-        let room = match words {
-            Words::Leave(points) => (ui.available_width() - points).max(symbol_column + 40.0),
-            Words::Column => (COLUMN * ui.available_width()).max(symbol_column + 40.0).floor(),
-        };
-        // A parameter without a symbol of its own has its name for one, and need not say it twice.
-        let word = if caption.symbol == caption.label { "" } else { caption.label };
-        let galley = theme::elided(ui, word, TextStyle::Body, colour, room - symbol_column);
         let width = match words {
             Words::Leave(_) => symbol_column + galley.size().x,
             Words::Column => room,
         };
+        let height = galley.size().y.max(22.0);
         let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
         if marked {
             ui.painter().rect_filled(rect.expand2(vec2(4.0, 0.0)), 3.0, palette.chosen);
         }
         if !caption.symbol.is_empty() {
             let at = pos2(rect.left(), rect.center().y + 5.0);
-            maths::paint_symbol(ui, at, caption.symbol, symbol_size, colour);
+            maths::paint_symbol(ui, at, caption.symbol, SYMBOL, colour);
         }
         let at = pos2(rect.left() + symbol_column, rect.center().y - galley.size().y / 2.0);
         ui.painter().galley(at, galley, colour);
         (response, ui.with_layout(egui::Layout::right_to_left(Align::Center), right).inner)
     });
     row.inner
+}
+
+/// The size of a symbol.
+const SYMBOL: f32 = 16.0;
+
+/// The most rows that a word is broken into.
+const ROWS: usize = 3;
+
+/// The room that a symbol takes before a word, with the space between them.
+pub(in crate::panel) fn symbol_column(ui: &Ui, symbol: &str) -> f32 {
+    if symbol.is_empty() { 0.0 } else { (maths::symbol_width(ui, symbol, SYMBOL) + 6.0).max(28.0) }
 }
 
 /// The part of the line that symbol and word take in knobs with a slider.

@@ -24,6 +24,7 @@ pub use choice::{choice_knob, choice_with_help, list_knob};
 pub use colour::{colour_knob, colour_sample, parse_hex};
 pub use field::{Field, field, parse};
 pub use line::Caption;
+pub(super) use line::symbol_column;
 pub use number::{number_knob, number_knob_beside, unit_choice};
 pub(super) use picker::picker;
 pub use readout::readout;
@@ -67,6 +68,7 @@ pub fn parameter_knob(
         unit: parameter.unit,
         help: parameter.help,
         disabled,
+        ..Caption::default()
     };
     match (&parameter.kind, value) {
         (ParameterKind::Number { default, .. }, Value::Number(v)) => {

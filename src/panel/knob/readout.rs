@@ -8,10 +8,10 @@ use crate::{
     reflection::{Readout, ReadoutValue},
 };
 
-/// A derived value: symbol, word, and the value with a sample of its colour.
-pub fn readout(ui: &mut Ui, readout: &Readout) {
+/// A derived value: symbol, word `indent` points from the left, and the value with a sample of its colour.
+pub fn readout(ui: &mut Ui, readout: &Readout, indent: f32) {
     let palette = Palette::here(ui);
-    let caption = Caption { symbol: readout.symbol, label: readout.label, ..Caption::default() };
+    let caption = Caption { symbol: readout.symbol, label: readout.label, indent, ..Caption::default() };
     let digits = |v: f32| format!("{v:.3}");
     let text = match readout.value {
         ReadoutValue::Number(v) => digits(v),

@@ -106,11 +106,19 @@ pub fn parse(text: &str) -> Vec<Atom> {
             i = next;
             if mark == '_' { sub = script } else { sup = script }
         }
-        // One letter is a variable; several are a word, such as `max`.
-        let variable = c.is_alphabetic() && base.chars().count() == 1;
-        atoms.push(if variable { Atom::Symbol { base, sub, sup } } else { Atom::Upright { base, sub, sup } });
+        atoms.push(if is_variable(&base) {
+            Atom::Symbol { base, sub, sup }
+        } else {
+            Atom::Upright { base, sub, sup }
+        });
     }
     atoms
+}
+
+/// True for a variable: one letter. Several are a word, such as `max`.
+pub(super) fn is_variable(text: &str) -> bool {
+    let mut chars = text.chars();
+    chars.next().is_some_and(char::is_alphabetic) && chars.next().is_none()
 }
 
 /// A superscript or subscript: a group in braces, a number, or one character.

@@ -53,6 +53,8 @@ pub fn meaning(symbol: &str) -> Option<&'static str> {
         ("μ_0", "the cosine of the angle between the normal and the light, N·L"),
         ("μ_o", "the cosine of the angle between the normal and the observer, N·V"),
         ("n", "the refractive index"),
+        ("i", "the imaginary unit"),
+        ("x", "the variable of the function"),
         ("k", "the extinction coefficient: how fast light dies away inside"),
         ("g", "the phase angle between light and observer"),
         ("ω", "a direction"),
@@ -107,13 +109,15 @@ fn defines(text: &str) -> bool {
     })
 }
 
-/// The definition of a symbol in an equation: it begins with the symbol and an equals sign.
+/// The definition of a symbol in an equation: it begins with the symbol, or the symbol of something in brackets, and an
+/// equals sign.
 #[must_use]
 pub fn definition(parts: &[EquationPart], symbol: &str) -> Option<&'static str> {
     let of = |text: &str| {
-        let mut atoms = parse(text).into_iter().filter(|a| *a != Atom::Space);
-        let named = atoms.next().and_then(|a| a.symbol()).is_some_and(|s| same_symbol(&s, symbol));
-        named && atoms.next().is_some_and(|a| a.base() == "=")
+        let atoms: Vec<_> = parse(text).into_iter().filter(|a| *a != Atom::Space).collect();
+        let named = atoms.first().and_then(Atom::symbol).is_some_and(|s| same_symbol(&s, symbol));
+        let is = |i: usize, sign: &str| atoms.get(i).is_some_and(|a| a.base() == sign);
+        named && (is(1, "=") || is(1, "(") && is(3, ")") && is(4, "="))
     };
     definitions(parts).into_iter().map(|(_, text)| text).find(|text| of(text))
 }
@@ -151,5 +155,7 @@ mod tests {
         let parts = [EquationPart { term: Term::Diffuse, text: "x = H·T / H·N , y_{ab} = x + z" }];
         assert!(definition(&parts, "x").is_some() && definition(&parts, "y_ab").is_some());
         assert!(definition(&parts, "z").is_none() && definition(&parts, "H").is_none());
+        let parts = [EquationPart { term: Term::Diffuse, text: "I_d = H(μ_l) C_b, H(μ) = 1 + μ" }];
+        assert_eq!(definition(&parts, "H"), Some("H(μ) = 1 + μ"), "not the half vector");
     }
 }

@@ -40,11 +40,7 @@ pub(super) struct Laid {
 /// Lays an atom out with its baseline at y = 0.
 pub(super) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
     let (base, sub, sup, family) = match atom {
-        // Capital Greek letters are upright by custom; N·L and the like are slanted.
-        Atom::Symbol { base, sub, sup } if base.starts_with(|c| ('Α'..='Ω').contains(&c)) => {
-            (base, sub, sup, theme::maths())
-        }
-        Atom::Symbol { base, sub, sup } => (base, sub, sup, theme::maths_italic()),
+        Atom::Symbol { base, sub, sup } => (base, sub, sup, variable(base)),
         Atom::Upright { base, sub, sup } => (base, sub, sup, theme::maths()),
         Atom::Space => return Laid { pieces: Vec::new(), width: 0.28 * size },
     };
@@ -66,23 +62,45 @@ pub(super) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid 
     pieces.push(Piece { galley, offset: vec2(x, y) });
     x += advance;
     let script_size = (0.7 * size).max(9.0);
-    let script_family = |s: &str| {
-        if s.chars().count() == 1 && s.chars().all(char::is_alphabetic) {
-            theme::maths_italic()
-        } else {
-            theme::maths()
-        }
-    };
     let mut width = x;
     for (script, shift) in [(sub, 0.22 * size), (sup, -0.38 * size)] {
-        if !script.is_empty() {
-            let galley = text(script, script_family(script), script_size);
+        let mut x = x + 0.04 * size;
+        for run in runs(script) {
+            // One letter is a variable, as in a line; several are a word.
+            let family = if atom::is_variable(run) { variable(run) } else { theme::maths() };
+            let galley = text(run, family, script_size);
             let y = shift - baseline(&galley);
-            width = width.max(x + 0.04 * size + galley.size().x);
-            pieces.push(Piece { galley, offset: vec2(x + 0.04 * size, y) });
+            let advance = galley.size().x;
+            width = width.max(x + advance);
+            pieces.push(Piece { galley, offset: vec2(x, y) });
+            x += advance;
         }
     }
     Laid { pieces, width: width + padding }
+}
+
+/// The font of a variable: slanted, but capital Greek letters are upright by custom.
+fn variable(letter: &str) -> egui::FontFamily {
+    let capital = letter.starts_with(|c| ('Α'..='Ω').contains(&c));
+    if capital { theme::maths() } else { theme::maths_italic() }
+}
+
+/// The runs of an index or a power: its words and what stands between them.
+fn runs(script: &str) -> impl Iterator<Item = &str> {
+    let mut rest = script;
+    std::iter::from_fn(move || {
+        let first = rest.chars().next()?;
+        // Greek letters are variables, however many stand side by side.
+        let end = if first.is_alphabetic() && !first.is_ascii() {
+            first.len_utf8()
+        } else {
+            let same = |c: char| c.is_ascii_alphabetic() == first.is_ascii_alphabetic();
+            rest.find(|c: char| !same(c) || c.is_alphabetic() && !c.is_ascii()).unwrap_or(rest.len())
+        };
+        let (run, after) = rest.split_at(end);
+        rest = after;
+        Some(run)
+    })
 }
 
 /// One symbol in the colour of text, at a place; returns its width. `baseline` is where it stands.
@@ -145,25 +163,9 @@ pub fn equation_of(
     name: impl Fn(&str) -> Option<String>,
 ) -> Response {
     let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
     let width = ui.available_width();
     let marked = highlighted(ui.ctx());
-    let mut lines: Vec<(Set, f32, Color32)> = Vec::new();
-    let mut height = 0.0;
-    for (term, text) in parts {
-        let alone = parts.len() == 1 && !sizes.column;
-        let size = if alone { SIZE } else { size_of(*term, text) };
-        let helper = size < SIZE;
-        let size = if sizes.even { HELPER } else { size };
-        let leading = if helper { 6.0 } else { 8.0 };
-        let colour = if helper { palette.text } else { palette.term_text(*term) };
-        let setter = Setter { ui, size: size * scale, colour, stacked: true, shrinks: !sizes.column };
-        for line in setter.lines(&formula::tree(text), width) {
-            let baseline = height + line.ascent + 0.5 * leading * scale;
-            height = baseline + line.descent + 0.5 * leading * scale;
-            lines.push((line, baseline, colour));
-        }
-    }
+    let (lines, height) = set(ui, parts, sizes, width);
 
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let spoken: Vec<_> = parts.iter().map(|(_, text)| *text).collect();
@@ -189,6 +191,39 @@ pub fn equation_of(
         line.paint(ui, at, *colour);
     }
     response
+}
+
+/// Lines that are set, each with its baseline and its colour, and how high they are.
+type Lines = (Vec<(Set, f32, Color32)>, f32);
+
+/// Sets parts of an equation in lines of at most this width.
+fn set(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, width: f32) -> Lines {
+    let palette = Palette::here(ui);
+    let scale = theme::scale_here(ui);
+    let mut lines = Vec::new();
+    let mut height = 0.0;
+    for (term, text) in parts {
+        let alone = parts.len() == 1 && !sizes.column;
+        let size = if alone { SIZE } else { size_of(*term, text) };
+        let helper = size < SIZE;
+        let size = if sizes.even { HELPER } else { size };
+        let leading = if helper { 6.0 } else { 8.0 };
+        let colour = if helper { palette.text } else { palette.term_text(*term) };
+        let setter = Setter { ui, size: size * scale, colour, stacked: true, shrinks: !sizes.column };
+        for line in setter.lines(&formula::tree(text), width) {
+            let baseline = height + line.ascent + 0.5 * leading * scale;
+            height = baseline + line.descent + 0.5 * leading * scale;
+            lines.push((line, baseline, colour));
+        }
+    }
+    (lines, height)
+}
+
+/// The height of parts of an equation at a width, and true if they fit only when broken within brackets or fractions.
+#[must_use]
+pub fn measured(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, width: f32) -> (f32, bool) {
+    let (lines, height) = set(ui, parts, sizes, width);
+    (height, lines.iter().any(|(line, ..)| line.torn || line.width > width))
 }
 
 /// The size of letters in the terms of an equation.

@@ -4,7 +4,7 @@ use bevy::ecs::resource::Resource;
 use bevy_egui::egui;
 
 /// The place that the panels leave to the picture, and the input that is the picture's. Written by the panels.
-#[derive(Clone, Copy, Debug, PartialEq, Resource)]
+#[derive(Clone, Debug, PartialEq, Resource)]
 pub struct PictureArea {
     /// The rectangle of the picture, points of the panels.
     pub rect: egui::Rect,
@@ -19,6 +19,8 @@ pub struct PictureArea {
     pub has_keys: bool,
     /// True if a menu or a list is open, which the next click elsewhere closes and does nothing else.
     pub popup_open: bool,
+    /// The places of badges, caption and axes, which marks keep clear of.
+    pub written: Vec<egui::Rect>,
 }
 
 impl Default for PictureArea {
@@ -30,6 +32,7 @@ impl Default for PictureArea {
             has_pointer: false,
             has_keys: true,
             popup_open: false,
+            written: Vec::new(),
         }
     }
 }

@@ -1,0 +1,119 @@
+//! The arrows at the edge of the picture.
+
+use bevy_egui::egui::{
+    Align2, Color32, CursorIcon, FontId, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo,
+    WidgetType, vec2,
+};
+
+use super::{
+    ink::{OUTLINE, RIM},
+    place::at_edge,
+};
+use crate::{
+    document::Selection,
+    panel::{
+        state::{Action, Session},
+        theme,
+    },
+    registry::Registry,
+};
+
+/// Half the height of an arrow at the edge, points.
+const ARROW: f32 = 8.0;
+/// Distance of the arrows from the edge, points.
+const INSET: f32 = 16.0;
+/// Names in the tooltip of an arrow that stands for several lights.
+const NAMES: usize = 8;
+
+/// A light that is not in view.
+pub(super) struct Outside {
+    pub(super) light: usize,
+    /// The direction from the middle of the picture.
+    pub(super) way: Vec2,
+    /// Its place, if it is in the picture and something is written over it.
+    pub(super) covered: Option<Pos2>,
+}
+
+/// The place of an arrow on the way from the middle to a light: as far out as nothing is written over it.
+fn clear_end(frame: Rect, overlays: &[Rect], outside: &Outside) -> Pos2 {
+    let end = outside.covered.unwrap_or_else(|| at_edge(frame, outside.way));
+    let length = (end - frame.center()).length();
+    let places = (0..).map(|k| length - 2.0 * k as f32).take_while(|l| *l > 0.3 * length);
+    let free = |at: &Pos2| {
+        let arrow = Rect::from_center_size(*at, Vec2::splat(3.0 * ARROW));
+        !overlays.iter().any(|r| r.intersects(arrow))
+    };
+    places.map(|l| frame.center() + outside.way * l).find(free).unwrap_or(end)
+}
+
+/// The arrows. Where many would overlap, one stands for them and says how many.
+pub(super) fn arrows(
+    ui: &Ui,
+    painter: &Painter,
+    (rect, overlays): (Rect, &[Rect]),
+    outside: &[Outside],
+    session: &Session,
+    registry: &Registry,
+    colour_of: impl Fn(usize) -> Color32,
+) -> (Vec<Action>, Vec<Rect>) {
+    let frame = rect.shrink(INSET);
+    let (mut actions, mut places) = (Vec::new(), Vec::new());
+    if !frame.is_positive() {
+        return (actions, places);
+    }
+    let mut ends: Vec<_> = outside.iter().map(|o| (o, clear_end(frame, overlays, o))).collect();
+    // Around the picture, so that neighbours come one after the other.
+    ends.sort_by(|a, b| a.0.way.angle().total_cmp(&b.0.way.angle()));
+    let mut groups: Vec<(Vec2, Pos2, Vec<usize>)> = Vec::new();
+    for (Outside { light, way, .. }, at) in ends {
+        match groups.iter_mut().rev().find(|(_, first, _)| first.distance(at) < 3.4 * ARROW) {
+            Some((_, _, lights)) => lights.push(*light),
+            None => groups.push((*way, at, vec![*light])),
+        }
+    }
+    for (way, at, mut lights) in groups {
+        lights.sort_unstable();
+        let chosen = lights.iter().position(|i| session.selection == Selection::Light(*i));
+        // A light that shines goes before those that are off.
+        let lit = lights.iter().position(|i| session.document.lights[*i].enabled);
+        let colour = colour_of(lights[chosen.or(lit).unwrap_or(0)]);
+        let (ahead, side) = (way * ARROW, way.rot90() * ARROW);
+        // So slim that it cannot be taken for an arrow in another direction.
+        let (tip, back) = (at + ahead * 1.2, at - ahead);
+        let triangle = vec![tip, back + side * 0.7, back - side * 0.7];
+        painter.add(Shape::convex_polygon(triangle, colour, Stroke::new(RIM, OUTLINE)));
+        if lights.len() > 1 {
+            let font = FontId::new(10.5, theme::semibold());
+            let text = painter.layout_no_wrap(lights.len().to_string(), font, colour);
+            let middle = at - way * (ARROW + 0.5 * text.size().max_elem() + 3.0);
+            let plate = Rect::from_center_size(middle, text.size() + vec2(6.0, 2.0));
+            painter.rect_filled(plate, 3.0, OUTLINE);
+            painter.galley(Align2::CENTER_CENTER.anchor_size(middle, text.size()).min, text, colour);
+        }
+        let place = Rect::from_center_size(at, Vec2::splat(3.0 * ARROW));
+        let id = Id::new(("light outside the view", lights[0]));
+        let response = ui.interact(place, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
+        let name = |i: usize| session.name_of(Selection::Light(i), registry);
+        let mut names: Vec<_> = lights.iter().take(NAMES).map(|i| name(*i)).collect();
+        if lights.len() > NAMES {
+            names.push(format!("and {} more", lights.len() - NAMES));
+        }
+        let hidden = |i: &usize| outside.iter().any(|o| o.light == *i && o.covered.is_some());
+        let where_ =
+            if lights.iter().all(hidden) { "Under what is written here" } else { "Outside the view" };
+        let said = format!("{where_}: {}", names.join(", "));
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
+        if response.clicked() {
+            // Again and again: one after the other.
+            let next = chosen.map_or(0, |k| (k + 1) % lights.len());
+            actions.push(Action::Select(Selection::Light(lights[next])));
+        }
+        response.on_hover_ui(|ui| {
+            names.iter().for_each(|name| drop(ui.label(name)));
+            let next = if lights.len() > 1 { " the next" } else { "" };
+            ui.label(theme::small(ui, format!("{where_}. Click to select{next}")));
+        });
+        places.push(place);
+    }
+    (actions, places)
+}

@@ -1,0 +1,65 @@
+//! Lines that can be seen on any picture.
+
+use bevy_egui::egui::{Color32, Painter, Pos2, Shape, Stroke};
+use glam::Vec3;
+
+use super::lens::Lens;
+
+/// Around every line.
+pub(super) const OUTLINE: Color32 = Color32::from_rgb(8, 8, 8);
+/// Width of a line, points.
+const LINE: f32 = 1.75;
+/// Width of the outline on either side, points.
+pub(super) const RIM: f32 = 1.5;
+
+/// Lines with their outlines; no outline covers another line.
+pub(super) struct Ink {
+    pub(super) lens: Lens,
+    below: Vec<Shape>,
+    above: Vec<Shape>,
+}
+
+impl Ink {
+    pub(super) fn new(lens: Lens) -> Self {
+        Self { lens, below: Vec::new(), above: Vec::new() }
+    }
+
+    pub(super) fn line(&mut self, mut points: Vec<Pos2>, colour: Color32) {
+        self.above.push(Shape::line(points.clone(), Stroke::new(LINE, colour)));
+        // The outline goes around the ends too.
+        let end = points.len() - 1;
+        let (first, last) = (points[0] - points[1], points[end] - points[end - 1]);
+        points[0] += first.normalized() * RIM;
+        points[end] += last.normalized() * RIM;
+        self.below.push(Shape::line(points, Stroke::new(LINE + 2.0 * RIM, OUTLINE)));
+    }
+
+    pub(super) fn path(&mut self, points: &[Vec3], colour: Color32) {
+        for run in self.lens.path(points) {
+            self.line(run, colour);
+        }
+    }
+
+    pub(super) fn disc(&mut self, at: Pos2, radius: f32, colour: Color32) {
+        self.above.push(Shape::circle_filled(at, radius + RIM, OUTLINE));
+        self.above.push(Shape::circle_filled(at, radius, colour));
+    }
+
+    pub(super) fn arrow(&mut self, from: Vec3, to: Vec3, colour: Color32) {
+        self.path(&[from, to], colour);
+        let (Some(a), Some(b)) = (self.lens.project(from), self.lens.project(to)) else { return };
+        let tip = 6.0;
+        // Seen from its end, an arrow has no sides.
+        if (b - a).length() < tip {
+            return;
+        }
+        let back = (a - b).normalized() * tip;
+        let side = back.rot90() * 0.55;
+        self.line(vec![b + back + side, b, b + back - side], colour);
+    }
+
+    pub(super) fn paint(self, painter: &Painter) {
+        painter.extend(self.below);
+        painter.extend(self.above);
+    }
+}

@@ -1,0 +1,153 @@
+//! The way from the room to the picture.
+
+use bevy_egui::egui::{Pos2, Rect, Vec2, vec2};
+use glam::{Quat, Vec3};
+
+use crate::{panel::state::Session, scene::observer::vertical_field_of_view};
+
+/// What is nearer to the camera than this is not drawn, metres.
+const NEAR: f32 = 0.05;
+
+/// The way from the room to the picture: what the camera of the window shows in a rectangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Lens {
+    eye: Vec3,
+    to_camera: Quat,
+    rect: Rect,
+    /// Points per unit of the tangent.
+    scale: f32,
+}
+
+impl Lens {
+    /// The camera of the window.
+    #[must_use]
+    pub fn of(session: &Session, rect: Rect) -> Self {
+        let degrees = session.document.observer.field_of_view;
+        let angle = vertical_field_of_view(degrees, rect.width() / rect.height().max(1.0), true);
+        Self {
+            eye: session.facts.eye,
+            to_camera: session.facts.camera.inverse(),
+            rect,
+            scale: 0.5 * rect.height() / (0.5 * angle).tan(),
+        }
+    }
+
+    /// A point of the room as the camera sees it: x to the right, y up, −z ahead.
+    pub(super) fn seen(&self, p: Vec3) -> Vec3 {
+        self.to_camera * (p - self.eye)
+    }
+
+    fn flat(&self, seen: Vec3) -> Pos2 {
+        self.rect.center() + vec2(seen.x, -seen.y) * (self.scale / -seen.z)
+    }
+
+    /// The place of a point in the picture or beside it; none behind the camera.
+    #[must_use]
+    pub fn project(&self, p: Vec3) -> Option<Pos2> {
+        let seen = self.seen(p);
+        (seen.z < -NEAR).then(|| self.flat(seen))
+    }
+
+    /// The rectangle of the picture.
+    pub(super) fn rect(&self) -> Rect {
+        self.rect
+    }
+
+    /// How many metres at a point of the room are so many points of the picture.
+    pub(super) fn metres(&self, p: Vec3, points: f32) -> f32 {
+        points * (-self.seen(p).z).max(NEAR) / self.scale
+    }
+
+    /// The direction at right angles to another one in which a step at a point moves most to the side.
+    pub(super) fn across(&self, p: Vec3, direction: Vec3) -> Vec3 {
+        let ahead = p - self.eye;
+        let right = self.to_camera.inverse() * Vec3::X;
+        direction.cross(ahead).try_normalize().unwrap_or(right)
+    }
+
+    /// The point of the room at a place of the picture, so many metres ahead.
+    pub(super) fn at(&self, place: Pos2, ahead: f32) -> Vec3 {
+        let sideways = (place - self.rect.center()) * (ahead / self.scale);
+        self.eye + self.to_camera.inverse() * Vec3::new(sideways.x, -sideways.y, -ahead)
+    }
+
+    /// The direction in the picture in which a point outside it lies.
+    pub(super) fn towards(&self, p: Vec3) -> Vec2 {
+        let seen = self.seen(p);
+        let sideways = vec2(seen.x, -seen.y);
+        if sideways.length() > 1e-4 { sideways.normalized() } else { vec2(0.0, 1.0) }
+    }
+
+    /// A line through the room as lines in the picture, without what is behind the camera.
+    pub(super) fn path(&self, points: &[Vec3]) -> Vec<Vec<Pos2>> {
+        let mut runs = vec![Vec::new()];
+        let mut last: Option<Vec3> = None;
+        for point in points {
+            let seen = self.seen(*point);
+            let ahead = |p: Vec3| p.z < -NEAR;
+            if let Some(last) = last.filter(|last| ahead(*last) != ahead(seen)) {
+                let t = (-NEAR - last.z) / (seen.z - last.z);
+                let border = self.flat(last.lerp(seen, t).with_z(-NEAR));
+                runs.last_mut().into_iter().for_each(|run| run.push(border));
+                if ahead(last) {
+                    runs.push(Vec::new());
+                }
+            }
+            if ahead(seen) {
+                let at = self.flat(seen);
+                runs.last_mut().into_iter().for_each(|run| run.push(at));
+            }
+            last = Some(seen);
+        }
+        runs.retain(|run| run.len() > 1);
+        runs
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::pos2;
+
+    use super::*;
+    use crate::scene::Scene;
+
+    fn lens(scene: Scene) -> Lens {
+        let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(800.0, 450.0));
+        Lens::of(&Session::new(scene), rect)
+    }
+
+    #[test]
+    fn the_lens_is_that_of_the_observer() {
+        let lens = lens(Scene::default());
+        assert_eq!(lens.project(Vec3::splat(5.0)), Some(pos2(500.0, 275.0)));
+        // 45° from bottom to top, at a distance of 4.5 m.
+        let top = lens.project(Vec3::new(5.0, 5.0 + 4.5 * 22.5f32.to_radians().tan(), 5.0));
+        assert!(top.is_some_and(|p| (p.y - 50.0).abs() < 0.01), "{top:?}");
+        assert_eq!(lens.project(Vec3::new(5.0, 5.0, 9.9)), None, "behind the camera");
+        let there = lens.at(pos2(500.0, 50.0), 4.5);
+        assert!(lens.project(there).is_some_and(|p| p.distance(pos2(500.0, 50.0)) < 0.01), "{there}");
+    }
+
+    #[test]
+    fn a_line_that_passes_the_camera_is_cut_off_there() {
+        let lens = lens(Scene::default());
+        let ahead = Vec3::new(5.0, 5.5, 5.0);
+        let runs = lens.path(&[ahead, Vec3::new(5.0, 5.5, 9.9), ahead]);
+        assert_eq!(runs.len(), 2);
+        assert!(runs.iter().flatten().all(|p| p.y < 275.0 && p.x == 500.0), "{runs:?}");
+        assert!(lens.path(&[Vec3::new(1.0, 1.0, 9.9), Vec3::new(2.0, 1.0, 9.9)]).is_empty());
+    }
+
+    #[test]
+    fn arrows_point_to_where_the_light_is() {
+        let lens = lens(Scene::default());
+        for (light, way) in [
+            (Vec3::new(9.9, 5.0, 5.0), vec2(1.0, 0.0)),
+            (Vec3::new(5.0, 9.9, 5.0), vec2(0.0, -1.0)),
+            (Vec3::new(0.1, 5.0, 9.9), vec2(-1.0, 0.0)),
+        ] {
+            assert!(lens.project(light).is_none_or(|at| !lens.rect.contains(at)));
+            assert!((lens.towards(light) - way).length() < 1e-3, "{light}");
+        }
+    }
+}

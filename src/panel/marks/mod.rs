@@ -1,0 +1,235 @@
+//! The marks over the picture: lights with their place, direction and cone, the observer where the camera has left
+//! it, what is selected; and arrows at the edge that point to the lights outside the view.
+//!
+//! They are painted as panels are, after the picture: tone mapping and exposure do not touch them, and each line has
+//! a dark outline around a light core, one of which stands out on any picture.
+
+use std::sync::Arc;
+
+use bevy_egui::egui::{Color32, Id, Rect, Ui, Vec2, pos2, vec2};
+use glam::{Quat, Vec3};
+
+use super::state::{Action, Session};
+use crate::{
+    document::Selection,
+    light::LightEntry,
+    registry::Registry,
+    scene::{Light, Object, Observer, Scene, observer::rotation as look_along, rotation::rotation},
+};
+use edge::Outside;
+use ink::Ink;
+use place::{CROWD, SHORT};
+
+mod edge;
+mod ink;
+mod lens;
+mod place;
+
+pub use lens::Lens;
+pub use place::{anchor, places};
+
+/// Okabe–Ito yellow: lights.
+const LIGHT: Color32 = Color32::from_rgb(0xf0, 0xe4, 0x42);
+/// Okabe–Ito sky blue, lightened: what is selected.
+const SELECTED: Color32 = Color32::from_rgb(0x7c, 0xc8, 0xff);
+/// Okabe–Ito bluish green, lightened: the observer.
+const OBSERVER: Color32 = Color32::from_rgb(0x5f, 0xe3, 0xb5);
+/// Lights that are switched off.
+const OFF: Color32 = Color32::from_rgb(0xc0, 0xc0, 0xc0);
+/// Radius of a light's mark, points.
+const LAMP: f32 = 5.0;
+/// Radius of a light's mark among many, points.
+const DOT: f32 = 2.5;
+/// Length of the arrows and the cone of the light that is selected, points.
+const LONG: f32 = 88.0;
+/// Length of the observer's mark, metres.
+const OBSERVER_MARK: f32 = 0.4;
+/// Distance of the frame around the selected object from what it frames, points.
+const FRAME: f32 = 7.0;
+
+/// Paints the marks into the rectangle of the picture. Returns what was asked for, and the places that can be
+/// clicked, which do not belong to the picture.
+pub fn marks(
+    ui: &Ui,
+    rect: Rect,
+    overlays: &[Rect],
+    session: &Session,
+    registry: &Registry,
+) -> (Vec<Action>, Vec<Rect>) {
+    if !session.view.show_gizmos {
+        return (Vec::new(), Vec::new());
+    }
+    let scene = &session.document;
+    let lens = Lens::of(session, rect);
+    let painter = ui.painter_at(rect);
+    let mut ink = Ink::new(lens);
+    let mut outside = Vec::new();
+    let crowd = scene.lights.len() > CROWD;
+    let chosen = |i: usize| session.selection == Selection::Light(i);
+    let colour_of = |i: usize| match scene.lights[i].enabled {
+        _ if chosen(i) => SELECTED,
+        true => LIGHT,
+        false => OFF,
+    };
+    let places = places(scene, registry, &lens, overlays);
+    // What is selected is drawn last, over the others.
+    let mut order: Vec<usize> = (0..scene.lights.len()).collect();
+    order.sort_by_key(|i| chosen(*i));
+    for i in order {
+        let light = &scene.lights[i];
+        let (Some(at), Some(entry)) = (places[i], registry.light(&light.light_type)) else {
+            continue;
+        };
+        match lens.project(at).filter(|at| rect.contains(*at)) {
+            None => outside.push(Outside { light: i, way: lens.towards(at), covered: None }),
+            Some(p) if overlays.iter().any(|r| r.contains(p)) => {
+                let way = (p - rect.center()).normalized();
+                outside.push(Outside { light: i, way, covered: Some(p) });
+            }
+            Some(_) => {
+                let size = match chosen(i) {
+                    true => Size::Long,
+                    false if crowd => Size::Dot,
+                    false => Size::Short,
+                };
+                lamp(&mut ink, light, entry, at, scene, colour_of(i), size);
+            }
+        }
+    }
+    // From within, its own pyramid would frame the picture.
+    if session.facts.eye.distance(scene.observer.position) > OBSERVER_MARK {
+        observer(&mut ink, &scene.observer, session.selection == Selection::Observer);
+    }
+    if let Selection::Object(i) = session.selection
+        && let Some(object) = scene.objects.get(i)
+    {
+        frame(ui, &mut ink, object, registry);
+    }
+    ink.paint(&painter);
+    edge::arrows(ui, &painter, (rect, overlays), &outside, session, registry, colour_of)
+}
+
+/// How large the mark of a light is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Size {
+    /// Among many.
+    Dot,
+    /// Beside what is looked at.
+    Short,
+    /// Selected.
+    Long,
+}
+
+fn lamp(
+    ink: &mut Ink,
+    light: &Light,
+    entry: &LightEntry,
+    position: Vec3,
+    scene: &Scene,
+    colour: Color32,
+    size: Size,
+) {
+    let direction = light.direction.and_then(Vec3::try_normalize);
+    let place = ink.lens.project(position);
+    let points = if size == Size::Long { LONG } else { SHORT };
+    let reach = ink.lens.metres(position, points).min(0.12 * scene.scene_size.corner().max_element());
+    if let Some(direction) = direction {
+        let turn = Quat::from_rotation_arc(Vec3::Z, direction);
+        match entry.declaration.cone_parameter {
+            _ if size == Size::Dot => ink.path(&[position, position + direction * (0.5 * reach)], colour),
+            Some(index) => {
+                let angle = entry.numbers(&light.parameters)[index].to_radians();
+                // The rim on a sphere around the light: also a half angle of 90° has one.
+                let rim = position + direction * (reach * angle.cos());
+                let radius = reach * angle.sin();
+                let around = |turns: f32| {
+                    let (y, x) = (turns * std::f32::consts::TAU).sin_cos();
+                    rim + turn * Vec3::new(x, y, 0.0) * radius
+                };
+                ink.path(&(0..=48).map(|k| around(k as f32 / 48.0)).collect::<Vec<_>>(), colour);
+                for side in [0.0, 0.25, 0.5, 0.75] {
+                    ink.path(&[position, around(side)], colour);
+                }
+                if size == Size::Long {
+                    ink.arrow(position, position + direction * reach * 1.25, colour);
+                }
+            }
+            None => {
+                let sides = [Vec3::ZERO, Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y];
+                // Side by side as the camera sees them: so few cannot hide each other.
+                let across = ink.lens.across(position, direction);
+                let (sides, apart) = match size {
+                    Size::Long => (sides.map(|side| turn * side), 0.3),
+                    _ => ([Vec3::ZERO, across, -across, Vec3::ZERO, Vec3::ZERO], 0.4),
+                };
+                for side in &sides[..if size == Size::Long { 5 } else { 3 }] {
+                    let start = position + *side * (apart * reach);
+                    ink.arrow(start, start + direction * reach, colour);
+                }
+            }
+        }
+    }
+    let Some(at) = place else { return };
+    if size == Size::Dot {
+        ink.disc(at, DOT, colour);
+    } else if light.position.is_some() {
+        if direction.is_none() {
+            for ray in 0..8 {
+                let out = Vec2::angled(ray as f32 * std::f32::consts::TAU / 8.0);
+                ink.line(vec![at + out * (LAMP + 3.5), at + out * (LAMP + 7.5)], colour);
+            }
+        }
+        ink.disc(at, LAMP, colour);
+    } else {
+        // Seen from their ends, its arrows are nearly points.
+        ink.disc(at, 1.4 * DOT, colour);
+    }
+}
+
+/// The observer as the pyramid of its view.
+fn observer(ink: &mut Ink, observer: &Observer, selected: bool) {
+    let colour = if selected { SELECTED } else { OBSERVER };
+    let turn = look_along(observer.direction);
+    let half = OBSERVER_MARK * (observer.field_of_view.min(120.0) * 0.5).to_radians().tan();
+    let corners = [(-1.6, -1.0), (1.6, -1.0), (1.6, 1.0), (-1.6, 1.0)]
+        .map(|(x, y)| observer.position + turn * Vec3::new(x * half, y * half, -OBSERVER_MARK));
+    for corner in corners {
+        ink.path(&[observer.position, corner], colour);
+    }
+    ink.path(&[corners[0], corners[1], corners[2], corners[3], corners[0]], colour);
+    let top = (corners[2] + corners[3]) * 0.5 + turn * Vec3::Y * half * 0.5;
+    ink.path(&[corners[3], top, corners[2]], colour);
+}
+
+/// A frame around the selected object as the camera sees it: its corners, so that nothing of the object is covered.
+fn frame(ui: &Ui, ink: &mut Ink, object: &Object, registry: &Registry) {
+    let Some(shape) = registry.shape(&object.object_type) else { return };
+    let id = Id::new(("mesh of what is selected", shape.declaration.id, object.tessellation));
+    let known = ui.data(|d| d.get_temp::<Arc<[Vec3]>>(id));
+    let mesh = known.unwrap_or_else(|| {
+        // Finer ones have the same outline.
+        let count = shape.tessellation(object.tessellation).min(shape.declaration.default_tessellation);
+        let mesh: Arc<[Vec3]> = shape.mesh(count).positions.into();
+        ui.data_mut(|d| d.insert_temp(id, mesh.clone()));
+        mesh
+    });
+    let (lens, turn) = (ink.lens, rotation(object.rotation));
+    let view = lens.rect().shrink(FRAME);
+    let seen = mesh.iter().map(|p| lens.project(object.position + turn * (object.size * *p)));
+    // What reaches behind the camera is all around it.
+    let around = match seen.collect::<Option<Vec<_>>>() {
+        Some(points) => Rect::from_points(&points).expand(FRAME),
+        None => view,
+    };
+    if !around.intersects(view) {
+        return;
+    }
+    let around = around.intersect(view);
+    let arm = (0.25 * around.size().min_elem()).clamp(6.0, 18.0);
+    for (x, y) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+        let corner = around.lerp_inside(vec2(x, y));
+        let inward = vec2(1.0 - 2.0 * x, 1.0 - 2.0 * y) * arm;
+        let ends = [pos2(corner.x + inward.x, corner.y), pos2(corner.x, corner.y + inward.y)];
+        ink.line(vec![ends[0], corner, ends[1]], SELECTED);
+    }
+}
