@@ -46,7 +46,7 @@ pub(super) fn duplicate(id: &str, name: Option<&str>, options: Options, places: 
 
 /// The id of a model with a given name.
 fn id_of(name: &str) -> Result<String, Failure> {
-    custom::id_of_name(name).map_err(|rule| Failure::Usage(format!("NAME is {}, but {rule}", quoted(name))))
+    custom::id_of_name(name).map_err(|bad| Failure::Usage(format!("NAME is {}, but {bad}", quoted(name))))
 }
 
 /// Writes a new file for a custom model, and suggests the next steps.

@@ -1,10 +1,15 @@
 //! The conditions under which the parameters of a model's file are used.
 
+use jsonc_parser::common::Ranged as _;
+
 use super::{declaration::Reader, intern};
 use crate::{
     parameter::{Parameter, UsedWhen},
     reflection::usage,
-    text::json::{Cursor, Fields, Reader as _},
+    text::{
+        json::{Cursor, Fields, Reader as _},
+        shortened,
+    },
 };
 
 impl Reader<'_> {
@@ -14,7 +19,7 @@ impl Reader<'_> {
         let condition = condition(value);
         if condition.is_none() {
             let rule = "it must name one other parameter and its choices: { \"distribution\": [\"gtr\"] }";
-            self.wrong(value, rule);
+            self.wrong_condition(value, rule);
         }
         condition
     }
@@ -26,9 +31,15 @@ impl Reader<'_> {
             let Some((name, value)) = element.get("name").zip(element.get("used_when")) else { continue };
             let parameter = parameters.iter().find(|p| Some(p.name) == name.text());
             if let Some(problem) = parameter.and_then(|p| usage::problem(parameters, p)) {
-                self.wrong(value, &problem);
+                self.wrong_condition(value, &problem);
             }
         }
+    }
+
+    /// Reports a condition as it is written.
+    fn wrong_condition(&mut self, value: Cursor, rule: &str) {
+        let found = shortened(value.value.text(self.text()));
+        self.report(value.start(), value.path(), Some(found), rule);
     }
 }
 

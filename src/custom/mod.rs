@@ -37,6 +37,7 @@ use crate::{
         whole::validate_drawing,
     },
     shading::Stage,
+    text::nearest,
 };
 
 mod condition;
@@ -114,8 +115,13 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
         return Err(problem_at(at, what));
     }
     if text::definition(text, "response").is_none() {
-        let end = text::comment(text).map_or(0, |c| c.end);
-        return Err(problem_at(end, format!("the function response is missing; it is {RESPONSE}")));
+        let defined = text::functions(text);
+        let near = nearest("response", defined.iter().map(|(_, name)| (*name, *name)));
+        let (at, hint) = match defined.iter().find(|(_, name)| Some(*name) == near) {
+            Some((at, name)) => (*at, format!("did you mean it by {name}? It")),
+            None => (text::comment(text).map_or(0, |c| c.end), "it".to_owned()),
+        };
+        return Err(problem_at(at, format!("the function response is missing; {hint} is {RESPONSE}")));
     }
     let mut sources = registry.sources().clone();
     sources.edit(model.entry.declaration.wgsl.path, model.text.clone());

@@ -93,18 +93,25 @@ pub(super) fn without_comments(text: &str) -> String {
     out
 }
 
-/// The byte of the name of a function in a WGSL text, if it is defined there.
-pub(super) fn definition(text: &str, name: &str) -> Option<usize> {
+/// The functions that a WGSL text defines: the byte of each name, and the name.
+pub(super) fn functions(text: &str) -> Vec<(usize, &str)> {
     let plain = without_comments(text);
     let word = |c: char| c.is_alphanumeric() || c == '_';
-    plain.match_indices("fn").find_map(|(at, _)| {
-        let before = plain[..at].chars().next_back().is_none_or(|c| !word(c));
+    let named = plain.match_indices("fn").filter_map(|(at, _)| {
         let behind = &plain[at + 2..];
         let found = behind.trim_start();
-        let rest = found.strip_prefix(name)?;
-        let whole = before && found.len() < behind.len() && !rest.starts_with(word);
-        whole.then(|| plain.len() - found.len())
-    })
+        let length = found.find(|c| !word(c)).unwrap_or(found.len());
+        let defines = !plain[..at].ends_with(word) && found.len() < behind.len() && length > 0;
+        // Without its comments the text is as long.
+        let at = plain.len() - found.len();
+        defines.then(|| Some((at, text.get(at..at + length)?)))?
+    });
+    named.collect()
+}
+
+/// The byte of the name of a function in a WGSL text, if the text defines it.
+pub(super) fn definition(text: &str, name: &str) -> Option<usize> {
+    functions(text).into_iter().find(|(_, defined)| *defined == name).map(|(at, _)| at)
 }
 
 /// The problem with an id or the name of a parameter, if it cannot be used.

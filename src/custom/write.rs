@@ -7,7 +7,7 @@ use serde_json::{Value as Json, json};
 use super::{
     knobs::type_name,
     source_path,
-    text::{LONGEST_ID, MARKER, comment, humanised, identifier, identifier_rule},
+    text::{LONGEST_ID, MARKER, comment, humanised, identifier},
 };
 use crate::{
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, json as json_of},
@@ -32,10 +32,11 @@ pub enum NotDuplicated {
 
 /// A name without a valid identifier.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the id of a model {rule}{}", .instead.as_ref().map_or_else(String::new, |id| format!("; {id} would do")))]
+#[error(
+    "a name must begin with a letter, and have letters a–z, digits and spaces alone, at most {LONGEST_ID}{}",
+    .instead.as_ref().map_or_else(String::new, |id| format!("; {id} would do"))
+)]
 pub struct BadName {
-    /// The rule that it breaks.
-    pub rule: String,
     /// A similar valid identifier.
     pub instead: Option<String>,
 }
@@ -53,14 +54,13 @@ pub fn id_of_name(name: &str) -> Result<String, BadName> {
     let id = joined(name);
     let plain =
         |c: char| c.is_ascii_alphanumeric() || c == ' ' || c.is_ascii_punctuation() && !"./\\".contains(c);
-    identifier(&id)
-        .and_then(|()| if name.chars().all(plain) { Ok(id) } else { Err(identifier_rule()) })
-        .map_err(|rule| {
-            let near: String = joined(&latin(name)).chars().skip_while(|c| !c.is_ascii_lowercase()).collect();
-            let near: String = near.chars().take(LONGEST_ID).collect();
-            let near = near.trim_end_matches('_');
-            BadName { rule, instead: identifier(near).is_ok().then(|| near.to_owned()) }
-        })
+    if identifier(&id).is_ok() && name.chars().all(plain) {
+        return Ok(id);
+    }
+    let near: String = joined(&latin(name)).chars().skip_while(|c| !c.is_ascii_lowercase()).collect();
+    let near: String = near.chars().take(LONGEST_ID).collect();
+    let near = near.trim_end_matches('_');
+    Err(BadName { instead: identifier(near).is_ok().then(|| near.to_owned()) })
 }
 
 /// A name in the letters a–z: umlauts in German transliteration, others by sound.

@@ -134,9 +134,12 @@ pub fn notice_shaders(session: &mut impl DerefMut<Target = Session>, registry: &
     if session.wanted_model.as_ref().is_some_and(|id| registry.model(id).is_some())
         && let Some(id) = session.wanted_model.take()
     {
-        let edit = session.edit_model(&id);
+        let (edit, news) = (session.edit_model(&id), session.has_news());
         // An edit asks for no file.
         let _ = session.apply(Action::Edit(edit), registry);
+        if news {
+            session.keep_news();
+        }
     }
 }
 
@@ -336,29 +339,12 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) 
         actions.push(Action::Model(ModelCommand::Type(text)));
     }
     ui.add_space(2.0);
-    match &checked {
-        Ok(id) => {
-            let path = session.shaders.folders.file_of(&source_path(id));
-            let path = path.map_or_else(|| source_path(id), |p| p.display().to_string());
-            ui.label(
-                RichText::new(format!("Identifier (also the file name): {id}")).small().color(palette.text),
-            );
-            ui.add(egui::Label::new(theme::small(ui, format!("Will be written to {path}"))).wrap());
-        }
-        Err(NameProblem { why, instead }) => {
-            ui.horizontal_top(|ui| {
-                ui.spacing_mut().item_spacing.x = 6.0;
-                let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), egui::Sense::hover());
-                icon::severity(ui.painter(), rect.center(), 5.5, Severity::Error, &palette);
-                ui.add(egui::Label::new(RichText::new(why).small().color(palette.error)).wrap());
-            });
-            if let Some(id) = instead
-                && ui.button(format!("Use “{id}”")).clicked()
-            {
-                actions.push(Action::Model(ModelCommand::Type(id.clone())));
-            }
-        }
-    }
+    // The room for either, so that nothing moves between them.
+    let room = vec2(ui.available_width(), SAID);
+    ui.allocate_ui_with_layout(room, Layout::top_down(Align::Min), |ui| {
+        ui.set_min_height(SAID);
+        actions.extend(said_of(ui, session, &checked));
+    });
     let what = "It is selected once created, and listed under “Custom models”. The first lines of the file declare its name and \
                 its parameters.";
     ui.add(egui::Label::new(theme::small(ui, what)).wrap());
@@ -381,6 +367,38 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) 
         response.request_focus();
     }
     actions
+}
+
+/// The height of what is said of a name, points.
+const SAID: f32 = 68.0;
+
+/// What becomes of a name, or why nothing does.
+fn said_of(ui: &mut Ui, session: &Session, checked: &Result<String, NameProblem>) -> Option<Action> {
+    let palette = Palette::here(ui);
+    match checked {
+        Ok(id) => {
+            let path = session.shaders.folders.file_of(&source_path(id));
+            let path = path.map_or_else(|| source_path(id), |p| p.display().to_string());
+            ui.label(
+                RichText::new(format!("Identifier (also the file name): {id}")).small().color(palette.text),
+            );
+            ui.add(egui::Label::new(theme::small(ui, format!("Will be written to {path}"))).wrap());
+        }
+        Err(NameProblem { why, instead }) => {
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().item_spacing.x = 6.0;
+                let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), egui::Sense::hover());
+                icon::severity(ui.painter(), rect.center(), 5.5, Severity::Error, &palette);
+                ui.add(egui::Label::new(RichText::new(why).small().color(palette.error)).wrap());
+            });
+            if let Some(id) = instead
+                && ui.button(format!("Use “{id}”")).clicked()
+            {
+                return Some(Action::Model(ModelCommand::Type(id.clone())));
+            }
+        }
+    }
+    None
 }
 
 #[cfg(test)]

@@ -85,6 +85,9 @@ pub fn forget(ctx: &egui::Context, id: Id) {
     });
 }
 
+/// The width of what is said beside a list, points.
+const TIP: f32 = 320.0;
+
 /// A list that is searched by typing and walked by arrow keys, at most `height` points high. Returns what
 /// was chosen. Call [`forget`] while it is not shown.
 pub fn list<'e, T>(
@@ -157,12 +160,17 @@ pub fn list<'e, T>(
             if response.clicked() {
                 chosen = Some(i);
             }
-            // Beside the list: below, it would hide what is read next.
+            // Beside the list: elsewhere, it would hide what is read next.
+            let screen = ui.ctx().content_rect();
+            let room = (screen.right() - response.rect.right()).max(response.rect.left() - screen.left());
+            if room < TIP + 32.0 {
+                continue;
+            }
             let mut tooltip = Tooltip::for_enabled(&response);
             let popup = tooltip.popup.align(RectAlign::RIGHT_START);
             tooltip.popup = popup.align_alternatives(&[RectAlign::LEFT_START]).gap(16.0);
             tooltip.show(|ui| {
-                ui.set_max_width(320.0);
+                ui.set_max_width(TIP);
                 tip(ui, item);
             });
         }
@@ -282,12 +290,22 @@ pub fn about(ui: &mut Ui, model: &ModelEntry) {
 /// Width of the button, points.
 pub const WIDTH: f32 = 160.0;
 
+/// The id of the list at the top of the window.
+const CHOOSER: &str = "reflection chooser";
+
+/// Lets the list open fresh the next time, with its button in sight or not.
+pub(super) fn closed(ctx: &egui::Context, session: &Session) {
+    if !session.view.chooser_open {
+        forget(ctx, Id::new(CHOOSER));
+    }
+}
+
 /// The button and, when it is open, the list. They are about the model that the selected object has of its
 /// own, else about that of the scene.
 pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
     let palette = Palette::here(ui);
-    let id = Id::new("reflection chooser");
+    let id = Id::new(CHOOSER);
     let shown = session.model_shown();
     let current = registry.model(shown);
     let name = current.map_or(shown, |m| m.declaration.name);
@@ -305,7 +323,6 @@ pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> 
         actions.push(Action::View(ViewChange::Chooser(!session.view.chooser_open)));
     }
     if !session.view.chooser_open {
-        forget(ui.ctx(), id);
         if let Some(model) = current {
             response.on_hover_ui(|ui| {
                 ui.set_max_width(320.0);

@@ -2,7 +2,10 @@
 
 use std::ops::DerefMut;
 
-use bevy_egui::egui::{self, Color32, Context, Label, LayerId, Order, Sense, Shape, Stroke, Ui, vec2};
+use bevy_egui::egui::{
+    self, Align2, Color32, Context, Event, Id, Key, Label, LayerId, Modifiers, Order, Rect, Sense, Shape,
+    Stroke, TextStyle, Ui, containers::panel::PanelState, pos2, vec2,
+};
 use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
 use super::{
@@ -17,8 +20,10 @@ use crate::registry::Registry;
 const SHARE: f32 = 0.7;
 /// The same in a window that is narrow, which has no room to spare.
 const ALL: f32 = 0.96;
-/// Width of a narrow window, points.
-const NARROW: f32 = 800.0;
+/// Width of a narrow window, points: any that shows everything much larger.
+const NARROW: f32 = 1000.0;
+/// A list that is empty for so many frames stays so.
+const BLANK_FRAMES: u8 = 3;
 
 /// See the module.
 #[derive(Debug)]
@@ -26,6 +31,19 @@ pub struct Dialogs {
     open: FileDialog,
     save: FileDialog,
     folder: FileDialog,
+    /// The field of a dialog that had the focus at the end of the frame before.
+    typed_into: Option<Field>,
+    /// A key that is heard again in the next frame.
+    again: Option<Key>,
+    /// For so many frames the list has been empty.
+    blank: u8,
+}
+
+/// The fields of a dialog of which keys go through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Field {
+    Search,
+    Name,
 }
 
 impl Default for Dialogs {
@@ -36,8 +54,9 @@ impl Default for Dialogs {
                 .id(id)
                 .add_file_filter_extensions("Scenes (*.json)", vec!["json"])
                 .default_file_filter("Scenes (*.json)")
-                .add_save_extension("Scene (*.json)", "json")
-                .default_save_extension("Scene (*.json)")
+                // The dialog names the extension itself.
+                .add_save_extension("Scene", "json")
+                .default_save_extension("Scene")
                 .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
                 .default_file_name("scene.json")
         };
@@ -46,10 +65,17 @@ impl Default for Dialogs {
             .id("folder dialog")
             .labels(FileDialogLabels { open_button: "Export here".to_owned(), ..FileDialogLabels::default() })
             .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
+        let mut open = dialog("Open a scene", "open dialog");
+        // Nobody opens a file in a new folder.
+        open.config_mut().show_new_folder_button = false;
+        open.config_mut().keybindings.new_folder.clear();
         Self {
-            open: dialog("Open a scene", "open dialog"),
+            open,
             save: dialog("Save the scene as", "save dialog"),
             folder,
+            typed_into: None,
+            again: None,
+            blank: 0,
         }
     }
 }
@@ -100,8 +126,10 @@ impl Dialogs {
     ) -> Vec<Action> {
         let mut actions = Vec::new();
         if !self.is_open() {
+            (self.typed_into, self.again, self.blank) = (None, None, 0);
             return actions;
         }
+        self.pass_keys_on(ctx);
         let plain = ctx.global_style();
         let palette = Palette::of(&session.view);
         ctx.global_style_mut(|style| {
@@ -109,11 +137,14 @@ impl Dialogs {
             (selection.bg_fill, selection.stroke) = (palette.accent, Stroke::new(1.0, palette.panel));
         });
         let screen = ctx.content_rect().size();
-        let size = if screen.x < NARROW { ALL } else { SHARE } * screen;
+        let narrow = screen.x < NARROW;
+        let size = if narrow { ALL } else { SHARE } * screen;
         for dialog in [&mut self.open, &mut self.save, &mut self.folder] {
             let config = dialog.config_mut();
             (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
             config.right_panel_width = Some(0.34 * size.x);
+            // What the title says, the button that ends it says too.
+            config.title_bar = !narrow;
         }
         let was_open = *self.open.state() == DialogState::Open;
         self.open.update_with_right_panel_ui(ctx, &mut |ui, dialog| {
@@ -141,11 +172,106 @@ impl Dialogs {
             // It keeps the pointer to itself, but not the keys.
             if *dialog.state() == DialogState::Open {
                 ctx.memory_mut(|m| m.set_modal_layer(layer));
+                let list = Places::of(ctx, layer.id);
+                self.typed_into = list.as_ref().and_then(|places| places.focused(ctx));
+                let is_blank = list.as_ref().is_some_and(|places| places.is_blank(ctx, layer));
+                self.blank = if is_blank { self.blank.saturating_add(1).min(BLANK_FRAMES) } else { 0 };
+                match list {
+                    Some(places) if self.blank == BLANK_FRAMES => places.say_empty(ctx, layer, &palette),
+                    _ if is_blank => ctx.request_repaint(),
+                    _ => {}
+                }
             }
         }
         ctx.set_global_style(plain);
         actions.extend(self.folder.take_picked().map(|folder| Action::Model(ModelCommand::Export(folder))));
         actions
+    }
+}
+
+impl Dialogs {
+    /// The dialogs hear Enter and Escape only while nothing has the focus: pressed in a field, these keys would do no
+    /// more than leave it. And they take what is typed for the search, shortcuts too.
+    fn pass_keys_on(&mut self, ctx: &Context) {
+        if let Some(key) = self.again.take() {
+            let modifiers = Modifiers::NONE;
+            let event = Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+            ctx.input_mut(|input| {
+                input.keys_down.insert(key);
+                input.events.push(event);
+            });
+        } else {
+            // In the name, Enter saves.
+            let passed: &[Key] = match self.typed_into {
+                Some(Field::Search) if *self.save.state() != DialogState::Open => &[Key::Enter, Key::Escape],
+                Some(_) => &[Key::Escape],
+                None => &[],
+            };
+            self.again = passed.iter().copied().find(|key| ctx.input(|input| input.key_pressed(*key)));
+            if self.again.is_some() {
+                ctx.request_repaint();
+            }
+        }
+        ctx.input_mut(|input| {
+            let shortcut = |pair: &[Event]| {
+                matches!(pair, [Event::Text(_), Event::Key { pressed: true, modifiers, .. }]
+                    if modifiers.command && !modifiers.alt)
+            };
+            let drop: Vec<_> = input.events.windows(2).map(shortcut).chain([false]).collect();
+            let mut drop = drop.into_iter();
+            input.events.retain(|_| !drop.next().unwrap_or(false));
+        });
+    }
+}
+
+/// The parts of a dialog.
+struct Places {
+    top: Rect,
+    bottom: Rect,
+    list: Rect,
+}
+
+impl Places {
+    fn of(ctx: &Context, dialog: Id) -> Option<Self> {
+        let panel = |name: &str| PanelState::load(ctx, dialog.with(name)).map(|panel| panel.outer_rect);
+        let whole = ctx.memory(|m| m.area_rect(dialog))?;
+        let (top, bottom) = (panel("top_panel")?, panel("bottom_panel")?);
+        let left = panel("left_panel").map_or(whole.left(), |left| left.right());
+        let right = panel("right_panel").map_or(whole.right(), |right| right.left());
+        let list = Rect::from_min_max(pos2(left, top.bottom()), pos2(right, bottom.top()));
+        Some(Self { top, bottom, list })
+    }
+
+    /// The field that has the focus; the path at the top and the name of a new folder have keys of their own.
+    fn focused(&self, ctx: &Context) -> Option<Field> {
+        let focus = ctx.memory(egui::Memory::focused)?;
+        let rect = ctx.viewport(|v| v.this_pass.widgets.get(focus).map(|w| w.rect))?;
+        // The search is the last thing at the top.
+        let search = self.top.contains_rect(rect) && rect.right() > self.top.right() - 80.0;
+        let name = ctx.text_edit_focused() && self.bottom.contains_rect(rect);
+        search.then_some(Field::Search).or(name.then_some(Field::Name))
+    }
+
+    /// True if the list has no words, and nothing that turns while it is read.
+    fn is_blank(&self, ctx: &Context, layer: LayerId) -> bool {
+        fn has_words(shape: &Shape, place: Rect) -> bool {
+            match shape {
+                Shape::Vec(shapes) => shapes.iter().any(|shape| has_words(shape, place)),
+                Shape::Text(_) | Shape::Path(_) => place.contains(shape.visual_bounding_rect().center()),
+                _ => false,
+            }
+        }
+        ctx.graphics(|graphics| {
+            let list = graphics.get(layer);
+            list.is_some_and(|list| !list.all_entries().any(|entry| has_words(&entry.shape, self.list)))
+        })
+    }
+
+    fn say_empty(&self, ctx: &Context, layer: LayerId, palette: &Palette) {
+        let font = TextStyle::Body.resolve(&ctx.global_style());
+        let at = self.list.center_top() + vec2(0.0, 24.0);
+        let text = "No file or folder matches.";
+        ctx.layer_painter(layer).text(at, Align2::CENTER_TOP, text, font, palette.weak);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Carrying out the effects that need files: opening, saving, settings.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::{
     reload, settings,
@@ -69,6 +69,22 @@ pub enum Saved {
     ChangedOnDisk,
     /// It could not be written: why.
     Failed(String),
+}
+
+/// The file that is meant by what was typed as the name of a scene: it ends in `.json`, once.
+#[must_use]
+pub fn scene_file(typed: &Path) -> PathBuf {
+    let json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    match (json(typed), typed.file_stem().map(Path::new)) {
+        (false, _) => {
+            let mut name = typed.as_os_str().to_owned();
+            name.push(".json");
+            name.into()
+        }
+        // Some dialogs add an extension to whatever is typed.
+        (true, Some(stem)) if json(stem) => typed.with_file_name(stem),
+        _ => typed.to_owned(),
+    }
 }
 
 /// Carries out an effect that needs files. Returns the effects that follow, among them the one given

@@ -13,7 +13,7 @@ use super::{
 use crate::registry::Registry;
 
 /// The least width of the window in which the list has two columns, points.
-const TWO_COLUMNS: f32 = 820.0;
+const TWO_COLUMNS: f32 = 1000.0;
 
 /// Shows the windows that are open.
 pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
@@ -25,10 +25,14 @@ pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_width(720f32.min(screen.width() - 80.0))
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(screen.center())
         .show(ctx, |ui| {
+            ui.set_width(if screen.width() < TWO_COLUMNS {
+                560f32.min(screen.width() - 48.0)
+            } else {
+                860.0
+            });
             ScrollArea::vertical()
                 .auto_shrink([false, true])
                 .min_scrolled_height(screen.height() - 140.0)

@@ -197,6 +197,7 @@ pub fn show(
     author::notice_shaders(&mut session, registry);
     let palette = Palette::of(&session.view);
     menu::walk(&ctx);
+    chooser::closed(&ctx, &session);
     focus::reveal(&ctx);
     focus::forget_regions(&ctx);
     let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, &session, registry) };
@@ -204,6 +205,7 @@ pub fn show(
     actions.extend(welcome::left(&ctx, &session, area));
     actions.extend(help::show(&ctx, &session, registry));
     actions.extend(author::show(&ctx, &session, area, registry));
+    let tooltips = theme::tooltips(&ctx);
     let whole = ui.available_rect_before_wrap();
 
     // A presentation shows the bar only for the chooser that hangs on it.
@@ -271,6 +273,12 @@ pub fn show(
     let frame = stage.as_ref().map_or(rect, |stage| stage.picture);
     let over = picture::overlays(ui, [rect, frame], &area.written, stage.as_ref(), &session, registry);
     actions.extend(over.actions);
+    // Nothing behind a window shows its tooltip over it.
+    let windows =
+        [session.view.keys_open, session.view.about_open, session.draft.is_some(), dialogs.is_open()];
+    if windows.contains(&true) {
+        theme::hide_tooltips(&ctx, &tooltips);
+    }
     actions.extend(question::show(&ctx, &session));
     actions.extend(dialogs.update(&ctx, &mut session, registry));
     let now = picture_area(&ctx, &session, [rect, frame], over.places, over.written, dialogs.is_open());

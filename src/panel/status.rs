@@ -69,12 +69,10 @@ impl Panel for StatusLine {
     }
 }
 
-/// The last message, if it is good news and still true.
+/// The last message, if it is no problem; until something is changed.
 fn latest(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let Some(message) = session.messages.last().filter(|m| m.severity == Severity::Info) else { return };
-    // An undo is offered as long as it undoes what the message is about.
-    let undo = message.offer.as_ref().is_some_and(|(_, action)| **action == Action::Undo);
-    if session.view.bottom_open || (session.is_dirty() && !undo) {
+    if session.view.bottom_open || !session.has_news() {
         return;
     }
     let room = (ui.available_width() - 360.0).max(80.0);

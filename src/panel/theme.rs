@@ -229,6 +229,26 @@ pub fn elided_within(
     (with(fits), true)
 }
 
+/// The layers of the tooltips that are shown in this frame so far.
+pub(super) fn tooltips(ctx: &Context) -> Vec<egui::LayerId> {
+    let layers: Vec<_> = ctx.memory(|m| m.areas().visible_layer_ids().into_iter().collect());
+    let shown = |layer: &egui::LayerId| ctx.graphics(|g| g.get(*layer).is_some_and(|list| !list.is_empty()));
+    layers.into_iter().filter(|layer| layer.order == egui::Order::Tooltip).filter(shown).collect()
+}
+
+/// Takes back the tooltips of this frame but for those.
+pub(super) fn hide_tooltips(ctx: &Context, but: &[egui::LayerId]) {
+    let hidden = tooltips(ctx).into_iter().filter(|layer| !but.contains(layer));
+    ctx.graphics_mut(|graphics| {
+        for layer in hidden {
+            if let Some(list) = graphics.get_mut(layer) {
+                let all = list.next_idx().0;
+                (0..all).for_each(|i| list.reset_shape(egui::layers::ShapeIdx(i)));
+            }
+        }
+    });
+}
+
 /// The colour on screen of a linear reflectance.
 #[must_use]
 pub fn swatch(reflectance: glam::Vec3) -> Color32 {

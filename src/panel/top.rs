@@ -92,12 +92,12 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.painter().rect(place, 4.0, palette.hovered, stroke, egui::StrokeKind::Inside);
     }
     let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let galley = theme::elided(ui, &session.title(), font, palette.text, width - 8.0);
+    let galley = theme::elided(ui, &session.window_title(), font, palette.text, width - 8.0);
     let at = egui::Align2::LEFT_CENTER.anchor_size(place.left_center() + vec2(4.0, 0.0), galley.size());
     ui.painter().galley(at.min, galley, palette.text);
     let state = if session.is_dirty() { "has unsaved changes" } else { "has no unsaved changes" };
     response.widget_info(|| {
-        WidgetInfo::labeled(WidgetType::Button, true, format!("{} {state}", session.title()))
+        WidgetInfo::labeled(WidgetType::Button, true, format!("{} {state}", session.window_title()))
     });
     if response.clicked() {
         actions.push(Action::Select(Selection::Room));
@@ -376,7 +376,7 @@ fn shading(
 }
 
 /// Width of one of several choices: as when it is chosen, so that nothing moves when the choice does.
-fn segment_width(ui: &Ui, option: &str) -> f32 {
+pub(super) fn segment_width(ui: &Ui, option: &str) -> f32 {
     let bold = egui::FontId::new(egui::TextStyle::Button.resolve(ui.style()).size, theme::semibold());
     let text = ui.painter().layout_no_wrap(option.to_owned(), bold, egui::Color32::WHITE);
     text.size().x + 2.0 * ui.spacing().button_padding.x

@@ -180,6 +180,9 @@ fn heading(ui: &mut Ui, name: &str, count: usize, height: f32, menu: impl FnOnce
     egui::Popup::menu(&response).show(menu);
 }
 
+/// A list that is narrower than this stands closer, points.
+const NARROW: f32 = 190.0;
+
 fn part_row(
     ui: &mut Ui,
     session: &Session,
@@ -204,7 +207,8 @@ fn part_row(
         painter.rect_filled(ground, 4.0, palette.hovered);
     }
     let nested = matches!(part, Selection::Light(_) | Selection::Object(_));
-    let x = rect.left() + (if nested { 22.0 } else { 16.0 });
+    let narrow = rect.width() < NARROW;
+    let x = rect.left() + (if nested && !narrow { 22.0 } else { 16.0 });
     let centre = pos2(x, rect.center().y);
     let square = Rect::from_center_size(centre, vec2(14.0, 14.0));
     let body = TextStyle::Body.resolve(ui.style());
@@ -242,15 +246,20 @@ fn part_row(
         rename(ui, session, part, &name, place, actions);
         return;
     }
-    let right = ground.right() - if nested { 48.0 } else { 8.0 };
+    let between = if narrow { 22.0 } else { 24.0 };
+    let right = ground.right() - if nested { 2.0 * between } else { 8.0 };
     let there = is_there(session, part);
     let colour = if there { palette.text } else { palette.weak };
-    let (galley, cut) = theme::elided_within(ui, &name, &body, colour, (right - text_left).max(8.0));
+    let room = (right - text_left).max(8.0);
+    let (mut galley, mut cut) = theme::elided_within(ui, &name, &body, colour, room);
+    if cut {
+        (galley, cut) = theme::elided_within(ui, &name, &TextStyle::Small.resolve(ui.style()), colour, room);
+    }
     painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
     if let Some(rgb) = dot {
         let centre = |from_right: f32| pos2(ground.right() - from_right, rect.center().y);
-        toggle(ui, centre(36.0), hovered, part, there, &name, actions);
-        colour_dot(ui, centre(12.0), rgb, part, &name, actions);
+        toggle(ui, centre(1.5 * between), hovered, part, there, &name, actions);
+        colour_dot(ui, centre(0.5 * between), rgb, part, &name, actions);
     }
     // The menu of a row is about what is selected.
     if response.clicked() || response.secondary_clicked() {

@@ -5,7 +5,7 @@ use std::fmt;
 use naga::{
     Module,
     front::wgsl,
-    valid::{Capabilities, ValidationFlags, Validator},
+    valid::{Capabilities, FunctionError, ValidationError, ValidationFlags, Validator},
 };
 
 use super::{compose::Composed, field, limits, pitfall};
@@ -75,13 +75,25 @@ fn parsed(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
     if let Some((span, message)) = limits::check_module(&module) {
         return Err(locate(composed, place(composed, [span].into_iter()), message));
     }
-    Validator::new(ValidationFlags::all(), Capabilities::all())
-        .validate(&module)
-        .map_err(|e| locate(composed, place(composed, e.spans().map(|s| s.0)), reason(e.as_inner())))?;
+    Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).map_err(|e| {
+        match without_return(&module, e.as_inner()) {
+            Some((end, message)) => locate(composed, place(composed, [end].into_iter()), message),
+            None => locate(composed, place(composed, e.spans().map(|s| s.0)), reason(e.as_inner())),
+        }
+    })?;
     match pitfall::find(&module) {
         Some((span, message)) => Err(locate(composed, place(composed, [span].into_iter()), message)),
         None => Ok(module),
     }
+}
+
+/// The end of a function that declares a result and ends without one, and the message about it.
+fn without_return(module: &Module, error: &ValidationError) -> Option<(naga::Span, String)> {
+    let ValidationError::Function { handle, name, source } = error else { return None };
+    let FunctionError::InvalidReturnType { expression: None, .. } = source else { return None };
+    let end = u32::try_from(module.functions.get_span(*handle).to_range()?.end).ok()?;
+    let bracket = naga::Span::new(end.saturating_sub(1), end);
+    Some((bracket, format!("the function {name} ends without a return")))
 }
 
 /// The validator's message in full: the outermost part only says that some function is invalid, the innermost says why.

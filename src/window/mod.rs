@@ -112,7 +112,10 @@ impl Plugin for WindowSystemsPlugin {
                     picture::fit_picture.after(EguiPostUpdateSet::EndPass).before(ViewSystems),
                     picture::show_picture.after(ViewSystems),
                     (shell::window_title, shell::fullscreen).run_if(session_changed),
-                    redraw::redraw,
+                    // What the panels change is to be drawn: what they changed last is known by now.
+                    redraw::redraw
+                        .after(EguiPostUpdateSet::ProcessOutput)
+                        .before(EguiPostUpdateSet::PostProcessOutput),
                 ),
             )
             .add_systems(Last, (frames::measure, recovery::keep));

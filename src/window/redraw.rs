@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use bevy::{
-    asset::AssetEvent,
     ecs::prelude::*,
-    image::Image,
     transform::components::Transform,
     window::RequestRedraw,
     winit::{UpdateMode, WinitSettings},
 };
+
+use bevy_egui::EguiRenderOutput;
 
 use super::WindowView;
 use crate::{
@@ -63,13 +63,13 @@ pub(super) fn redraw(
     bench: Res<Bench>,
     cameras: Query<&Transform, With<WindowView>>,
     drawings: Query<&Drawing>,
-    mut textures: MessageReader<AssetEvent<Image>>,
+    painted: Query<&EguiRenderOutput>,
     mut seen_from: Local<Option<Transform>>,
     mut settling: ResMut<Settling>,
     mut requests: MessageWriter<RequestRedraw>,
 ) {
     // New letters reach the GPU one frame after they are asked for.
-    let letters = textures.read().count() > 0;
+    let letters = painted.iter().any(|output| !output.textures_delta.set.is_empty());
     let camera = cameras.iter().next().copied();
     let moved = std::mem::replace(&mut *seen_from, camera) != camera;
     // An edit of the panels reaches the scene in the next frame.

@@ -86,7 +86,14 @@ fn a_new_model_is_written_listed_evaluated_and_checked() {
     assert!(checked.out.contains("largest directional albedo: 1.000"), "{}", checked.out);
 
     for (name, expected) in [
-        ("Über", "NAME is \"Über\", but the id of a model must be"),
+        (
+            "Über",
+            "NAME is \"Über\", but a name must begin with a letter, and have letters a–z, digits and spaces alone, at most 40; ueber would do",
+        ),
+        (
+            "3colours",
+            "a name must begin with a letter, and have letters a–z, digits and spaces alone, at most 40; colours would do",
+        ),
         ("phong", "is the id of a built-in model"),
     ] {
         let refused = run(at, &format!("models new {name}"), "");
@@ -253,6 +260,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
         "{}",
         bad.err
     );
+    assert_eq!(bad.err.matches("cos_m`").count(), 1, "each mistake is told once: {}", bad.err);
     let gone = render("gone");
     assert!(gone.err.contains("the folder of custom models has no models/gone.wgsl"), "{}", gone.err);
     assert_eq!(render("helped_model").status, Some(0));

@@ -233,6 +233,29 @@ fn mistakes_in_the_wgsl_are_told_where_they_are() {
         ),
         (format!("{head}{}", body.replace("m.k_s", "m.k_d")), "models/mine.wgsl:3:"),
         (
+            format!(
+                "{head}{}",
+                body.replace("return Terms(vec3(0.0), vec3(0.0), vec3(m.k_s));", "let x = m.k_s;")
+            ),
+            "models/mine.wgsl:4:1: the function response ends without a return",
+        ),
+        (
+            format!("{head}{}fn half(x: f32) -> f32 {{ if x > 0.0 {{ return 0.5; }} }}", body),
+            "models/mine.wgsl:5:53: the function half ends without a return",
+        ),
+        (
+            format!("{head}{}", body.replace("vec3(m.k_s)", "vec3(dot(frame.normal, l))")),
+            "Frame has no field normal; did you mean n?",
+        ),
+        (
+            format!("{head}{}", body.replace("fn response", "fn respons")),
+            "models/mine.wgsl:2:4: the function response is missing; did you mean it by respons? It is fn response(",
+        ),
+        (
+            format!("{head}{body}@fragment\n"),
+            "models/mine.wgsl:5:2: the file ends in the middle of a declaration, after `fragment`; what the attribute belongs to is missing",
+        ),
+        (
             format!("{head}{}", body.replace("return", "/* ä */ return")).replace("m.k_s", "m.k_d"),
             "models/mine.wgsl:3:",
         ),

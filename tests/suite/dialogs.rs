@@ -6,7 +6,7 @@ use bevy_egui::egui::{Color32, Event, Id, Key, Modifiers, Order, Shape, vec2};
 use lights_camera_models::{
     optics::colour::srgb_decode,
     panel::{
-        state::{Action, Session, ThemeChoice, ViewChange},
+        state::{Action, Effect, Session, ThemeChoice, ViewChange},
         theme::Palette,
     },
 };
@@ -47,16 +47,138 @@ fn select(bench: &mut Bench, name: &str) {
 }
 
 #[test]
-fn the_dialog_takes_seventy_per_cent_of_the_window() {
-    for percent in [100, 150] {
+fn the_dialog_takes_seventy_per_cent_of_the_window_and_nearly_all_of_a_scaled_one() {
+    for (percent, least, most) in [(100, 0.66, [0.78, 0.82]), (150, 0.92, [1.0; 2]), (200, 0.92, [1.0; 2])] {
         let (bench, _folder) = open(ThemeChoice::Dark, percent);
         let rect = bench.ctx.memory(|m| m.area_rect(Id::new("open dialog"))).expect("open");
         let share = rect.size() / bench.ctx.content_rect().size();
         assert!(
-            (0.66..=0.78).contains(&share.x) && (0.66..=0.82).contains(&share.y),
+            (least..=most[0]).contains(&share.x) && (least..=most[1]).contains(&share.y),
             "{percent} %: {share:?}"
         );
         assert!(bench.ctx.content_rect().contains_rect(rect));
+    }
+}
+
+#[test]
+fn a_scaled_dialog_lists_many_files() {
+    for (key, modifiers, dialog) in
+        [(Key::O, Modifiers::NONE, "open dialog"), (Key::S, Modifiers::SHIFT, "save dialog")]
+    {
+        let (mut bench, folder) = open(ThemeChoice::Dark, 150);
+        bench.key(Key::Escape, Modifiers::NONE);
+        for i in 0..40 {
+            fs::write(folder.path().join(format!("lesson{i:02}.json")), "{}").expect("written");
+        }
+        bench.key(key, modifiers | Modifiers::COMMAND | Modifiers::CTRL);
+        until(&mut bench, "the list", |b: &mut Bench| b.says("lesson00.json"));
+        assert!(bench.ctx.memory(|m| m.area_rect(Id::new(dialog))).is_some());
+        bench.settle();
+        let rows = bench.tree.iter().filter(|s| s.label.contains("lesson")).count();
+        assert!(rows >= 10, "{dialog}: {rows} files are in sight");
+    }
+}
+
+/// What is painted that has words.
+fn texts(bench: &mut Bench) -> Vec<String> {
+    let text = |shape| if let Shape::Text(text) = shape { Some(text.galley.job.text.clone()) } else { None };
+    bench.shapes().into_iter().filter_map(text).collect()
+}
+
+#[test]
+fn enter_and_escape_reach_the_dialog_from_the_search() {
+    let (mut bench, folder) = open(ThemeChoice::Dark, 100);
+    bench.effects.clear();
+    bench.frame(vec![Event::Text("shap".to_owned())]);
+    bench.settle();
+    assert!(bench.ctx.text_edit_focused(), "in the search");
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(!bench.dialogs.is_open(), "one press opens");
+    let path = folder.path().join("shapes.json");
+    assert!(matches!(&bench.effects[..], [Effect::OpenFile(file)] if file.file_name() == path.file_name()));
+
+    let (mut bench, _folder) = open(ThemeChoice::Dark, 150);
+    bench.frame(vec![Event::Text("shap".to_owned())]);
+    bench.settle();
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.dialogs.is_open(), "one press closes");
+    // The name of the file keeps its Enter, and Escape closes from there too.
+    bench.key(Key::S, Modifiers::SHIFT | Modifiers::COMMAND | Modifiers::CTRL);
+    assert!(bench.dialogs.is_open() && bench.ctx.text_edit_focused());
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.dialogs.is_open());
+    // The path at the top is left alone first.
+    bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
+    bench.letter(Key::Slash, "/");
+    assert!(bench.ctx.text_edit_focused(), "in the path");
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(bench.dialogs.is_open());
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.dialogs.is_open());
+}
+
+#[test]
+fn a_shortcut_is_no_text_for_the_search() {
+    let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
+    // As the window hands it over after a slow frame: the letter before its key, and Ctrl let go again.
+    let modifiers = Modifiers::COMMAND | Modifiers::CTRL;
+    let key = Event::Key { key: Key::O, physical_key: None, pressed: true, repeat: false, modifiers };
+    bench.frame(vec![Event::Text("o".to_owned()), key, Event::ModifiersChanged(Modifiers::NONE)]);
+    bench.settle();
+    assert!(!bench.ctx.text_edit_focused() && bench.says("shapes.json") && bench.says("broken.json"));
+}
+
+#[test]
+fn an_empty_list_says_so() {
+    const NONE: &str = "No file or folder matches.";
+    let (mut bench, _folder) = open(ThemeChoice::Light, 100);
+    assert!(!texts(&mut bench).iter().any(|text| text == NONE));
+    bench.frame(vec![Event::Text("zebra".to_owned())]);
+    bench.settle();
+    assert!(texts(&mut bench).iter().any(|text| text == NONE));
+    (0.."zebra".len()).for_each(|_| bench.key(Key::Backspace, Modifiers::NONE));
+    assert!(!texts(&mut bench).iter().any(|text| text == NONE));
+}
+
+#[test]
+fn the_type_of_the_file_is_named_once() {
+    let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
+    bench.key(Key::Escape, Modifiers::NONE);
+    bench.key(Key::S, Modifiers::SHIFT | Modifiers::COMMAND | Modifiers::CTRL);
+    assert!(texts(&mut bench).iter().any(|text| text == "Scene (.json)"));
+}
+
+#[test]
+fn what_stands_behind_a_window_says_nothing_over_it() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    let control = bench.find("Delete Sphere 1").expect("there").rect;
+    bench.hover(control.center());
+    let said = |bench: &mut Bench| texts(bench).iter().any(|text| text.starts_with("Delete Sphere"));
+    assert!(said(&mut bench), "there is a tooltip: {:?}", texts(&mut bench));
+    for (key, modifiers) in
+        [(Key::N, Modifiers::SHIFT | Modifiers::COMMAND | Modifiers::CTRL), (Key::F1, Modifiers::NONE)]
+    {
+        bench.key(key, modifiers);
+        bench.hover(control.center());
+        assert!(!said(&mut bench), "{key:?}");
+        bench.key(Key::Escape, Modifiers::NONE);
+    }
+}
+
+#[test]
+fn what_is_said_of_a_model_does_not_hide_the_list() {
+    for (percent, expected) in [(100, true), (200, false)] {
+        let mut bench = Bench::new(Session::default());
+        bench.size = vec2(1280.0, 720.0);
+        bench.apply(Action::View(ViewChange::Scale(percent)));
+        bench.key(Key::R, Modifiers::NONE);
+        let row = bench.find("Phong").expect("listed").rect;
+        // The tree counts pixels.
+        bench.hover(row.center() / bench.ctx.zoom_factor());
+        let summary = bench.registry.model("phong").expect("built in").declaration.summary;
+        assert_eq!(texts(&mut bench).iter().any(|text| text == summary), expected, "{percent} %");
     }
 }
 

@@ -18,7 +18,13 @@ pub enum Key {
     Equals = 21,
     Tab = 23,
     Return = 36,
+    Q = 24,
+    W = 25,
     Control = 37,
+    Shift = 50,
+    D = 40,
+    Z = 52,
+    X = 53,
     S = 39,
     F5 = 71,
 }

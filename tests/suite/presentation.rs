@@ -130,6 +130,95 @@ fn a_presentation_is_the_picture_alone_and_the_keys_go_on() {
     assert!(bench.session.view.fullscreen && !bench.session.view.presenting);
 }
 
+#[test]
+fn names_and_choices_fit_where_everything_is_twice_as_large() {
+    let scene = EXAMPLES.iter().find(|e| e.name == "Gouraud misses a highlight").expect("shipped");
+    let mut bench = Bench::new(Session::new(scene.scene(&Registry::builtin()).expect("shipped")));
+    bench.size = (1280.0, 720.0).into();
+    bench.apply(Action::View(ViewChange::Scale(200)));
+    let zoom = bench.ctx.zoom_factor();
+    let shapes = bench.shapes();
+    for name in ["Gouraud shading", "Phong shading"] {
+        // In the list, not in the properties.
+        let listed = |s: &Shape| match s {
+            Shape::Text(t) if t.galley.job.text == name && t.pos.x < 180.0 => Some(t.galley.elided),
+            _ => None,
+        };
+        assert_eq!(shapes.iter().find_map(listed), Some(false), "{name} is cut");
+    }
+    let term = called(&bench, "Terms: specular").rect;
+    assert!(term.right() / zoom < 640.0 - 16.0, "the scroll bar has its room: {term:?}");
+}
+
+#[test]
+fn the_chooser_opens_fresh_in_a_presentation_too() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    bench.key(Key::F5, Modifiers::NONE);
+    for (typed, id) in [("disney", "disney"), ("eon", "eon"), ("ward", "ward")] {
+        bench.letter(Key::R, "r");
+        assert!(bench.ctx.text_edit_focused(), "the search has the focus before “{typed}”");
+        bench.frame(vec![egui::Event::Text(typed.to_owned())]);
+        bench.settle();
+        bench.key(Key::Enter, Modifiers::NONE);
+        assert_eq!(bench.session.document.reflection_model, id);
+        bench.letter(Key::R, "r");
+        bench.frame(vec![egui::Event::Text("hapke".to_owned())]);
+        bench.key(Key::Escape, Modifiers::NONE);
+        assert!(
+            !bench.session.view.chooser_open && bench.session.view.presenting,
+            "Escape closes the list alone"
+        );
+    }
+}
+
+#[test]
+fn the_list_of_keys_is_whole_at_every_size() {
+    for (size, percent) in [
+        ((1280.0, 720.0), 100),
+        ((1280.0, 720.0), 150),
+        ((1280.0, 720.0), 200),
+        ((1920.0, 1080.0), 100),
+        ((1920.0, 1080.0), 200),
+    ] {
+        let mut bench = bench(size, "phong");
+        bench.apply(Action::View(ViewChange::Scale(percent)));
+        bench.key(Key::F1, Modifiers::NONE);
+        let whole = bench.ctx.content_rect();
+        let id = egui::Id::new("keys");
+        let area = bench.ctx.memory(|m| m.area_rect(id)).expect("it is open");
+        assert!(whole.contains_rect(area), "{size:?} {percent} %: {area:?}");
+        let texts: Vec<_> = (bench.shapes().into_iter())
+            .filter_map(|s| match s {
+                Shape::Text(t) => Some((t.galley.job.text.clone(), t.galley.rect.translate(t.pos.to_vec2()))),
+                _ => None,
+            })
+            .collect();
+        let place = |text: &str| texts.iter().rfind(|(t, _)| t == text).map(|(_, rect)| *rect);
+        let open = place("Open…").unwrap_or_else(|| panic!("{size:?} {percent} %: no list"));
+        // The longest may be scrolled out.
+        let long = "To the next panel, to the one before; Tab moves on within it, Esc leaves";
+        let long = place(long).unwrap_or(open);
+        // What is scrolled out is cut above and below, but not at the sides.
+        let room = area.shrink2(vec2(14.0, 0.0));
+        for rect in [open, long, place("Ctrl+O").expect("its key")] {
+            assert!(
+                room.x_range().contains(rect.left()) && room.x_range().contains(rect.right()),
+                "{rect:?} in {area:?}"
+            );
+        }
+        let key = place("Ctrl+Shift+S").expect("a key");
+        let label = place("Save as…").expect("its label");
+        assert!(key.right() < label.left());
+        let edges: std::collections::BTreeSet<_> =
+            ["Open…", "Undo", "Phong shading", "Choose a reflection model"]
+                .iter()
+                .filter_map(|text| place(text))
+                .map(|rect| rect.left().round() as i32)
+                .collect();
+        assert!(edges.len() == 1, "one edge for all groups of a column: {edges:?}");
+    }
+}
+
 /// The heights of the capitals on screen, points, with the text that they are in.
 fn capitals(bench: &mut Bench) -> Vec<(f32, String)> {
     let mut all = Vec::new();

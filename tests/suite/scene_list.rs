@@ -17,7 +17,7 @@ use lights_camera_models::{
         capture::gpu::{GpuRenderer, Output},
         entities::CurrentScene,
     },
-    scene::{Light, Object, Scene},
+    scene::{Light, Object, Scene, examples::EXAMPLES},
 };
 
 use crate::{
@@ -414,6 +414,62 @@ fn a_choice_that_every_object_overrides_says_why_nothing_changes() {
     bench.session.document.amend(|scene| scene.objects[1].shading_model = Some("gouraud".to_owned()));
     bench.letter(Key::G, "g");
     assert!(bench.session.messages.iter().any(|m| m.text.contains("overrides the shading model")));
+    assert!(!bench.session.view.bottom_open && bench.says("overrides the shading model"), "in sight");
+    // As often as it is asked for, until something else is done.
+    bench.letter(Key::F, "f");
+    assert!(bench.says("overrides the shading model"));
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Size(0.5))));
+    assert!(!bench.says("overrides the shading model"), "of what is no longer news");
+    bench.letter(Key::G, "g");
+    bench.apply(Action::Undo);
+    assert!(!bench.says("overrides the shading model"), "it is undone");
+}
+
+#[test]
+fn what_a_key_cannot_do_is_said_in_a_changed_scene() {
+    let mut bench = Bench::with_model("lambert");
+    bench.apply(Action::Edit(Edit::ShadingModel("phong".to_owned())));
+    bench.letter(Key::T, "t");
+    assert!(bench.says("there is nothing to take apart"));
+}
+
+#[test]
+fn a_scene_that_was_saved_elsewhere_is_called_so() {
+    let mut bench = Bench::new(Session::default());
+    let shapes = EXAMPLES.iter().position(|e| e.name == "Shapes and lights").expect("shipped");
+    bench.apply(Action::OpenExample(shapes));
+    let path = PathBuf::from("/somewhere/ex1.json");
+    bench.apply(Action::SaveAs(path.clone()));
+    bench.session.saved(path, &bench.registry);
+    bench.settle();
+    assert_eq!(bench.session.window_title(), "ex1");
+    assert!(bench.says("ex1 has no unsaved changes"), "the bar says the same");
+    // A scene that came from a file has the name that its author gave it.
+    let example = EXAMPLES[shapes].scene(&bench.registry).expect("shipped");
+    bench.session.opened(PathBuf::from("/somewhere/shapes_and_lights.json"), example);
+    let path = PathBuf::from("/somewhere/copy.json");
+    bench.apply(Action::SaveAs(path.clone()));
+    bench.session.saved(path, &bench.registry);
+    bench.settle();
+    assert_eq!(bench.session.window_title(), "Shapes and lights — copy.json");
+    assert!(bench.says("Shapes and lights — copy.json has no unsaved changes"), "the bar says the same");
+}
+
+#[test]
+fn scenes_are_saved_with_their_extension() {
+    let mut bench = Bench::new(Session::default());
+    for (typed, file, overwrite) in [
+        // Nobody was asked about the file that this is.
+        ("/somewhere/renamed", "/somewhere/renamed.json", false),
+        ("/somewhere/lesson.v2", "/somewhere/lesson.v2.json", false),
+        ("/somewhere/a.json", "/somewhere/a.json", true),
+        ("/somewhere/A.JSON", "/somewhere/A.JSON", true),
+        ("/somewhere/a.json.json", "/somewhere/a.json", false),
+    ] {
+        bench.effects.clear();
+        bench.apply(Action::SaveAs(PathBuf::from(typed)));
+        assert_eq!(bench.effects, [Effect::SaveFile { path: PathBuf::from(file), overwrite }], "{typed}");
+    }
 }
 
 #[test]

@@ -17,7 +17,7 @@ use lights_camera_models::{
         author::{ModelCommand, ModelDraft},
         picture,
         shader::consequence,
-        state::{Action, Effect, Session, ThemeChoice, ViewChange},
+        state::{Action, Effect, Session, Severity, ThemeChoice, ViewChange},
         theme::Palette,
     },
     registry::{Folders, Registry},
@@ -419,6 +419,21 @@ fn a_new_model_is_named_and_written() {
 }
 
 #[test]
+fn nothing_moves_when_a_name_is_wrong() {
+    for percent in [100, 150] {
+        let mut bench = bench_with(Vec::new());
+        bench.apply(Action::View(ViewChange::Scale(percent)));
+        bench.key(Key::N, Modifiers::COMMAND | Modifiers::CTRL | Modifiers::SHIFT);
+        let place = |bench: &Bench| bench.ctx.memory(|m| m.area_rect(egui::Id::new("model draft")));
+        let before = place(&bench).expect("open");
+        for name in ["phong", "größe", "2 fast", "", "a fine name"] {
+            bench.type_into("Name of the model", name);
+            assert_eq!(place(&bench), Some(before), "“{name}” at {percent} %");
+        }
+    }
+}
+
+#[test]
 fn the_shown_model_is_copied() {
     let mut bench = bench_with(Vec::new());
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Model(Some("phong".to_owned())))));
@@ -462,9 +477,11 @@ fn a_model_that_was_asked_for_is_chosen_once_it_is_there() {
     bench.session.wanted_model = Some("phong".to_owned());
     bench.settle();
     assert_eq!(bench.session.document.reflection_model, "lambert", "not there yet");
+    bench.session.say(Severity::Info, "my_phong.wgsl was written.");
     bench.registry = Registry::builtin();
     bench.settle();
     assert_eq!(bench.session.document.reflection_model, "phong");
+    assert!(bench.says("my_phong.wgsl was written."), "what follows from it does not hide it");
     bench.apply(Action::Edit(Edit::Model("ward".to_owned())));
     bench.settle();
     assert_eq!(bench.session.document.reflection_model, "ward", "it was asked for once");

@@ -101,7 +101,10 @@ fn a_model_from_a_file_declares_it_too() {
 fn a_condition_that_cannot_hold_is_reported_where_it_stands() {
     for (declared, expected) in [
         ("\"soft\"", "3:36: parameters[1].used_when is \"soft\", but it must name one other parameter"),
-        ("{ \"from\": [\"soft\"] }", "it must name a parameter of this model, and there is no \"from\""),
+        (
+            "{ \"from\": [\"soft\"] }",
+            "used_when is { \"from\": [\"soft\"] }, but it must name a parameter of this model, and there is no \"from\"",
+        ),
         ("{ \"k_d\": [\"soft\"] }", "it must name a parameter of type choice, and \"k_d\" has another type"),
         ("{ \"form\": [\"sfot\"] }", "\"sfot\" is not a choice of form, which has \"plain\", \"soft\""),
         ("{ \"form\": [] }", "it must name one other parameter"),

@@ -12,7 +12,10 @@ use std::{
 
 use lights_camera_models::{library::assets::export, registry::Registry};
 
-use crate::screen::{Picture, Running, Screen};
+use crate::{
+    keyboard::{Key, Keyboard},
+    screen::{Picture, Running, Screen},
+};
 
 /// A sphere of a colour in the middle of the picture.
 fn scene(colour: [u8; 3]) -> String {
@@ -251,4 +254,46 @@ fn hostile_models_neither_end_nor_freeze_an_open_window() {
     // The twin: a model that is none of these is drawn.
     save_by_renaming(&model, &doing("", "x = x + 1.0;"));
     window.until("a green sphere", shows(1));
+}
+
+#[test]
+fn a_new_model_is_named_in_whole_before_the_window_rests() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let models = folder.path().to_string_lossy().into_owned();
+    let room = folder.path().join("room.json");
+    fs::write(&room, scene([255, 255, 255])).expect("writable");
+    let screen = Screen::new(1280, 720);
+    let mut window =
+        screen.start(&["view", &room.to_string_lossy(), "--size", "1280x720", "--models", &models]);
+    window.until("a sphere", |p| p.count(220..920, 80..560, |at| at[0] > 200) > 5000);
+    let mut keyboard = Keyboard::new(screen.display());
+    keyboard.point_at(560, 600);
+    window.rest();
+    // Letters that nothing else on the screen has.
+    for (i, letter) in [Key::Q, Key::X, Key::W, Key::Z].into_iter().enumerate() {
+        keyboard.press(&[Key::Control, Key::Shift, Key::D]);
+        window.rest();
+        for _ in 0..=i {
+            keyboard.press(&[letter]);
+        }
+        window.rest();
+        keyboard.press(&[Key::Return]);
+        let begin = Instant::now();
+        while fs::read_dir(folder.path()).expect("there").count() < i + 2 {
+            assert!(begin.elapsed() < Duration::from_secs(20), "no file is written");
+            thread::sleep(Duration::from_millis(20));
+        }
+        // The file is noticed, read and tried.
+        for _ in 0..4 {
+            window.rest();
+        }
+        let rested = window.rest();
+        keyboard.move_by(1, 0);
+        window.rest();
+        let moved = window.rest();
+        let name = |picture: &Picture| -> Vec<_> {
+            (2..34).flat_map(|y| (470..900).map(move |x| (x, y))).map(|(x, y)| picture.at(x, y)).collect()
+        };
+        assert!(name(&rested) == name(&moved), "what was drawn last was not what there is: model {i}");
+    }
 }

@@ -8,7 +8,7 @@ use crate::{
         author, chooser, icon, maths, shader,
         state::{Action, Session, Severity, ViewChange},
         theme::{self, Palette},
-        top::segmented,
+        top::{segment_width, segmented},
     },
     reflection::ModelEntry,
     registry::Registry,
@@ -111,9 +111,13 @@ pub(super) fn terms(
     }
     ui.horizontal(|ui| {
         ui.set_min_height(30.0);
-        ui.label(theme::small(ui, "show"));
         let chosen = options.iter().position(|t| *t == session.view.terms);
         let names: Vec<_> = options.iter().map(|t| t.id()).collect();
+        let buttons: f32 = names.iter().map(|name| segment_width(ui, name)).sum();
+        // The scroll bar needs some room too.
+        if buttons + theme::small_width(ui, "show") + 24.0 < ui.available_width() {
+            ui.label(theme::small(ui, "show"));
+        }
         let tip = |ui: &mut Ui, i: usize| {
             ui.label(match options[i] {
                 TermSelection::All => "The whole equation.".to_owned(),

@@ -6,9 +6,9 @@ use super::{Answer, Effect, Session, Severity, ViewChange};
 use crate::{
     document::{Edit, Extent, LightField, ObjectField, Selection, limits},
     optics::TermSelection,
-    panel::author::ModelCommand,
+    panel::{author::ModelCommand, files::scene_file},
     registry::Registry,
-    scene::{Display, Scene},
+    scene::{Display, examples::EXAMPLES},
 };
 
 /// An action of a user. Panels return these.
@@ -142,18 +142,16 @@ impl Session {
             }
             Action::SaveAsDialog => return vec![Effect::PickSave],
             Action::SaveAs(path) => {
-                // The default scene is called as its file from now on.
-                if self.path.is_none() && self.document.name == Scene::default().name {
+                // The default scene and examples are called as their file from now on.
+                let shipped = |name: &String| EXAMPLES.iter().any(|example| example.name == *name);
+                if self.path.is_none() && self.document.name.as_ref().is_some_and(shipped) {
                     self.document
                         .change("Name of the scene", Extent::Rest, self.selection, |scene| scene.name = None);
                 }
-                // The dialog adds an extension to whatever is typed, and asked about that file only.
-                let typed =
-                    path.to_str().and_then(|p| p.strip_suffix(".json")).filter(|p| p.ends_with(".json"));
-                return vec![match typed.map(PathBuf::from) {
-                    Some(path) => Effect::SaveFile { path, overwrite: false },
-                    None => Effect::SaveFile { path, overwrite: true },
-                }];
+                // The dialog asked about the file that was typed, and about no other.
+                let meant = scene_file(&path);
+                let overwrite = meant == path;
+                return vec![Effect::SaveFile { path: meant, overwrite }];
             }
             Action::ClearRecent => {
                 self.recent_files.clear();

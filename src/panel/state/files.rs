@@ -81,6 +81,7 @@ impl Session {
         self.renaming = None;
         self.questions.not_saved();
         self.questions.not_opened();
+        self.messages.another_document();
         self.disk_saved();
         self.view.terms = TermSelection::All;
         self.select_first();

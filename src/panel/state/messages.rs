@@ -73,6 +73,8 @@ pub struct Messages {
     notes: Vec<Note>,
     /// The step that a message offers to undo: the number of steps done with it, and its name.
     undo: Option<Step>,
+    /// The last step when the last message about this document was added.
+    said_at: Option<Step>,
 }
 
 /// The number of steps that are done, and the name of the last one.
@@ -101,6 +103,7 @@ impl Messages {
     /// Adds a message that offers to undo the last step.
     pub(super) fn offer_undo(&mut self, text: String, step: Step) {
         self.withdraw_undo();
+        self.said_at = Some(step.clone());
         self.undo = Some(step);
         self.add(Note::new(Severity::Info, text).offering("Undo", Action::Undo));
     }
@@ -116,6 +119,11 @@ impl Messages {
         let undo = |note: &Note| note.offer.as_ref().is_some_and(|(_, action)| **action == Action::Undo);
         self.notes.iter_mut().filter(|note| undo(note)).for_each(|note| note.offer = None);
         self.undo = None;
+    }
+
+    /// No message is about the document that is opened now.
+    pub(super) fn another_document(&mut self) {
+        self.said_at = None;
     }
 
     /// Removes a message.
@@ -152,6 +160,18 @@ impl Session {
         if note.severity == Severity::Error {
             self.view.unfold(MESSAGES_TAB);
         }
+        self.keep_news();
         self.messages.add(note);
+    }
+
+    /// True if nothing was changed since the last message was added.
+    #[must_use]
+    pub fn has_news(&self) -> bool {
+        self.messages.said_at.as_ref() == Some(&self.last_step())
+    }
+
+    /// The last message stays news after a change that followed by itself.
+    pub(in crate::panel) fn keep_news(&mut self) {
+        self.messages.said_at = Some(self.last_step());
     }
 }

@@ -84,11 +84,15 @@ fn open_bracket(text: &str, tokens: &[Token]) -> Option<Finding> {
 
 /// Every declaration ends with a bracket or a semicolon.
 fn open_end(tokens: &[Token]) -> Option<Finding> {
-    let last = tokens.iter().rfind(|token| token.kind != Kind::Directive)?;
+    let mut back = tokens.iter().rev().filter(|token| token.kind != Kind::Directive);
+    let last = back.next()?;
     if matches!(last.text, "}" | ";") {
         return None;
     }
-    let what = format!("the file ends in the middle of a declaration, after `{}`; a ; is missing", last.text);
+    let attribute = last.kind == Kind::Attribute || back.next().is_some_and(|t| t.kind == Kind::Attribute);
+    let lacks = if attribute { "what the attribute belongs to" } else { "a ;" };
+    let what =
+        format!("the file ends in the middle of a declaration, after `{}`; {lacks} is missing", last.text);
     Some((last.at, what))
 }
 
@@ -126,7 +130,12 @@ mod tests {
             ("fn f(a: f32 {\n}\n", 1, 5, "this ( is not closed"),
             ("const a = array(1, 2;\nfn f() { let b = a[1; }\n", 2, 19, "this [ is not closed"),
             ("const a = 1", 1, 11, "after `1`"),
-            ("fn f() {}\n@fragment\n// end\n", 2, 2, "after `fragment`"),
+            (
+                "fn f() {}\n@fragment\n// end\n",
+                2,
+                2,
+                "after `fragment`; what the attribute belongs to is missing",
+            ),
             ("#import a::{\n  b,\nfn f() {}\n", 1, 12, "this { is not closed"),
             ("fn f() {\n#ifdef A\n    g(\n#endif\n}\n", 3, 6, "this ( is not closed"),
         ] {
