@@ -28,11 +28,8 @@ pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(screen.center())
         .show(ctx, |ui| {
-            ui.set_width(if screen.width() < TWO_COLUMNS {
-                560f32.min(screen.width() - 48.0)
-            } else {
-                860.0
-            });
+            let wide = if screen.width() < TWO_COLUMNS { 560.0 } else { 720.0 };
+            ui.set_width(f32::min(wide, screen.width() - 48.0));
             ScrollArea::vertical()
                 .auto_shrink([false, true])
                 .min_scrolled_height(screen.height() - 140.0)

@@ -400,6 +400,8 @@ fn the_window_names_the_file_beside_the_scene() {
     assert_eq!(session.window_title(), "Default scene");
     session.path = Some(PathBuf::from("/somewhere/my-lesson.json"));
     assert_eq!(session.window_title(), "Default scene — my-lesson.json");
+    session.document.amend(|scene| scene.name = Some("My lesson".to_owned()));
+    assert_eq!(session.window_title(), "My lesson", "nothing is said twice");
     session.document.amend(|scene| scene.name = None);
     assert_eq!(session.window_title(), "my-lesson");
 }

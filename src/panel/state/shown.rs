@@ -1,5 +1,7 @@
 //! The document as the window shows it.
 
+use std::ffi::OsStr;
+
 use super::Session;
 use crate::{
     document::{Edit, ObjectField, Selection},
@@ -21,7 +23,10 @@ impl Session {
     #[must_use]
     pub fn window_title(&self) -> String {
         let title = self.title();
-        match self.path.as_ref().filter(|p| p.file_stem().is_none_or(|stem| *stem != *title)) {
+        // my_lesson.json is called as My lesson.
+        let plain = |name: &str| name.to_lowercase().replace(|c: char| !c.is_alphanumeric(), "");
+        let is_title = |stem: &OsStr| plain(&stem.to_string_lossy()) == plain(&title);
+        match self.path.as_ref().filter(|p| !p.file_stem().is_some_and(is_title)) {
             Some(path) => {
                 let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
                 format!("{title} — {}", printable(&file))
