@@ -20,9 +20,9 @@ pub trait ParameterSet: Sized + Send + Sync + 'static {
 /// parameters! {
 ///     /// A model with two parameters.
 ///     pub struct Matte {
-/// The colour.
+///         /// The colour.
 ///         base_colour: colour = BASE_COLOUR,
-/// The fraction of light that it scatters.
+///         /// The fraction of light that it scatters.
 ///         k_d: number = K_D,
 ///     }
 /// }

@@ -133,7 +133,11 @@ impl Running<'_> {
     pub fn ended(mut self) -> String {
         let ask = format!("kill -INT {}", self.program.id());
         assert!(Command::new("sh").args(["-c", &ask]).status().expect("a shell").success());
-        self.program.wait().expect("it ends");
+        let asked = Instant::now();
+        while self.program.try_wait().expect("the state of a child is known").is_none() {
+            assert!(asked.elapsed() < Self::DEADLINE, "Ctrl+C does not end it; is SIGINT ignored here?");
+            thread::sleep(Duration::from_millis(20));
+        }
         self.said()
     }
 
