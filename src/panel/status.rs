@@ -8,6 +8,7 @@ use super::{
     Panel, Place,
     author::SHADER_TAB,
     icon::{self, Icon},
+    messages::MESSAGES_TAB,
     state::{Action, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
@@ -72,7 +73,8 @@ impl Panel for StatusLine {
 /// The last message, if it is no problem; until something is changed.
 fn latest(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let Some(message) = session.messages.last().filter(|m| m.severity == Severity::Info) else { return };
-    if session.view.bottom_open || !session.has_news() {
+    let listed = session.view.bottom_open && session.view.bottom_tab == MESSAGES_TAB;
+    if listed || !session.has_news() {
         return;
     }
     let room = (ui.available_width() - 360.0).max(80.0);

@@ -251,10 +251,7 @@ fn part_row(
     let there = is_there(session, part);
     let colour = if there { palette.text } else { palette.weak };
     let room = (right - text_left).max(8.0);
-    let (mut galley, mut cut) = theme::elided_within(ui, &name, &body, colour, room);
-    if cut {
-        (galley, cut) = theme::elided_within(ui, &name, &TextStyle::Small.resolve(ui.style()), colour, room);
-    }
+    let (galley, cut) = theme::elided_within(ui, &name, &body, colour, room);
     painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
     if let Some(rgb) = dot {
         let centre = |from_right: f32| pos2(ground.right() - from_right, rect.center().y);

@@ -62,7 +62,8 @@ fn checked(program: &Path, id: &str, folders: &Folders) -> Outcome {
     if let Some(assets) = folders.shaders.as_ref().and_then(|shaders| shaders.parent()) {
         command.arg("--assets").arg(assets);
     }
-    if let Some(models) = &folders.models {
+    // The folder of a new user is not there yet.
+    if let Some(models) = folders.models.as_ref().filter(|folder| folder.exists()) {
         command.arg("--models").arg(models);
     }
     let streams = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());

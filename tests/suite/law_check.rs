@@ -2,11 +2,12 @@
 
 use std::{path::PathBuf, sync::mpsc, time::Duration};
 
+use bevy_egui::egui::accesskit::Role;
 use lights_camera_models::{
     library::{assets::Folders, status::Reloaded},
     panel::{
         author::ModelCommand,
-        state::{Action, Effect, Session, ViewChange},
+        state::{Action, Effect, Session, Severity, ViewChange},
     },
     reflection::law_report::LawReport,
     window::laws::LawChecks,
@@ -45,7 +46,10 @@ fn laws_are_checked_in_another_process_and_shown() {
     bench.apply(Action::Model(ModelCommand::CheckLaws));
     assert_eq!(bench.effects.len(), 1, "one at a time");
 
-    let found = outcome("lambert", &Folders::default(), program());
+    // A new user has no folder of models yet.
+    let nowhere = tempfile::tempdir().expect("a folder").path().join("models");
+    let folders = Folders { shaders: None, models: Some(nowhere) };
+    let found = outcome("lambert", &folders, program());
     assert_eq!(found.as_ref().map(|r| r.laws.len()), Ok(3), "{found:?}");
     bench.session.laws_checked("phong", found.clone());
     assert!(bench.session.laws.as_ref().is_some_and(|check| check.outcome.is_none()), "another model");
@@ -67,6 +71,19 @@ fn laws_are_checked_in_another_process_and_shown() {
     bench.session.laws_checked("lambert", Err("the check took longer than 120 s".to_owned()));
     bench.settle();
     assert!(bench.says("The laws were not checked: the check took longer"));
+}
+
+#[test]
+fn a_note_is_in_sight_unless_the_messages_are() {
+    let mut bench = Bench::new(Session::default());
+    for tab in ["shader", "history", "messages"] {
+        bench.apply(Action::View(ViewChange::BottomTab(tab.to_owned())));
+        let advice = format!("Advice beside {tab}.");
+        bench.apply(Action::Say(Severity::Info, advice.clone()));
+        // In the status line, or in the list.
+        let found = bench.tree.iter().filter(|s| s.role == Role::Label && s.label.contains(&advice));
+        assert_eq!(found.count(), 1, "{tab}");
+    }
 }
 
 #[test]

@@ -541,6 +541,21 @@ fn a_file_that_is_broken_at_the_start_is_replaced_by_the_built_in_copy() {
 }
 
 #[test]
+fn a_picture_without_the_broken_model_is_not_called_stale() {
+    let mut lab = Lab::new(phong_scene("phong"));
+    lab.save("reflection/phong.wgsl", original("reflection/phong.wgsl").replacen("return ", "return (", 1));
+    lab.settled();
+    assert_eq!(lab.status().stale(), ["Phong"]);
+    // Another scene, as File › New has it; the error of the file is still reported.
+    for (model, stale) in [("lambert", false), ("phong", true), ("lambert", false)] {
+        lab.renderer.set_scene(Scene { reflection_model: model.to_owned(), ..phong_scene("phong") });
+        lab.settled();
+        lab.settled();
+        assert_eq!((lab.status().stale().len(), lab.troubles().len()), (usize::from(stale), 1), "{model}");
+    }
+}
+
+#[test]
 fn switching_modes_and_models_while_a_file_is_broken_shows_their_last_good_versions() {
     let mut lab = Lab::new(phong_scene("phong"));
     let bluish = original("reflection/phong.wgsl").replace("m.k_d *", "0.2 * m.k_d *");

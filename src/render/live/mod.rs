@@ -224,8 +224,16 @@ impl Visible {
 /// Exchanges the shaders whose files changed.
 fn exchange(world: &mut World) {
     let mut overrides = world.query_filtered::<(), Changed<Overrides>>();
-    if world.is_resource_changed::<CurrentScene>() || overrides.iter(world).next().is_some() {
+    let other_scene = world.is_resource_changed::<CurrentScene>();
+    if other_scene || overrides.iter(world).next().is_some() {
         world.resource_scope(|world, mut live: Mut<LiveShaders>| live.read_wanted(world));
+    }
+    if !world.resource::<LiveShaders>().status.troubles.is_empty() {
+        // What has an error may have come into the picture or left it; it is swapped after this.
+        let mut drawn = world.query_filtered::<(), Changed<Drawn>>();
+        if other_scene || drawn.iter(world).next().is_some() {
+            world.resource_mut::<LiveShaders>().stale_status = true;
+        }
     }
     if !world.resource::<LiveShaders>().is_busy() {
         return;
