@@ -20,6 +20,24 @@ pub(super) fn is_sign(node: &Node, signs: &str) -> bool {
     matches!(node, Node::Atom(Atom::Upright { base, .. }) if signs.contains(base.as_str()))
 }
 
+/// Words between formulas.
+const PROSE: [&str; 6] = ["or", "where", "else", "if", "for", "with"];
+
+fn word(node: &Node) -> Option<&str> {
+    let Node::Atom(Atom::Upright { base, .. }) = node else { return None };
+    (base.len() > 1 && base.chars().all(char::is_alphabetic)).then_some(base.as_str())
+}
+
+fn is_prose(node: &Node) -> bool {
+    word(node).is_some_and(|w| PROSE.contains(&w))
+}
+
+/// True if two pieces side by side are multiplied, although no sign says so.
+pub(super) fn multiplied(before: &[Node], after: &[Node]) -> bool {
+    let factor = |node: Option<&Node>| node.is_some_and(|n| !is_sign(n, "=≈≤≥<>+−×·,;") && !is_prose(n));
+    factor(before.iter().rfind(|n| !is_space(n))) && factor(after.iter().find(|n| !is_space(n)))
+}
+
 pub(super) fn is_space(node: &Node) -> bool {
     matches!(node, Node::Atom(Atom::Space))
 }
@@ -124,23 +142,26 @@ pub(super) fn bare(nodes: &[Node]) -> &[Node] {
     }
 }
 
-/// The pieces between which a line is broken at best: before + and − with spaces about them, and before what
-/// follows a comma.
+/// The pieces between which a line is broken at best: before + and − with spaces about them, before words, and before
+/// what follows a comma.
 pub(super) fn terms(nodes: &[Node]) -> Vec<&[Node]> {
     split(nodes, |i| {
         let before = i.checked_sub(1).map(|k| &nodes[k]);
         let sign = nodes.get(i + 1).is_some_and(|n| is_sign(n, "+−"));
         let behind_sign = before.is_some_and(|n| is_sign(n, "=≈≤≥<>+−×·,"));
-        is_space(&nodes[i]) && (sign && !behind_sign || before.is_some_and(|n| is_sign(n, ",")))
+        let words = nodes.get(i + 1).is_some_and(is_prose);
+        is_space(&nodes[i]) && (sign && !behind_sign || words || before.is_some_and(|n| is_sign(n, ",")))
     })
 }
 
-/// The pieces between factors as well, which have a space or nothing but their brackets between them.
+/// The pieces between factors as well, which have a space or nothing but their brackets between them. A function stays
+/// with its argument.
 pub(super) fn factors(nodes: &[Node]) -> Vec<&[Node]> {
     split(nodes, |i| {
         let after = nodes.get(i + 1).is_some_and(|n| is_sign(n, "=≈≤≥<>×·,"));
         let before = i.checked_sub(1).map(|k| &nodes[k]);
-        let behind_sign = before.is_some_and(|n| is_sign(n, "=≈≤≥<>+−×·"));
+        let function = |n: &Node| word(n).is_some() && !is_prose(n);
+        let behind_sign = before.is_some_and(|n| is_sign(n, "=≈≤≥<>+−×·") || function(n));
         let group = |n: &Node| matches!(n, Node::Group(..));
         is_space(&nodes[i]) && !behind_sign && !after || group(&nodes[i]) && before.is_some_and(group)
     })

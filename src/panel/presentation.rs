@@ -19,6 +19,7 @@ use super::{
     maths::{self, Sizes},
     state::{Action, PictureArea, Session, ViewChange},
     theme::{self, Palette},
+    typeset::Break,
 };
 use crate::{reflection::Term, registry::Registry};
 
@@ -31,8 +32,10 @@ const BODY: f32 = 0.035;
 const MOST: f32 = 0.4;
 /// The same if it would be broken within brackets otherwise, with the space around it.
 const TALLEST: f32 = 0.54;
-/// The widths of an equation that stands beside the objects, as parts of the screen's; the first that is wide enough.
-const BESIDE: [f32; 3] = [0.34, 0.42, 0.5];
+/// The widths of an equation that stands beside the objects, as parts of the screen's, and true where its terms are as
+/// small as its definitions; the first that serves.
+const BESIDE: [(f32, bool); 6] =
+    [(0.34, false), (0.42, false), (0.34, true), (0.5, false), (0.42, true), (0.5, true)];
 /// The part of the objects that may be hidden.
 const HIDDEN: f32 = 0.005;
 /// Time for which it tells the way out, seconds.
@@ -54,8 +57,8 @@ struct Block {
     columns: Vec<(Range<usize>, f32, f32)>,
     /// True if terms are as small as definitions.
     even: bool,
-    /// True if definitions are broken within brackets.
-    torn: bool,
+    /// The worst break of its lines.
+    broken: Break,
     size: Vec2,
 }
 
@@ -110,19 +113,22 @@ impl Stage {
         let mut ui = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(whole).invisible());
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * whole.height()));
         let block = |columns, width, even| Block::of(&ui, &equation, columns, width, even);
-        let narrow = BESIDE.map(|part| block(1, part * whole.width(), false));
-        let narrow = narrow.iter().find(|b| !b.torn).unwrap_or(&narrow[0]).clone();
+        let tall = TALLEST * whole.height() - 2.0 * padding.y;
+        let narrow = BESIDE.map(|(part, even)| block(1, part * whole.width(), even));
+        let narrow = narrow.iter().min_by_key(|b| (b.broken, b.size.y > tall)).unwrap_or(&narrow[0]).clone();
         let mut wide = vec![block(1, most, false), block(2, most, false)];
         let limit = MOST * whole.height();
-        if wide.iter().all(|b| b.torn || b.size.y > limit) {
+        if wide.iter().all(|b| b.broken > Break::Sign || b.size.y > limit) {
             wide.extend([block(2, most, true), block(3, most, true), block(4, most, true)]);
         }
-        // What is broken within brackets cannot be read: rather it is higher.
+        // The better it is broken, the better it can be read: rather it is higher.
         let mut all: Vec<&Block> = wide.iter().chain([&narrow]).collect();
-        let tall = TALLEST * whole.height() - 2.0 * padding.y;
-        let limit = [limit, tall].into_iter().find(|l| all.iter().any(|b| !b.torn && b.size.y <= *l));
+        let limits =
+            [Break::Sign, Break::Product].into_iter().flat_map(|broken| [(broken, limit), (broken, tall)]);
+        let within = |b: &Block, (broken, limit)| b.broken <= broken && b.size.y <= limit;
+        let limit = limits.into_iter().find(|l| all.iter().any(|b| within(b, *l)));
         if let Some(limit) = limit {
-            all.retain(|b| !b.torn && b.size.y <= limit);
+            all.retain(|b| within(b, limit));
         }
         let discs = discs(session, whole);
         let hidden = |plate: Rect| {
@@ -148,7 +154,7 @@ impl Stage {
             (b.clone(), plate, room.with_min_y(plate.bottom().min(room.bottom() - 0.2 * room.height())))
         };
         let scale = |r: &Rect| (r.width() / whole.width()).min(r.height() / whole.height());
-        let fits = |b: &&Block| b.size.y <= tall && (!b.torn || limit.is_none());
+        let fits = |b: &&Block| b.size.y <= tall && limit.is_none_or(|l| b.broken <= l.0);
         let sides = Some(&narrow).filter(fits).map(beside);
         let above = all.iter().filter(|b| b.columns != narrow.columns).map(|b| above(b));
         let (block, plate, picture) = (sides.into_iter().chain(above))
@@ -194,54 +200,85 @@ fn padding(whole: Rect) -> Vec2 {
 }
 
 impl Block {
-    /// Sets an equation in so many columns of the same width, as narrow as they can be without being higher.
-    fn of(ui: &Ui, all: &[Definition], columns: usize, width: f32, even: bool) -> Self {
-        let gap = 0.04 * width;
+    /// Sets an equation in so many columns at most, each as wide as its lines need. If there is no room for that, the
+    /// long ones share what the short ones leave, and are as narrow as they can be without being higher.
+    fn of(ui: &Ui, all: &[Definition], columns: usize, most: f32, even: bool) -> Self {
         let sizes = Sizes { column: true, even };
-        let each = (width - gap * (columns - 1) as f32) / columns as f32;
-        let heights: Vec<_> =
-            (0..all.len()).map(|i| maths::measured(ui, &all[i..=i], sizes, each).0).collect();
-        let whole: f32 = heights.iter().sum();
-        // The lowest height at which they are no more than so many.
-        let fill = |most: f32| {
-            let (mut out, mut start, mut height) = (Vec::new(), 0, 0.0);
-            for (i, high) in heights.iter().enumerate() {
-                if i > start && height + high > most {
-                    out.push(start..i);
-                    (start, height) = (i, 0.0);
+        let gap = 0.04 * most;
+        let measure = |range: &Range<usize>, width| maths::measured(ui, &all[range.clone()], sizes, width);
+        let each = (most - gap * (columns - 1) as f32) / columns as f32;
+        let mut layouts: Vec<Vec<Range<usize>>> = Vec::new();
+        for width in [f32::INFINITY, each] {
+            let heights: Vec<_> = (0..all.len()).map(|i| measure(&(i..i + 1), width).height).collect();
+            for ranges in partitions(&heights).filter(|r| r.len() <= columns) {
+                if !layouts.contains(&ranges) {
+                    layouts.push(ranges);
                 }
-                height += high;
             }
-            out.push(start..all.len());
-            out
-        };
-        let steps = (1..=64).map(|k| whole * k as f32 / 64.0 + 0.5);
-        let ranges = steps.map(fill).find(|r| r.len() <= columns).unwrap_or_else(|| fill(f32::INFINITY));
-        let mut block = Self { even, ..Self::default() };
-        let mut at = 0.0;
-        for range in ranges.into_iter().filter(|r| !r.is_empty()) {
-            let part = &all[range.clone()];
-            let height = |width| maths::measured(ui, part, sizes, width);
-            let (high, torn) = height(each);
-            let (mut narrow, mut wide) = (0.0, each);
-            while wide - narrow > 4.0 {
-                let middle = 0.5 * (narrow + wide);
-                // Lower would be without stacked fractions, broken anywhere.
-                let (here, worse) = height(middle);
-                let same = (here - high).abs() < 0.5 && (torn || !worse);
-                *(if same { &mut wide } else { &mut narrow }) = middle;
-            }
-            block.columns.push((range, at, wide));
-            block.size = vec2(at + wide, block.size.y.max(high));
-            block.torn |= torn;
-            at += wide + gap;
         }
-        block
+        let laid_out = layouts.into_iter().map(|ranges| {
+            let room = most - gap * (ranges.len() - 1) as f32;
+            let widths: Vec<f32> = ranges.iter().map(|r| measure(r, f32::INFINITY).width + 1.0).collect();
+            let cut = shared(&widths, room);
+            let mut block = Self { even, ..Self::default() };
+            let mut at = 0.0;
+            for (range, natural) in ranges.into_iter().zip(widths) {
+                let wide = measure(&range, natural.min(cut));
+                let (mut narrow, mut width) = (0.0, natural.min(cut));
+                while natural > cut && width - narrow > 4.0 {
+                    let middle = 0.5 * (narrow + width);
+                    let here = measure(&range, middle);
+                    // Lower would be without stacked fractions, broken anywhere.
+                    let same = (here.height - wide.height).abs() < 0.5 && here.broken <= wide.broken;
+                    *(if same { &mut width } else { &mut narrow }) = middle;
+                }
+                block.columns.push((range, at, width));
+                block.size = vec2(at + width, block.size.y.max(wide.height));
+                block.broken = block.broken.max(wide.broken);
+                at += width + gap;
+            }
+            block
+        });
+        let order = |a: &Self, b: &Self| a.broken.cmp(&b.broken).then(a.size.y.total_cmp(&b.size.y));
+        laid_out.min_by(order).unwrap_or_default()
     }
 
     fn size_with(&self, padding: Vec2) -> Vec2 {
         if self.columns.is_empty() { Vec2::ZERO } else { self.size + 2.0 * padding }
     }
+}
+
+/// The ways to fill columns from the top, each with the least height for its number of columns or more.
+fn partitions(heights: &[f32]) -> impl Iterator<Item = Vec<Range<usize>>> {
+    let whole: f32 = heights.iter().sum();
+    let fill = move |most: f32| {
+        let (mut out, mut start, mut height) = (Vec::new(), 0, 0.0);
+        for (i, high) in heights.iter().enumerate() {
+            if i > start && height + high > most {
+                out.push(start..i);
+                (start, height) = (i, 0.0);
+            }
+            height += high;
+        }
+        out.push(start..heights.len());
+        out
+    };
+    (1..=64).map(move |k| fill(whole * k as f32 / 64.0 + 0.5)).filter(|r| r.iter().all(|r| !r.is_empty()))
+}
+
+/// The width that none may exceed for all to fit in this room: the short ones keep theirs.
+fn shared(widths: &[f32], room: f32) -> f32 {
+    let mut sorted = widths.to_vec();
+    sorted.sort_by(f32::total_cmp);
+    let mut left = room;
+    for (i, width) in sorted.iter().enumerate() {
+        let fair = left / (sorted.len() - i) as f32;
+        if *width > fair {
+            return fair;
+        }
+        left -= width;
+    }
+    f32::INFINITY
 }
 
 /// The objects as the camera sees them: discs, without what is far outside the picture.

@@ -8,7 +8,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    formula::{Node, bare, factors, flattened, is_sign, is_space, terms},
+    formula::{Node, bare, factors, flattened, is_sign, is_space, multiplied, terms},
     maths::{self, Atom, Laid},
 };
 
@@ -35,8 +35,20 @@ pub struct Set {
     pub ascent: f32,
     /// The room below.
     pub descent: f32,
-    /// True if it is a part of something that was broken within brackets or fractions, since no line was long enough.
-    pub torn: bool,
+    /// Where the lines that it is one of are broken.
+    pub broken: Break,
+}
+
+/// The places at which a formula is broken into lines, the best first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Break {
+    /// Nowhere, or before + and −, words, and what follows a comma.
+    #[default]
+    Sign,
+    /// Between factors as well; the line that follows begins with ×.
+    Product,
+    /// Within brackets and fractions, since no line was long enough.
+    Anywhere,
 }
 
 impl Set {
@@ -164,7 +176,7 @@ impl Setter<'_> {
             width,
             ascent: up * self.size,
             descent: down * self.size,
-            torn: false,
+            broken: Break::default(),
         }
     }
 
@@ -212,7 +224,7 @@ impl Setter<'_> {
             width: BRACKET * self.size,
             ascent: up,
             descent: down,
-            torn: false,
+            broken: Break::default(),
         };
         let mut set = tall(sign(open));
         set.append(inside);
@@ -243,7 +255,7 @@ impl Setter<'_> {
             width: ROOT * self.size,
             ascent: up + 0.08 * self.size,
             descent: down,
-            torn: false,
+            broken: Break::default(),
         };
         set.append(inside);
         set.width += 0.08 * self.size;
@@ -276,7 +288,7 @@ impl Setter<'_> {
 
     /// Sets an equation in lines of at most this width; those after the first begin under what follows the
     /// equals sign. Lines are broken before + and − outside brackets, and where a new definition begins; what is
-    /// too long even so is set smaller, and what is too long then is broken between factors, then anywhere.
+    /// too long even so is set smaller, and what is too long then is broken between factors, with a ×, then anywhere.
     #[must_use]
     pub fn lines(self, nodes: &[Node], width: f32) -> Vec<Set> {
         const SIZES: [f32; 4] = [1.0, 0.94, 0.88, 0.82];
@@ -295,8 +307,9 @@ impl Setter<'_> {
             let pieces = if flat { nodes.chunks(1).collect() } else { factors(&nodes) };
             lines = setter.broken(&pieces, width);
             // In single signs, a line ends anywhere.
-            let torn = flat && lines.len() > 1;
-            lines.iter_mut().for_each(|line| line.torn = torn);
+            let broken = if flat { Break::Anywhere } else { Break::Product };
+            let many = lines.len() > 1;
+            lines.iter_mut().filter(|_| many).for_each(|line| line.broken = broken);
             if fits(&lines) {
                 break;
             }
@@ -317,6 +330,10 @@ impl Setter<'_> {
                     let start = piece.iter().take_while(|n| is_space(n)).count();
                     let indent = if i == 0 { 0.0 } else { hang };
                     let mut line = Set { width: indent, ..Set::default() };
+                    // One sign alone is no factor.
+                    if i > 0 && self.stacked && multiplied(pieces[i - 1], piece) {
+                        line.append(self.row(&times()));
+                    }
                     line.append(self.row(&piece[start..]));
                     lines.push(line);
                 }
@@ -331,6 +348,12 @@ impl Setter<'_> {
     }
 }
 
+/// The sign at the beginning of a line whose factors belong to the line before.
+fn times() -> [Node; 2] {
+    let sign = Atom::Upright { base: "×".to_owned(), sub: String::new(), sup: String::new() };
+    [Node::Atom(sign), Node::Atom(Atom::Space)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -338,7 +361,7 @@ mod tests {
     use bevy_egui::egui;
 
     /// Sets every part of every equation at this width; `see` gets the text and its lines.
-    fn set_all(width: f32, mut see: impl FnMut(&str, f32, &[Set])) {
+    fn set_all(width: f32, shrinks: bool, mut see: impl FnMut(&str, f32, &[Set])) {
         let ctx = egui::Context::default();
         theme::install_fonts(&ctx);
         let registry = crate::registry::Registry::builtin();
@@ -349,8 +372,7 @@ mod tests {
         for pass in 0..2 {
             let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
                 for (size, text) in texts.iter().filter(|_| pass == 1) {
-                    let setter =
-                        Setter { ui, size: *size, colour: Color32::WHITE, stacked: true, shrinks: true };
+                    let setter = Setter { ui, size: *size, colour: Color32::WHITE, stacked: true, shrinks };
                     see(text, *size, &setter.lines(&tree(text), width));
                 }
             });
@@ -372,7 +394,7 @@ mod tests {
     fn definitions_have_a_line_each_broken_before_plus_and_minus_outside_brackets() {
         // The width of the panel at first, and the least.
         for width in [320.0, 276.0] {
-            set_all(width, |text, size, lines| {
+            set_all(width, true, |text, size, lines| {
                 // The panel at first is wide enough to set everything in full size, or nearly.
                 let least = if width > 300.0 { 0.9 } else { 0.8 };
                 let largest = lines.iter().flat_map(|l| &l.ink).map(|(_, size, _)| *size).fold(0.0, f32::max);
@@ -388,6 +410,26 @@ mod tests {
                 }
             });
         }
+    }
+
+    #[test]
+    fn a_product_that_is_broken_goes_on_with_a_sign() {
+        let mut products = 0;
+        for width in [200.0, 240.0, 300.0] {
+            set_all(width, false, |text, _, lines| {
+                for pair in lines.windows(2).filter(|pair| pair[1].broken < Break::Anywhere) {
+                    let [before, here] = [words(&pair[0]), words(&pair[1])];
+                    let here = here.trim_start();
+                    let signs = ["+", "−", "×", "where", "or ", "else"];
+                    let good = signs.iter().any(|s| here.starts_with(s)) || before.ends_with([',', '=', '·']);
+                    assert!(good, "{width}: a line of {text} begins with “{here}” after “{before}”");
+                    products += usize::from(here.starts_with('×'));
+                    let function = ["max", "min", "exp", "cos", "tan"].iter().any(|f| before.ends_with(f));
+                    assert!(!function, "{width}: “{before}” of {text} has lost its argument");
+                }
+            });
+        }
+        assert!(products > 5, "{products}");
     }
 
     #[test]

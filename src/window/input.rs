@@ -3,8 +3,9 @@
 use bevy::{
     ecs::prelude::*,
     input::keyboard::{Key, KeyboardInput},
+    window::RequestRedraw,
 };
-use bevy_egui::{EguiInput, egui};
+use bevy_egui::{EguiContext, EguiInput, egui, input::EguiContextPointerPosition};
 
 /// bevy_egui 0.42 tells egui in every frame which modifier keys are held, and egui draws again after
 /// every event: the window would never rest. Only changes are news.
@@ -59,5 +60,57 @@ pub(super) fn mend_input(
             }
             _ => true,
         });
+    }
+}
+
+/// Tells egui where the pointer is when the scale of the window has changed: neither bevy_egui nor egui converts the
+/// place of a pointer at rest, so that the next click would go elsewhere.
+pub(super) fn rescale_pointer(
+    mut contexts: Query<(&mut EguiContext, &mut EguiInput, &mut EguiContextPointerPosition)>,
+    mut scale: Local<Option<f32>>,
+    mut requests: MessageWriter<RequestRedraw>,
+) {
+    for (mut context, mut input, mut pointer) in &mut contexts {
+        let context = context.get_mut();
+        let now = context.zoom_factor();
+        let Some(before) = scale.replace(now).filter(|before| *before != now) else { continue };
+        pointer.position = (pointer.position.to_vec2() * before / now).to_pos2();
+        if context.input(|i| i.pointer.latest_pos().is_some()) {
+            input.events.push(egui::Event::PointerMoved(pointer.position));
+            requests.write(RequestRedraw);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::app::{App, Last};
+    use bevy_egui::egui::{Event, RawInput, pos2};
+
+    use super::*;
+
+    #[test]
+    fn a_pointer_at_rest_stays_where_it_is_when_the_scale_changes() {
+        let mut app = App::new();
+        app.add_message::<RequestRedraw>().add_systems(Last, rescale_pointer);
+        let mut context = EguiContext::default();
+        let egui = context.get_mut().clone();
+        let place = EguiContextPointerPosition { position: pos2(300.0, 210.0) };
+        let window = app.world_mut().spawn((context, EguiInput::default(), place)).id();
+        let mut frame = |events: Vec<Event>, scale: f32| {
+            let _ = egui.run_ui(RawInput { events, ..RawInput::default() }, |_| ());
+            app.update();
+            egui.set_zoom_factor(scale);
+            std::mem::take(
+                &mut app.world_mut().entity_mut(window).get_mut::<EguiInput>().expect("spawned").events,
+            )
+        };
+        assert_eq!(frame(vec![Event::PointerMoved(pos2(300.0, 210.0))], 1.0), []);
+        assert_eq!(frame(Vec::new(), 1.5), []);
+        assert_eq!(frame(Vec::new(), 1.5), [Event::PointerMoved(pos2(200.0, 140.0))]);
+        assert_eq!(frame(vec![Event::PointerGone], 1.0), []);
+        assert_eq!(frame(Vec::new(), 1.0), [], "there is no pointer");
+        let place = app.world().get::<EguiContextPointerPosition>(window).expect("spawned");
+        assert_eq!(place.position, pos2(300.0, 210.0), "where it would click");
     }
 }

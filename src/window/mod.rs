@@ -5,6 +5,7 @@
 
 use bevy::{
     app::{App, Last, Plugin, PostUpdate, PreUpdate, Startup},
+    asset::AssetEventSystems,
     ecs::prelude::*,
     light::cluster::GlobalClusterSettings,
     render::extract_component::ExtractComponent,
@@ -105,7 +106,14 @@ impl Plugin for WindowSystemsPlugin {
                     shaders::tell.in_set(LabSystems::Upload),
                 ),
             )
-            .configure_sets(PostUpdate, ViewSystems.after(PanOrbitCameraSystemSet))
+            .configure_sets(
+                PostUpdate,
+                (
+                    ViewSystems.after(PanOrbitCameraSystemSet),
+                    // New letters are uploaded for the frame that shows them, not for the next.
+                    EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
+                ),
+            )
             .add_systems(
                 PostUpdate,
                 (
@@ -118,7 +126,7 @@ impl Plugin for WindowSystemsPlugin {
                         .before(EguiPostUpdateSet::PostProcessOutput),
                 ),
             )
-            .add_systems(Last, (frames::measure, recovery::keep));
+            .add_systems(Last, (frames::measure, recovery::keep, input::rescale_pointer));
     }
 
     fn finish(&self, app: &mut App) {
@@ -130,5 +138,32 @@ impl Plugin for WindowSystemsPlugin {
             // Bevy's own lights are not used, so neither is their clustering.
             clusters.gpu_clustering = None;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{
+        app::TaskPoolPlugin,
+        asset::{AssetApp, AssetPlugin},
+        ecs::schedule::NodeId,
+        render::storage::ShaderBuffer,
+        shader::Shader,
+    };
+
+    use super::*;
+
+    #[test]
+    fn new_letters_are_uploaded_for_the_frame_that_shows_them() {
+        let mut app = App::new();
+        app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default()))
+            .init_asset::<Shader>()
+            .init_asset::<ShaderBuffer>();
+        app.add_plugins(WindowSystemsPlugin);
+        let graph = app.get_schedule(PostUpdate).expect("filled").graph();
+        let node = |set| NodeId::Set(graph.system_sets.get_key(set).expect("configured"));
+        let (letters, upload) = (EguiPostUpdateSet::PostProcessOutput.intern(), AssetEventSystems.intern());
+        assert!(graph.dependency().contains_edge(node(letters), node(upload)));
+        assert!(!graph.dependency().contains_edge(node(upload), node(letters)));
     }
 }

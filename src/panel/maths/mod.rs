@@ -11,7 +11,7 @@ use bevy_egui::egui::{
 use super::{
     formula,
     theme::{self, Palette},
-    typeset::{Set, Setter},
+    typeset::{Break, Set, Setter},
 };
 use crate::reflection::{EquationPart, Term};
 
@@ -219,11 +219,24 @@ fn set(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, width: f32) -> Lines {
     (lines, height)
 }
 
-/// The height of parts of an equation at a width, and true if they fit only when broken within brackets or fractions.
+/// How much room parts of an equation take, and how they are broken.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured {
+    /// The longest line.
+    pub width: f32,
+    /// All lines.
+    pub height: f32,
+    /// The worst break.
+    pub broken: Break,
+}
+
+/// Measures parts of an equation in lines of at most this width.
 #[must_use]
-pub fn measured(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, width: f32) -> (f32, bool) {
-    let (lines, height) = set(ui, parts, sizes, width);
-    (height, lines.iter().any(|(line, ..)| line.torn || line.width > width))
+pub fn measured(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, most: f32) -> Measured {
+    let (lines, height) = set(ui, parts, sizes, most);
+    let width = lines.iter().map(|(line, ..)| line.width).fold(0.0, f32::max);
+    let broken = lines.iter().map(|(line, ..)| line.broken).max().unwrap_or_default();
+    Measured { width, height, broken: if width > most { Break::Anywhere } else { broken } }
 }
 
 /// The size of letters in the terms of an equation.
