@@ -12,7 +12,7 @@ use lights_camera_models::{
     render::{
         capture::gpu::{GpuRenderer, Output},
         entities::{CurrentScene, LitObject, SceneEntities},
-        plugin::LabFrame,
+        schedule::LabFrame,
     },
     scene::{Object, Scene},
 };

@@ -1,6 +1,11 @@
 //! The camera of the picture: it stands where the observer stands until someone moves it.
 
-use super::{entities::CurrentScene, overrides::Overrides, view::View};
+use super::{
+    entities::CurrentScene,
+    overrides::Overrides,
+    stage::{GIZMO_LAYER, SCENE_LAYER},
+    view::View,
+};
 use crate::{
     optics::{colour::BACKGROUND, tone::ToneMapping},
     scene::{
@@ -18,11 +23,6 @@ use bevy::{
     render::view::Msaa,
     transform::components::Transform,
 };
-
-/// The render layer of objects as the scene has them.
-pub const SCENE_LAYER: usize = 0;
-/// The render layer of gizmos, which every view shows.
-pub const GIZMO_LAYER: usize = 1;
 
 /// The camera that draws the picture.
 #[derive(Component, Debug, Clone, Copy)]

@@ -30,6 +30,10 @@ pub const LIGHT_LAYOUT: [(&str, usize); 6] =
 pub const ILLUMINATION_LAYOUT: [(&str, usize); 5] =
     [("count", 0), ("terms", 4), ("exposure", 8), ("gamma_naive", 12), ("lights", HEADER_BYTES)];
 
+/// The terms of the equation that are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
+pub struct ShownTerms(pub TermSelection);
+
 /// The buffer of all lights of the scene, as views without overrides show them.
 #[derive(Clone, Debug, Resource)]
 pub struct IlluminationBuffer(pub Handle<ShaderBuffer>);

@@ -3,6 +3,7 @@
 
 pub mod camera;
 pub mod capture;
+pub mod drawn;
 pub mod entities;
 mod exchange;
 pub mod illumination;
@@ -12,7 +13,9 @@ pub mod meshes;
 pub mod overrides;
 pub mod plugin;
 mod register;
+pub mod schedule;
 pub mod show;
+pub mod stage;
 pub mod swap;
 pub mod tables;
 pub mod trial;

@@ -1,28 +1,11 @@
-//! Views that show the scene differently: under another reflection model, with other parameters, in
-//! another exposure.
-//!
-//! Such a view has a [`Stage`]: a render layer with a stand-in for every object, which has the material of the
-//! view, and lights of its own. Views without overrides share the objects themselves.
+//! The differences between a view and the scene: another reflection model, other parameters, another exposure.
 
-use bevy::{
-    asset::{Assets, Handle},
-    camera::visibility::{RenderLayers, Visibility},
-    ecs::{entity::EntityHashMap, lifecycle::HookContext, prelude::*, world::DeferredWorld},
-    render::storage::ShaderBuffer,
-    transform::components::Transform,
-};
+use bevy::ecs::component::Component;
 
-use super::{
-    camera::{GIZMO_LAYER, SCENE_LAYER},
-    entities::SceneEntities,
-    illumination::IlluminationBuffer,
-    material::Attachments,
-    tables::ParameterTables,
-};
 use crate::{
     optics::TermSelection,
     parameter::Values,
-    scene::{Display, MAX_OBJECTS, Object, Scene},
+    scene::{Display, Object, Scene},
 };
 
 /// The differences between a view and the scene. Stands beside the camera of the view.
@@ -70,109 +53,5 @@ impl Overrides {
 
     pub(super) fn display_of(&self, scene: &Scene) -> Display {
         self.display.unwrap_or(scene.display)
-    }
-}
-
-/// The layer, the lights and the stand-ins of a view with overrides. Comes and goes with its [`Overrides`].
-#[derive(Component, Debug)]
-#[component(on_remove = strike)]
-pub struct Stage {
-    layer: usize,
-    pub(super) illumination: Handle<ShaderBuffer>,
-    /// By object.
-    stand_ins: EntityHashMap<Entity>,
-    /// The [list](SceneEntities::list) of objects that have them.
-    list: Option<u64>,
-}
-
-impl Stage {
-    pub(super) fn stand_in(&self, object: Entity) -> Option<Entity> {
-        self.stand_ins.get(&object).copied()
-    }
-}
-
-/// Stands for an object, whose child it is, in one view.
-#[derive(Clone, Component, Copy, Debug, PartialEq, Eq)]
-pub struct StandIn {
-    /// The view in which it is seen.
-    pub view: Entity,
-}
-
-/// Adds stages to views with overrides, and removes them from views without.
-pub(super) fn set_stages(
-    new: Query<Entity, (With<Overrides>, Without<Stage>)>,
-    done: Query<Entity, (With<Stage>, Without<Overrides>)>,
-    stages: Query<&Stage>,
-    mut buffers: ResMut<Assets<ShaderBuffer>>,
-    mut commands: Commands,
-) {
-    for view in &done {
-        commands
-            .entity(view)
-            .remove::<Stage>()
-            .insert(RenderLayers::from_layers(&[SCENE_LAYER, GIZMO_LAYER]));
-    }
-    let mut layers: Vec<_> = stages.iter().map(|stage| stage.layer).collect();
-    for view in &new {
-        let mut free = (GIZMO_LAYER + 1)..;
-        let Some(layer) = free.find(|layer| !layers.contains(layer)) else { continue };
-        layers.push(layer);
-        let stage = Stage {
-            layer,
-            illumination: IlluminationBuffer::without_lights(&mut buffers).0,
-            stand_ins: EntityHashMap::default(),
-            list: None,
-        };
-        commands.entity(view).insert((stage, RenderLayers::from_layers(&[layer, GIZMO_LAYER])));
-    }
-}
-
-/// Removes what only this view needed.
-fn strike(mut world: DeferredWorld, context: HookContext) {
-    let view = context.entity;
-    let Some(stage) = world.get::<Stage>(view) else { return };
-    let illumination = stage.illumination.id();
-    let stand_ins: Vec<_> = stage.stand_ins.values().copied().collect();
-    world.commands().queue(move |world: &mut World| {
-        for stand_in in stand_ins {
-            // Those of objects that are gone went with them.
-            let _ = world.try_despawn(stand_in);
-        }
-        world.resource_mut::<ParameterTables>().forget(view);
-        for attachment in world.resource::<Attachments>().all() {
-            (attachment.forget)(world, illumination);
-        }
-    });
-}
-
-/// Makes the stand-ins of a view for objects that have none.
-pub(super) fn stand_ins(world: &mut World, view: Entity) {
-    let list = Some(world.resource::<SceneEntities>().list());
-    let Some(mut stage) = world.get_mut::<Stage>(view).filter(|stage| stage.list != list) else { return };
-    let (layer, mut known) = (stage.layer, std::mem::take(&mut stage.bypass_change_detection().stand_ins));
-    world.resource_scope(|world, mut entities: Mut<SceneEntities>| {
-        let entities = entities.bypass_change_detection();
-        let objects = &entities.objects[..entities.objects.len().min(MAX_OBJECTS)];
-        entities.visits += objects.len() as u64;
-        if known.len() > objects.len() {
-            known.retain(|_, stand_in| world.get_entity(*stand_in).is_ok());
-        }
-        for &object in objects {
-            if known.contains_key(&object) || world.get_entity(object).is_err() {
-                continue;
-            }
-            let parts = (
-                StandIn { view },
-                ChildOf(object),
-                Transform::IDENTITY,
-                Visibility::Inherited,
-                RenderLayers::layer(layer),
-            );
-            known.insert(object, world.spawn(parts).id());
-        }
-    });
-    if let Some(mut stage) = world.get_mut::<Stage>(view) {
-        let stage = stage.bypass_change_detection();
-        (stage.stand_ins, stage.list) = (known, list);
     }
 }

@@ -1,11 +1,11 @@
-//! The plugins and the order of the systems.
+//! The scene as a plugin.
 
 use bevy::{
     app::{App, MainScheduleOrder, Plugin, Update},
     asset::Assets,
     ecs::{
         prelude::*,
-        schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel},
+        schedule::{LogLevel, ScheduleBuildSettings},
     },
     render::storage::ShaderBuffer,
 };
@@ -13,47 +13,21 @@ use bevy::{
 use super::{
     camera::follow_scene,
     entities::{CurrentScene, SceneEntities, absorb, reconcile},
-    illumination::{IlluminationBuffer, illumination_bytes},
-    live::LiveShadersPlugin,
+    illumination::{IlluminationBuffer, ShownTerms, illumination_bytes},
+    live::{LiveShadersPlugin, exchange},
     material::MaterialApp as _,
     meshes::ShapeMeshes,
-    overrides::{Overrides, Stage, set_stages},
+    overrides::Overrides,
+    schedule::{LabFrame, LabSystems},
+    stage::{Stage, set_stages},
     swap::swap,
     tables::TablesPlugin,
     view::ViewPlugin,
 };
 use crate::{
-    optics::TermSelection,
     registry::{Registry, register_builtin},
     scene::record,
 };
-
-/// The schedule of everything that the lab does in a frame; runs after Bevy's `Update`. A schedule of
-/// its own, so that two of our systems whose order is left open are an error at start, whatever
-/// Bevy's own systems do.
-#[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
-pub struct LabFrame;
-
-/// The order of everything that the lab does in a frame. Systems are ordered through these sets only.
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum LabSystems {
-    /// Files are read; the scene is replaced.
-    Load,
-    /// The scene becomes entities.
-    Spawn,
-    /// Changes to entities go back into the scene.
-    Edit,
-    /// Objects get the meshes and materials of their models and shading models.
-    Swap,
-    /// Lights and display settings go to the renderer.
-    Upload,
-    /// Pictures are taken.
-    Capture,
-}
-
-/// The terms of the equation that are shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
-pub struct ShownTerms(pub TermSelection);
 
 /// A scene as entities, lit and shaded: everything but windows, panels and cameras. Needs Bevy's
 /// renderer and PBR plugins.
@@ -96,7 +70,7 @@ impl Plugin for ScenePlugin {
                     reconcile.in_set(LabSystems::Spawn).run_if(resource_changed::<CurrentScene>),
                     set_stages.in_set(LabSystems::Spawn),
                     absorb.in_set(LabSystems::Edit),
-                    swap.in_set(LabSystems::Swap),
+                    swap.in_set(LabSystems::Swap).after(exchange),
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
             )

@@ -12,12 +12,14 @@ use bevy::{
 use rayon::prelude::*;
 
 use super::{
+    drawn::Drawn,
     entities::{CurrentScene, LitObject, SceneEntities},
     illumination::IlluminationBuffer,
     live::LiveShaders,
     material::{Attachments, MaterialInputs},
     meshes::{ShapeMeshes, forget_unused_meshes},
-    overrides::{Overrides, Stage, StandIn, stand_ins},
+    overrides::Overrides,
+    stage::{Stage, StandIn, stand_ins},
     tables::{ParameterTables, Row},
 };
 use crate::{
@@ -28,34 +30,9 @@ use crate::{
     shading,
 };
 
-/// The model, shading model and settings with which an object is drawn.
-#[derive(Clone, Component, Debug, Default, PartialEq)]
-pub struct Drawn {
-    model: String,
-    shading: String,
-    encoding: Encoding,
-    everywhere: bool,
-    /// Version of the model; a file that is read again makes another.
-    version: u64,
-}
-
 /// An object whose new shader is still being tried: until then it stays as it is.
 #[derive(Clone, Component, Copy, Debug, Default)]
 pub struct AwaitsShader;
-
-impl Drawn {
-    /// Id of the reflection model.
-    #[must_use]
-    pub fn model(&self) -> &str {
-        &self.model
-    }
-
-    /// Id of the shading model.
-    #[must_use]
-    pub fn shading(&self) -> &str {
-        &self.shading
-    }
-}
 
 /// An object that is drawn anew.
 struct Pending {

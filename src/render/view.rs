@@ -27,11 +27,11 @@ use glam::UVec2;
 use std::collections::HashSet;
 
 use super::{
+    drawn::Drawn,
     entities::CurrentScene,
-    illumination::IlluminationBuffer,
-    overrides::{Overrides, Stage, StandIn},
-    plugin::ShownTerms,
-    swap::Drawn,
+    illumination::{IlluminationBuffer, ShownTerms},
+    overrides::Overrides,
+    stage::{Stage, StandIn},
     tables::ParameterTables,
 };
 use crate::registry::Registry;

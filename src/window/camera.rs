@@ -14,7 +14,10 @@ use bevy_egui::EguiPostUpdateSet;
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraSystemSet};
 use glam::{Quat, Vec3};
 
-use super::{WindowView, pointer::OverPicture};
+use super::{
+    WindowView,
+    pointer::{OverPicture, follow_cursor},
+};
 use crate::{
     document::{Edit, Selection},
     panel::state::{Action, Session, Steer},
@@ -51,7 +54,7 @@ pub(super) struct CameraPlugin;
 
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(PreUpdate, (gate, keep_at_observer).chain()).add_systems(
+        app.add_systems(PreUpdate, (gate.after(follow_cursor), keep_at_observer).chain()).add_systems(
             PostUpdate,
             // So that the marks over the picture belong to the same frame.
             feed_viewpoint.after(PanOrbitCameraSystemSet).before(EguiPostUpdateSet::EndPass),
@@ -79,7 +82,7 @@ fn put_at(camera: &mut PanOrbitCamera, transform: &mut Transform, place: Transfo
 
 /// The picture gets the mouse only where nothing else wants it; and a camera that is moved no longer
 /// stands at the observer.
-pub(super) fn gate(
+fn gate(
     over: Res<OverPicture>,
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,

@@ -17,7 +17,7 @@ use crate::{
     render::{
         capture::png,
         live::LiveShaders,
-        plugin::{LabFrame, LabSystems},
+        schedule::{LabFrame, LabSystems},
     },
 };
 

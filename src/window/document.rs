@@ -7,7 +7,7 @@ use crate::{
     registry::Registry,
     render::{
         entities::{CurrentScene, SceneEntities},
-        plugin::ShownTerms,
+        illumination::ShownTerms,
     },
 };
 

@@ -19,9 +19,9 @@ use glam::Vec3;
 use crate::{
     panel::state::{Session, ThemeChoice},
     render::{
-        camera::GIZMO_LAYER,
         entities::CurrentScene,
-        plugin::{LabFrame, LabSystems},
+        schedule::{LabFrame, LabSystems},
+        stage::GIZMO_LAYER,
     },
 };
 

@@ -17,7 +17,7 @@ use crate::{
     panel::state::Session,
     render::{
         entities::absorb,
-        plugin::{LabFrame, LabSystems},
+        schedule::{LabFrame, LabSystems},
         show::ShowPlugin,
         view::ViewSystems,
     },

@@ -25,8 +25,7 @@ pub(super) struct PointerPlugin;
 
 impl Plugin for PointerPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<OverPicture>()
-            .add_systems(PreUpdate, follow_cursor.after(InputSystems).before(super::camera::gate));
+        app.init_resource::<OverPicture>().add_systems(PreUpdate, follow_cursor.after(InputSystems));
     }
 }
 
@@ -41,7 +40,7 @@ pub(super) struct OverPicture {
 
 /// The state of the pointer.
 #[derive(Default)]
-struct Pointer {
+pub(super) struct Pointer {
     /// Its place in the window.
     place: Option<Vec2>,
     /// A button is held.
@@ -66,7 +65,7 @@ impl Pointer {
     }
 }
 
-fn follow_cursor(
+pub(super) fn follow_cursor(
     mut events: MessageReader<WindowEvent>,
     mut motion: ResMut<Messages<MouseMotion>>,
     buttons: Res<ButtonInput<MouseButton>>,

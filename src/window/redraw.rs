@@ -14,7 +14,9 @@ use bevy_egui::EguiRenderOutput;
 use super::WindowView;
 use crate::{
     panel::state::{PictureArea, Session},
-    render::{entities::CurrentScene, live::LiveShaders, plugin::ShownTerms, trial::Bench, view::Drawing},
+    render::{
+        entities::CurrentScene, illumination::ShownTerms, live::LiveShaders, trial::Bench, view::Drawing,
+    },
 };
 
 /// The longest sleep of the window when nothing happens; it wakes for input at once.

@@ -39,8 +39,9 @@ use crate::{
     render::{
         camera::{PictureCamera, picture_camera},
         entities::CurrentScene,
+        illumination::ShownTerms,
         live::LiveShaders,
-        plugin::{ScenePlugin, ShownTerms},
+        plugin::ScenePlugin,
         trial::Bench,
         view::View,
     },

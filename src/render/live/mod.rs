@@ -26,10 +26,10 @@ use bevy::{
 };
 
 use super::{
+    drawn::Drawn,
     entities::CurrentScene,
     overrides::Overrides,
-    plugin::{LabFrame, LabSystems},
-    swap::Drawn,
+    schedule::{LabFrame, LabSystems},
     trial::{Bench, TrialPlugin},
 };
 use crate::{
@@ -55,7 +55,7 @@ impl Plugin for LiveShadersPlugin {
         app.add_plugins(TrialPlugin)
             .init_resource::<LiveShaders>()
             .insert_resource(RenderErrorHandler(trying::take_back))
-            .add_systems(LabFrame, exchange.in_set(LabSystems::Swap).before(crate::render::swap::swap));
+            .add_systems(LabFrame, exchange.in_set(LabSystems::Swap));
     }
 }
 
@@ -222,7 +222,7 @@ impl Visible {
 }
 
 /// Exchanges the shaders whose files changed.
-fn exchange(world: &mut World) {
+pub(super) fn exchange(world: &mut World) {
     let mut overrides = world.query_filtered::<(), Changed<Overrides>>();
     let other_scene = world.is_resource_changed::<CurrentScene>();
     if other_scene || overrides.iter(world).next().is_some() {

@@ -1,0 +1,30 @@
+//! The choices that an object on the picture is drawn with.
+
+use bevy::ecs::component::Component;
+
+use crate::optics::colour::Encoding;
+
+/// The model, shading model and settings with which an object is drawn.
+#[derive(Clone, Component, Debug, Default, PartialEq)]
+pub struct Drawn {
+    pub(super) model: String,
+    pub(super) shading: String,
+    pub(super) encoding: Encoding,
+    pub(super) everywhere: bool,
+    /// Version of the model; a file that is read again makes another.
+    pub(super) version: u64,
+}
+
+impl Drawn {
+    /// Id of the reflection model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// Id of the shading model.
+    #[must_use]
+    pub fn shading(&self) -> &str {
+        &self.shading
+    }
+}
