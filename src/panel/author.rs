@@ -1,6 +1,6 @@
 //! Custom models and shaders: the question before a file is written, and the files that an editor can open.
 
-use std::{ops::DerefMut, path::PathBuf};
+use std::ops::DerefMut;
 
 use bevy_egui::egui::{
     self, Align, Button, Id, Key, Layout, RichText, TextEdit, Ui, WidgetInfo, Window, vec2,
@@ -8,114 +8,13 @@ use bevy_egui::egui::{
 
 use super::{
     icon,
-    state::{Action, Effect, PictureArea, Session, Severity},
+    state::{
+        Action, BUILT_IN, ModelCommand, ModelDraft, NameProblem, PictureArea, SHADER_TAB, Session, Severity,
+        check_name,
+    },
     theme::{self, Palette},
 };
-use crate::{
-    custom::{id_of_name, source_path},
-    library::status::{Reloaded, Trouble},
-    reflection::law_report::LawReport,
-    registry::Registry,
-};
-
-/// Id of the panel that shows the shaders.
-pub const SHADER_TAB: &str = "shader";
-
-/// A command about custom models and shaders.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ModelCommand {
-    /// Begin a new model: ask what it shall be called.
-    New,
-    /// Begin a copy of the shown model: ask what it shall be called.
-    Duplicate,
-    /// The name of the model, as typed.
-    Type(String),
-    /// Write the file of the model.
-    Create,
-    /// Do not write it.
-    Cancel,
-    /// Open the file of the shown model in an editor.
-    EditShown,
-    /// Open a file in an editor.
-    Edit {
-        /// The file.
-        path: PathBuf,
-        /// The line to go to, from 1.
-        line: usize,
-    },
-    /// Try to find the laws of the shown model broken.
-    CheckLaws,
-    /// Choose a folder and write the shaders into it.
-    ExportDialog,
-    /// Write the shaders into a folder.
-    Export(PathBuf),
-}
-
-/// A model that is about to be written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ModelDraft {
-    /// Id of the model that is copied; none for a new one.
-    pub of: Option<String>,
-    /// Its name, as typed; its identifier follows.
-    pub name: String,
-}
-
-/// A check of the laws of a model.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LawCheck {
-    /// The id of the model.
-    pub model: String,
-    /// The change that the picture showed when the check began: a later one makes it out of date.
-    pub since: Option<Reloaded>,
-    /// The findings, or why there are none; nothing while the check runs.
-    pub outcome: Option<Result<LawReport, String>>,
-}
-
-/// The reason why a name can't be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NameProblem {
-    /// A sentence.
-    pub why: String,
-    /// An identifier that is near to it and free.
-    pub instead: Option<String>,
-}
-
-/// The identifier for a new model that is to be called by a name.
-///
-/// # Errors
-/// The rule that the name breaks, and a name that would do.
-pub fn check_name(name: &str, registry: &Registry) -> Result<String, NameProblem> {
-    let problem = |why: String, instead: Option<String>| Err(NameProblem { why, instead });
-    if name.trim().is_empty() {
-        return problem("Type a name, such as My velvet.".to_owned(), None);
-    }
-    let id = match id_of_name(name) {
-        Ok(id) => id,
-        Err(bad) => {
-            let instead = bad.instead.map(|id| free_id(&id, registry));
-            let hint = instead.as_ref().map_or_else(String::new, |id| format!(": “{id}” would do"));
-            let rule = "Only letters a–z, digits and spaces, beginning with a letter, at most 40";
-            return problem(format!("{rule}{hint}."), instead);
-        }
-    };
-    // A file that gives no model is a file too.
-    let taken = if registry.model(&id).is_some() {
-        format!("There is already a model “{id}”")
-    } else if registry.broken_model(&id).is_some() {
-        format!("There is already a file {}", source_path(&id))
-    } else {
-        return Ok(id);
-    };
-    let free = free_id(&id, registry);
-    problem(format!("{taken}; “{free}” is free."), Some(free))
-}
-
-/// An id that no model has: the one given, or that with a number.
-fn free_id(id: &str, registry: &Registry) -> String {
-    let taken = |id: &str| registry.model(id).is_some() || registry.broken_model(id).is_some();
-    let numbered = (2..).map(|n| format!("{id}_{n}"));
-    std::iter::once(id.to_owned()).chain(numbered).find(|id| !taken(id)).unwrap_or_default()
-}
+use crate::{custom::source_path, library::status::Trouble, registry::Registry};
 
 /// Looks at what changed about the shaders since the last frame: a new problem unfolds the panel that tells of it,
 /// and a model that was asked for is chosen once it is there. `session` is borrowed mutably only when something
@@ -142,93 +41,6 @@ pub fn notice_shaders(session: &mut impl DerefMut<Target = Session>, registry: &
         }
     }
 }
-
-impl Session {
-    /// Carries out what is asked about custom models and shaders.
-    pub(super) fn author(&mut self, ask: ModelCommand, registry: &Registry) -> Vec<Effect> {
-        match ask {
-            ModelCommand::New => {
-                self.draft = Some(ModelDraft { of: None, name: free_id("my_model", registry) })
-            }
-            ModelCommand::Duplicate => {
-                let of = self.model_shown().to_owned();
-                if registry.model(&of).is_none() {
-                    self.say(Severity::Warning, format!("The model “{of}” is not there to be copied."));
-                    return Vec::new();
-                }
-                let name = free_id(&format!("my_{}", of.trim_start_matches("my_")), registry);
-                self.draft = Some(ModelDraft { of: Some(of), name });
-            }
-            ModelCommand::Type(text) => {
-                if let Some(draft) = &mut self.draft {
-                    draft.name = text;
-                }
-            }
-            ModelCommand::Create => return self.create(registry),
-            ModelCommand::Cancel => self.draft = None,
-            ModelCommand::EditShown => return self.edit_shown(registry),
-            ModelCommand::Edit { path, line } => return vec![Effect::OpenInEditor { path, line }],
-            ModelCommand::CheckLaws => return self.check_laws(),
-            ModelCommand::ExportDialog => return vec![Effect::PickShaderFolder],
-            ModelCommand::Export(folder) => return vec![Effect::ExportShaders(folder)],
-        }
-        Vec::new()
-    }
-
-    fn create(&mut self, registry: &Registry) -> Vec<Effect> {
-        // What is wrong stands beside the field.
-        let checked = self.draft.as_ref().and_then(|draft| check_name(&draft.name, registry).ok());
-        let Some((id, draft)) = checked.and_then(|id| Some((id, self.draft.take()?))) else {
-            return Vec::new();
-        };
-        let ModelDraft { of, name } = draft;
-        let name = name.trim().to_owned();
-        vec![match of {
-            Some(model) => Effect::DuplicateModel { model, id, name },
-            None => Effect::NewModel { id, name },
-        }]
-    }
-
-    fn check_laws(&mut self) -> Vec<Effect> {
-        let running = self.laws.as_ref().is_some_and(|check| check.outcome.is_none());
-        if running {
-            return Vec::new();
-        }
-        let model = self.model_shown().to_owned();
-        self.laws = Some(LawCheck { model: model.clone(), since: self.shaders.last.clone(), outcome: None });
-        vec![Effect::CheckLaws(model)]
-    }
-
-    /// Takes what a check of the laws of a model found.
-    pub fn laws_checked(&mut self, model: &str, outcome: Result<LawReport, String>) {
-        if let Some(check) = self.laws.as_mut().filter(|check| check.model == model) {
-            check.outcome = Some(outcome);
-        }
-    }
-
-    fn edit_shown(&mut self, registry: &Registry) -> Vec<Effect> {
-        let id = self.model_shown();
-        let path = registry.model(id).map_or_else(|| source_path(id), |m| m.declaration.wgsl.path.to_owned());
-        match self.shaders.folders.file_of(&path) {
-            Some(file) => vec![Effect::OpenInEditor { path: file, line: self.line_of_trouble(&path) }],
-            None => {
-                self.say(Severity::Info, BUILT_IN);
-                self.view.unfold(SHADER_TAB);
-                Vec::new()
-            }
-        }
-    }
-
-    /// The line of the first problem in a file; 1 when there is none.
-    #[must_use]
-    pub fn line_of_trouble(&self, path: &str) -> usize {
-        self.shaders.troubles.iter().find(|t| t.problem.file == path).map_or(1, |t| t.problem.line)
-    }
-}
-
-/// The reason why a file can't be opened.
-pub const BUILT_IN: &str = "The shaders are built in, so there is no file to open. Export the shaders first: \
-     Edit, “Export shaders for editing…”. Or copy the model as a file.";
 
 /// The buttons about custom models, for the chooser and the panel.
 pub fn buttons(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
@@ -399,47 +211,4 @@ fn said_of(ui: &mut Ui, session: &Session, checked: &Result<String, NameProblem>
         }
     }
     None
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_taken_as_the_command_line_takes_them_and_the_message_says_one_that_would_do() {
-        let registry = Registry::builtin();
-        for (good, id) in [
-            ("my_velvet", "my_velvet"),
-            ("x", "x"),
-            ("Student toon", "student_toon"),
-            ("  My  GGX-2 (test)! ", "my_ggx_2_test"),
-            ("a__b", "a__b"),
-        ] {
-            assert_eq!(check_name(good, &registry).as_deref(), Ok(id), "{good}");
-            assert_eq!(id_of_name(good).as_deref(), Ok(id), "{good}");
-        }
-        for (bad, word) in [
-            ("", "such as My velvet"),
-            ("2 fast", "“fast” would do"),
-            ("../evil", "“evil” would do"),
-            ("velvet.wgsl", "“velvet_wgsl” would do"),
-            ("größe", "“groesse” would do"),
-            ("Évolué", "“evolue” would do"),
-            ("漢字", "“han_zi” would do"),
-            ("42", "at most 40."),
-            (&"x".repeat(41), &format!("“{}” would do", "x".repeat(40))),
-        ] {
-            let said = check_name(bad, &registry).expect_err(bad).why;
-            assert!(said.contains(word), "{bad}: {said}");
-            assert!(id_of_name(bad).is_err(), "{bad}");
-        }
-        let said = check_name("Phong", &registry).expect_err("there is one");
-        assert_eq!(said.why, "There is already a model “phong”; “phong_2” is free.");
-        assert_eq!(said.instead.as_deref(), Some("phong_2"));
-        assert!(check_name(&"x".repeat(40), &registry).is_ok());
-        let mut registry = Registry::builtin();
-        registry.mark_broken("my_velvet", "why".to_owned());
-        let said = check_name("My velvet", &registry).expect_err("there is a file");
-        assert_eq!(said.why, "There is already a file models/my_velvet.wgsl; “my_velvet_2” is free.");
-    }
 }

@@ -2,35 +2,11 @@
 
 use bevy_egui::egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
 
-use super::state::{Badge, Session, Severity};
+use super::state::{Badge, Clipping, Session, Severity};
 use crate::document::limits;
-
-/// Fields across and down in which clipped pixels are counted.
-pub const GRID: [usize; 2] = [128, 96];
 
 /// The part of a picture that may clip without a sign: sharp highlights. New lights keep to it.
 pub const TOLERATED: f64 = 0.001;
-
-/// The clipped parts of the picture.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Clipping {
-    /// Clipped pixels in each field, row by row from the top left.
-    counts: Vec<u32>,
-}
-
-impl Clipping {
-    /// From the pixels counted in each field; `None` where none clips.
-    #[must_use]
-    pub fn new(counts: Vec<u32>) -> Option<Self> {
-        (counts.len() == GRID[0] * GRID[1] && counts.iter().any(|n| *n > 0)).then_some(Self { counts })
-    }
-
-    /// Pixels that clip.
-    #[must_use]
-    pub fn pixels(&self) -> u64 {
-        self.counts.iter().map(|n| u64::from(*n)).sum()
-    }
-}
 
 /// "3 %", "under 0.1 %".
 fn percent(share: f64) -> String {
@@ -67,7 +43,7 @@ pub fn paint(painter: &Painter, rect: Rect, session: &Session, pixels_per_point:
         return;
     };
     let mut mesh = Mesh::default();
-    let [across, down] = GRID;
+    let [across, down] = Clipping::GRID;
     let edge = |low: f32, extent: f32, k: usize, of: usize| {
         // On whole pixels, so that no seams show.
         ((low + extent * k as f32 / of as f32) * pixels_per_point).round() / pixels_per_point
@@ -100,7 +76,7 @@ mod tests {
 
     #[test]
     fn there_is_no_sign_where_nothing_clips() {
-        let fields = GRID[0] * GRID[1];
+        let fields = Clipping::GRID[0] * Clipping::GRID[1];
         assert_eq!(Clipping::new(vec![0; fields]), None);
         assert_eq!(Clipping::new(vec![1; 3]), None);
         let mut counts = vec![0; fields];

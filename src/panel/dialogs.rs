@@ -9,9 +9,8 @@ use bevy_egui::egui::{
 use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
 use super::{
-    author::ModelCommand,
     preview::{self, Preview, Source},
-    state::{Action, Effect, Session},
+    state::{Action, Effect, ModelCommand, Session},
     theme::{self, Palette},
 };
 use crate::registry::Registry;

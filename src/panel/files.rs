@@ -1,19 +1,14 @@
-//! Carrying out the effects that need files: opening, saving, settings.
+//! The boundary to scene files: what the window needs, and nothing of how it is done.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::{
-    reload, settings,
-    state::{Effect, MissingPart, Question, Session, Severity},
-};
+use super::state::MissingPart;
 use crate::{
-    files::tidy,
     registry::Registry,
     scene::{Scene, load::Stamp},
 };
 
-/// The boundary to reading and writing scene files: what the window needs, and nothing of how it is
-/// done.
+/// Reading and writing scene files.
 pub trait Files: Send + Sync + 'static {
     /// Reads a scene file.
     fn open(&mut self, path: &Path, registry: &Registry) -> Opened;
@@ -69,96 +64,4 @@ pub enum Saved {
     ChangedOnDisk,
     /// It could not be written: why.
     Failed(String),
-}
-
-/// The file that is meant by what was typed as the name of a scene: it ends in `.json`, once.
-#[must_use]
-pub fn scene_file(typed: &Path) -> PathBuf {
-    let json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    match (json(typed), typed.file_stem().map(Path::new)) {
-        (false, _) => {
-            let mut name = typed.as_os_str().to_owned();
-            name.push(".json");
-            name.into()
-        }
-        // Some dialogs add an extension to whatever is typed.
-        (true, Some(stem)) if json(stem) => typed.with_file_name(stem),
-        _ => typed.to_owned(),
-    }
-}
-
-/// Carries out an effect that needs files. Returns the effects that follow, among them the one given
-/// when it is none of this module's.
-#[must_use]
-pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &mut dyn Files) -> Vec<Effect> {
-    match effect {
-        Effect::OpenFile(path) => match files.open(&path, registry) {
-            Opened::Scene(scene) => session.opened(path, *scene),
-            Opened::Incomplete { scene, parts } => {
-                session.questions.ask(Question::MissingParts { path, scene, parts });
-                Vec::new()
-            }
-            Opened::Empty => {
-                session.questions.ask(Question::EmptyFile { path });
-                Vec::new()
-            }
-            Opened::Failed(problems) => {
-                // The latest stands on top: the first problem, and above it what it means.
-                for problem in problems.into_iter().rev() {
-                    session.say(Severity::Error, problem);
-                }
-                session.say(
-                    Severity::Error,
-                    format!("{} was not opened; {} is still shown.", path.display(), session.title()),
-                );
-                Vec::new()
-            }
-        },
-        Effect::SaveFile { path, overwrite } => {
-            match files.save(&path, &session.document, registry, overwrite) {
-                Saved::Done => session.saved(path, registry),
-                Saved::ChangedOnDisk => {
-                    session.questions.ask(Question::ChangedOnDisk { path });
-                    Vec::new()
-                }
-                Saved::Failed(why) => {
-                    session.questions.not_saved();
-                    session.say(Severity::Error, why);
-                    Vec::new()
-                }
-            }
-        }
-        Effect::LookAtFile { discard } => reload::look(session, registry, discard, files),
-        Effect::ExpectFile { path, version } => {
-            files.expect(&path, Some(version));
-            Vec::new()
-        }
-        Effect::SaveSettings => {
-            save_settings(session);
-            Vec::new()
-        }
-        other => vec![other],
-    }
-}
-
-/// Reads the settings of the last session into the state; says so when they cannot be read.
-pub fn load_settings(session: &mut Session) {
-    if let Some(folder) = settings::folder() {
-        // What is unfinished in there is settings, and those are read in a moment.
-        let _ = tidy(&folder);
-        let (settings, complaint) = settings::load(&folder);
-        session.adopt(settings);
-        if let Some(complaint) = complaint {
-            session.say(Severity::Warning, complaint);
-        }
-    }
-}
-
-/// Writes the settings for the next session; says so when they cannot be written.
-pub fn save_settings(session: &mut Session) {
-    if let Some(folder) = settings::folder()
-        && let Err(complaint) = settings::save(&folder, &session.settings())
-    {
-        session.say(Severity::Warning, complaint);
-    }
 }

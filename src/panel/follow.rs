@@ -5,7 +5,7 @@
 
 use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 
-use super::state::{Session, Severity};
+use super::state::{Kept, ParameterPlace, Session, Severity, StashedValues};
 use crate::document::Selection;
 use crate::{
     document::PartId,
@@ -13,51 +13,9 @@ use crate::{
     registry::Registry,
 };
 
-/// An object, and the name of a parameter.
-type Place = (PartId, Cow<'static, str>);
-
-/// A value that was stashed.
-#[derive(Clone, Debug, PartialEq)]
-struct Kept {
-    /// The value that the user wants.
-    wanted: Value,
-    /// The value that the document has in its place, if any.
-    instead: Option<Value>,
-}
-
-/// The values of the document that no model takes, and that come back when one does.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StashedValues(BTreeMap<Place, Kept>);
-
-impl StashedValues {
-    /// The number of stashed values.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    /// True if nothing is stashed.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// Another document is open.
-    pub(super) fn clear(&mut self) {
-        self.0.clear();
-    }
-
-    /// An object was copied.
-    pub(super) fn copied(&mut self, from: PartId, to: PartId) {
-        let theirs = self.0.iter().filter(|((object, _), _)| *object == from);
-        let copies: Vec<_> = theirs.map(|((_, name), kept)| ((to, name.clone()), kept.clone())).collect();
-        self.0.extend(copies);
-    }
-}
-
 /// A value of the document that becomes another one.
 struct Change {
-    place: Place,
+    place: ParameterPlace,
     /// The value that the user wants.
     wanted: Value,
     /// The value that the document gets.

@@ -1,6 +1,6 @@
 //! The parts of an equation: brackets, roots, fractions, and the places at which a line may be broken.
 
-use super::maths::{self, Atom};
+use super::maths::{Atom, parse};
 
 /// A piece of an equation.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ pub fn tree(text: &str) -> Vec<Node> {
     let mut stack: Vec<(Atom, Vec<Node>)> = Vec::new();
     let mut here: Vec<Node> = Vec::new();
     let bracket = |atom: &Atom, any: &str| !atom.base().is_empty() && any.contains(atom.base());
-    for atom in maths::parse(text) {
+    for atom in parse(text) {
         // Of two bars the second closes, and a bar between other brackets closes before they do.
         let bar = |stack: &[(Atom, Vec<Node>)]| stack.last().is_some_and(|(open, _)| open.base() == "|");
         while bracket(&atom, ")]⟩") && bar(&stack) {

@@ -3,9 +3,8 @@
 use bevy_egui::egui::{self, Key, Modifiers};
 
 use super::{
-    author::{ModelCommand, SHADER_TAB},
     focus,
-    state::{Action, PictureArea, Session, Steer, ViewChange},
+    state::{Action, ModelCommand, PictureArea, SHADER_TAB, Session, Steer, ViewChange},
 };
 use crate::registry::Registry;
 

@@ -3,9 +3,8 @@
 use bevy_egui::egui::{self, RichText, Sense, Ui, vec2};
 
 use super::{
-    author::{LawCheck, ModelCommand},
     icon,
-    state::{Action, Session, Severity},
+    state::{Action, LawCheck, ModelCommand, Session, Severity},
     theme::{self, Palette},
 };
 use crate::{reflection::law_report::LawReport, registry::Registry};

@@ -5,13 +5,10 @@ use bevy_egui::egui::{self, Align, Layout, RichText, ScrollArea, Sense, Ui, vec2
 use super::{
     Panel, Place,
     icon::{self, Icon},
-    state::{Action, Session},
+    state::{Action, MESSAGES_TAB, Session},
     theme::Palette,
 };
 use crate::registry::Registry;
-
-/// Id of the panel that shows the messages.
-pub const MESSAGES_TAB: &str = "messages";
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]

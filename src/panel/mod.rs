@@ -26,7 +26,8 @@ use bevy_egui::{
 use crate::registry::Registry;
 pub use dialogs::Dialogs;
 use focus::Region;
-use state::{Action, Effect, LabEffect, PictureArea, Session, Severity, ViewChange};
+use state::{Action, Effect, LabEffect, PictureArea, SHADER_TAB, Session, Severity, ViewChange};
+pub use state::{PanelInfo, Place};
 use theme::Palette;
 use widths::Widths;
 
@@ -35,6 +36,7 @@ pub mod caption;
 pub mod chooser;
 pub mod clipping;
 pub mod dialogs;
+pub mod effects;
 pub mod files;
 mod focus;
 pub mod follow;
@@ -56,8 +58,8 @@ mod placing;
 pub mod presentation;
 pub mod preview;
 pub mod question;
-pub mod recovery;
 pub mod reload;
+pub mod segmented;
 pub mod settings;
 pub mod shader;
 pub mod state;
@@ -81,21 +83,6 @@ pub fn register_builtin(to: &mut Panels) {
     to.add(inspector::Inspector);
 }
 
-/// The place of a panel, in the order in which F6 goes through them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Place {
-    /// Across the top.
-    Top,
-    /// At the left; several stand one above the other.
-    Left,
-    /// At the right; several stand one above the other.
-    Right,
-    /// In the strip at the bottom; several are tabs.
-    Bottom,
-    /// The last line.
-    Status,
-}
-
 /// A part of the window: a function of the state that returns actions.
 pub trait Panel: Send + Sync + 'static {
     /// A name that no other panel has.
@@ -110,17 +97,6 @@ pub trait Panel: Send + Sync + 'static {
     }
     /// Shows it. What the user does comes back as actions.
     fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>;
-}
-
-/// The entry of a panel in menus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PanelInfo {
-    /// See [`Panel::id`].
-    pub id: &'static str,
-    /// See [`Panel::title`].
-    pub title: &'static str,
-    /// See [`Panel::place`].
-    pub place: Place,
 }
 
 /// The panels of the window.
@@ -342,7 +318,7 @@ fn bottom(
 ) {
     let most = 0.6 * whole.height();
     // An error with its line of source is seen whole.
-    let shader = session.view.bottom_tab == author::SHADER_TAB;
+    let shader = session.view.bottom_tab == SHADER_TAB;
     let least = if shader { SHADER_STRIP } else { 72.0 };
     let zoom = zoom_percent(ui.ctx());
     let strip = egui::Panel::bottom(Id::new(("bottom", zoom, shader)))

@@ -5,9 +5,9 @@ use bevy_egui::egui::{Button, Popup, RichText, Sense, TextStyle, Ui, WidgetInfo,
 
 use super::{
     chooser, knob,
+    segmented::segmented,
     state::Session,
     theme::{self, Palette},
-    top::segmented,
 };
 use crate::document::ObjectField;
 use crate::{registry::Registry, scene::Object};

@@ -7,11 +7,10 @@ use bevy_egui::egui::{
 use glam::Vec3;
 
 use super::{
-    author::SHADER_TAB,
     caption::{self, Lines, caption_text, models_shown},
     clipping, icon, marks,
     presentation::Stage,
-    state::{Action, Badge, Session, Severity, ViewChange},
+    state::{Action, Badge, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
 use crate::{

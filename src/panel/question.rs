@@ -1,9 +1,11 @@
 //! Questions that must be answered: the only thing that stops everything else.
 
+use std::path;
+
 use bevy_egui::egui::{self, Align, Button, Id, Key, Layout, Modal, RichText, Ui, vec2};
 
 use super::{
-    state::{Action, Answer, Question, Session},
+    state::{Action, Answer, Offer, Question, Session},
     theme::{self, Palette},
 };
 
@@ -54,11 +56,11 @@ pub fn show(ctx: &egui::Context, session: &Session) -> Vec<Action> {
 }
 
 /// Title, text, lines of details (what, more), answers.
-pub(super) type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, Answer)>);
+type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, Answer)>);
 
 fn words(session: &Session, question: &Question) -> Words {
     match question {
-        Question::Recover(offer) => offer.words(session),
+        Question::Recover(offer) => recovery(session, offer),
         Question::Unsaved { .. } => (
             "Save the changes?",
             format!("“{}” has unsaved changes.", session.title()),
@@ -106,5 +108,71 @@ fn words(session: &Session, question: &Question) -> Words {
                 ("Decide when saving", Answer::Cancel),
             ],
         ),
+    }
+}
+
+/// The question about work that an earlier window left unsaved.
+fn recovery(session: &Session, offer: &Offer) -> Words {
+    let Offer { title, path: at, file, when, scene } = offer;
+    let mut text = format!("“{title}” had unsaved changes when its window closed unexpectedly {when}.");
+    let mut details = Vec::new();
+    if let Err(problem) = scene {
+        text += " The recovery copy can't be read.";
+        // Behind the name of the file come line and column.
+        let at = problem.strip_prefix(&format!("{}:", file.display()));
+        let problem = at.map_or_else(|| problem.clone(), |at| format!("line {at}"));
+        details.push(("Problem".to_owned(), problem));
+        details.push(("Copy".to_owned(), file.display().to_string()));
+        let answers = vec![("Keep the copy", Answer::Cancel), ("Delete it", Answer::Discard)];
+        return ("Keep the recovery copy?", text, details, answers);
+    }
+    let shown = session.path.as_ref().and_then(|shown| path::absolute(shown).ok());
+    if shown.is_some() && shown != *at {
+        text += &format!(" Recovering them closes “{}”.", session.title());
+    }
+    let place = at.as_ref().map_or_else(|| "never saved".to_owned(), |at| at.display().to_string());
+    details.push(("File".to_owned(), place));
+    let answers = vec![("Recover", Answer::Recover), ("Discard", Answer::Discard), ("Later", Answer::Cancel)];
+    ("Recover unsaved changes?", text, details, answers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn offer(scene: Result<Scene, String>) -> Offer {
+        Offer {
+            title: "Room".to_owned(),
+            path: Some("/scenes/room.json".into()),
+            file: "/data/recovery/1-2/scene.json".into(),
+            when: "5 minutes ago".to_owned(),
+            scene,
+        }
+    }
+
+    #[test]
+    fn the_question_names_the_scene_its_file_and_what_is_wrong() {
+        let session = Session::default();
+        let all = |offer: Offer| {
+            let (title, text, details, answers) = recovery(&session, &offer);
+            let details: Vec<_> = details.into_iter().map(|(what, more)| format!("{what}: {more}")).collect();
+            (format!("{title}\n{text}\n{}", details.join("\n")), answers)
+        };
+        let (text, answers) = all(offer(Ok(Scene::default())));
+        for part in ["“Room”", "/scenes/room.json", "5 minutes ago"] {
+            assert!(text.contains(part), "{text}");
+        }
+        // Enter loses nothing, and neither does Escape.
+        assert_eq!(answers[0].1, Answer::Recover);
+        let copy = "/data/recovery/1-2/scene.json";
+        let (text, answers) = all(offer(Err(format!("{copy}:3:1: what is odd"))));
+        assert!(
+            text.contains("Problem: line 3:1: what is odd") && text.contains(&format!("Copy: {copy}")),
+            "{text}"
+        );
+        assert_eq!(answers[0].1, Answer::Cancel);
+        let (text, _) = all(Offer { path: None, ..offer(Ok(Scene::default())) });
+        assert!(text.contains("never saved"), "{text}");
     }
 }

@@ -3,53 +3,17 @@
 //! Whoever edits the file elsewhere sees the scene follow. What was changed in the window is never
 //! replaced without a question, and a file that cannot be used replaces nothing.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::{
     files::{Files, Looked, Opened},
-    state::{Badge, Effect, MissingPart, Note, Question, Session, Severity},
+    state::{Effect, MissingPart, Question, Session, Severity},
 };
 use crate::document::Selection;
 use crate::{
-    files::printable,
     registry::Registry,
     scene::{Scene, load::Stamp},
 };
-
-/// A state of a file on disk: its content, or that there is no file.
-type Version = Option<Stamp>;
-
-/// Facts about the document's file on disk beyond the document itself.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct OnDisk {
-    /// The remark of the picture on it.
-    pub badge: Option<Badge>,
-    /// The document may take the defaults of any part that its file lacks.
-    pub use_defaults: bool,
-    /// True if the document came from a recovery copy: no file is known to have it.
-    pub(super) recovered: bool,
-    /// The names of the parts that the file lacks and that the document got as defaults.
-    pub(super) defaulted: Vec<String>,
-    /// True if the file was deleted, so that only the window has the document.
-    gone: bool,
-    /// News came while a question was open.
-    pub(super) deferred: bool,
-    /// A version that cannot be used, but that may be in the middle of being written.
-    suspect: Option<Version>,
-    /// The version that cannot be used of which the user was told.
-    told: Option<Version>,
-    /// The version about which the user was asked.
-    asked: Option<Version>,
-    /// The messages about the file, which give way to newer ones.
-    notes: Vec<Note>,
-}
-
-impl OnDisk {
-    /// True if no file has what the document began with.
-    pub(super) fn lacks_document(&self) -> bool {
-        self.recovered || !self.defaulted.is_empty() || self.gone
-    }
-}
 
 /// Looks whether the document's file is another one than was last seen, and does what follows.
 /// `discard` takes what is on disk even if it costs unsaved changes: the user was asked.
@@ -135,7 +99,7 @@ fn doubt(
     session: &mut Session,
     files: &mut dyn Files,
     path: PathBuf,
-    version: Version,
+    version: Option<Stamp>,
     problems: Vec<String>,
 ) -> Vec<Effect> {
     if session.disk.told == Some(version) {
@@ -154,17 +118,19 @@ fn doubt(
         session.disk.gone = true;
         let text =
             format!("{} is no longer there; what is shown is kept. Saving writes it anew.", path.display());
-        session.disk.badge = badge(
+        session.set_disk_badge(
             Severity::Warning,
-            &format!("{} was deleted: only this window has the scene", file_name(&path)),
+            &path,
+            "was deleted: only this window has the scene",
             &text,
         );
         session.say_of_disk(Severity::Warning, text);
         return Vec::new();
     }
-    session.disk.badge = badge(
+    session.set_disk_badge(
         Severity::Error,
-        &format!("{} has errors: showing the last good version", file_name(&path)),
+        &path,
+        "has errors: showing the last good version",
         &problems.join("\n"),
     );
     // The latest stands on top: the first problem.
@@ -174,62 +140,7 @@ fn doubt(
     vec![Effect::Complain(problems.join("\n"))]
 }
 
-/// A badge without what names of files may hold that is not to be shown.
-fn badge(severity: Severity, text: &str, help: &str) -> Option<Badge> {
-    Some(Badge { severity, text: printable(text).into_owned(), help: printable(help).into_owned() })
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
-}
-
 impl Session {
-    /// The document's file is as it should be, or is the user's concern: what was said of it is over.
-    pub(super) fn disk_settled(&mut self) {
-        let notes = std::mem::take(&mut self.disk.notes);
-        self.messages.retain(|m| !notes.contains(m));
-        let known = std::mem::take(&mut self.disk);
-        self.disk = OnDisk {
-            use_defaults: known.use_defaults,
-            recovered: known.recovered,
-            defaulted: known.defaulted,
-            deferred: known.deferred,
-            ..OnDisk::default()
-        };
-    }
-
-    /// The document is as its file has it, or is another one.
-    pub(super) fn disk_saved(&mut self) {
-        self.disk_settled();
-        self.disk.recovered = false;
-        self.disk.defaulted.clear();
-    }
-
-    /// The user leaves it open whether the file on disk or the document counts.
-    pub(super) fn disk_undecided(&mut self, path: &Path) {
-        self.disk.badge = badge(
-            Severity::Warning,
-            &format!("{} changed on disk: showing yours", file_name(path)),
-            &format!(
-                "{} was changed by another program, and there are changes here that are not saved. Saving asks which \
-                 of both to keep.",
-                path.display()
-            ),
-        );
-    }
-
-    /// Says something about the file that gives way when there is something newer to say.
-    fn say_of_disk(&mut self, severity: Severity, text: String) {
-        let note = Note::new(severity, text);
-        self.disk.notes.push(note.clone());
-        self.note(note);
-    }
-
-    /// True if the user agreed to the defaults of all these parts.
-    fn may_default(&self, parts: &[MissingPart]) -> bool {
-        self.disk.use_defaults || parts.iter().all(|p| self.disk.defaulted.contains(&p.name))
-    }
-
     /// The scene in the document's file becomes the document. Camera and terms stay as they are, and so
     /// does the selection where it still means something.
     fn reloaded(&mut self, scene: Scene, defaulted: Vec<String>) {

@@ -7,8 +7,8 @@ use std::{
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::state::{ThemeChoice, View};
-use crate::files::{self, FileError};
+use super::state::{RECENT_FILES, Session, Severity, ThemeChoice, View, nearest_scale};
+use crate::files::{self, FileError, tidy};
 
 /// The environment variable that names another folder for the settings.
 pub const FOLDER_VARIABLE: &str = "LCM_CONFIG_DIR";
@@ -16,15 +16,6 @@ pub const FOLDER_VARIABLE: &str = "LCM_CONFIG_DIR";
 const FILE: &str = "settings.json";
 /// Settings are not larger; long names of recent files included.
 const MAX_BYTES: u64 = 1 << 20;
-
-/// The sizes of everything, per cent.
-pub const SCALES: [u16; 6] = [100, 110, 125, 150, 175, 200];
-
-/// The nearest of [`SCALES`].
-#[must_use]
-pub fn nearest_scale(percent: u16) -> u16 {
-    SCALES.into_iter().min_by_key(|s| s.abs_diff(percent)).unwrap_or(100)
-}
 
 /// The settings that survive a restart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -123,6 +114,54 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
         files::write(&path, text.as_bytes())
     };
     write().map_err(|e| format!("The settings cannot be written to {}: {e}.", path.display()))
+}
+
+/// Reads the settings of the last session into the state; says so when they cannot be read.
+pub fn load_settings(session: &mut Session) {
+    if let Some(folder) = folder() {
+        // What is unfinished in there is settings, and those are read in a moment.
+        let _ = tidy(&folder);
+        let (settings, complaint) = load(&folder);
+        session.adopt(settings);
+        if let Some(complaint) = complaint {
+            session.say(Severity::Warning, complaint);
+        }
+    }
+}
+
+/// Writes the settings for the next session; says so when they cannot be written.
+pub fn save_settings(session: &mut Session) {
+    if let Some(folder) = folder()
+        && let Err(complaint) = save(&folder, &session.settings())
+    {
+        session.say(Severity::Warning, complaint);
+    }
+}
+
+impl Session {
+    /// The settings that survive a restart.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        Settings {
+            theme: self.view.theme,
+            scale: self.view.scale,
+            left_width: self.view.left_width,
+            right_width: self.view.right_width,
+            bottom_height: self.view.bottom_height,
+            recent_files: self.recent_files.clone(),
+        }
+    }
+
+    /// Takes over the settings that survived a restart.
+    pub fn adopt(&mut self, settings: Settings) {
+        self.view.theme = settings.theme;
+        self.view.scale = settings.scale;
+        self.view.left_width = settings.left_width;
+        self.view.right_width = settings.right_width;
+        self.view.bottom_height = settings.bottom_height;
+        self.recent_files = settings.recent_files;
+        self.recent_files.truncate(RECENT_FILES);
+    }
 }
 
 impl Settings {

@@ -6,10 +6,8 @@ use bevy_egui::egui::{
 
 use super::{
     Panel, Place,
-    author::SHADER_TAB,
     icon::{self, Icon},
-    messages::MESSAGES_TAB,
-    state::{Action, Session, Severity, ViewChange},
+    state::{Action, MESSAGES_TAB, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
 use crate::{registry::Registry, text::plural};

@@ -9,7 +9,7 @@ use bevy_egui::egui::{
 
 use super::{
     formula::{Node, bare, factors, flattened, is_sign, is_space, multiplied, terms},
-    maths::{self, Atom, Laid},
+    maths::{Atom, Laid, lay_out},
 };
 
 /// One thing that is painted, relative to the left end of the baseline.
@@ -165,7 +165,7 @@ impl Setter<'_> {
     }
 
     fn atom(self, atom: &Atom) -> Set {
-        let laid = maths::lay_out(self.ui, atom, self.size, self.colour);
+        let laid = lay_out(self.ui, atom, self.size, self.colour);
         let scripts = |which: fn(&Atom) -> &str| !which(atom).is_empty();
         let up = if scripts(Atom::sup) { 1.0 } else { 0.78 };
         let down = if scripts(Atom::sub) { 0.42 } else { 0.24 };
@@ -357,7 +357,7 @@ fn times() -> [Node; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panel::{formula::tree, theme};
+    use crate::panel::{formula::tree, maths, theme};
     use bevy_egui::egui;
 
     /// Sets every part of every equation at this width; `see` gets the text and its lines.

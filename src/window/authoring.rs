@@ -9,10 +9,7 @@ pub use crate::library::assets::write_new;
 use crate::{
     custom,
     library::assets::{self, Exported, Folders},
-    panel::{
-        author::ModelDraft,
-        state::{Effect, Session, Severity},
-    },
+    panel::state::{Effect, ModelDraft, Session, Severity},
     registry::Registry,
 };
 

@@ -35,10 +35,7 @@ use super::{
 };
 use crate::{
     optics::{colour::Encoding, tone::ToneMapping},
-    panel::{
-        clipping::{Clipping, GRID},
-        state::Session,
-    },
+    panel::state::{Clipping, Session},
     render::{
         entities::CurrentScene,
         overrides::Overrides,
@@ -56,7 +53,7 @@ pub(super) struct ClippingPlugin;
 
 impl Plugin for ClippingPlugin {
     fn build(&self, app: &mut App) {
-        let [across, down] = GRID.map(|n| n as u32);
+        let [across, down] = Clipping::GRID.map(|n| n as u32);
         let text = include_str!("clipping.wgsl")
             .replace("ACROSS", &format!("{across}u"))
             .replace("DOWN", &format!("{down}u"));
@@ -228,6 +225,6 @@ fn count(
         .begin_compute_pass(&ComputePassDescriptor { label: Some("clipping"), timestamp_writes: None });
     compute.set_pipeline(pipeline);
     compute.set_bind_group(0, &group, &[]);
-    let [across, down] = GRID.map(|n| (n as u32).div_ceil(GROUP));
+    let [across, down] = Clipping::GRID.map(|n| (n as u32).div_ceil(GROUP));
     compute.dispatch_workgroups(across, down, 1);
 }

@@ -9,7 +9,7 @@ use bevy::{
 use super::{authoring, camera, editor, files, laws, recovery, shaders, watching};
 use crate::{
     panel::{
-        files::run as run_files,
+        effects::run as run_files,
         state::{Effect, LabEffect, Session, Severity},
     },
     registry::Registry,

@@ -30,7 +30,7 @@ use crate::{
     failure::Failure,
     panel::{
         PanelPlugin,
-        files::load_settings,
+        settings::load_settings,
         state::{Effect, LabEffect, Session, Severity},
     },
     recovery::Store,

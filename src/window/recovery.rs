@@ -20,8 +20,7 @@ use super::{ending::PATIENCE, files::DiskFiles, watching::complain};
 use crate::{
     panel::{
         files::Files as _,
-        recovery::{Choice, Offer},
-        state::{Action, LabEffect, Question, Session, Severity},
+        state::{Action, LabEffect, Offer, Question, RecoveryChoice, Session, Severity},
     },
     recovery::{About, Document, Keeper, Left, Store, ago},
     registry::Registry,
@@ -121,14 +120,14 @@ impl Recovery {
     /// Carries out the answer to the question about a copy.
     pub(super) fn answer(
         &mut self,
-        choice: Choice,
+        choice: RecoveryChoice,
         session: &mut Session,
         files: &mut DiskFiles,
         registry: &Registry,
     ) {
         let Some(left) = self.asked.take() else { return };
         match choice {
-            Choice::Recovered => {
+            RecoveryChoice::Recovered => {
                 if let Some(path) = &left.about.path {
                     files.expect(path, left.about.stamp);
                 }
@@ -143,9 +142,9 @@ impl Recovery {
                     session.say(Severity::Info, text);
                 }
             }
-            Choice::Discarded => left.journal.remove(),
-            Choice::Next => {}
-            Choice::Later => self.left.clear(),
+            RecoveryChoice::Discarded => left.journal.remove(),
+            RecoveryChoice::Next => {}
+            RecoveryChoice::Later => self.left.clear(),
         }
     }
 }

@@ -1,10 +1,7 @@
 //! The picture says where it clips: counted in what the renderer draws.
 
 use bevy_egui::egui::{Color32, PointerButton};
-use lights_camera_models::panel::{
-    clipping::{Clipping, GRID},
-    state::{Action, Session, ViewChange},
-};
+use lights_camera_models::panel::state::{Action, Clipping, Session, ViewChange};
 
 use crate::{panels::Bench, screen::Picture};
 
@@ -16,7 +13,7 @@ fn the_sign_tells_the_share_and_the_view_shows_where() {
     assert!(!bench.says("Clipped"));
     // The fields of a quarter of the picture, at its upper left.
     let rect = bench.area.rect;
-    let [across, down] = GRID;
+    let [across, down] = Clipping::GRID;
     let field = (rect.area() / (across * down) as f32) as u32;
     let corner = |i: usize| i % across < across / 2 && i / across < down / 2;
     let counts = (0..across * down).map(|i| if corner(i) { field } else { 0 }).collect();

@@ -10,7 +10,7 @@ use lights_camera_models::{
     document::{Edit, Extent, LightField, ObjectField, PartId, Selection},
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
-        files,
+        effects,
         state::{Action, Answer, Effect, Question, Session},
     },
     parameter::Value,
@@ -84,7 +84,7 @@ impl Desk {
             | Effect::LookAtFile { .. }
             | Effect::ExpectFile { .. } = effect
             {
-                let more = files::run(&mut self.session, &self.registry, effect, &mut self.files);
+                let more = effects::run(&mut self.session, &self.registry, effect, &mut self.files);
                 self.carry_out(more);
             }
         }

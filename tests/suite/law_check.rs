@@ -5,10 +5,7 @@ use std::{path::PathBuf, sync::mpsc, time::Duration};
 use bevy_egui::egui::accesskit::Role;
 use lights_camera_models::{
     library::{assets::Folders, status::Reloaded},
-    panel::{
-        author::ModelCommand,
-        state::{Action, Effect, Session, Severity, ViewChange},
-    },
+    panel::state::{Action, Effect, ModelCommand, Session, Severity, ViewChange},
     reflection::law_report::LawReport,
     window::laws::LawChecks,
 };

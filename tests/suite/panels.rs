@@ -19,10 +19,9 @@ use lights_camera_models::{
     optics::{Frame, TermSelection, Terms, colour::Encoding, fresnel, tone::ToneMapping},
     panel::{
         self, Dialogs, Panels,
-        author::ModelCommand,
         state::{
-            Action, Answer, Effect, MissingPart, PictureArea, Question, Session, Severity, ThemeChoice,
-            ViewChange,
+            Action, Answer, Effect, MissingPart, ModelCommand, PictureArea, Question, Session, Severity,
+            ThemeChoice, ViewChange,
         },
     },
     parameter::{

@@ -7,11 +7,9 @@ use lights_camera_models::{
     document::Selection,
     optics::TermSelection,
     panel::{
-        clipping::{Clipping, GRID},
         marks::Lens,
         maths::definitions,
-        settings::SCALES,
-        state::{Action, Effect, Session, ViewChange},
+        state::{Action, Clipping, Effect, SCALES, Session, ViewChange},
     },
     registry::Registry,
     scene::{Scene, examples::EXAMPLES},
@@ -387,7 +385,7 @@ fn a_presentation_of_many_models_shows_the_equation_of_none() {
 #[test]
 fn badges_of_a_presentation_are_as_large_as_the_rest() {
     let mut bench = bench((1280.0, 720.0), "phong");
-    let all = GRID[0] * GRID[1];
+    let all = Clipping::GRID[0] * Clipping::GRID[1];
     bench.session.facts.clipping = Clipping::new(vec![50; all]);
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
     bench.apply(Action::View(ViewChange::Presenting(true)));
@@ -416,7 +414,7 @@ fn pictures_of_presentations() -> Result<(), Box<dyn std::error::Error>> {
         ("blinn_phong", (1280.0, 720.0), 200),
     ] {
         let mut bench = bench(size, model);
-        bench.session.facts.clipping = Clipping::new(vec![50; GRID[0] * GRID[1]]);
+        bench.session.facts.clipping = Clipping::new(vec![50; Clipping::GRID[0] * Clipping::GRID[1]]);
         bench.apply(Action::View(ViewChange::Scale(scale)));
         bench.apply(Action::View(ViewChange::Presenting(true)));
         bench.picture(&folder.join(format!("presentation-{model}.png")), egui::Color32::from_gray(46))?;

@@ -8,9 +8,9 @@ use lights_camera_models::{
     document::{Edit, ObjectField, Selection},
     optics::TermSelection,
     panel::{
-        files::{self, Files as _, Looked},
-        recovery::Offer,
-        state::{Action, Answer, Effect, Question, Session, Severity, ViewChange},
+        effects,
+        files::{Files as _, Looked},
+        state::{Action, Answer, Effect, Offer, Question, Session, Severity, ViewChange},
     },
     registry::Registry,
     render::entities::{CurrentScene, SceneEntities, reconcile},
@@ -67,7 +67,7 @@ impl Desk {
             if effect == Effect::DocumentChanged {
                 self.files.document_changed(self.session.path.as_deref());
             }
-            let more = files::run(&mut self.session, &self.registry, effect.clone(), &mut self.files);
+            let more = effects::run(&mut self.session, &self.registry, effect.clone(), &mut self.files);
             if more == [effect.clone()] {
                 self.left.push(effect);
             } else {

@@ -14,10 +14,9 @@ use lights_camera_models::{
     document::{Edit, ObjectField},
     library::status::{Reloaded, ShaderStatus, Trouble},
     panel::{
-        author::{ModelCommand, ModelDraft},
         picture,
         shader::consequence,
-        state::{Action, Effect, Session, Severity, ThemeChoice, ViewChange},
+        state::{Action, Effect, ModelCommand, ModelDraft, Session, Severity, ThemeChoice, ViewChange},
         theme::Palette,
     },
     registry::{Folders, Registry},

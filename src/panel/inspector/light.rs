@@ -10,9 +10,9 @@ use crate::{
     panel::{
         knob::{self, Caption},
         maths,
+        segmented::segmented,
         state::{Action, Session},
         theme,
-        top::segmented,
     },
     reflection::{EquationPart, Term, usage},
     registry::Registry,

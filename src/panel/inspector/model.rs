@@ -5,10 +5,11 @@ use bevy_egui::egui::{self, Sense, TextStyle, Ui, vec2};
 use crate::{
     optics::TermSelection,
     panel::{
-        author, chooser, icon, maths, shader,
-        state::{Action, Session, Severity, ViewChange},
+        chooser, icon, maths,
+        segmented::{segment_width, segmented},
+        shader,
+        state::{Action, SHADER_TAB, Session, Severity, ViewChange},
         theme::{self, Palette},
-        top::{segment_width, segmented},
     },
     reflection::ModelEntry,
     registry::Registry,
@@ -56,7 +57,7 @@ pub(super) fn missing_model(
                     actions.push(Action::View(ViewChange::Chooser(true)));
                 }
                 if !session.shaders.troubles.is_empty() && ui.button("Show the error").clicked() {
-                    actions.push(Action::View(ViewChange::BottomTab(author::SHADER_TAB.to_owned())));
+                    actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
                 }
             });
         });

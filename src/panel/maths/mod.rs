@@ -4,8 +4,7 @@
 //! The source is that of [`EquationPart`]: `_x` is a subscript, `^x` a superscript, braces group.
 
 use bevy_egui::egui::{
-    self, Color32, FontId, Id, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, WidgetType, pos2,
-    vec2,
+    self, Color32, Id, Pos2, Rect, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 
 use super::{
@@ -16,92 +15,14 @@ use super::{
 use crate::reflection::{EquationPart, Term};
 
 mod atom;
+mod laid;
 mod meaning;
 mod prose;
 
 pub use atom::{Atom, parse, parse_symbol, same_symbol};
+pub(super) use laid::{Laid, lay_out};
 pub use meaning::{definition, definitions, meaning};
 pub use prose::prose;
-
-/// A run of characters, and where it stands.
-#[derive(Clone)]
-pub(super) struct Piece {
-    pub(super) galley: std::sync::Arc<egui::Galley>,
-    pub(super) offset: Vec2,
-}
-
-/// An atom as it is set.
-#[derive(Clone)]
-pub(super) struct Laid {
-    pub(super) pieces: Vec<Piece>,
-    pub(super) width: f32,
-}
-
-/// Lays an atom out with its baseline at y = 0.
-pub(super) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
-    let (base, sub, sup, family) = match atom {
-        Atom::Symbol { base, sub, sup } => (base, sub, sup, variable(base)),
-        Atom::Upright { base, sub, sup } => (base, sub, sup, theme::maths()),
-        Atom::Space => return Laid { pieces: Vec::new(), width: 0.28 * size },
-    };
-    let baseline = |galley: &egui::Galley| {
-        galley.rows.first().map_or(0.0, |row| row.row.glyphs.first().map_or(0.0, |g| g.pos.y))
-    };
-    let text = |text: &str, family: egui::FontFamily, size: f32| {
-        ui.painter().layout_no_wrap(text.to_owned(), FontId::new(size, family), colour)
-    };
-    let padding = match base.as_str() {
-        "·" | "/" => 0.08 * size,
-        _ => 0.0,
-    };
-    let galley = text(base, family, size);
-    let mut pieces = Vec::new();
-    let mut x = padding;
-    let y = -baseline(&galley);
-    let advance = galley.size().x;
-    pieces.push(Piece { galley, offset: vec2(x, y) });
-    x += advance;
-    let script_size = (0.7 * size).max(9.0);
-    let mut width = x;
-    for (script, shift) in [(sub, 0.22 * size), (sup, -0.38 * size)] {
-        let mut x = x + 0.04 * size;
-        for run in runs(script) {
-            // One letter is a variable, as in a line; several are a word.
-            let family = if atom::is_variable(run) { variable(run) } else { theme::maths() };
-            let galley = text(run, family, script_size);
-            let y = shift - baseline(&galley);
-            let advance = galley.size().x;
-            width = width.max(x + advance);
-            pieces.push(Piece { galley, offset: vec2(x, y) });
-            x += advance;
-        }
-    }
-    Laid { pieces, width: width + padding }
-}
-
-/// The font of a variable: slanted, but capital Greek letters are upright by custom.
-fn variable(letter: &str) -> egui::FontFamily {
-    let capital = letter.starts_with(|c| ('Α'..='Ω').contains(&c));
-    if capital { theme::maths() } else { theme::maths_italic() }
-}
-
-/// The runs of an index or a power: its words and what stands between them.
-fn runs(script: &str) -> impl Iterator<Item = &str> {
-    let mut rest = script;
-    std::iter::from_fn(move || {
-        let first = rest.chars().next()?;
-        // Greek letters are variables, however many stand side by side.
-        let end = if first.is_alphabetic() && !first.is_ascii() {
-            first.len_utf8()
-        } else {
-            let same = |c: char| c.is_ascii_alphabetic() == first.is_ascii_alphabetic();
-            rest.find(|c: char| !same(c) || c.is_alphabetic() && !c.is_ascii()).unwrap_or(rest.len())
-        };
-        let (run, after) = rest.split_at(end);
-        rest = after;
-        Some(run)
-    })
-}
 
 /// One symbol in the colour of text, at a place; returns its width. `baseline` is where it stands.
 pub fn paint_symbol(ui: &Ui, left_baseline: Pos2, symbol: &str, size: f32, colour: Color32) -> f32 {
@@ -281,7 +202,7 @@ mod tests {
         }
         ctx.fonts_mut(|fonts| {
             for family in [theme::maths(), theme::maths_italic(), egui::FontFamily::Proportional] {
-                let font = FontId::new(17.0, family);
+                let font = egui::FontId::new(17.0, family);
                 // Where a character is drawn on the texture: the same place for all that are missing.
                 let mut place = |c: char| {
                     let galley = fonts.layout_no_wrap(c.to_string(), font.clone(), Color32::WHITE);

@@ -9,9 +9,8 @@ use bevy_egui::egui::{
 use super::missing_model;
 use crate::{
     panel::{
-        author::ModelCommand,
         icon::{self, Icon},
-        state::{Action, Session, Severity},
+        state::{Action, ModelCommand, Session, Severity},
         theme::{self, Palette},
     },
     registry::{

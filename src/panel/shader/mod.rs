@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Align, Layout, Rect, ScrollArea, Ui, UiBuilder};
 
 use super::{
     Panel, Place, author, laws,
-    state::{Action, Session, Severity},
+    state::{Action, SHADER_TAB, Session, Severity},
     theme::{self, Palette},
 };
 use crate::{custom::source_path, registry::Registry, text::plural};
@@ -22,7 +22,7 @@ pub struct Shader;
 
 impl Panel for Shader {
     fn id(&self) -> &'static str {
-        author::SHADER_TAB
+        SHADER_TAB
     }
 
     fn title(&self) -> &'static str {

@@ -7,9 +7,8 @@ use bevy_egui::egui::{
 use crate::{
     library::status::Trouble,
     panel::{
-        author::ModelCommand,
         icon,
-        state::{Action, Session, Severity},
+        state::{Action, ModelCommand, Session, Severity},
         theme::{self, Palette},
     },
     shader::report::annotated,

@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::{Answer, Effect, Session, Severity, ViewChange};
+use super::{Effect, Session, Severity, Steer, ViewChange};
 use crate::{
-    document::{Edit, Extent, LightField, ObjectField, Selection, limits},
+    document::{Edit, LightField, ObjectField, Selection, limits},
     optics::TermSelection,
-    panel::{author::ModelCommand, files::scene_file},
     registry::Registry,
-    scene::{Display, examples::EXAMPLES},
+    scene::Display,
 };
 
 /// An action of a user. Panels return these.
@@ -92,15 +91,55 @@ pub enum Action {
     DismissAll,
 }
 
-/// A small movement of the camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Steer {
-    /// Around what is looked at: to the right and up, degrees.
-    Turn(f32, f32),
-    /// To the right and up, in steps of a twentieth of the distance.
-    Move(f32, f32),
-    /// The distance to what is looked at times this.
-    Zoom(f32),
+/// The answer to a question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Save first, then do what was asked for.
+    Save,
+    /// Lose the changes and do what was asked for.
+    Discard,
+    /// Do nothing.
+    Cancel,
+    /// Use the defaults.
+    UseDefaults,
+    /// Replace what is on disk.
+    Overwrite,
+    /// Take what is on disk.
+    Reload,
+    /// Keep what is on screen; saving replaces what is on disk now.
+    Keep,
+    /// Go on with what an earlier window left.
+    Recover,
+}
+
+/// A command about custom models and shaders.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ModelCommand {
+    /// Begin a new model: ask what it shall be called.
+    New,
+    /// Begin a copy of the shown model: ask what it shall be called.
+    Duplicate,
+    /// The name of the model, as typed.
+    Type(String),
+    /// Write the file of the model.
+    Create,
+    /// Do not write it.
+    Cancel,
+    /// Open the file of the shown model in an editor.
+    EditShown,
+    /// Open a file in an editor.
+    Edit {
+        /// The file.
+        path: PathBuf,
+        /// The line to go to, from 1.
+        line: usize,
+    },
+    /// Try to find the laws of the shown model broken.
+    CheckLaws,
+    /// Choose a folder and write the shaders into it.
+    ExportDialog,
+    /// Write the shaders into a folder.
+    Export(PathBuf),
 }
 
 impl Session {
@@ -141,18 +180,7 @@ impl Session {
                 };
             }
             Action::SaveAsDialog => return vec![Effect::PickSave],
-            Action::SaveAs(path) => {
-                // The default scene and examples are called as their file from now on.
-                let shipped = |name: &String| EXAMPLES.iter().any(|example| example.name == *name);
-                if self.path.is_none() && self.document.name.as_ref().is_some_and(shipped) {
-                    self.document
-                        .change("Name of the scene", Extent::Rest, self.selection, |scene| scene.name = None);
-                }
-                // The dialog asked about the file that was typed, and about no other.
-                let meant = scene_file(&path);
-                let overwrite = meant == path;
-                return vec![Effect::SaveFile { path: meant, overwrite }];
-            }
+            Action::SaveAs(path) => return self.save_as(&path),
             Action::ClearRecent => {
                 self.recent_files.clear();
                 return vec![Effect::SaveSettings];

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use bevy::ecs::message::Message;
 
-use super::Steer;
-use crate::{panel::recovery::Choice, scene::load::Stamp};
+use crate::scene::load::Stamp;
 
 /// Work that needs files, entities or the operating system; the app carries it out.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,9 +13,9 @@ pub enum Effect {
     PickOpen,
     /// Show the dialog that chooses a file to save to.
     PickSave,
-    /// Read a file; see [`files::run`](crate::panel::files::run).
+    /// Read a file; see [`effects::run`](crate::panel::effects::run).
     OpenFile(PathBuf),
-    /// Write the document; see [`files::run`](crate::panel::files::run).
+    /// Write the document; see [`effects::run`](crate::panel::effects::run).
     SaveFile {
         /// The file.
         path: PathBuf,
@@ -40,7 +39,7 @@ pub enum Effect {
         version: Stamp,
     },
     /// The fate of the recovery copy that the question was about.
-    Recovery(Choice),
+    Recovery(RecoveryChoice),
     /// Write to standard error, for those who watch it.
     Complain(String),
     /// End the program.
@@ -86,6 +85,30 @@ pub enum Effect {
     PickShaderFolder,
     /// Write the shaders into a folder, to be edited there.
     ExportShaders(PathBuf),
+}
+
+/// A small movement of the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steer {
+    /// Around what is looked at: to the right and up, degrees.
+    Turn(f32, f32),
+    /// To the right and up, in steps of a twentieth of the distance.
+    Move(f32, f32),
+    /// The distance to what is looked at times this.
+    Zoom(f32),
+}
+
+/// The fate of a recovery copy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecoveryChoice {
+    /// It is the document now.
+    Recovered,
+    /// Nobody wants it.
+    Discarded,
+    /// It stays for another time; there may be others.
+    Next,
+    /// All stay for another time.
+    Later,
 }
 
 /// An [`Effect`] on its way to the systems that carry it out.

@@ -2,10 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use crate::{
-    panel::clipping::Clipping,
-    scene::{Observer, observer::rotation},
-};
+use crate::scene::{Observer, observer::rotation};
 
 /// Facts that the app feeds to the panels, as often as in every frame.
 ///
@@ -40,5 +37,30 @@ impl Facts {
     #[must_use]
     pub fn fps(&self) -> f32 {
         if self.frame_ms > 0.0 { 1000.0 / self.frame_ms } else { 0.0 }
+    }
+}
+
+/// The clipped parts of the picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clipping {
+    /// Clipped pixels in each field, row by row from the top left.
+    pub(in crate::panel) counts: Vec<u32>,
+}
+
+impl Clipping {
+    /// Fields across and down in which clipped pixels are counted.
+    pub const GRID: [usize; 2] = [128, 96];
+
+    /// From the pixels counted in each field; `None` where none clips.
+    #[must_use]
+    pub fn new(counts: Vec<u32>) -> Option<Self> {
+        (counts.len() == Self::GRID[0] * Self::GRID[1] && counts.iter().any(|n| *n > 0))
+            .then_some(Self { counts })
+    }
+
+    /// Pixels that clip.
+    #[must_use]
+    pub fn pixels(&self) -> u64 {
+        self.counts.iter().map(|n| u64::from(*n)).sum()
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Action, Effect, Note, Session, Severity};
 use crate::{
-    document::Document,
+    document::{Document, Extent},
     optics::TermSelection,
     registry::Registry,
     scene::{Scene, examples::EXAMPLES},
@@ -12,6 +12,21 @@ use crate::{
 
 /// The most files that the list of recent files holds.
 pub const RECENT_FILES: usize = 10;
+
+/// The file that is meant by what was typed as the name of a scene: it ends in `.json`, once.
+fn scene_file(typed: &Path) -> PathBuf {
+    let json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    match (json(typed), typed.file_stem().map(Path::new)) {
+        (false, _) => {
+            let mut name = typed.as_os_str().to_owned();
+            name.push(".json");
+            name.into()
+        }
+        // Some dialogs add an extension to whatever is typed.
+        (true, Some(stem)) if json(stem) => typed.with_file_name(stem),
+        _ => typed.to_owned(),
+    }
+}
 
 impl Session {
     /// True if the document differs from its file.
@@ -26,6 +41,20 @@ impl Session {
         self.remember_file(&path);
         self.replace_document(Some(path), scene);
         vec![Effect::DocumentChanged, Effect::SaveSettings]
+    }
+
+    /// The document goes into a file with the name that was typed.
+    pub(super) fn save_as(&mut self, typed: &Path) -> Vec<Effect> {
+        // The default scene and examples are called as their file from now on.
+        let shipped = |name: &String| EXAMPLES.iter().any(|example| example.name == *name);
+        if self.path.is_none() && self.document.name.as_ref().is_some_and(shipped) {
+            self.document
+                .change("Name of the scene", Extent::Rest, self.selection, |scene| scene.name = None);
+        }
+        // The dialog asked about the file that was typed, and about no other.
+        let path = scene_file(typed);
+        let overwrite = path == typed;
+        vec![Effect::SaveFile { path, overwrite }]
     }
 
     /// The document has been written. Returns what waited for it.

@@ -2,8 +2,8 @@
 
 use std::ops::Deref;
 
-use super::{Action, Session};
-use crate::{files::printable, panel::messages::MESSAGES_TAB};
+use super::{Action, MESSAGES_TAB, Session, Severity};
+use crate::files::printable;
 
 /// The most messages that are kept; the oldest give way.
 pub const MAX_MESSAGES: usize = 500;
@@ -30,29 +30,6 @@ impl Note {
     #[must_use]
     pub fn offering(self, label: &'static str, action: Action) -> Self {
         Self { offer: Some((label, Box::new(action))), ..self }
-    }
-}
-
-/// Severity of a message.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Severity {
-    /// Good to know.
-    Info,
-    /// Something is not as asked, and the picture is still right.
-    Warning,
-    /// Something failed.
-    Error,
-}
-
-impl Severity {
-    /// The word for it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Info => "note",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
     }
 }
 

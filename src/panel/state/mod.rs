@@ -9,23 +9,25 @@ use std::path::PathBuf;
 
 use bevy::ecs::resource::Resource;
 
-pub use action::{Action, Steer};
+pub use action::{Action, Answer, ModelCommand};
 pub use area::PictureArea;
-pub use effect::{Effect, LabEffect};
-pub use facts::Facts;
+pub(super) use author::BUILT_IN;
+pub use author::{LawCheck, ModelDraft, NameProblem, check_name};
+pub use disk::OnDisk;
+pub use effect::{Effect, LabEffect, RecoveryChoice, Steer};
+pub use facts::{Clipping, Facts};
 pub use files::RECENT_FILES;
-pub use messages::{Badge, MAX_MESSAGES, Messages, Note, Severity};
-pub use question::{Answer, MissingPart, Question, Questions};
+pub use messages::{Badge, MAX_MESSAGES, Messages, Note};
+pub use place::{PanelInfo, Place};
+pub use question::{MissingPart, Question, Questions};
+pub use recovery::Offer;
+pub use severity::Severity;
 pub use slots::{MODEL_SLOTS, ModelSlots};
-pub use view::{ThemeChoice, View, ViewChange};
+pub use stash::StashedValues;
+pub(super) use stash::{Kept, ParameterPlace};
+pub use view::{MESSAGES_TAB, SCALES, SHADER_TAB, ThemeChoice, View, ViewChange, nearest_scale};
 
-use super::{
-    PanelInfo,
-    author::{LawCheck, ModelDraft},
-    follow::StashedValues,
-    reload::OnDisk,
-    terms::KnownTerms,
-};
+use super::terms::KnownTerms;
 use crate::{
     document::{Document, Selection},
     library::status::ShaderStatus,
@@ -34,16 +36,22 @@ use crate::{
 
 mod action;
 mod area;
+mod author;
+mod disk;
 mod edit;
 mod effect;
 mod facts;
 mod files;
 mod messages;
 mod parts;
+mod place;
 mod question;
+mod recovery;
 mod selection;
+mod severity;
 mod shown;
 mod slots;
+mod stash;
 mod view;
 
 /// The state of the window.

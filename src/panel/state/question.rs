@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::{Action, Effect, Session, Severity};
+use super::{Action, Answer, Effect, Offer, Session, Severity};
 use crate::{
-    panel::recovery::Offer,
     registry::Registry,
     scene::{Scene, load::Stamp},
 };
@@ -56,27 +55,6 @@ pub struct MissingPart {
     pub name: String,
     /// The default in words: "10 × 10 × 10 m".
     pub default: String,
-}
-
-/// The answer to a question.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
-    /// Save first, then do what was asked for.
-    Save,
-    /// Lose the changes and do what was asked for.
-    Discard,
-    /// Do nothing.
-    Cancel,
-    /// Use the defaults.
-    UseDefaults,
-    /// Replace what is on disk.
-    Overwrite,
-    /// Take what is on disk.
-    Reload,
-    /// Keep what is on screen; saving replaces what is on disk now.
-    Keep,
-    /// Go on with what an earlier window left.
-    Recover,
 }
 
 /// The open question, and what depends on answers.

@@ -1,13 +1,21 @@
 //! The choice of what is shown, and how.
 
-use super::{Effect, RECENT_FILES, Session};
-use crate::{
-    optics::TermSelection,
-    panel::{
-        messages::MESSAGES_TAB,
-        settings::{SCALES, Settings, nearest_scale},
-    },
-};
+use super::{Effect, Session};
+use crate::optics::TermSelection;
+
+/// Id of the panel that shows the messages.
+pub const MESSAGES_TAB: &str = "messages";
+/// Id of the panel that shows the shaders.
+pub const SHADER_TAB: &str = "shader";
+
+/// The sizes of everything, per cent.
+pub const SCALES: [u16; 6] = [100, 110, 125, 150, 175, 200];
+
+/// The nearest of [`SCALES`].
+#[must_use]
+pub fn nearest_scale(percent: u16) -> u16 {
+    SCALES.into_iter().min_by_key(|s| s.abs_diff(percent)).unwrap_or(100)
+}
 
 /// Light or dark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -196,30 +204,6 @@ impl Session {
         } else {
             ViewChange::BottomTab(MESSAGES_TAB.to_owned())
         }
-    }
-
-    /// The settings that survive a restart.
-    #[must_use]
-    pub fn settings(&self) -> Settings {
-        Settings {
-            theme: self.view.theme,
-            scale: self.view.scale,
-            left_width: self.view.left_width,
-            right_width: self.view.right_width,
-            bottom_height: self.view.bottom_height,
-            recent_files: self.recent_files.clone(),
-        }
-    }
-
-    /// Takes over the settings that survived a restart.
-    pub fn adopt(&mut self, settings: Settings) {
-        self.view.theme = settings.theme;
-        self.view.scale = settings.scale;
-        self.view.left_width = settings.left_width;
-        self.view.right_width = settings.right_width;
-        self.view.bottom_height = settings.bottom_height;
-        self.recent_files = settings.recent_files;
-        self.recent_files.truncate(RECENT_FILES);
     }
 
     pub(super) fn change_view(&mut self, change: ViewChange) -> Vec<Effect> {

@@ -1,0 +1,62 @@
+//! Carrying out the effects that need files: opening, saving, settings.
+
+use super::{
+    files::{Files, Opened, Saved},
+    reload, settings,
+    state::{Effect, Question, Session, Severity},
+};
+use crate::registry::Registry;
+
+/// Carries out an effect that needs files. Returns the effects that follow, among them the one given
+/// when it is none of this module's.
+#[must_use]
+pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &mut dyn Files) -> Vec<Effect> {
+    match effect {
+        Effect::OpenFile(path) => match files.open(&path, registry) {
+            Opened::Scene(scene) => session.opened(path, *scene),
+            Opened::Incomplete { scene, parts } => {
+                session.questions.ask(Question::MissingParts { path, scene, parts });
+                Vec::new()
+            }
+            Opened::Empty => {
+                session.questions.ask(Question::EmptyFile { path });
+                Vec::new()
+            }
+            Opened::Failed(problems) => {
+                // The latest stands on top: the first problem, and above it what it means.
+                for problem in problems.into_iter().rev() {
+                    session.say(Severity::Error, problem);
+                }
+                session.say(
+                    Severity::Error,
+                    format!("{} was not opened; {} is still shown.", path.display(), session.title()),
+                );
+                Vec::new()
+            }
+        },
+        Effect::SaveFile { path, overwrite } => {
+            match files.save(&path, &session.document, registry, overwrite) {
+                Saved::Done => session.saved(path, registry),
+                Saved::ChangedOnDisk => {
+                    session.questions.ask(Question::ChangedOnDisk { path });
+                    Vec::new()
+                }
+                Saved::Failed(why) => {
+                    session.questions.not_saved();
+                    session.say(Severity::Error, why);
+                    Vec::new()
+                }
+            }
+        }
+        Effect::LookAtFile { discard } => reload::look(session, registry, discard, files),
+        Effect::ExpectFile { path, version } => {
+            files.expect(&path, Some(version));
+            Vec::new()
+        }
+        Effect::SaveSettings => {
+            settings::save_settings(session);
+            Vec::new()
+        }
+        other => vec![other],
+    }
+}

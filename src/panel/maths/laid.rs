@@ -1,0 +1,86 @@
+//! Atoms as they are set: base, index and power.
+
+use bevy_egui::egui::{self, Color32, FontId, Ui, Vec2, vec2};
+
+use super::atom::{Atom, is_variable};
+use crate::panel::theme;
+
+/// A run of characters, and where it stands.
+#[derive(Clone)]
+pub(in crate::panel) struct Piece {
+    pub(in crate::panel) galley: std::sync::Arc<egui::Galley>,
+    pub(in crate::panel) offset: Vec2,
+}
+
+/// An atom as it is set.
+#[derive(Clone)]
+pub(in crate::panel) struct Laid {
+    pub(in crate::panel) pieces: Vec<Piece>,
+    pub(in crate::panel) width: f32,
+}
+
+/// Lays an atom out with its baseline at y = 0.
+pub(in crate::panel) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32) -> Laid {
+    let (base, sub, sup, family) = match atom {
+        Atom::Symbol { base, sub, sup } => (base, sub, sup, variable(base)),
+        Atom::Upright { base, sub, sup } => (base, sub, sup, theme::maths()),
+        Atom::Space => return Laid { pieces: Vec::new(), width: 0.28 * size },
+    };
+    let baseline = |galley: &egui::Galley| {
+        galley.rows.first().map_or(0.0, |row| row.row.glyphs.first().map_or(0.0, |g| g.pos.y))
+    };
+    let text = |text: &str, family: egui::FontFamily, size: f32| {
+        ui.painter().layout_no_wrap(text.to_owned(), FontId::new(size, family), colour)
+    };
+    let padding = match base.as_str() {
+        "·" | "/" => 0.08 * size,
+        _ => 0.0,
+    };
+    let galley = text(base, family, size);
+    let mut pieces = Vec::new();
+    let mut x = padding;
+    let y = -baseline(&galley);
+    let advance = galley.size().x;
+    pieces.push(Piece { galley, offset: vec2(x, y) });
+    x += advance;
+    let script_size = (0.7 * size).max(9.0);
+    let mut width = x;
+    for (script, shift) in [(sub, 0.22 * size), (sup, -0.38 * size)] {
+        let mut x = x + 0.04 * size;
+        for run in runs(script) {
+            // One letter is a variable, as in a line; several are a word.
+            let family = if is_variable(run) { variable(run) } else { theme::maths() };
+            let galley = text(run, family, script_size);
+            let y = shift - baseline(&galley);
+            let advance = galley.size().x;
+            width = width.max(x + advance);
+            pieces.push(Piece { galley, offset: vec2(x, y) });
+            x += advance;
+        }
+    }
+    Laid { pieces, width: width + padding }
+}
+
+/// The font of a variable: slanted, but capital Greek letters are upright by custom.
+fn variable(letter: &str) -> egui::FontFamily {
+    let capital = letter.starts_with(|c| ('Α'..='Ω').contains(&c));
+    if capital { theme::maths() } else { theme::maths_italic() }
+}
+
+/// The runs of an index or a power: its words and what stands between them.
+fn runs(script: &str) -> impl Iterator<Item = &str> {
+    let mut rest = script;
+    std::iter::from_fn(move || {
+        let first = rest.chars().next()?;
+        // Greek letters are variables, however many stand side by side.
+        let end = if first.is_alphabetic() && !first.is_ascii() {
+            first.len_utf8()
+        } else {
+            let same = |c: char| c.is_ascii_alphabetic() == first.is_ascii_alphabetic();
+            rest.find(|c: char| !same(c) || c.is_alphabetic() && !c.is_ascii()).unwrap_or(rest.len())
+        };
+        let (run, after) = rest.split_at(end);
+        rest = after;
+        Some(run)
+    })
+}

@@ -1,0 +1,64 @@
+//! Several choices side by side.
+
+use bevy_egui::egui::{self, Button, RichText, Ui, WidgetInfo, WidgetType, vec2};
+
+use super::theme::{self, Palette};
+
+/// Width of one of several choices: as when it is chosen, so that nothing moves when the choice does.
+pub(super) fn segment_width(ui: &Ui, option: &str) -> f32 {
+    let bold = egui::FontId::new(egui::TextStyle::Button.resolve(ui.style()).size, theme::semibold());
+    let text = ui.painter().layout_no_wrap(option.to_owned(), bold, egui::Color32::WHITE);
+    text.size().x + 2.0 * ui.spacing().button_padding.x
+}
+
+/// Several choices side by side, one of them chosen. Returns the index of another one that was clicked.
+pub fn segmented(
+    ui: &mut Ui,
+    name: &str,
+    options: &[&str],
+    chosen: Option<usize>,
+    tip: impl Fn(&mut Ui, usize),
+) -> Option<usize> {
+    let palette = Palette::here(ui);
+    let mut out = None;
+    egui::Frame::new()
+        .fill(palette.field)
+        .stroke(egui::Stroke::new(1.0, palette.line))
+        .corner_radius(5.0)
+        .inner_margin(1.0)
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            ui.horizontal(|ui| {
+                for (i, option) in options.iter().enumerate() {
+                    let on = chosen == Some(i);
+                    let width = segment_width(ui, option);
+                    let colour = if on { palette.text } else { palette.weak };
+                    let text = RichText::new(*option).color(colour);
+                    let text = if on { text.family(theme::semibold()) } else { text };
+                    let fill = if on { palette.chosen } else { egui::Color32::TRANSPARENT };
+                    let button = Button::new(text)
+                        .fill(fill)
+                        .stroke(egui::Stroke::NONE)
+                        .corner_radius(4.0)
+                        .min_size(vec2(width, 22.0));
+                    let response = ui.add(button);
+                    response.widget_info(|| {
+                        WidgetInfo::selected(WidgetType::RadioButton, true, on, format!("{name}: {option}"))
+                    });
+                    if on {
+                        let r = response.rect.shrink2(vec2(6.0, 0.0));
+                        ui.painter().hline(
+                            r.x_range(),
+                            r.bottom() - 1.0,
+                            egui::Stroke::new(2.0, palette.accent),
+                        );
+                    }
+                    if response.clicked() && !on {
+                        out = Some(i);
+                    }
+                    response.on_hover_ui(|ui| tip(ui, i));
+                }
+            });
+        });
+    out
+}
