@@ -8,6 +8,7 @@ mod command_line;
 mod cost;
 mod custom_folder;
 mod custom_models;
+mod cycles;
 mod dialogs;
 mod documents;
 mod editing;

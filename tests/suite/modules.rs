@@ -11,7 +11,7 @@ const BLIND: [(&str, &[&str]); 3] =
     [("panel", &["render"]), ("study", &["panel", "window"]), ("reference", &["render"])];
 
 /// The files of a module by their paths from `src`, without comments and test code.
-type Files = BTreeMap<String, String>;
+pub type Files = BTreeMap<String, String>;
 
 fn files(folder: &Path, at: &str, to: &mut Files) {
     for entry in fs::read_dir(folder).expect("readable") {
@@ -29,43 +29,61 @@ fn files(folder: &Path, at: &str, to: &mut Files) {
     }
 }
 
-/// The words that follow `prefix` in a text, those of a group in braces each.
-fn heads(text: &str, prefix: &str) -> BTreeSet<String> {
-    let word = |text: &str| -> String {
-        text.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
-    };
-    let mut found = BTreeSet::new();
-    for (at, _) in text.match_indices(prefix) {
-        if text[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '$') {
-            continue;
-        }
-        let rest = &text[at + prefix.len()..];
-        let Some(group) = rest.strip_prefix('{') else {
-            found.insert(word(rest));
-            continue;
-        };
-        let mut depth = 0;
-        let mut begins = true;
-        for (i, c) in group.char_indices() {
-            match c {
-                '{' => depth += 1,
-                '}' if depth == 0 => break,
-                '}' => depth -= 1,
-                ',' if depth == 0 => begins = true,
-                c if begins && !c.is_whitespace() => {
-                    found.insert(word(&group[i..]));
-                    begins = false;
-                }
-                _ => {}
-            }
-        }
+/// The words and signs of a text; `::` is one.
+pub fn tokens(text: &str) -> Vec<&str> {
+    let mut tokens = Vec::new();
+    let mut rest = text.trim_start();
+    while let Some(first) = rest.chars().next() {
+        let word = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        let end = if rest.starts_with("::") { 2 } else { word.max(first.len_utf8()) };
+        tokens.push(&rest[..end]);
+        rest = rest[end..].trim_start();
     }
-    found.remove("");
+    tokens
+}
+
+/// The paths in a text, each as its names: those of `use` with their groups unfolded, and those within code.
+pub fn paths(text: &str) -> Vec<Vec<&str>> {
+    let tokens = tokens(text);
+    let (mut found, mut rest, mut before) = (Vec::new(), tokens.as_slice(), "");
+    while let [first, tail @ ..] = rest {
+        let path = before == "use" || tail.first() == Some(&"::") && !["::", "$"].contains(&before);
+        before = first;
+        rest = if path { unfold(rest, &[], &mut found) } else { tail };
+    }
     found
 }
 
+/// Unfolds the path with which these tokens begin, behind some names; returns the tokens after it.
+fn unfold<'t, 'a>(
+    mut rest: &'t [&'a str],
+    names: &[&'a str],
+    found: &mut Vec<Vec<&'a str>>,
+) -> &'t [&'a str] {
+    let mut path = names.to_vec();
+    while let [name, tail @ ..] = rest {
+        rest = tail;
+        if *name == "{" {
+            while let [next, tail @ ..] = rest {
+                rest = match *next {
+                    "}" => return tail,
+                    "," => tail,
+                    _ => unfold(rest, &path, found),
+                };
+            }
+        }
+        path.push(name);
+        match rest {
+            ["::", next, ..] if *next == "{" || next.starts_with(char::is_alphabetic) => rest = &rest[1..],
+            _ => break,
+        }
+    }
+    found.push(path);
+    rest.strip_prefix(&["as"]).map_or(rest, |rest| &rest[1..])
+}
+
 /// The module of a file.
-fn module(path: &str) -> &str {
+pub fn module(path: &str) -> &str {
     path.split('/').next().unwrap_or_default().trim_end_matches(".rs")
 }
 
@@ -82,10 +100,11 @@ fn wrong(all: &Files) -> Vec<String> {
     for (path, text) in all {
         let from = module(path);
         let Some(here) = place(from) else { continue };
-        for to in heads(text, "crate::") {
-            let blind = BLIND.iter().any(|(m, unseen)| *m == from && unseen.contains(&to.as_str()));
+        let uses: BTreeSet<_> = paths(text).iter().filter(|p| p[0] == "crate").map(|p| p[1]).collect();
+        for to in uses {
+            let blind = BLIND.iter().any(|(m, unseen)| *m == from && unseen.contains(&to));
             // Macros are at the root.
-            if blind || place(&to).is_some_and(|there| there > here) {
+            if blind || place(to).is_some_and(|there| there > here) {
                 wrong.push(format!("{path} uses {to}"));
             }
         }
@@ -93,7 +112,7 @@ fn wrong(all: &Files) -> Vec<String> {
     wrong
 }
 
-fn source() -> Files {
+pub fn source() -> Files {
     let mut all = Files::new();
     files(Path::new("src"), "", &mut all);
     all
