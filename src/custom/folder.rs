@@ -126,7 +126,12 @@ fn file_of(id: &str, registry: &Registry) -> Option<PathBuf> {
 /// Notes why a file gives no model.
 fn broken(id: &str, problems: Problems, registry: &mut Registry) -> Reading {
     if let Some((path, problem)) = problems.first() {
-        let place = format!("{}:{}:{}", path.display(), problem.line, problem.column);
+        // It may be in a file that the model imports.
+        let other = (problem.file != source_path(id)).then_some(&problem.file);
+        let file = other.map_or(path.display().to_string(), |source| {
+            registry.path_on_disk(source).map_or(source.clone(), |path| path.display().to_string())
+        });
+        let place = format!("{file}:{}:{}", problem.line, problem.column);
         registry.mark_broken(id, format!("{place}: {}", problem.message));
     }
     Reading::Broken(problems)

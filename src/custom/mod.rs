@@ -130,7 +130,7 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
         if found.file == crate::shader::compose::EVALUATE.path
             && let Some(at) = text::definition(text, "response")
         {
-            return problem_at(at, format!("response must be {RESPONSE}: {}", found.message));
+            return problem_at(at, format!("response must be {RESPONSE}"));
         }
         vec![*found]
     })?;
@@ -143,18 +143,7 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
     for shading in registry.shading_models() {
         let composed = compose(&sources, &model.entry, shading, registry.lights());
         let faces = shading.declaration.stage == Stage::Polygon;
-        validate_drawing(&composed, faces).map_err(|found| {
-            // Names used by the light loop, a light or a shading model come after the model, and are reported as
-            // duplicates.
-            let name =
-                found.message.strip_prefix("redefinition of `").and_then(|rest| rest.split('`').next());
-            match name.and_then(|name| Some((name, text::defined_at(text, name)?))) {
-                Some((name, at)) if found.file != model.entry.declaration.wgsl.path => {
-                    problem_at(at, format!("{} defines {name} too; choose another name", found.file))
-                }
-                _ => vec![*found],
-            }
-        })?;
+        validate_drawing(&composed, faces).map_err(|found| vec![*found])?;
     }
     let entry = surface::entry(model.entry.declaration, model.entry.parameters, lobe, &module);
     Ok(CustomModel { entry, ..model })

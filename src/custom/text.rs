@@ -143,19 +143,6 @@ pub(super) fn humanised(id: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The byte at which a text defines a name.
-pub(super) fn defined_at(text: &str, name: &str) -> Option<usize> {
-    let word = |c: char| c.is_alphanumeric() || c == '_';
-    let plain = without_comments(text);
-    plain.match_indices(name).map(|(at, _)| at).find(|at| {
-        let whole = !plain[..*at].ends_with(word) && !plain[at + name.len()..].starts_with(word);
-        let before = plain[..*at].trim_end();
-        let defines =
-            ["fn", "struct", "const", "var", "alias", "override", ">"].iter().any(|w| before.ends_with(w));
-        whole && defines
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,10 +5,10 @@ use std::fmt;
 use naga::{
     Module,
     front::wgsl,
-    valid::{Capabilities, FunctionError, ValidationError, ValidationFlags, Validator},
+    valid::{Capabilities, ValidationFlags, Validator},
 };
 
-use super::{compose::Composed, field, limits, pitfall};
+use super::{compose::Composed, explain, limits, pitfall};
 
 /// A problem of a shader, located in the author's file.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -69,31 +69,26 @@ pub fn validate(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
 }
 
 fn parsed(composed: &Composed) -> Result<Module, Box<ShaderProblem>> {
-    let module = wgsl::parse_str(&composed.text).map_err(|error| {
-        locate(composed, place(composed, error.labels().map(|l| l.0)), error.message().to_owned())
-    })?;
-    if let Some((span, message)) = limits::check_module(&module) {
-        return Err(locate(composed, place(composed, [span].into_iter()), message));
+    let module = wgsl::parse_str(&composed.text)
+        .map_err(|error| explained(composed, explain::unreadable(composed, &error)))?;
+    let found = |(span, message): (naga::Span, String)| {
+        explained(composed, (span.to_range().map(|range| range.start), message))
+    };
+    if let Some(beyond) = limits::check_module(&module) {
+        return Err(found(beyond));
     }
-    Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).map_err(|e| {
-        match without_return(&module, e.as_inner()) {
-            Some((end, message)) => locate(composed, place(composed, [end].into_iter()), message),
-            None => locate(composed, place(composed, e.spans().map(|s| s.0)), reason(e.as_inner())),
-        }
-    })?;
+    Validator::new(ValidationFlags::all(), Capabilities::all())
+        .validate(&module)
+        .map_err(|error| explained(composed, explain::invalid(composed, &module, &error)))?;
     match pitfall::find(&module) {
-        Some((span, message)) => Err(locate(composed, place(composed, [span].into_iter()), message)),
+        Some(pitfall) => Err(found(pitfall)),
         None => Ok(module),
     }
 }
 
-/// The end of a function that declares a result and ends without one, and the message about it.
-fn without_return(module: &Module, error: &ValidationError) -> Option<(naga::Span, String)> {
-    let ValidationError::Function { handle, name, source } = error else { return None };
-    let FunctionError::InvalidReturnType { expression: None, .. } = source else { return None };
-    let end = u32::try_from(module.functions.get_span(*handle).to_range()?.end).ok()?;
-    let bracket = naga::Span::new(end.saturating_sub(1), end);
-    Some((bracket, format!("the function {name} ends without a return")))
+/// An explanation at its place.
+fn explained(composed: &Composed, (at, message): explain::Explained) -> Box<ShaderProblem> {
+    locate(composed, at.map(|at| place(composed, at)), message)
 }
 
 /// The validator's message in full: the outermost part only says that some function is invalid, the innermost says why.
@@ -107,12 +102,10 @@ pub(crate) fn reason(error: &dyn std::error::Error) -> String {
     message
 }
 
-/// Line and column of the first valid span: naga may list some that point nowhere.
-fn place(composed: &Composed, spans: impl Iterator<Item = naga::Span>) -> Option<(usize, usize)> {
-    spans.into_iter().find(naga::Span::is_defined).map(|span| {
-        let location = span.location(&composed.text);
-        (location.line_number as usize, location.line_position as usize)
-    })
+/// Line and column of a byte, both from 1.
+fn place(composed: &Composed, at: usize) -> (usize, usize) {
+    let before = composed.text.get(..at).unwrap_or_default();
+    (before.matches('\n').count() + 1, before.len() - before.rfind('\n').map_or(0, |i| i + 1) + 1)
 }
 
 /// A problem at a line and column of the composed text, in terms of the author's file.
@@ -136,7 +129,7 @@ pub(crate) fn locate(
         // naga counts bytes.
         column: source.char_indices().take_while(|(at, _)| at + 1 < column).count() + 1,
         source: source.to_owned(),
-        message: field::explain(&composed.text, source, column, &message).unwrap_or(message),
+        message,
     })
 }
 

@@ -15,13 +15,13 @@ use naga::{Module, Span};
 use super::{
     check::{ShaderProblem, locate},
     compose::{Composed, EVALUATE, WRAPPER},
+    token,
 };
 
 mod closed;
 mod expansion;
 mod module;
 mod text;
-mod token;
 
 pub use closed::{is_empty, unfinished};
 

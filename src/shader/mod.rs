@@ -2,12 +2,13 @@
 
 pub mod check;
 pub mod compose;
-mod field;
+mod explain;
 pub mod interpret;
 pub mod limits;
 pub mod pitfall;
 pub mod report;
 pub mod slim;
+mod token;
 pub mod whole;
 
 /// The WGSL source of one file under `assets/shaders/`, with its built-in copy.

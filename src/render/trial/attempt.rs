@@ -23,53 +23,45 @@ use bevy::{
 use naga::Module;
 
 use super::{
-    Bench, COMPOSED, Example, Tools,
     explain::{located, offset, refusal, refused, unknown_import},
+    tools::{COMPOSED, Example, Tools},
+    verdict::Refusal,
 };
-use crate::shader::{
-    check::{ShaderProblem, locate},
-    compose::Composed,
-    limits, pitfall,
-};
+use crate::shader::{check::locate, compose::Composed, limits, pitfall};
 
-impl Bench {
-    pub(super) fn attempt(
-        &mut self,
-        composed: &Composed,
-        faces: bool,
-        example: &Example,
-        tools: Tools,
-    ) -> Result<(), Refusal> {
-        let cache = self.cache.get_or_insert_with(|| library(tools));
-        let mut descriptor = example.descriptor.clone();
-        if faces != has_faces(&descriptor.vertex.shader_defs) {
-            change_faces(&mut descriptor, faces);
-        }
-        let mut modules = Vec::new();
-        let fragment_defs = descriptor.fragment.iter().map(|f| &f.shader_defs);
-        for defs in [&descriptor.vertex.shader_defs].into_iter().chain(fragment_defs) {
-            if modules.iter().any(|(known, _)| *known == defs) {
-                continue;
-            }
-            let module = compose(cache, composed, defs, tools)?;
-            if let Some((span, message)) = limits::check_module(&module).or_else(|| pitfall::find(&module)) {
-                let offset = offset(&module, &composed.text);
-                return Err(located(composed, offset, [span].into_iter(), message));
-            }
-            modules.push((defs, module));
-        }
-        let module_of = |defs: &Vec<ShaderDefVal>| {
-            modules
-                .iter()
-                .find(|(known, _)| *known == defs)
-                .map(|(_, module)| module.clone())
-                .unwrap_or_default()
-        };
-        let vertex = module_of(&descriptor.vertex.shader_defs);
-        let fragment = descriptor.fragment.as_ref().map(|f| module_of(&f.shader_defs)).unwrap_or_default();
-        build(&descriptor, &example.layouts, vertex, fragment, tools.device)
-            .map_err(|error| Refusal::Problem(refused(composed, &error)))
+/// Composes a candidate and makes a pipeline of it. The cache is filled when it is used first.
+pub(super) fn attempt(
+    cache: &mut Option<ShaderCache<Module, ()>>,
+    composed: &Composed,
+    faces: bool,
+    example: &Example,
+    tools: Tools,
+) -> Result<(), Refusal> {
+    let cache = cache.get_or_insert_with(|| library(tools));
+    let mut descriptor = example.descriptor.clone();
+    if faces != has_faces(&descriptor.vertex.shader_defs) {
+        change_faces(&mut descriptor, faces);
     }
+    let mut modules = Vec::new();
+    let fragment_defs = descriptor.fragment.iter().map(|f| &f.shader_defs);
+    for defs in [&descriptor.vertex.shader_defs].into_iter().chain(fragment_defs) {
+        if modules.iter().any(|(known, _)| *known == defs) {
+            continue;
+        }
+        let module = compose(cache, composed, faces, defs, tools)?;
+        if let Some((span, message)) = limits::check_module(&module).or_else(|| pitfall::find(&module)) {
+            let offset = offset(&module, &composed.text);
+            return Err(located(composed, offset, [span].into_iter(), message));
+        }
+        modules.push((defs, module));
+    }
+    let module_of = |defs: &Vec<ShaderDefVal>| {
+        modules.iter().find(|(known, _)| *known == defs).map(|(_, module)| module.clone()).unwrap_or_default()
+    };
+    let vertex = module_of(&descriptor.vertex.shader_defs);
+    let fragment = descriptor.fragment.as_ref().map(|f| module_of(&f.shader_defs)).unwrap_or_default();
+    build(&descriptor, &example.layouts, vertex, fragment, tools.device)
+        .map_err(|error| Refusal::Problem(refused(composed, &error)))
 }
 
 thread_local! {
@@ -92,12 +84,6 @@ pub(super) fn quietly<T>(call: impl FnOnce() -> T) -> Option<T> {
     let result = panic::catch_unwind(AssertUnwindSafe(call));
     EXPECTED.set(false);
     result.ok()
-}
-
-/// Why a trial did not succeed.
-pub(super) enum Refusal {
-    NotYet,
-    Problem(Box<ShaderProblem>),
 }
 
 /// A cache that knows Bevy's shaders.
@@ -130,6 +116,7 @@ fn with_limits(mut shader: Shader, device: &RenderDevice) -> Shader {
 fn compose(
     cache: &mut ShaderCache<Module, ()>,
     composed: &Composed,
+    faces: bool,
     defs: &[ShaderDefVal],
     tools: Tools,
 ) -> Result<Module, Refusal> {
@@ -138,7 +125,7 @@ fn compose(
     cache.set_shader(CANDIDATE, with_limits(shader, tools.device));
     match cache.get(0, CANDIDATE, defs) {
         Ok(module) => Ok((*module).clone()),
-        Err(ShaderCacheError::ProcessShaderError(error)) => Err(refusal(composed, &error)),
+        Err(ShaderCacheError::ProcessShaderError(error)) => Err(refusal(composed, faces, &error)),
         Err(ShaderCacheError::ShaderImportNotYetAvailable | ShaderCacheError::ShaderNotLoaded(_)) => {
             let known = |import: &ShaderImport| tools.shaders.iter().any(|(_, s)| s.import_path == *import);
             match imports.iter().find(|import| !known(import)) {

@@ -3,10 +3,11 @@
 use naga::{Module, Span, front::wgsl::ParseError};
 use naga_oil::compose::{ComposerError, ComposerErrorInner, ErrSource};
 
-use super::{Tools, attempt::Refusal};
+use super::{tools::Tools, verdict::Refusal};
 use crate::shader::{
     check::{self, ShaderProblem, locate, reason},
     compose::{Composed, WRAPPER},
+    whole::judged,
 };
 
 /// As naga_oil packs the number of a module into positions in the text.
@@ -35,7 +36,16 @@ pub(super) fn unknown_import(composed: &Composed, name: &str, tools: Tools) -> B
 }
 
 /// The composer's error, in terms of the author's file.
-pub(super) fn refusal(composed: &Composed, error: &ComposerError) -> Refusal {
+pub(super) fn refusal(composed: &Composed, faces: bool, error: &ComposerError) -> Refusal {
+    use ComposerErrorInner as Inner;
+    let about_text = matches!(
+        error.inner,
+        Inner::WgslParseError(_) | Inner::HeaderValidationError(_) | Inner::ShaderValidationError(_)
+    );
+    // The same words as everywhere, where the text can be read without the composer.
+    if let Some(Err(problem)) = about_text.then(|| judged(composed, faces)).flatten() {
+        return Refusal::Problem(problem);
+    }
     let offset = match &error.source {
         ErrSource::Constructing { offset, .. } => *offset,
         // In one of Bevy's own modules: what imports it stands in the wrapper.
@@ -46,28 +56,28 @@ pub(super) fn refusal(composed: &Composed, error: &ComposerError) -> Refusal {
     };
     let parse = |e: &ParseError| located(composed, offset, e.labels().map(|l| l.0), e.message().to_owned());
     match &error.inner {
-        ComposerErrorInner::WgslParseError(e) => parse(e),
-        ComposerErrorInner::HeaderValidationError(e) | ComposerErrorInner::ShaderValidationError(e) => {
+        Inner::WgslParseError(e) => parse(e),
+        Inner::HeaderValidationError(e) | Inner::ShaderValidationError(e) => {
             located(composed, offset, e.spans().map(|s| s.0), reason(e.as_inner()))
         }
-        ComposerErrorInner::InvalidIdentifier { at, .. } => {
+        Inner::InvalidIdentifier { at, .. } => {
             located(composed, offset, [*at].into_iter(), error.inner.to_string())
         }
-        ComposerErrorInner::ImportParseError(_, at)
-        | ComposerErrorInner::ImportNotFound(_, at)
-        | ComposerErrorInner::NotEnoughEndIfs(at)
-        | ComposerErrorInner::TooManyEndIfs(at)
-        | ComposerErrorInner::ElseWithoutCondition(at)
-        | ComposerErrorInner::UnknownShaderDef { pos: at, .. }
-        | ComposerErrorInner::UnknownShaderDefOperator { pos: at, .. }
-        | ComposerErrorInner::InvalidShaderDefComparisonValue { pos: at, .. }
-        | ComposerErrorInner::OverrideNotVirtual { pos: at, .. }
-        | ComposerErrorInner::DefineInModule(at)
-        | ComposerErrorInner::InvalidShaderDefDefinitionValue { pos: at, .. } => {
+        Inner::ImportParseError(_, at)
+        | Inner::ImportNotFound(_, at)
+        | Inner::NotEnoughEndIfs(at)
+        | Inner::TooManyEndIfs(at)
+        | Inner::ElseWithoutCondition(at)
+        | Inner::UnknownShaderDef { pos: at, .. }
+        | Inner::UnknownShaderDefOperator { pos: at, .. }
+        | Inner::InvalidShaderDefComparisonValue { pos: at, .. }
+        | Inner::OverrideNotVirtual { pos: at, .. }
+        | Inner::DefineInModule(at)
+        | Inner::InvalidShaderDefDefinitionValue { pos: at, .. } => {
             let span = Span::new(*at as u32, *at as u32 + 1);
             located(composed, 0, [span].into_iter(), error.inner.to_string())
         }
-        ComposerErrorInner::DecorationInSource(range) => {
+        Inner::DecorationInSource(range) => {
             let span = Span::new(range.start as u32, range.end as u32);
             located(composed, 0, [span].into_iter(), error.inner.to_string())
         }

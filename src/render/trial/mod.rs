@@ -12,53 +12,32 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::{
     app::{App, Plugin},
-    asset::Assets,
     ecs::prelude::*,
     render::{
         Render, RenderApp, RenderSystems,
-        render_resource::{
-            BindGroupLayout, CachedPipelineState, PipelineCache, PipelineDescriptor, RenderPipelineDescriptor,
-        },
-        renderer::{RenderAdapter, RenderDevice},
+        render_resource::{CachedPipelineState, PipelineCache, PipelineDescriptor},
     },
-    shader::{Shader, ShaderCache},
+    shader::ShaderCache,
 };
 use naga::Module;
 
-use crate::shader::{check::ShaderProblem, compose::Composed, limits};
+use crate::shader::{compose::Composed, limits};
 
 mod attempt;
 mod explain;
 pub mod process;
+mod tools;
+mod verdict;
 
 pub(crate) use explain::refused;
+pub use tools::{COMPOSED, MARK, Tools};
+pub use verdict::Verdict;
 
-use attempt::{Refusal, quietly};
+use attempt::{attempt, quietly};
 use explain::without_place;
 use process::TrialProcess;
-
-/// The mark in the pipelines of our materials, by which one is found as an example.
-pub const MARK: &str = "LAB_SURFACE";
-/// The prefix of the paths of our own composed shaders.
-pub const COMPOSED: &str = "composed/";
-
-/// The result of a trial.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// It can be drawn with.
-    Good,
-    /// It cannot, and this is why.
-    Bad(Box<ShaderProblem>),
-    /// Not known yet: nothing has been drawn, or the process that tries is still at it. Ask again in the next
-    /// frame.
-    NotYet,
-}
-
-/// A pipeline of our materials as Bevy made it, to be made again with another shader.
-struct Example {
-    descriptor: RenderPipelineDescriptor,
-    layouts: Vec<BindGroupLayout>,
-}
+use tools::Example;
+use verdict::Refusal;
 
 /// The example, filled by the renderer as soon as there is one.
 #[derive(Clone, Default, Resource)]
@@ -122,16 +101,6 @@ impl std::fmt::Debug for Bench {
     }
 }
 
-/// The parts of the renderer that a trial needs.
-#[derive(Clone, Copy)]
-pub struct Tools<'a> {
-    /// The graphics device.
-    pub device: &'a RenderDevice,
-    /// The adapter of the device.
-    pub adapter: &'a RenderAdapter,
-    /// All shaders that are loaded, Bevy's own among them.
-    pub shaders: &'a Assets<Shader>,
-}
 impl Bench {
     /// Has everything tried in another process from now on, and nothing here.
     pub fn try_in(&mut self, process: TrialProcess) {
@@ -178,7 +147,7 @@ impl Bench {
         let example = example.lock();
         let Some(example) = example.as_ref() else { return Verdict::NotYet };
         // What composes shaders unwraps here and there.
-        match quietly(|| self.attempt(composed, faces, example, tools)) {
+        match quietly(|| attempt(&mut self.cache, composed, faces, example, tools)) {
             Some(Ok(())) => Verdict::Good,
             Some(Err(Refusal::NotYet)) => Verdict::NotYet,
             Some(Err(Refusal::Problem(problem))) => Verdict::Bad(problem),

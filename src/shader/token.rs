@@ -1,4 +1,4 @@
-//! The tokens of a WGSL text, as far as limits need them: flat, in one pass, for any text.
+//! The tokens of a WGSL text, as far as limits and messages need them: flat, in one pass, for any text.
 //!
 //! Comments are skipped as naga and the preprocessor skip them, and characters on which the two disagree are refused,
 //! so nothing visible to them is hidden here.

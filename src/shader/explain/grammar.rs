@@ -1,0 +1,225 @@
+//! The compiler's plain messages, and the words and signs that it did not expect: habits from GLSL, HLSL and C.
+
+use super::{Explained, between, scan::Scan, words::wgsl_type};
+use crate::{shader::token::Kind, text::shortened};
+
+/// Messages that name what is wrong, the number of the label at the author's place, and what would be right. `{0}` and
+/// `{1}` are what stands for `{}`, `{}` is the text at the first label.
+const PLAIN: &[(&str, usize, &str)] = &[
+    ("name `{}` is a reserved keyword", 0, "`{0}` is a reserved word of WGSL; choose another name"),
+    (
+        "Identifier starts with a reserved prefix: `{}`",
+        0,
+        "`{0}` begins with two underscores, which are reserved; choose another name",
+    ),
+    (
+        "declaration of `{}` needs a type specifier or initializer",
+        0,
+        "`{0}` needs a value or a type: `var {0} = 0.0;` or `var {0}: f32;`",
+    ),
+    ("declaration of `{}` is recursive", 1, "`{0}` uses itself; WGSL has no recursion, so write a loop"),
+    (
+        "declaration of `{}` is cyclic",
+        1,
+        "`{0}` uses itself by way of others; WGSL has no recursion, so write a loop",
+    ),
+    (
+        "increment/decrement operation requires reference type to be one of i32 or u32",
+        0,
+        "++ and -- are for a var that is a whole number; write `{} += 1.0` for others",
+    ),
+    (
+        "this operation is not supported in a const context",
+        0,
+        "a const may not depend on parameters or variables; declare it with let",
+    ),
+    (
+        "function does not return any value",
+        0,
+        "this function has no result; declare one with `-> TYPE` before its {",
+    ),
+    (
+        "unused return value from function annotated with @must_use",
+        0,
+        "the result of this call is not used; give it a name: `let x = …;`",
+    ),
+    ("invalid `switch` selector", 0, "a switch needs a whole number; write `i32(…)`, or if and else"),
+    (
+        "invalid `switch` case selector value",
+        0,
+        "a case must be a constant whole number of the type of the switch, such as `0u` for a choice",
+    ),
+    (
+        "type mismatch for reject and accept values in `select` call",
+        0,
+        "the condition of select comes last: `select(if_false, if_true, condition)`, and both values have one type",
+    ),
+    (
+        "unexpected argument type for `select` call",
+        0,
+        "the condition of select comes last: `select(if_false, if_true, condition)`",
+    ),
+    (
+        "the operand of the `*` operator must be a pointer",
+        0,
+        "there is no value that this * can multiply; a power is `pow(x, y)`",
+    ),
+    (
+        "`{}` needs a template argument specified: {}",
+        0,
+        "the type `{0}` needs the type of its numbers: `{0}<f32>`",
+    ),
+    (
+        "type `{}` is not constructible",
+        0,
+        "a {0} cannot be made of these values; a matrix is made of its columns",
+    ),
+    ("Constructor expects {} components, found {}", 0, "this needs {0} numbers, but here are {1}"),
+    ("numeric literal not representable by target type: `{}`", 0, "{0} is too large"),
+    ("invalid numeric literal format: `{}`", 0, "{0} is no number"),
+    ("Division by zero", 0, "this divides by zero"),
+    ("Remainder by zero", 0, "this divides by zero"),
+    ("Incompatible operands: LogicalAnd({}, {}", 0, "&& needs a comparison on both sides, such as `x > 0.0`"),
+    ("Incompatible operands: LogicalOr({}, {}", 0, "|| needs a comparison on both sides, such as `x > 0.0`"),
+    (
+        "Index {} is out of bounds for expression {}",
+        0,
+        "the index {0} is too large; the first component is 0",
+    ),
+    ("Invalid access into expression {}", 0, "this is indexed with [ ], but has no components"),
+];
+
+/// Types of WGSL, GLSL, HLSL and C.
+const TYPES: &[&str] = &[
+    "f32", "i32", "u32", "float", "double", "half", "int", "uint", "bool", "vec2", "vec3", "vec4", "float2",
+    "float3", "float4", "ivec2", "ivec3", "mat2", "mat3", "mat4", "void",
+];
+
+/// What was expected, the word before, the word found, and the message. An empty text stands for anything, `TYPE` for a
+/// type, `WORD` for a name; `|` separates alternatives. In the message, `{before}` and `{found}` are these words,
+/// `{earlier}` that before both, `{next}` that after, `{type}` the type as it is written here.
+const UNEXPECTED: &[(&str, &str, &str, &str)] = &[
+    (
+        "",
+        "",
+        "#include|#import",
+        "a file is included by its name in quotation marks: `#import \"file.wgsl\"`",
+    ),
+    ("", "", "#define", "WGSL has no macros; write `const NAME = …;` or a function"),
+    ("", "", "#", "WGSL has no `{found}`; remove this line"),
+    (
+        "assignment or",
+        "TYPE",
+        "WORD",
+        "a variable is declared with let, or with var if it changes: `let {found} = …;`",
+    ),
+    ("`(`", ">", "WORD", "a variable is declared with let, or with var if it changes: `let {found} = …;`"),
+    ("`;`", "TYPE", "WORD", "the type comes after the name: `{earlier} {found}: {type} = …;`"),
+    ("operation (`=`)", "TYPE", "WORD", "the type comes after the name: `{earlier} {found}: {type} = …;`"),
+    ("operation (`=`)", "", ";", "a let needs its value here; what gets one later is declared with var"),
+    ("`:`", "TYPE", "WORD", "the type comes after the name: `{found}: {type}`"),
+    (
+        "`:`",
+        "in|out|inout|const",
+        "WORD",
+        "there is no `{before}` here: parameters are read only, and results are returned",
+    ),
+    (
+        "`,`",
+        "in|out|inout|const",
+        "WORD",
+        "there is no `{before}` here: parameters are read only, and results are returned",
+    ),
+    ("`:`", "WORD", "", "`{before}` needs a type: `{before}: f32`"),
+    ("`,`", "", ";", "here belongs a comma"),
+    ("`{`", "", ":", "the type of a result comes after ->: `-> f32`"),
+    ("`{`", "", "and", "and is written &&"),
+    ("`{`", "", "or", "or is written ||"),
+    ("`{`", "", "", "here must be a {: the bodies of functions, if, else and loops have braces"),
+    ("`;`", "", "?", "WGSL has no ? and :; write `select(if_false, if_true, condition)`"),
+    ("`)`|`,`", "", "?", "WGSL has no ? and :; write `select(if_false, if_true, condition)`"),
+    ("`;`|global item", "", ")|]|}", "this {found} closes nothing"),
+    ("`)`", "WORD", "=", "= sets a variable; to compare, write =="),
+    ("`)`", "", "", "behind `{before}`, an operator, a comma or a ) is missing"),
+    ("statement", "", "++|--", "write `{next} += 1`, or `{next}++` for a whole number"),
+    ("expression", "", "[", "a list is written `array(…)`"),
+    ("expression", "", "", "a value is missing before `{found}`"),
+    ("identifier", "", "", "here must be a name, not `{found}`"),
+    (
+        "global item",
+        "",
+        "uniform|in|out|varying|attribute|precision|layout",
+        "all input of a model are its parameters: declare them in the comment at the top, and read them as `m.NAME`",
+    ),
+    (
+        "global item",
+        "",
+        "TYPE",
+        "a function begins with fn and a constant with const: `fn {next}(x: f32) -> {type} { … }`",
+    ),
+    ("global item", "", "let", "outside of functions, a value is declared with const"),
+    ("global item", "", "import|include|using", "a file is included by `#import \"file.wgsl\"`"),
+    (
+        "global item",
+        "",
+        "",
+        "`{found}` begins no declaration; outside of functions, there are fn, const, var, struct and alias",
+    ),
+    ("variable access", "", "", "`{found}` is no value, but a type or a function"),
+];
+
+/// The explanation of a plain message: the label, and the text.
+pub(super) fn plain(message: &str, source: &str) -> Option<(usize, String)> {
+    PLAIN.iter().find_map(|(pattern, label, says)| {
+        let parts = match pattern.matches("{}").count() {
+            0 => (message == *pattern).then_some(["", ""])?,
+            1 => between(message, pattern).map(|[one]| [one, ""])?,
+            _ => between(message, pattern)?,
+        };
+        Some((*label, says.replace("{0}", parts[0]).replace("{1}", parts[1]).replace("{}", source)))
+    })
+}
+
+/// The explanation of the token `i`, where something else was expected.
+pub(super) fn unexpected(scan: &Scan, i: usize, expected: &str, found: &str) -> Option<Explained> {
+    let directive = scan.tokens.get(i).filter(|token| token.kind == Kind::Directive);
+    let found =
+        directive.map_or_else(|| found.trim_matches('"').to_owned(), |token| format!("#{}", token.text));
+    let (before, earlier) = (scan.before(i, 1), scan.before(i, 2));
+    let is_word = |i: usize| scan.tokens.get(i).is_some_and(|token| token.kind == Kind::Word);
+    let fits = |pattern: &str, word: &str, i: Option<usize>| match pattern {
+        "" => true,
+        "#" => word.starts_with('#'),
+        "TYPE" => TYPES.contains(&word),
+        "WORD" => i.is_some_and(is_word),
+        words => words.split('|').any(|other| other == word),
+    };
+    let row = UNEXPECTED.iter().find(|(wanted, behind, other, _)| {
+        wanted.split('|').any(|wanted| expected.starts_with(wanted))
+            && fits(behind, before, i.checked_sub(1))
+            && fits(other, &found, Some(i))
+    });
+    let at = |i: usize| scan.tokens.get(i).map(|token| token.at);
+    if row.is_none() && expected == "`;`" {
+        return Some(no_semicolon(scan, i));
+    }
+    let (.., says) = row?;
+    let of = if TYPES.contains(&&*found) { &found } else { before };
+    let message = says
+        .replace("{before}", &shortened(before))
+        .replace("{earlier}", earlier)
+        .replace("{next}", scan.word(i + 1))
+        .replace("{type}", &wgsl_type(of))
+        .replace("{found}", &shortened(&found));
+    Some((at(i), message))
+}
+
+/// A statement that does not end before the token `i`.
+fn no_semicolon(scan: &Scan, i: usize) -> Explained {
+    let Some(last) = i.checked_sub(1).and_then(|i| scan.tokens.get(i)) else { return (None, String::new()) };
+    let end = last.at + last.text.len();
+    let begins = scan.tokens.get(i).map_or(scan.text.len(), |token| token.at);
+    let other = scan.text.get(end..begins).is_none_or(|gap| gap.contains('\n')) || scan.word(i) == "return";
+    let missing = if other { "a ;" } else { "an operator or a ;" };
+    (Some(last.at), format!("{missing} is missing behind `{}`", shortened(last.text)))
+}

@@ -1,0 +1,187 @@
+//! The compiler's complaints as an author needs them: at the author's line, with the mistake and what would be right.
+//!
+//! naga speaks of expressions by number, of its grammar and of the declaration instead of the call. What it says about
+//! a text that it cannot read is explained by tables ([`words`], [`grammar`]) and by the text around; what it says about
+//! a text that it can read, by the types of the values ([`values`]). Other messages pass.
+
+use naga::{
+    Module, WithSpan,
+    front::wgsl::{self, ParseError},
+    valid::ValidationError,
+};
+
+use super::compose::Composed;
+
+mod calls;
+mod field;
+mod grammar;
+mod scan;
+mod values;
+mod words;
+
+use scan::Scan;
+
+/// A byte of the composed text, if there is one to name, and the message.
+pub(super) type Explained = (Option<usize>, String);
+
+/// The error of a text that cannot be read.
+pub(super) fn unreadable(composed: &Composed, error: &ParseError) -> Explained {
+    let text = &composed.text;
+    let labels: Vec<Label> = error
+        .labels()
+        .filter_map(|(span, says)| Some(Label { text, range: span.to_range()?, says }))
+        .filter(|label| text.get(label.range.clone()).is_some())
+        .collect();
+    let complaint = Complaint { composed, error, labels };
+    Scan::new(text).and_then(|scan| complaint.explained(&scan)).unwrap_or_else(|| {
+        (complaint.labels.first().map(|label| label.range.start), error.message().to_owned())
+    })
+}
+
+/// The error of a module that is not valid.
+pub(super) fn invalid(composed: &Composed, module: &Module, error: &WithSpan<ValidationError>) -> Explained {
+    // The first place is the function around.
+    let last = error.spans().last().and_then(|(span, _)| Some(span.to_range()?.start));
+    Scan::new(&composed.text)
+        .and_then(|scan| values::explained(&scan, module, error.as_inner()))
+        .map(|(at, message)| (at.or(last), message))
+        .unwrap_or_else(|| (last, innermost(error.as_inner())))
+}
+
+/// The reason without what it is within: "Function [54] 'response' is invalid: Expression [18] is invalid".
+fn innermost(error: &dyn std::error::Error) -> String {
+    let mut reason = error;
+    while let Some(inner) = reason.source() {
+        reason = inner;
+    }
+    reason.to_string()
+}
+
+/// A place that the compiler names, and what it says there.
+struct Label<'a> {
+    text: &'a str,
+    range: std::ops::Range<usize>,
+    says: &'a str,
+}
+
+impl<'a> Label<'a> {
+    fn source(&self) -> &'a str {
+        &self.text[self.range.clone()]
+    }
+}
+
+/// A complaint about a text.
+struct Complaint<'a> {
+    composed: &'a Composed,
+    error: &'a ParseError,
+    labels: Vec<Label<'a>>,
+}
+
+impl Complaint<'_> {
+    fn explained(&self, scan: &Scan) -> Option<Explained> {
+        let message = self.error.message();
+        let Some(first) = self.labels.first() else {
+            let plain = grammar::plain(message, "").map(|(_, plain)| plain);
+            return Some((self.unplaced(scan), plain.unwrap_or_else(|| message.to_owned())));
+        };
+        let here = |message: String| (Some(first.range.start), message);
+        let i = scan.at(first.range.start);
+        if let Some([name]) = between(message, "no definition in scope for identifier: `{}`") {
+            return Some(here(words::unknown(scan, i, name)));
+        }
+        if let Some([field]) = between(message, "invalid field accessor `{}`") {
+            return Some(here(field::unknown(scan, i, field)));
+        }
+        if let Some([name]) = between(message, "redefinition of `{}`") {
+            return self.redefined(name);
+        }
+        if message == "invalid left-hand side of assignment" {
+            return Some(here(self.assigned(first)));
+        }
+        if let Some([expected, found]) = between(message, "expected {}, found {}") {
+            return grammar::unexpected(scan, i, expected, found);
+        }
+        calls::explained(scan, self).or_else(|| {
+            let (label, message) = grammar::plain(message, first.source())?;
+            Some((Some(self.labels.get(label).unwrap_or(first).range.start), message))
+        })
+    }
+
+    /// A name that two places define, of which one may be the author's.
+    fn redefined(&self, name: &str) -> Option<Explained> {
+        let [current, previous, ..] = &self.labels[..] else { return None };
+        let place = |label: &Label| {
+            let line = label.text[..label.range.start].matches('\n').count() + 1;
+            self.composed.map.locate(line)
+        };
+        let ((here, _), (there, line)) = (place(current)?, place(previous)?);
+        // Names used by the light loop, a light or a shading model come after the model.
+        let (at, file) = match there.starts_with("models/") && !here.starts_with("models/") {
+            true => (previous, here),
+            false => (current, there),
+        };
+        let message = if here == there {
+            format!("`{name}` is already defined in line {line}; choose another name")
+        } else {
+            format!("{file} defines {name} too; choose another name")
+        };
+        Some((Some(at.range.start), message))
+    }
+
+    /// A value that cannot be assigned to.
+    fn assigned(&self, target: &Label) -> String {
+        let name = shown_name(target.source());
+        if self.labels.len() > 1 {
+            return format!(
+                "`{name}` is declared with let and keeps its value; declare it with var to change it"
+            );
+        }
+        if target
+            .source()
+            .rsplit_once('.')
+            .is_some_and(|(_, part)| part.len() > 1 && part.chars().all(|c| "xyzwrgba".contains(c)))
+        {
+            return format!("only one component can be set at a time, as in `{name}.x = …;`");
+        }
+        format!(
+            "`{name}` cannot be set, only a var can: parameters keep their values, so copy it: `var copy = {name};`"
+        )
+    }
+
+    /// The statement of an error without a place: the first at which the text up to there has it.
+    fn unplaced(&self, scan: &Scan) -> Option<usize> {
+        let fails =
+            |text: &str| wgsl::parse_str(text).is_err_and(|error| error.message() == self.error.message());
+        let body = scan.bodies().into_iter().rev().find(|body| {
+            let start = scan.tokens[body.start].at + 1;
+            let end = scan.tokens[body.end].at;
+            !fails(&[&scan.text[..start], &scan.text[end..]].concat())
+        })?;
+        let end = scan.tokens[body.end].at;
+        let ends = scan.statements(&body);
+        let wrong = ends.partition_point(|(last, open)| {
+            let token = scan.tokens[*last];
+            let closing = "}".repeat(open - 1);
+            !fails(&[&scan.text[..token.at + 1], &closing, &scan.text[end..]].concat())
+        });
+        let before = wrong.checked_sub(1).map_or(body.start, |i| ends[i].0);
+        (before + 1..=body.end).find(|i| scan.word(*i) != "}").map(|i| scan.tokens[i].at)
+    }
+}
+
+/// The variable of `x.y[0]`.
+fn shown_name(target: &str) -> &str {
+    target.split(['.', '[']).next().unwrap_or(target).trim()
+}
+
+/// The parts of a message that stand for the `{}` of a pattern.
+fn between<'m, const N: usize>(message: &'m str, pattern: &str) -> Option<[&'m str; N]> {
+    let mut pieces = pattern.split("{}");
+    let mut rest = message.strip_prefix(pieces.next()?)?;
+    let mut found = [""; N];
+    for part in &mut found {
+        let piece = pieces.next()?;
+        (*part, rest) = if piece.is_empty() { (rest, "") } else { rest.split_once(piece)? };
+    }
+    (rest.is_empty() && pieces.next().is_none()).then_some(found)
+}

@@ -1,0 +1,342 @@
+//! Errors of a module that could be read: what its values are, and what they would have to be.
+
+use naga::{
+    BinaryOperator, Block, Expression, Function, Handle, Module, Span, Statement, TypeInner, UnaryOperator,
+    common::wgsl::TypeContext as _,
+    front::Typifier,
+    proc::ResolveContext,
+    valid::{CallError, EntryPointError, FunctionError, ValidationError},
+};
+
+use super::{
+    Explained,
+    scan::{Scan, called, misfit, remedy, result, shown},
+};
+
+/// The explanation of an error, if it is in a function.
+pub(super) fn explained(scan: &Scan, module: &Module, error: &ValidationError) -> Option<Explained> {
+    let (name, function, source) = match error {
+        ValidationError::Function { handle, name, source } => (name, &module.functions[*handle], source),
+        ValidationError::EntryPoint { name, source: EntryPointError::Function(source), .. } => {
+            (name, &module.entry_points.iter().find(|entry| entry.name == *name)?.function, source)
+        }
+        ValidationError::EntryPoint { source: EntryPointError::ForbiddenStageOperations, .. } => {
+            let derivative =
+                |text: &str| ["dpdx", "dpdy", "fwidth"].iter().any(|word| text.starts_with(word));
+            let token = scan.tokens.iter().find(|token| derivative(token.text))?;
+            let what = "is not available to a model, which is evaluated without a picture too";
+            return Some((Some(token.at), format!("`{}` {what}", token.text)));
+        }
+        _ => return None,
+    };
+    let values = Values::new(scan, module, name, function);
+    match source {
+        FunctionError::Expression { handle, .. } => values.expression(*handle),
+        other => values.statement(other),
+    }
+}
+
+/// The values of a function.
+struct Values<'a> {
+    scan: &'a Scan<'a>,
+    module: &'a Module,
+    name: &'a str,
+    function: &'a Function,
+    types: Typifier,
+    /// The number of expressions up to the first one without a type.
+    known: usize,
+}
+
+impl<'a> Values<'a> {
+    fn new(scan: &'a Scan, module: &'a Module, name: &'a str, function: &'a Function) -> Self {
+        let context = ResolveContext::with_locals(module, &function.local_variables, &function.arguments);
+        let mut types = Typifier::new();
+        let grows = |(handle, _)| types.grow(handle, &function.expressions, &context).is_ok();
+        let known = function.expressions.iter().map(grows).take_while(|grows| *grows).count();
+        Self { scan, module, name, function, types, known }
+    }
+
+    fn of(&self, value: Handle<Expression>) -> Option<String> {
+        (value.index() < self.known)
+            .then(|| self.module.to_ctx().type_resolution_to_string(&self.types[value]))
+    }
+
+    /// The name of a value, or its text.
+    fn source(&self, value: Handle<Expression>) -> &'a str {
+        let function = self.function;
+        let named = match &function.expressions[value] {
+            Expression::FunctionArgument(index) => function.arguments[*index as usize].name.as_deref(),
+            Expression::LocalVariable(variable) => function.local_variables[*variable].name.as_deref(),
+            Expression::Load { pointer } => Some(self.source(*pointer)),
+            _ => function.named_expressions.get(&value).map(String::as_str),
+        };
+        named.unwrap_or_else(|| {
+            let range = function.expressions.get_span(value).to_range();
+            range.and_then(|range| self.scan.text.get(range)).unwrap_or_default()
+        })
+    }
+
+    fn place(&self, value: Handle<Expression>) -> Option<usize> {
+        Some(self.function.expressions.get_span(value).to_range()?.start)
+    }
+
+    /// The explanation of an expression that is not valid.
+    fn expression(&self, wrong: Handle<Expression>) -> Option<Explained> {
+        let expressions = &self.function.expressions;
+        let uses = |expression: &Expression| match expression {
+            Expression::Binary { left, right, .. } => [left, right].contains(&&wrong),
+            Expression::Compose { components, .. } => components.contains(&wrong),
+            _ => false,
+        };
+        // A number that found no type, because of what it is used in.
+        let wrong = match &expressions[wrong] {
+            Expression::Literal(_) => {
+                expressions.iter().find(|(_, e)| uses(e)).map_or(wrong, |(handle, _)| handle)
+            }
+            _ => wrong,
+        };
+        let message = match &expressions[wrong] {
+            Expression::Binary { op, left, right } => self.combined(*op, *left, *right)?,
+            Expression::Unary { op, expr } => {
+                let of = self.of(*expr)?;
+                let (sign, takes) = match op {
+                    UnaryOperator::LogicalNot => ("!", "bool"),
+                    UnaryOperator::Negate => ("-", "f32"),
+                    UnaryOperator::BitwiseNot => ("~", "i32"),
+                };
+                format!("{sign} needs {}, but {}", called(takes), misfit(takes, &of, self.source(*expr)))
+            }
+            Expression::Compose { ty, components } => {
+                let at = self.place(wrong)?;
+                return self.composed(at, *ty, components);
+            }
+            Expression::Access { index, .. } => {
+                let of = self.of(*index)?;
+                format!("an index is a whole number, but {}", misfit("i32", &of, self.source(*index)))
+            }
+            _ => return None,
+        };
+        Some((self.place(wrong), message))
+    }
+
+    /// The message about two values that an operator does not take.
+    fn combined(
+        &self,
+        op: BinaryOperator,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+    ) -> Option<String> {
+        use BinaryOperator as Op;
+        let sign = match op {
+            Op::Add => "+",
+            Op::Subtract => "-",
+            Op::Multiply => "*",
+            Op::Divide => "/",
+            Op::Modulo => "%",
+            Op::Equal => "==",
+            Op::NotEqual => "!=",
+            Op::Less => "<",
+            Op::LessEqual => "<=",
+            Op::Greater => ">",
+            Op::GreaterEqual => ">=",
+            Op::And => "&",
+            Op::ExclusiveOr => "^",
+            Op::InclusiveOr => "|",
+            Op::LogicalAnd => "&&",
+            Op::LogicalOr => "||",
+            Op::ShiftLeft => "<<",
+            Op::ShiftRight => ">>",
+        };
+        let (a, b) = (self.of(left)?, self.of(right)?);
+        let (first, second) = (self.source(left), self.source(right));
+        let logical = matches!(op, Op::And | Op::InclusiveOr | Op::LogicalAnd | Op::LogicalOr);
+        let compares = matches!(op, Op::Less | Op::LessEqual | Op::Greater | Op::GreaterEqual);
+        let hint = if op == Op::ExclusiveOr {
+            format!("; a power is `pow({first}, {second})`")
+        } else if compares && a == "bool" {
+            format!("; write `… && {} {sign} {second}`", last_operand(first))
+        } else if logical && a != b {
+            let (of, value) = if a == "bool" { (&b, second) } else { (&a, first) };
+            remedy("bool", of, value)
+        } else if compares && (a.starts_with("vec") || b.starts_with("vec")) {
+            "; compare a component, or the lengths".to_owned()
+        } else if matches!(a.as_str(), "i32" | "u32") {
+            remedy("f32", &a, first)
+        } else {
+            remedy(&a, &b, second)
+        };
+        Some(format!(
+            "{sign} cannot take {}, {}, and {}, {}{hint}",
+            shown(first),
+            called(&a),
+            shown(second),
+            called(&b)
+        ))
+    }
+
+    /// The explanation of a struct or a vector made of the wrong values.
+    fn composed(
+        &self,
+        at: usize,
+        ty: Handle<naga::Type>,
+        components: &[Handle<Expression>],
+    ) -> Option<Explained> {
+        let types: Vec<_> = components.iter().map(|value| self.of(*value)).collect::<Option<_>>()?;
+        let called_at = self.scan.at(at);
+        match &self.module.types[ty].inner {
+            TypeInner::Struct { members, .. } => {
+                let declared = self.scan.declared(self.module.types[ty].name.as_deref()?)?;
+                if members.len() != components.len() {
+                    return Some((Some(at), declared.wants(components.len())));
+                }
+                let wrong =
+                    types.iter().zip(&declared.fields).position(|(got, (_, of))| got != &plain(of))?;
+                let value = self
+                    .argument(called_at, wrong)
+                    .map_or(self.source(components[wrong]), |(_, value)| value);
+                let place = self.argument(called_at, wrong).map_or(at, |(at, _)| at);
+                Some((Some(place), declared.wants_other(wrong, &types[wrong], value)?))
+            }
+            TypeInner::Vector { size, .. } => {
+                let size = *size as usize;
+                let width =
+                    |of: &String| of.strip_prefix("vec").and_then(|rest| rest[..1].parse().ok()).unwrap_or(1);
+                let given: usize = types.iter().map(width).sum();
+                if given != size {
+                    let one = if size == 3 && types.len() == 1 { "" } else { ", or a single one for all" };
+                    return Some((
+                        Some(at),
+                        format!("vec{size} takes {size} numbers{one}, but here {}", super::scan::are(given)),
+                    ));
+                }
+                let wrong = types.iter().position(|of| matches!(of.as_str(), "i32" | "u32" | "bool"))?;
+                let value = self.source(components[wrong]);
+                Some((
+                    Some(at),
+                    format!("a vec{size} is made of numbers, but {}", misfit("f32", &types[wrong], value)),
+                ))
+            }
+            _ => None,
+        }
+    }
+
+    /// The place and the text of a value in the call that begins at a token.
+    fn argument(&self, call: usize, index: usize) -> Option<(usize, &'a str)> {
+        let part = self.scan.parts(call + 1).get(index)?.clone();
+        Some((self.scan.tokens.get(part.start)?.at, self.scan.source(part)))
+    }
+
+    /// The explanation of a statement that is not valid.
+    fn statement(&self, error: &FunctionError) -> Option<Explained> {
+        let begins =
+            |wanted: &dyn Fn(&Statement) -> bool| Some(find(&self.function.body, wanted)?.to_range()?.start);
+        match error {
+            FunctionError::InvalidReturnType { expression: Some(value), expected_ty } => {
+                let at = begins(&|s| matches!(s, Statement::Return { value: Some(v) } if v == value));
+                let expected = expected_ty.map(|ty| self.module.to_ctx().type_to_string(ty));
+                let (got, value) = (self.of(*value)?, self.source(*value));
+                Some((at, result(self.scan, self.name, expected.as_deref(), &got, value)))
+            }
+            FunctionError::InvalidReturnType { expression: None, expected_ty: Some(ty) } => {
+                let bare = begins(&|s| matches!(s, Statement::Return { value: None }));
+                if let Some(at) = bare.filter(|at| self.scan.text[*at..].starts_with("return")) {
+                    let of = called(&self.module.to_ctx().type_to_string(*ty));
+                    return Some((
+                        Some(at),
+                        format!("{} must return {of}, but this return has no value", self.name),
+                    ));
+                }
+                let named = |f: &Function| f.name.as_deref() == Some(self.name);
+                let (function, _) = self.module.functions.iter().find(|(_, f)| named(f))?;
+                let end = self.module.functions.get_span(function).to_range()?.end;
+                Some((end.checked_sub(1), format!("the function {} ends without a return", self.name)))
+            }
+            FunctionError::InvalidStoreTypes { pointer, value } => {
+                let at = begins(&|s| matches!(s, Statement::Store { value: v, .. } if v == value));
+                let (got, text) = (self.of(*value)?, self.source(*value));
+                let target = self.source(*pointer);
+                if target.is_empty()
+                    || matches!(&self.function.expressions[*pointer], Expression::LocalVariable(v) if self.function.local_variables[*v].name.is_none())
+                {
+                    return Some((
+                        self.place(*value),
+                        format!("&& and || need true or false, but {}", misfit("bool", &got, text)),
+                    ));
+                }
+                let of = self.of(*pointer)?;
+                let of = of.split_once(", ").map_or("", |(_, of)| of.trim_end_matches('>'));
+                // The end of `vec3<f32>` is that of the pointer too.
+                let of = if of.contains('<') { format!("{of}>") } else { of.to_owned() };
+                Some((at, format!("`{target}` is {}, but {}", called(&of), misfit(&of, &got, text))))
+            }
+            FunctionError::InvalidIfType(condition) => {
+                let at = begins(&|s| matches!(s, Statement::If { condition: c, .. } if c == condition));
+                let (of, text) = (self.of(*condition)?, self.source(*condition));
+                let hint = if of.starts_with("vec") && of.contains("bool") {
+                    "; write `all(…)` or `any(…)` around the comparison".to_owned()
+                } else {
+                    remedy("bool", &of, text)
+                };
+                Some((
+                    at,
+                    format!("a condition is true or false, but {} is {}{hint}", shown(text), called(&of)),
+                ))
+            }
+            FunctionError::InvalidCall { function, error } => {
+                let declared = self.scan.declared(self.module.functions[*function].name.as_deref()?)?;
+                match error {
+                    CallError::ArgumentCount { seen, .. } => {
+                        let called = |s: &Statement| matches!(s, Statement::Call { function: f, arguments, .. } if f == function && arguments.len() == *seen);
+                        Some((begins(&called), declared.wants(*seen)))
+                    }
+                    CallError::ArgumentType { index, seen_expression, .. } => {
+                        let called = |s: &Statement| matches!(s, Statement::Call { function: f, arguments, .. } if f == function && arguments.get(*index) == Some(seen_expression));
+                        let call = begins(&called)?;
+                        let (at, value) = self.argument(self.scan.at(call), *index).unwrap_or((call, ""));
+                        Some((Some(at), declared.wants_other(*index, &self.of(*seen_expression)?, value)?))
+                    }
+                    _ => None,
+                }
+            }
+            FunctionError::BreakOutsideOfLoopOrSwitch => {
+                Some((None, "break belongs into a loop or a switch".to_owned()))
+            }
+            FunctionError::ContinueOutsideOfLoop => Some((None, "continue belongs into a loop".to_owned())),
+            FunctionError::MissingDefaultCase => {
+                Some((None, "this switch needs a `default: { … }`".to_owned()))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A type as naga writes it: `vec3f` is `vec3<f32>`.
+fn plain(of: &str) -> String {
+    match of.as_bytes() {
+        [b'v', b'e', b'c', _, b'f'] => format!("{}<f32>", &of[..4]),
+        _ => of.replace(' ', ""),
+    }
+}
+
+/// The last value of a chain of comparisons: `b` of `a < b`.
+fn last_operand(text: &str) -> &str {
+    text.rsplit(['<', '>', '=']).next().unwrap_or(text).trim()
+}
+
+/// The place of the first such statement in a block.
+fn find(block: &Block, wanted: &dyn Fn(&Statement) -> bool) -> Option<Span> {
+    block.span_iter().find_map(|(statement, span)| {
+        if wanted(statement) {
+            return Some(*span);
+        }
+        match statement {
+            Statement::Block(inner) => find(inner, wanted),
+            Statement::If { accept, reject, .. } => find(accept, wanted).or_else(|| find(reject, wanted)),
+            Statement::Switch { cases, .. } => cases.iter().find_map(|case| find(&case.body, wanted)),
+            Statement::Loop { body, continuing, .. } => {
+                find(body, wanted).or_else(|| find(continuing, wanted))
+            }
+            _ => None,
+        }
+    })
+}

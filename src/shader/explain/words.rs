@@ -1,0 +1,100 @@
+//! Names that are not defined: those of other languages, of equations, and misspelt ones.
+
+use super::scan::Scan;
+use crate::text::nearest;
+
+/// Names of GLSL, HLSL and C, and of the equations, with what they are here.
+const MEANT: &[(&str, &str)] = &[
+    ("float", "f32"),
+    ("double", "f32"),
+    ("half", "f32"),
+    ("int", "i32"),
+    ("uint", "u32"),
+    ("float2", "vec2<f32>"),
+    ("float3", "vec3<f32>"),
+    ("float4", "vec4<f32>"),
+    ("ivec2", "vec2<i32>"),
+    ("ivec3", "vec3<i32>"),
+    ("mat2", "mat2x2<f32>"),
+    ("mat3", "mat3x3<f32>"),
+    ("mat4", "mat4x4<f32>"),
+    ("lerp", "mix"),
+    ("frac", "fract"),
+    ("rsqrt", "inverseSqrt"),
+    ("mod", "x % y"),
+    ("fmod", "x % y"),
+    ("fabs", "abs"),
+    ("powf", "pow"),
+    ("pi", "PI"),
+    ("M_PI", "PI"),
+    ("N", "frame.n"),
+    ("n", "frame.n"),
+    ("normal", "frame.n"),
+    ("T", "frame.t"),
+    ("tangent", "frame.t"),
+    ("B", "frame.b"),
+    ("bitangent", "frame.b"),
+    ("L", "l"),
+    ("light", "l"),
+    ("light_dir", "l"),
+    ("V", "v"),
+    ("view", "v"),
+    ("view_dir", "v"),
+    ("eye", "v"),
+    ("H", "half_vector(l, v)"),
+    ("h", "half_vector(l, v)"),
+    ("R", "mirror(l, frame.n)"),
+    ("r", "mirror(l, frame.n)"),
+    ("albedo", "m.base_colour"),
+    ("Params", "Parameters"),
+];
+/// The parameters of `response`.
+const RECEIVED: &[(&str, &str)] =
+    &[("l", "vec3<f32>"), ("v", "vec3<f32>"), ("frame", "Frame"), ("m", "Parameters")];
+
+/// The name here of a type of another language.
+pub(super) fn wgsl_type(word: &str) -> String {
+    match word {
+        "vec2" | "vec3" | "vec4" => format!("{word}<f32>"),
+        word => MEANT.iter().find(|(other, _)| *other == word).map_or(word, |(_, here)| here).to_owned(),
+    }
+}
+
+/// The message about a name that is not defined, the token `i`.
+pub(super) fn unknown(scan: &Scan, i: usize, name: &str) -> String {
+    if name == "void" {
+        return "WGSL has no void; a function without a result has no ->".to_owned();
+    }
+    if let Some((_, of)) = RECEIVED.iter().find(|(received, _)| *received == name) {
+        let function = scan.function(i).unwrap_or_default();
+        return format!("{function} has no parameter {name}; declare it: `fn {function}(…, {name}: {of})`");
+    }
+    // The parameters of a model are fields.
+    let parameters = scan.declared("Parameters").map(|of| of.fields).unwrap_or_default();
+    let fields: Vec<_> = parameters.iter().map(|(field, _)| (*field, format!("m.{field}"))).collect();
+    let fields = fields.iter().map(|(field, code)| (*field, &**code));
+    let spelling = name.replace("color", "colour");
+    let exact = fields.clone().find(|(field, _)| *field == spelling);
+    let exact = exact.or_else(|| MEANT.iter().find(|(other, _)| *other == name).copied());
+    let near = || {
+        let defines =
+            |j: &usize| matches!(scan.before(*j, 1), "let" | "var" | "const" | "fn" | "struct" | "alias");
+        let declared = (1..scan.tokens.len()).filter(defines);
+        // Variables of this function, and whatever is outside of functions.
+        let begins = (0..i).rposition(|j| scan.word(j) == "fn").unwrap_or(0);
+        let known = declared
+            .filter(|j| (begins..i).contains(j) || matches!(scan.before(*j, 1), "fn" | "struct" | "const"));
+        let known = known.map(|j| (scan.word(j), scan.word(j)));
+        let own = RECEIVED.iter().map(|(word, _)| (*word, *word));
+        let built_in = naga::keywords::wgsl::BUILTIN_IDENTIFIERS.iter().map(|word| (*word, *word));
+        let near = nearest(
+            &spelling,
+            known.chain(fields).chain(built_in).chain(own).filter(|(word, _)| word.len() > 2),
+        );
+        near.filter(|_| name.len() > 2)
+    };
+    match exact.map(|(_, code)| code).or_else(near) {
+        Some(code) => format!("`{name}` is not defined; did you mean `{code}`?"),
+        None => format!("`{name}` is not defined"),
+    }
+}
