@@ -13,6 +13,7 @@ use std::{
 use crate::{
     registry::Registry,
     scene::{Light, Object, Scene, check, error::Problem},
+    text::sentence,
 };
 
 mod edit;
@@ -336,7 +337,7 @@ impl Document {
         registry: &Registry,
     ) -> Result<(), String> {
         if let Some(problem) = self.problem_in(scene, parts, registry) {
-            return Err(format!("A change of a component was refused: {problem}."));
+            return Err(sentence(&format!("A change of a component was refused: {problem}")));
         }
         const NAME: &str = "Change by a system";
         let gesture = std::mem::replace(&mut self.gesture, SYSTEMS);

@@ -4,6 +4,7 @@ use super::Library;
 use crate::{
     registry::Registry,
     shader::{check::ShaderProblem, compose::Composed, limits},
+    text::detailed,
 };
 
 impl Library {
@@ -29,7 +30,7 @@ impl Library {
         let text = text(cause).unwrap_or_default();
         let generated = problem.file.starts_with('(');
         if !generated && !limits::is_empty(text) {
-            problem.message.push_str(&format!("; introduced by the change in {cause}"));
+            problem.message = detailed(&problem.message, &format!("introduced by the change in {cause}"));
             return problem;
         }
         let last = text.trim_end().lines().last().unwrap_or_default();

@@ -287,7 +287,11 @@ impl<'a> Scanner<'a> {
             _ if self.directive => {
                 ControlFlow::Break((self.at, "this quotation mark is not closed in its line".to_owned()))
             }
-            _ => ControlFlow::Break((self.at, "WGSL has no quotation marks".to_owned())),
+            _ => ControlFlow::Break((
+                self.at,
+                "WGSL has no quotation marks; a file is included by a line `#import \"file.wgsl\"`"
+                    .to_owned(),
+            )),
         }
     }
 

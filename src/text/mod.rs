@@ -5,4 +5,6 @@ pub mod path;
 pub mod place;
 mod words;
 
-pub use words::{did_you_mean, listed, nearest, number, one_of, plural, quoted, shortened};
+pub use words::{
+    detailed, did_you_mean, listed, nearest, number, one_of, plural, quoted, sentence, shortened,
+};

@@ -43,6 +43,21 @@ pub fn did_you_mean<'a>(written: &str, candidates: impl Iterator<Item = (&'a str
     nearest(written, candidates).map_or_else(String::new, |n| format!("; did you mean {}?", quoted(n)))
 }
 
+/// A message with one more detail, which stands before a question at its end.
+#[must_use]
+pub fn detailed(message: &str, detail: &str) -> String {
+    let question = message.rfind("; did you mean").filter(|_| message.ends_with('?'));
+    let (said, question) = message.split_at(question.unwrap_or(message.len()));
+    format!("{said}; {detail}{question}")
+}
+
+/// A message as a sentence within a text: with a full stop, unless it ends with another mark.
+#[must_use]
+pub fn sentence(message: &str) -> String {
+    let ended = message.ends_with(['.', '?', '!', '…']);
+    format!("{message}{}", if ended { "" } else { "." })
+}
+
 /// The rule that a value must be one of several words.
 #[must_use]
 pub fn one_of<'a>(what: &str, words: impl Iterator<Item = &'a str>) -> String {
@@ -91,6 +106,17 @@ mod tests {
         assert_eq!(listed(&["A"], "and"), "A");
         assert_eq!(listed(&["A", "B"], "and"), "A and B");
         assert_eq!(listed(&["A", "B", "C"], "and"), "A, B and C");
+    }
+
+    #[test]
+    fn a_question_ends_its_message() {
+        let question = did_you_mean("lambrt", [("lambert", "lambert")].into_iter());
+        let message = format!("there is no lambrt{question}");
+        assert_eq!(detailed(&message, "see a"), "there is no lambrt; see a; did you mean \"lambert\"?");
+        assert_eq!(detailed("there is no x", "see a"), "there is no x; see a");
+        assert_eq!(sentence(&message), message);
+        assert_eq!(sentence("there is no x"), "there is no x.");
+        assert_eq!(sentence("there is no …"), "there is no …");
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::{
     library::assets::{self, Exported, Folders},
     panel::state::{Effect, ModelDraft, Session, Severity},
     registry::Registry,
+    text::sentence,
 };
 
 /// Carries out an effect that writes a file of the user's: reports the result, and wishes for a new model to be
@@ -29,7 +30,8 @@ pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Opt
                 Ok(sources) => sources,
                 Err(why) => {
                     let copied = entry.declaration.name;
-                    session.say(Severity::Error, format!("{copied} was not copied: {}.", why.message));
+                    session
+                        .say(Severity::Error, sentence(&format!("{copied} was not copied: {}", why.message)));
                     return None;
                 }
             };

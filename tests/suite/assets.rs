@@ -240,7 +240,7 @@ fn a_broken_file_is_told_of_and_the_rest_goes_on() {
         unchecked.err
     );
     for expected in [
-        "error: no definition in scope for identifier: `cos_m`",
+        "error: `cos_m` is not defined; did you mean `cos_l`?",
         "--> models/bad.wgsl:4:",
         "return Terms(vec3(0.0), m.base_colour * cos_m",
         "^",

@@ -20,7 +20,7 @@ use lights_camera_models::{
 };
 use serde_json::{Value as Json, json};
 
-use crate::support::{Run, lcm_in};
+use crate::support::{Run, check_wording, lcm_in};
 
 /// The number of models in a large folder.
 const MANY: usize = 500;
@@ -249,6 +249,7 @@ fn messages_list_and_suggest_what_only_declarations_know() {
     let bench = Bench::crowded();
     let unknown = bench.run("check -", &scene("fuzzz_321", &json!({ "depthh_321": 1 }), None));
     assert_eq!(unknown.status, Some(1));
+    check_wording(&unknown.err);
     for expected in [
         "\"fuzz_0\"",
         "\"fuzz_499\"",

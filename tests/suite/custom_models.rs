@@ -24,7 +24,10 @@ use lights_camera_models::{
     scene::Scene,
 };
 
-use crate::pictures::{close_up, compare};
+use crate::{
+    pictures::{close_up, compare},
+    support::check_wording,
+};
 
 /// The path of a model with that id.
 fn path(id: &str) -> std::path::PathBuf {
@@ -64,6 +67,7 @@ fn said(declaration: &str) -> String {
 fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
     let check = |declaration: &str, expected: &str| {
         let said = said(declaration);
+        check_wording(&said);
         assert!(said.contains(expected), "{declaration}\n{said}is not\n{expected}");
         assert!(said.lines().all(|l| l.starts_with("models/mine.wgsl:")), "{said}");
     };
@@ -218,74 +222,6 @@ fn a_file_without_a_good_name_or_declaration_is_refused() {
     assert_eq!(said("{ /* a comment */ \"name\": \"x\", // and this\n }"), "");
     assert!(custom::is_model(&good) && custom::is_model("fn response() {}"));
     assert!(!custom::is_model("// fn response()\nfn helper() {}"));
-}
-
-#[test]
-fn mistakes_in_the_wgsl_are_told_where_they_are() {
-    let head = "/* lcm { \"parameters\": [\"k_s\"] } */\n";
-    let body = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {\n    return Terms(vec3(0.0), vec3(0.0), vec3(m.k_s));\n}\n";
-    let said = |text: &str| said_of("mine", text);
-    assert_eq!(said(&format!("{head}{body}")), "");
-    for (text, expected) in [
-        (
-            head.to_owned(),
-            "models/mine.wgsl:1:36: the function response is missing; it is fn response(l: vec3<f32>",
-        ),
-        (format!("{head}{}", body.replace("m.k_s", "m.k_d")), "models/mine.wgsl:3:"),
-        (
-            format!(
-                "{head}{}",
-                body.replace("return Terms(vec3(0.0), vec3(0.0), vec3(m.k_s));", "let x = m.k_s;")
-            ),
-            "models/mine.wgsl:4:1: the function response ends without a return",
-        ),
-        (
-            format!("{head}{}fn half(x: f32) -> f32 {{ if x > 0.0 {{ return 0.5; }} }}", body),
-            "models/mine.wgsl:5:53: the function half ends without a return",
-        ),
-        (
-            format!("{head}{}", body.replace("vec3(m.k_s)", "vec3(dot(frame.normal, l))")),
-            "Frame has no field normal; did you mean n?",
-        ),
-        (
-            format!("{head}{}", body.replace("fn response", "fn respons")),
-            "models/mine.wgsl:2:4: the function response is missing; did you mean it by respons? It is fn response(",
-        ),
-        (
-            format!("{head}{body}@fragment\n"),
-            "models/mine.wgsl:5:2: the file ends in the middle of a declaration, after `fragment`; what the attribute belongs to is missing",
-        ),
-        (
-            format!("{head}{}", body.replace("return", "/* ä */ return")).replace("m.k_s", "m.k_d"),
-            "models/mine.wgsl:3:",
-        ),
-        (
-            format!("{head}fn response(l: vec3<f32>) -> f32 {{ return 1.0; }}"),
-            "models/mine.wgsl:2:4: response must be fn response(l: vec3<f32>, v: vec3<f32>",
-        ),
-        (
-            format!("{head}{body}fn schlick(x: f32) -> f32 {{ return x; }}"),
-            "models/mine.wgsl:5:4: redefinition of `schlick`",
-        ),
-        (
-            format!("{head}{body}fn illuminate(x: f32) -> f32 {{ return x; }}"),
-            "models/mine.wgsl:5:4: loop.wgsl defines illuminate too; choose another name",
-        ),
-        (
-            format!("{head}{body}struct Stages {{ x: f32 }}"),
-            "models/mine.wgsl:5:8: wrapper.wgsl defines Stages too",
-        ),
-        (
-            format!("{head}{body}fn ambient_response(v: vec3<f32>) -> vec3<f32> {{ return v; }}"),
-            "models/mine.wgsl:5:4: ambient_response must be fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters)",
-        ),
-        (
-            format!("{head}#import \"none.wgsl\"\n{body}"),
-            "models/mine.wgsl:2:1: there is no file `models/none.wgsl` to import",
-        ),
-    ] {
-        assert!(said(&text).contains(expected), "{text}\n{}is not\n{expected}", said(&text));
-    }
 }
 
 #[test]

@@ -34,6 +34,7 @@ mod links;
 mod marks;
 mod memory;
 mod missing_size;
+mod mistakes;
 mod modules;
 mod overrides;
 mod panels;

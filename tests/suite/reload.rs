@@ -161,7 +161,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "syntax",
         file: "reflection/phong.wgsl",
         change: |t| replaced(t, "var specular = vec3(0.0);", "var specular = = vec3(0.0);"),
-        said: "expected expression",
+        said: "a value is missing before `=`",
         line: "= =",
     },
     Breakage {
@@ -232,7 +232,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "wrong signature",
         file: "reflection/phong.wgsl",
         change: |t| replaced(t, "fn response(l: vec3<f32>, v", "fn response(l: vec2<f32>, v"),
-        said: "inconsistent type passed as argument #2 to `dot`",
+        said: "the arguments of dot(a, b) must have the same type, but `frame.n` is a vec3<f32> and `l` is a vec2<f32>",
         line: "dot(frame.n, l)",
     },
     Breakage {

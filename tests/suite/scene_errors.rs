@@ -9,7 +9,7 @@ use lights_camera_models::{
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use crate::support::{changed, full_scene, lcm_in, said, said_of_bytes};
+use crate::support::{changed, check_wording, full_scene, lcm_in, said, said_of_bytes};
 
 #[test]
 fn the_full_scene_is_valid() {
@@ -328,6 +328,7 @@ fn every_constraint_has_its_message() {
     for (pointer, value, expected) in cases {
         let text = changed(|scene| put(scene, pointer, value.clone()));
         let said = said(&text);
+        check_wording(&said);
         assert!(said.contains(expected), "{pointer} = {value}\n  said: {said}\n  not: {expected}");
         assert_eq!(said.lines().count(), 1, "one mistake, one message:\n{said}");
         assert!(said.starts_with("scene.json:"), "{said}");
@@ -364,6 +365,7 @@ fn what_is_required_is_missed() {
             parent.as_object_mut().expect("an object").remove(key);
         });
         let said = said(&text);
+        check_wording(&said);
         assert!(said.contains(expected), "{parent}/{key}: {said}");
     }
 }
@@ -390,6 +392,7 @@ fn unknown_keys_name_the_nearest_known_one_or_where_they_belong() {
         ),
     ] {
         let said = said(&changed(|scene| put(scene, pointer, json!(1))));
+        check_wording(&said);
         assert!(said.contains(expected), "{pointer}: {said}");
     }
 }
@@ -587,6 +590,7 @@ fn what_is_not_utf_8_json_is_recognised() {
         (br#"{"name": "\ud800"}"#.to_vec(), "not JSON"),
     ] {
         let said = said_of_bytes(&bytes);
+        check_wording(&said);
         assert!(said.contains(expected), "{}: {said}", String::from_utf8_lossy(&bytes));
     }
 }

@@ -23,6 +23,17 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// Messages are well-formed: a question stands at the end, and nothing is joined twice.
+pub fn check_wording(messages: &str) {
+    for message in messages.lines().map(str::trim) {
+        let wrong = ["?;", "?.", "? ", "..", ";;", " ;", " ,", ":;", ": ;"]
+            .into_iter()
+            .find(|bad| message.contains(bad));
+        assert_eq!(wrong, None, "{message}");
+        assert!(!message.contains("  ") && !message.ends_with(';'), "{message}");
+    }
+}
+
 /// The shipped scenes.
 pub fn shipped_scenes() -> Vec<PathBuf> {
     let mut scenes: Vec<_> = fs::read_dir(root().join("scenes"))

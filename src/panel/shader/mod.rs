@@ -7,7 +7,11 @@ use super::{
     state::{Action, SHADER_TAB, Session, Severity},
     theme::{self, Palette},
 };
-use crate::{custom::source_path, registry::Registry, text::plural};
+use crate::{
+    custom::source_path,
+    registry::Registry,
+    text::{plural, sentence},
+};
 use {files::files, trouble::troubles};
 
 mod files;
@@ -76,8 +80,8 @@ pub fn missing_model(session: &Session, registry: &Registry, id: &str) -> String
         session.shaders.troubles.iter().find(|t| t.problem.file == path).map(|t| t.problem.to_string());
     match trouble.or_else(|| registry.broken_model(id).map(str::to_owned)) {
         Some(why) => format!(
-            "There is no version of the file {path} yet that works: {why}. Correct the file, or choose another \
-             model."
+            "There is no version of the file {path} yet that works: {} Correct the file, or choose another model.",
+            sentence(&why)
         ),
         None => format!(
             "There is no reflection model “{id}”: the file {path} is gone. Restore it to get the model back, or choose \

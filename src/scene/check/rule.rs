@@ -14,7 +14,7 @@ use crate::{
     registry::Registry,
     scene::{MAX_DIMENSION, MAX_OBJECTS, SceneSize},
     shape::ShapeEntry,
-    text::{self, did_you_mean},
+    text::{self, detailed, did_you_mean},
 };
 
 /// The narrowest legal field of view, degrees.
@@ -193,21 +193,18 @@ pub fn reflection_model(registry: &Registry, id: &str) -> Rule {
     let known = registry.models().iter().map(|m| (m.declaration.id, m.declaration.name));
     one_of("the reflection model", id, known).map_err(|rule| match registry.broken_model(id) {
         Some(why) => format!("the file of that custom model has an error: {why}"),
-        None => rule + &custom_model_missing(registry, id),
+        None => match custom_model_missing(registry, id) {
+            Some(detail) => detailed(&rule, &detail),
+            None => rule,
+        },
     })
 }
 
-/// The addition for an id without a file in the folder of custom models, from which it may be missing.
-fn custom_model_missing(registry: &Registry, id: &str) -> String {
-    match registry.custom_folder() {
-        Some(folder) if folder.is_dir() && custom::is_id(id) => {
-            format!(
-                "; the folder of custom models has no {}",
-                folder.join(id).with_extension(custom::EXTENSION).display()
-            )
-        }
-        _ => String::new(),
-    }
+/// The detail for an id without a file in the folder of custom models, from which it may be missing.
+fn custom_model_missing(registry: &Registry, id: &str) -> Option<String> {
+    let folder = registry.custom_folder().filter(|folder| folder.is_dir() && custom::is_id(id))?;
+    let file = folder.join(id).with_extension(custom::EXTENSION);
+    Some(format!("the folder of custom models has no {}", file.display()))
 }
 
 /// The id of a shading model.

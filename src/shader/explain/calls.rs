@@ -2,7 +2,7 @@
 
 use super::{
     Complaint, Explained, between,
-    scan::{Scan, are, called, misfit, remedy, result, shown},
+    scan::{Scan, called, given, misfit, remedy, result, shown},
 };
 use crate::text::{listed, plural};
 
@@ -66,53 +66,63 @@ pub(super) fn explained(scan: &Scan, complaint: &Complaint) -> Option<Explained>
         let takes = if fewest == expected { count } else { format!("at least {count}") };
         return Some((
             place(first),
-            format!("{} takes {takes}, but here {}", usage(name), are(found.parse().ok()?)),
+            format!("{} takes {takes}, but {}", usage(name), given(found.parse().ok()?)),
         ));
     }
     if let Some([name]) = between(message, "too many arguments passed to `{}`") {
         let [number] = between(rest.first()?.says, "unexpected argument #{}")?;
         let count = plural(number.parse::<usize>().ok()?.saturating_sub(1), "value");
         let hint = if name == "atan" { "; the angle of a point is atan2(y, x)" } else { "" };
-        return Some((place(first), format!("{} takes {count}, but here are more{hint}", usage(name))));
+        return Some((place(first), format!("{} takes {count}, but more are given{hint}", usage(name))));
     }
-    if let Some([_, name]) = between(message, "wrong type passed as argument #{} to `{}`") {
-        let value = rest.first()?;
-        let [number, got] = between(value.says, "argument #{} has type `{}`")?;
-        let allowed = allowed(complaint);
-        let hint = match remedy("f32", got, value.source()) {
-            hint if allowed.contains(&"f32".to_owned()) && !hint.is_empty() => hint,
-            _ => format!("; it must be {}", listed(&allowed, "or")),
-        };
-        let what = format!("value {number} of {} is {}, {}", usage(name), shown(value.source()), called(got));
-        return Some((place(value), what + &hint));
+    // The compiler names the place where a value with a name was calculated; the call is the first place.
+    let call = scan.at(first.range.start);
+    let argument = |number: &str| {
+        let part = scan.parts(call + 1).get(number.parse::<usize>().ok()?.checked_sub(1)?)?.clone();
+        Some((Some(scan.tokens[part.start].at), scan.source(part)))
+    };
+    if let Some([number, name]) = between(message, "wrong type passed as argument #{} to `{}`") {
+        let [_, got] = between(rest.first()?.says, "argument #{} has type `{}`")?;
+        let (at, value) = argument(number)?;
+        let fields = scan.fields_of(got, value);
+        let what = format!("argument {number} of {} is {}, {}", usage(name), shown(value), called(got));
+        return Some((at, what + &fields.unwrap_or_else(|| allowed(complaint, got, value))));
     }
-    if let Some([_, name]) = between(message, "inconsistent type passed as argument #{} to `{}`") {
-        let [value, other] = rest else { return None };
-        let [_, got] = between(value.says, "argument #{} has type {}")?;
+    if let Some([number, name]) = between(message, "inconsistent type passed as argument #{} to `{}`") {
+        let [wrong, other] = rest else { return None };
+        let [_, got] = between(wrong.says, "argument #{} has type {}")?;
         let [of] = between(other.says, "this argument has type {}, which constrains subsequent arguments")?;
-        let (value, other) = match remedy(of, got, value.source()) {
-            hint if hint.contains("write") => {
-                (misfit(of, got, value.source()), format!("{} is {}", shown(other.source()), called(of)))
-            }
-            _ => (format!("{} is {}", shown(value.source()), called(got)), misfit(got, of, other.source())),
+        let report = complaint.error.emit_to_string(&complaint.composed.text);
+        let earlier = report.split_once("Because argument #")?.1.split(' ').next()?;
+        let ((at, value), (_, before)) = (argument(number)?, argument(earlier)?);
+        let hint = match remedy(of, got, value) {
+            hint if hint.contains("write") => hint,
+            _ if of.starts_with("vec") => String::new(),
+            _ => remedy(got, of, before),
         };
+        let both = format!("{} is {} and {} is {}", shown(before), called(of), shown(value), called(got));
         return Some((
-            place(rest.first()?),
-            format!("the values of {} must have one type, but {other} and {value}", usage(name)),
+            at,
+            format!("the arguments of {} must have the same type, but {both}{hint}", usage(name)),
         ));
     }
     None
 }
 
-/// The types that the compiler allows, which it tells in the notes of its report only; those of numbers if there are.
-fn allowed(complaint: &Complaint) -> Vec<String> {
+/// The end of a message about a value of a type that a function does not take. The compiler tells those that it does in
+/// the notes of its report only.
+fn allowed(complaint: &Complaint, got: &str, value: &str) -> String {
     let report = complaint.error.emit_to_string(&complaint.composed.text);
     let types = report.lines().filter_map(|line| line.split_once("allowed type: "));
-    let mut types: Vec<_> = types.map(|(_, of)| of.trim().to_owned()).collect();
-    if types.iter().any(|of| of.contains("f32")) {
-        types.retain(|of| of.contains("f32"));
+    let types: Vec<_> = types.map(|(_, of)| of.trim()).collect();
+    let number = types.contains(&"f32");
+    let vectors = types.iter().any(|of| of.starts_with("vec") && of.contains("f32"));
+    match (number, vectors) {
+        (true, _) if matches!(got, "i32" | "u32" | "bool") => remedy("f32", got, value),
+        (true, true) => "; it must be a number or a vector".to_owned(),
+        (false, true) => "; it must be a vector".to_owned(),
+        _ => format!("; it must be {}", listed(&types, "or")),
     }
-    types
 }
 
 /// The message about a value, the token `i`, that does not become one of the expected type.
@@ -123,5 +133,5 @@ fn converted(scan: &Scan, i: usize, expected: &str, got: &str, value: &str) -> S
     let call = scan
         .around(i)
         .and_then(|(open, nth)| scan.declared(scan.before(open, 1))?.wants_other(nth, got, value));
-    call.unwrap_or_else(|| format!("here belongs {}, but {}", called(expected), misfit(expected, got, value)))
+    call.unwrap_or_else(|| format!("this must be {}, but {}", called(expected), misfit(expected, got, value)))
 }

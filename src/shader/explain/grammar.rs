@@ -21,12 +21,12 @@ const PLAIN: &[(&str, usize, &str)] = &[
     (
         "declaration of `{}` is cyclic",
         1,
-        "`{0}` uses itself by way of others; WGSL has no recursion, so write a loop",
+        "`{0}` uses itself through others; WGSL has no recursion, so write a loop",
     ),
     (
         "increment/decrement operation requires reference type to be one of i32 or u32",
         0,
-        "++ and -- are for a var that is a whole number; write `{} += 1.0` for others",
+        "++ and -- work only on whole numbers declared with var; otherwise write `{} += 1.0`",
     ),
     (
         "this operation is not supported in a const context",
@@ -62,7 +62,7 @@ const PLAIN: &[(&str, usize, &str)] = &[
     (
         "the operand of the `*` operator must be a pointer",
         0,
-        "there is no value that this * can multiply; a power is `pow(x, y)`",
+        "a value is missing before this *; a power is `pow(x, y)`",
     ),
     (
         "`{}` needs a template argument specified: {}",
@@ -74,9 +74,13 @@ const PLAIN: &[(&str, usize, &str)] = &[
         0,
         "a {0} cannot be made of these values; a matrix is made of its columns",
     ),
-    ("Constructor expects {} components, found {}", 0, "this needs {0} numbers, but here are {1}"),
+    (
+        "Constructor expects {} components, found {}",
+        0,
+        "this needs {0} numbers, or one for all, but {1} are given",
+    ),
     ("numeric literal not representable by target type: `{}`", 0, "{0} is too large"),
-    ("invalid numeric literal format: `{}`", 0, "{0} is no number"),
+    ("invalid numeric literal format: `{}`", 0, "{0} is not a number"),
     ("Division by zero", 0, "this divides by zero"),
     ("Remainder by zero", 0, "this divides by zero"),
     ("Incompatible operands: LogicalAnd({}, {}", 0, "&& needs a comparison on both sides, such as `x > 0.0`"),
@@ -122,34 +126,35 @@ const UNEXPECTED: &[(&str, &str, &str, &str)] = &[
         "`:`",
         "in|out|inout|const",
         "WORD",
-        "there is no `{before}` here: parameters are read only, and results are returned",
+        "parameters have no `{before}` in WGSL: they are read-only, and results are returned",
     ),
     (
         "`,`",
         "in|out|inout|const",
         "WORD",
-        "there is no `{before}` here: parameters are read only, and results are returned",
+        "parameters have no `{before}` in WGSL: they are read-only, and results are returned",
     ),
     ("`:`", "WORD", "", "`{before}` needs a type: `{before}: f32`"),
-    ("`,`", "", ";", "here belongs a comma"),
+    ("`,`", "", ";", "a comma belongs here"),
     ("`{`", "", ":", "the type of a result comes after ->: `-> f32`"),
     ("`{`", "", "and", "and is written &&"),
     ("`{`", "", "or", "or is written ||"),
-    ("`{`", "", "", "here must be a {: the bodies of functions, if, else and loops have braces"),
-    ("`;`", "", "?", "WGSL has no ? and :; write `select(if_false, if_true, condition)`"),
-    ("`)`|`,`", "", "?", "WGSL has no ? and :; write `select(if_false, if_true, condition)`"),
-    ("`;`|global item", "", ")|]|}", "this {found} closes nothing"),
+    ("`{`", "", "", "a { is missing here: the bodies of functions, if, else and loops have braces"),
+    ("`;`", "", "?", "WGSL has no ?: operator; write `select(if_false, if_true, condition)`"),
+    ("`)`|`,`", "", "?", "WGSL has no ?: operator; write `select(if_false, if_true, condition)`"),
+    ("`;`", "", ")|]", "this {found} closes nothing"),
+    ("global item", "", ")|]|}", "this {found} closes nothing"),
     ("`)`", "WORD", "=", "= sets a variable; to compare, write =="),
-    ("`)`", "", "", "behind `{before}`, an operator, a comma or a ) is missing"),
+    ("`)`", "", "", "an operator, a comma or a ) is missing after `{before}`"),
     ("statement", "", "++|--", "write `{next} += 1`, or `{next}++` for a whole number"),
     ("expression", "", "[", "a list is written `array(…)`"),
     ("expression", "", "", "a value is missing before `{found}`"),
-    ("identifier", "", "", "here must be a name, not `{found}`"),
+    ("identifier", "", "", "a name is needed here, not `{found}`"),
     (
         "global item",
         "",
         "uniform|in|out|varying|attribute|precision|layout",
-        "all input of a model are its parameters: declare them in the comment at the top, and read them as `m.NAME`",
+        "the only inputs of a model are its parameters: declare them in the comment at the top, and read them as `m.NAME`",
     ),
     (
         "global item",
@@ -157,15 +162,15 @@ const UNEXPECTED: &[(&str, &str, &str, &str)] = &[
         "TYPE",
         "a function begins with fn and a constant with const: `fn {next}(x: f32) -> {type} { … }`",
     ),
-    ("global item", "", "let", "outside of functions, a value is declared with const"),
+    ("global item", "", "let", "outside functions, a value is declared with const"),
     ("global item", "", "import|include|using", "a file is included by `#import \"file.wgsl\"`"),
     (
         "global item",
         "",
         "",
-        "`{found}` begins no declaration; outside of functions, there are fn, const, var, struct and alias",
+        "`{found}` does not begin a declaration; outside functions, there are only fn, const, var, struct and alias",
     ),
-    ("variable access", "", "", "`{found}` is no value, but a type or a function"),
+    ("variable access", "", "", "`{found}` is a type or a function, not a value"),
 ];
 
 /// The explanation of a plain message: the label, and the text.
@@ -180,8 +185,9 @@ pub(super) fn plain(message: &str, source: &str) -> Option<(usize, String)> {
     })
 }
 
-/// The explanation of the token `i`, where something else was expected.
-pub(super) fn unexpected(scan: &Scan, i: usize, expected: &str, found: &str) -> Option<Explained> {
+/// The explanation of the token at a byte, where something else was expected.
+pub(super) fn unexpected(scan: &Scan, start: usize, expected: &str, found: &str) -> Option<Explained> {
+    let i = scan.at(start);
     let directive = scan.tokens.get(i).filter(|token| token.kind == Kind::Directive);
     let found =
         directive.map_or_else(|| found.trim_matches('"').to_owned(), |token| format!("#{}", token.text));
@@ -199,11 +205,9 @@ pub(super) fn unexpected(scan: &Scan, i: usize, expected: &str, found: &str) -> 
             && fits(behind, before, i.checked_sub(1))
             && fits(other, &found, Some(i))
     });
-    let at = |i: usize| scan.tokens.get(i).map(|token| token.at);
-    if row.is_none() && expected == "`;`" {
-        return Some(no_semicolon(scan, i));
-    }
-    let (.., says) = row?;
+    let Some((_, behind, _, says)) = row else {
+        return (expected == "`;`").then(|| no_semicolon(scan, start));
+    };
     let of = if TYPES.contains(&&*found) { &found } else { before };
     let message = says
         .replace("{before}", &shortened(before))
@@ -211,15 +215,23 @@ pub(super) fn unexpected(scan: &Scan, i: usize, expected: &str, found: &str) -> 
         .replace("{next}", scan.word(i + 1))
         .replace("{type}", &wgsl_type(of))
         .replace("{found}", &shortened(&found));
-    Some((at(i), message))
+    let wrong = if *behind == "TYPE" { i.saturating_sub(1) } else { i };
+    Some((Some(scan.tokens.get(wrong).map_or(start, |token| token.at)), message))
 }
 
-/// A statement that does not end before the token `i`.
-fn no_semicolon(scan: &Scan, i: usize) -> Explained {
-    let Some(last) = i.checked_sub(1).and_then(|i| scan.tokens.get(i)) else { return (None, String::new()) };
-    let end = last.at + last.text.len();
-    let begins = scan.tokens.get(i).map_or(scan.text.len(), |token| token.at);
-    let other = scan.text.get(end..begins).is_none_or(|gap| gap.contains('\n')) || scan.word(i) == "return";
-    let missing = if other { "a ;" } else { "an operator or a ;" };
-    (Some(last.at), format!("{missing} is missing behind `{}`", shortened(last.text)))
+/// A statement that does not end before a byte.
+fn no_semicolon(scan: &Scan, start: usize) -> Explained {
+    let Some(last) = scan.at(start).checked_sub(1).and_then(|i| scan.tokens.get(i)) else {
+        return (Some(start), "a ; is missing".to_owned());
+    };
+    let before = scan.text.get(last.at..start).unwrap_or_default();
+    let word = before.trim_end();
+    // In another line, or before a word that begins a statement or ends a block.
+    let ends = before.contains('\n')
+        || matches!(scan.word(scan.at(start)), "return" | "let" | "var" | "if" | "for" | "}");
+    let missing = if ends { "a ;" } else { "an operator or a ;" };
+    (
+        Some(last.at),
+        format!("{missing} is missing after `{}`", shortened(word.lines().next().unwrap_or_default())),
+    )
 }

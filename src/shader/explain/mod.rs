@@ -96,10 +96,10 @@ impl Complaint<'_> {
             return self.redefined(name);
         }
         if message == "invalid left-hand side of assignment" {
-            return Some(here(self.assigned(first)));
+            return Some(here(self.assigned(scan, first)));
         }
         if let Some([expected, found]) = between(message, "expected {}, found {}") {
-            return grammar::unexpected(scan, i, expected, found);
+            return grammar::unexpected(scan, first.range.start, expected, found);
         }
         calls::explained(scan, self).or_else(|| {
             let (label, message) = grammar::plain(message, first.source())?;
@@ -129,23 +129,20 @@ impl Complaint<'_> {
     }
 
     /// A value that cannot be assigned to.
-    fn assigned(&self, target: &Label) -> String {
-        let name = shown_name(target.source());
-        if self.labels.len() > 1 {
-            return format!(
-                "`{name}` is declared with let and keeps its value; declare it with var to change it"
-            );
+    fn assigned(&self, scan: &Scan, target: &Label) -> String {
+        let source = target.source();
+        let name = source.split(['.', '[']).next().unwrap_or(source).trim();
+        let declared = self.labels.get(1).map(|binding| scan.before(scan.at(binding.range.start), 1));
+        let swizzle = |part: &str| part.len() > 1 && part.chars().all(|c| "xyzwrgba".contains(c));
+        if matches!(declared, Some("let" | "const")) {
+            format!("`{name}` is declared with let and keeps its value; declare it with var to change it")
+        } else if declared.is_none() && source.rsplit_once('.').is_some_and(|(_, part)| swizzle(part)) {
+            format!("only one component can be set at a time, as in `{name}.x = …;`")
+        } else {
+            format!(
+                "`{name}` keeps its value, as all parameters of functions do; change a copy: `var copy = {name};`"
+            )
         }
-        if target
-            .source()
-            .rsplit_once('.')
-            .is_some_and(|(_, part)| part.len() > 1 && part.chars().all(|c| "xyzwrgba".contains(c)))
-        {
-            return format!("only one component can be set at a time, as in `{name}.x = …;`");
-        }
-        format!(
-            "`{name}` cannot be set, only a var can: parameters keep their values, so copy it: `var copy = {name};`"
-        )
     }
 
     /// The statement of an error without a place: the first at which the text up to there has it.
@@ -167,11 +164,6 @@ impl Complaint<'_> {
         let before = wrong.checked_sub(1).map_or(body.start, |i| ends[i].0);
         (before + 1..=body.end).find(|i| scan.word(*i) != "}").map(|i| scan.tokens[i].at)
     }
-}
-
-/// The variable of `x.y[0]`.
-fn shown_name(target: &str) -> &str {
-    target.split(['.', '[']).next().unwrap_or(target).trim()
 }
 
 /// The parts of a message that stand for the `{}` of a pattern.

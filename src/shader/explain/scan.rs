@@ -7,7 +7,7 @@ use crate::{
         limits::LIMITS,
         token::{Kind, Token, tokens},
     },
-    text::{plural, shortened},
+    text::{listed, plural, shortened},
 };
 
 /// The tokens of a text.
@@ -97,6 +97,13 @@ impl<'a> Scan<'a> {
         Some(self.word(begins + 1))
     }
 
+    /// The end of a message about a value that is a struct: what can be taken of it.
+    pub fn fields_of(&self, of: &str, value: &str) -> Option<String> {
+        let declared = self.declared(of).filter(|declared| declared.is_struct)?;
+        let names: Vec<_> = declared.fields.iter().map(|(name, _)| format!("`{value}.{name}`")).collect();
+        Some(format!("; use one of its fields: {}", listed(&names, "or")))
+    }
+
     /// The bodies of all functions: the numbers of their braces.
     pub fn bodies(&self) -> Vec<Range<usize>> {
         let begins = (0..self.tokens.len()).filter(|i| self.word(*i) == "fn");
@@ -171,9 +178,9 @@ impl Declared<'_> {
     }
 
     /// The message about a call with a wrong number of values.
-    pub fn wants(&self, given: usize) -> String {
-        let count = plural(self.fields.len(), "value");
-        format!("{} takes {count}{}, but here {}", self.call(), self.each(), are(given))
+    pub fn wants(&self, count: usize) -> String {
+        let fields = plural(self.fields.len(), "value");
+        format!("{} takes {fields}{}, but {}", self.call(), self.each(), given(count))
     }
 
     /// The message about a value of the wrong type in a call.
@@ -183,9 +190,9 @@ impl Declared<'_> {
     }
 }
 
-/// "is 1", "are 2".
-pub(super) fn are(count: usize) -> String {
-    if count == 1 { "is 1".to_owned() } else { format!("are {count}") }
+/// "1 is given", "2 are given".
+pub(super) fn given(count: usize) -> String {
+    if count == 1 { "1 is given".to_owned() } else { format!("{count} are given") }
 }
 
 /// A type in a sentence: "a number", "a vec3<f32>".
@@ -214,10 +221,15 @@ pub(super) fn misfit(expected: &str, got: &str, value: &str) -> String {
 
 /// The end of a message about a value of one type where another is expected.
 pub(super) fn remedy(expected: &str, got: &str, value: &str) -> String {
+    if let (Some('2' | '3'), Some('3' | '4')) = (width(expected), width(got))
+        && width(expected) < width(got)
+    {
+        return format!("; take its `.{}`", if width(expected) == Some('2') { "xy" } else { "xyz" });
+    }
     match fitted(expected, got, value) {
         code if code.is_empty() => String::new(),
         _ if width(got).is_some() && width(expected).is_none() => {
-            "; a vector becomes a number by a component such as `.x`, by `dot` or by `length`".to_owned()
+            "; to get a number from a vector, use a component such as `.x`, or `dot`, or `length`".to_owned()
         }
         code => format!("; write `{code}`"),
     }
@@ -237,16 +249,20 @@ fn fitted(expected: &str, got: &str, value: &str) -> String {
     let simple = value.chars().all(|c| c.is_alphanumeric() || "_.()…".contains(c));
     let single = if simple { value.to_owned() } else { format!("({value})") };
     match (width(expected), width(got)) {
+        _ if expected.starts_with("ptr<") => format!("&{value}"),
         (None, None) if number(expected) && whole(got) => format!("f32({value})"),
         (None, None) if whole(expected) && (number(got) || whole(got)) => format!("{expected}({value})"),
         (None, None) if number(expected) && got == "bool" => format!("select(0.0, 1.0, {value})"),
         (None, None) if expected == "bool" && (number(got) || whole(got)) => format!("{single} > 0"),
         (Some(n), None) if number(got) => format!("vec{n}({value})"),
         (Some(n), None) if whole(got) => format!("vec{n}(f32({value}))"),
-        (Some('3'), Some('4')) => format!("{single}.xyz"),
-        (Some('2'), Some('3' | '4')) => format!("{single}.xy"),
+        // The fourth component of a direction.
+        (Some('4'), Some('3')) => format!("vec4({value}, 0.0)"),
         (None, Some(_)) if number(expected) => format!("{single}.x"),
-        (Some(n), Some(m)) if n == m && expected == got.replace("{AbstractFloat}", "f32") => value.to_owned(),
+        (Some(n), Some(m)) if n == m && expected.contains("f32") => match got {
+            of if of.contains("i32") || of.contains("u32") => format!("vec{n}<f32>({value})"),
+            _ => value.to_owned(),
+        },
         _ => String::new(),
     }
 }

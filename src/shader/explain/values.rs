@@ -10,7 +10,7 @@ use naga::{
 
 use super::{
     Explained,
-    scan::{Scan, called, misfit, remedy, result, shown},
+    scan::{Scan, called, given, misfit, remedy, result, shown},
 };
 
 /// The explanation of an error, if it is in a function.
@@ -83,18 +83,19 @@ impl<'a> Values<'a> {
     /// The explanation of an expression that is not valid.
     fn expression(&self, wrong: Handle<Expression>) -> Option<Explained> {
         let expressions = &self.function.expressions;
-        let uses = |expression: &Expression| match expression {
-            Expression::Binary { left, right, .. } => [left, right].contains(&&wrong),
-            Expression::Compose { components, .. } => components.contains(&wrong),
+        let uses = |expression: &Expression, used: &Handle<Expression>| match expression {
+            Expression::Binary { left, right, .. } => [left, right].contains(&used),
+            Expression::Compose { components, .. } => components.contains(used),
+            Expression::Splat { value, .. } => value == used,
             _ => false,
         };
         // A number that found no type, because of what it is used in.
-        let wrong = match &expressions[wrong] {
-            Expression::Literal(_) => {
-                expressions.iter().find(|(_, e)| uses(e)).map_or(wrong, |(handle, _)| handle)
-            }
-            _ => wrong,
-        };
+        let mut wrong = wrong;
+        while matches!(expressions[wrong], Expression::Literal(_) | Expression::Splat { .. })
+            || self.of(wrong).is_some_and(|of| of.contains("Abstract"))
+        {
+            wrong = expressions.iter().find(|(_, expression)| uses(expression, &wrong))?.0;
+        }
         let message = match &expressions[wrong] {
             Expression::Binary { op, left, right } => self.combined(*op, *left, *right)?,
             Expression::Unary { op, expr } => {
@@ -104,7 +105,9 @@ impl<'a> Values<'a> {
                     UnaryOperator::Negate => ("-", "f32"),
                     UnaryOperator::BitwiseNot => ("~", "i32"),
                 };
-                format!("{sign} needs {}, but {}", called(takes), misfit(takes, &of, self.source(*expr)))
+                let value = self.source(*expr);
+                let fields = self.scan.fields_of(&of, value).unwrap_or_default();
+                format!("{sign} needs {}, but {}{fields}", called(takes), misfit(takes, &of, value))
             }
             Expression::Compose { ty, components } => {
                 let at = self.place(wrong)?;
@@ -151,7 +154,10 @@ impl<'a> Values<'a> {
         let (first, second) = (self.source(left), self.source(right));
         let logical = matches!(op, Op::And | Op::InclusiveOr | Op::LogicalAnd | Op::LogicalOr);
         let compares = matches!(op, Op::Less | Op::LessEqual | Op::Greater | Op::GreaterEqual);
-        let hint = if op == Op::ExclusiveOr {
+        let fields = self.scan.fields_of(&a, first).or_else(|| self.scan.fields_of(&b, second));
+        let hint = if let Some(fields) = fields {
+            fields
+        } else if op == Op::ExclusiveOr {
             format!("; a power is `pow({first}, {second})`")
         } else if compares && a == "bool" {
             format!("; write `… && {} {sign} {second}`", last_operand(first))
@@ -159,14 +165,16 @@ impl<'a> Values<'a> {
             let (of, value) = if a == "bool" { (&b, second) } else { (&a, first) };
             remedy("bool", of, value)
         } else if compares && (a.starts_with("vec") || b.starts_with("vec")) {
-            "; compare a component, or the lengths".to_owned()
+            "; compare a component or the length".to_owned()
         } else if matches!(a.as_str(), "i32" | "u32") {
             remedy("f32", &a, first)
+        } else if let Some(columns) = a.strip_prefix("mat").and_then(|rest| rest.get(..1)) {
+            remedy(&format!("vec{columns}<f32>"), &b, second)
         } else {
             remedy(&a, &b, second)
         };
         Some(format!(
-            "{sign} cannot take {}, {}, and {}, {}{hint}",
+            "{sign} cannot combine {}, {}, with {}, {}{hint}",
             shown(first),
             called(&a),
             shown(second),
@@ -199,15 +207,11 @@ impl<'a> Values<'a> {
             }
             TypeInner::Vector { size, .. } => {
                 let size = *size as usize;
-                let width =
-                    |of: &String| of.strip_prefix("vec").and_then(|rest| rest[..1].parse().ok()).unwrap_or(1);
-                let given: usize = types.iter().map(width).sum();
-                if given != size {
-                    let one = if size == 3 && types.len() == 1 { "" } else { ", or a single one for all" };
-                    return Some((
-                        Some(at),
-                        format!("vec{size} takes {size} numbers{one}, but here {}", super::scan::are(given)),
-                    ));
+                let width = |of: &String| of.strip_prefix("vec").and_then(|rest| rest.get(..1)?.parse().ok());
+                let count: usize = types.iter().map(|of| width(of).unwrap_or(1)).sum();
+                if count != size {
+                    let takes = format!("vec{size} takes {size} numbers, or one for all");
+                    return Some((Some(at), format!("{takes}, but {}", given(count))));
                 }
                 let wrong = types.iter().position(|of| matches!(of.as_str(), "i32" | "u32" | "bool"))?;
                 let value = self.source(components[wrong]);
@@ -240,10 +244,11 @@ impl<'a> Values<'a> {
             FunctionError::InvalidReturnType { expression: None, expected_ty: Some(ty) } => {
                 let bare = begins(&|s| matches!(s, Statement::Return { value: None }));
                 if let Some(at) = bare.filter(|at| self.scan.text[*at..].starts_with("return")) {
-                    let of = called(&self.module.to_ctx().type_to_string(*ty));
+                    let of = self.module.to_ctx().type_to_string(*ty);
+                    let of = self.scan.declared(&of).map_or_else(|| called(&of), |declared| declared.call());
                     return Some((
                         Some(at),
-                        format!("{} must return {of}, but this return has no value", self.name),
+                        format!("{} must return {of}, but this returns nothing", self.name),
                     ));
                 }
                 let named = |f: &Function| f.name.as_deref() == Some(self.name);
@@ -259,7 +264,7 @@ impl<'a> Values<'a> {
                     || matches!(&self.function.expressions[*pointer], Expression::LocalVariable(v) if self.function.local_variables[*v].name.is_none())
                 {
                     return Some((
-                        self.place(*value),
+                        at,
                         format!("&& and || need true or false, but {}", misfit("bool", &got, text)),
                     ));
                 }
@@ -279,7 +284,11 @@ impl<'a> Values<'a> {
                 };
                 Some((
                     at,
-                    format!("a condition is true or false, but {} is {}{hint}", shown(text), called(&of)),
+                    format!(
+                        "a condition must be true or false, but {} is {}{hint}",
+                        shown(text),
+                        called(&of)
+                    ),
                 ))
             }
             FunctionError::InvalidCall { function, error } => {
@@ -299,9 +308,11 @@ impl<'a> Values<'a> {
                 }
             }
             FunctionError::BreakOutsideOfLoopOrSwitch => {
-                Some((None, "break belongs into a loop or a switch".to_owned()))
+                Some((None, "break can only stand in a loop or a switch".to_owned()))
             }
-            FunctionError::ContinueOutsideOfLoop => Some((None, "continue belongs into a loop".to_owned())),
+            FunctionError::ContinueOutsideOfLoop => {
+                Some((None, "continue can only stand in a loop".to_owned()))
+            }
             FunctionError::MissingDefaultCase => {
                 Some((None, "this switch needs a `default: { … }`".to_owned()))
             }

@@ -1,7 +1,7 @@
 //! Names that are not defined: those of other languages, of equations, and misspelt ones.
 
 use super::scan::Scan;
-use crate::text::nearest;
+use crate::text::{listed, nearest};
 
 /// Names of GLSL, HLSL and C, and of the equations, with what they are here.
 const MEANT: &[(&str, &str)] = &[
@@ -46,6 +46,8 @@ const MEANT: &[(&str, &str)] = &[
     ("R", "mirror(l, frame.n)"),
     ("r", "mirror(l, frame.n)"),
     ("albedo", "m.base_colour"),
+    ("fresnel", "schlick"),
+    ("fresnelSchlick", "schlick"),
     ("Params", "Parameters"),
 ];
 /// The parameters of `response`.
@@ -93,8 +95,17 @@ pub(super) fn unknown(scan: &Scan, i: usize, name: &str) -> String {
         );
         near.filter(|_| name.len() > 2)
     };
-    match exact.map(|(_, code)| code).or_else(near) {
-        Some(code) => format!("`{name}` is not defined; did you mean `{code}`?"),
-        None => format!("`{name}` is not defined"),
+    if let Some(code) = exact.map(|(_, code)| code).or_else(near) {
+        return format!("`{name}` is not defined; did you mean `{code}`?");
+    }
+    // Functions with a longer or a shorter name: fresnel_schlick is schlick here.
+    let within = |a: &str, b: &str| a.len() > 4 && b.contains(a);
+    let functions = (1..scan.tokens.len()).filter(|j| scan.before(*j, 1) == "fn").map(|j| scan.word(j));
+    let mut similar: Vec<_> =
+        functions.filter(|f| within(f, name) || within(name, f)).map(|f| format!("`{f}`")).collect();
+    similar.truncate(4);
+    match similar.is_empty() {
+        true => format!("`{name}` is not defined"),
+        false => format!("`{name}` is not defined; did you mean {}?", listed(&similar, "or")),
     }
 }
