@@ -118,10 +118,10 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
         let defined = text::functions(text);
         let near = nearest("response", defined.iter().map(|(_, name)| (*name, *name)));
         let (at, hint) = match defined.iter().find(|(_, name)| Some(*name) == near) {
-            Some((at, name)) => (*at, format!("did you mean it by {name}? It")),
-            None => (text::comment(text).map_or(0, |c| c.end), "it".to_owned()),
+            Some((at, name)) => (*at, format!("; did you name it {name}?")),
+            None => (text::comment(text).map_or(0, |c| c.end), String::new()),
         };
-        return Err(problem_at(at, format!("the function response is missing; {hint} is {RESPONSE}")));
+        return Err(problem_at(at, format!("the function response is missing; it is {RESPONSE}{hint}")));
     }
     let mut sources = registry.sources().clone();
     sources.edit(model.entry.declaration.wgsl.path, model.text.clone());

@@ -43,7 +43,7 @@ fn mistakes_are_reported_where_they_are() {
         ),
         (
             format!("{head}{}", body.replace("fn response", "fn respons")),
-            "models/mine.wgsl:2:4: the function response is missing; did you mean it by respons? It is fn response(",
+            "models/mine.wgsl:2:4: the function response is missing; it is fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms; did you name it respons?",
         ),
         (
             format!("{head}{body}@fragment\n"),

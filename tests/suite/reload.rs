@@ -168,7 +168,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "types",
         file: "reflection/phong.wgsl",
         change: |t| replaced(t, "var specular = vec3(0.0);", "var specular = 1u;"),
-        said: "convert",
+        said: "`specular` is a whole number (u32), but `m.k_s * power(max(dot(mirror(l, frame.n), v), 0.0), m.alpha)…` is a vec3<f32>",
         line: "specular = m.k_s",
     },
     Breakage {

@@ -26,9 +26,8 @@ pub fn root() -> &'static Path {
 /// Messages are well-formed: a question stands at the end, and nothing is joined twice.
 pub fn check_wording(messages: &str) {
     for message in messages.lines().map(str::trim) {
-        let wrong = ["?;", "?.", "? ", "..", ";;", " ;", " ,", ":;", ": ;"]
-            .into_iter()
-            .find(|bad| message.contains(bad));
+        let wrong =
+            ["?;", "?.", "? ", "..", ";;", " ,", ":;", ": ;"].into_iter().find(|bad| message.contains(bad));
         assert_eq!(wrong, None, "{message}");
         assert!(!message.contains("  ") && !message.ends_with(';'), "{message}");
     }

@@ -172,7 +172,7 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
         (custom_model("m.tint", knob).replace("dot(frame.n, l)", "dot(frame.n l)"), "8:"),
         (custom_model("m.tnt", knob), "8:"),
         (custom_model("m.tint", knob).replace("\"default\": [0, 0, 255]", "\"default\": [0, 0]"), "4:"),
-        (custom_model("1u", knob), "7:"),
+        (custom_model("1u", knob), "8:"),
         (custom_model("m.tint", knob).replace("fn response", "fn answer"), ""),
     ] {
         save_by_renaming(&model, &mistake);

@@ -130,6 +130,10 @@ fn converted(scan: &Scan, i: usize, expected: &str, got: &str, value: &str) -> S
     if scan.before(i, 1) == "return" {
         return result(scan, scan.function(i).unwrap_or("the function"), Some(expected), got, value);
     }
+    let target = scan.before(i, 2);
+    if scan.before(i, 1) == "=" && matches!(scan.before(i, 3), ";" | "{" | "}") {
+        return format!("`{target}` is {}, but {}", called(expected), misfit(expected, got, value));
+    }
     let call = scan
         .around(i)
         .and_then(|(open, nth)| scan.declared(scan.before(open, 1))?.wants_other(nth, got, value));

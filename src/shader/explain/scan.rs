@@ -52,27 +52,45 @@ impl<'a> Scan<'a> {
         ends.and_then(|(first, last)| self.text.get(first.at..last.at + last.text.len())).unwrap_or_default()
     }
 
-    /// The parts between the commas of the bracket that a token opens.
-    pub fn parts(&self, open: usize) -> Vec<Range<usize>> {
-        let mut parts = Vec::new();
-        let (mut depth, mut start) = (0_usize, open + 1);
-        for (i, token) in self.tokens.iter().enumerate().skip(open) {
-            match token.kind {
+    /// The number of the token that closes a bracket.
+    fn close(&self, open: usize) -> Option<usize> {
+        let mut depth = 0_usize;
+        (open..self.tokens.len()).find(|i| {
+            match self.tokens[*i].kind {
                 Kind::Open | Kind::TemplateOpen => depth += 1,
                 Kind::Close | Kind::TemplateClose => depth = depth.saturating_sub(1),
-                Kind::Comma if depth == 1 => {
+                _ => {}
+            }
+            depth == 0
+        })
+    }
+
+    /// The parts between the commas of the bracket that a token opens.
+    pub fn parts(&self, open: usize) -> Vec<Range<usize>> {
+        let Some(end) = self.close(open) else { return Vec::new() };
+        let (mut parts, mut start, mut i) = (Vec::new(), open + 1, open + 1);
+        while i < end {
+            match self.tokens[i].kind {
+                Kind::Open | Kind::TemplateOpen => i = self.close(i).unwrap_or(end),
+                Kind::Comma => {
                     parts.push(start..i);
                     start = i + 1;
                 }
                 _ => {}
             }
-            if depth == 0 {
-                parts.push(start..i);
-                break;
-            }
+            i += 1;
         }
+        parts.push(start..end);
         parts.retain(|part| !part.is_empty());
         parts
+    }
+
+    /// The text of some bytes; with its arguments, if it is the name of a function that is called.
+    pub fn value(&self, bytes: Range<usize>) -> &'a str {
+        let text = self.text.get(bytes.clone()).unwrap_or_default();
+        let i = self.at(bytes.start);
+        let called = text == self.word(i) && self.word(i + 1) == "(";
+        called.then(|| self.close(i + 1)).flatten().map_or(text, |close| self.source(i..close + 1))
     }
 
     /// The bracket open around a token, and the number of commas since.
@@ -109,15 +127,7 @@ impl<'a> Scan<'a> {
         let begins = (0..self.tokens.len()).filter(|i| self.word(*i) == "fn");
         let body = |begins: usize| {
             let open = (begins..self.tokens.len()).find(|i| self.word(*i) == "{")?;
-            let mut depth = 0_usize;
-            let end = (open..self.tokens.len()).find(|i| {
-                match self.word(*i) {
-                    "{" => depth += 1,
-                    "}" => depth = depth.saturating_sub(1),
-                    _ => {}
-                }
-                depth == 0
-            })?;
+            let end = self.close(open)?;
             Some(open..end)
         };
         begins.filter_map(body).collect()

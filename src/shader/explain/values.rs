@@ -72,7 +72,7 @@ impl<'a> Values<'a> {
         };
         named.unwrap_or_else(|| {
             let range = function.expressions.get_span(value).to_range();
-            range.and_then(|range| self.scan.text.get(range)).unwrap_or_default()
+            range.map_or("", |range| self.scan.value(range))
         })
     }
 
