@@ -340,7 +340,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "a broken shading model",
         file: "shading/phong.wgsl",
         change: |t| replaced(t, "fn shade_pixel", "fn shade_pixels"),
-        said: "shade_pixel`; introduced by the change in shading/phong.wgsl",
+        said: "`shade_pixel` is not defined; introduced by the change in shading/phong.wgsl; did you mean `shade_pixels`?",
         line: "",
     },
     Breakage {

@@ -147,6 +147,11 @@ impl Complaint<'_> {
 
     /// The statement of an error without a place: the first at which the text up to there has it.
     fn unplaced(&self, scan: &Scan) -> Option<usize> {
+        /// The longest text that is parsed again and again, bytes.
+        const LONGEST: usize = 1 << 17;
+        if scan.text.len() > LONGEST {
+            return None;
+        }
         let fails =
             |text: &str| wgsl::parse_str(text).is_err_and(|error| error.message() == self.error.message());
         let body = scan.bodies().into_iter().rev().find(|body| {
