@@ -289,7 +289,7 @@ impl<'a> Scanner<'a> {
             }
             _ => ControlFlow::Break((
                 self.at,
-                "WGSL has no quotation marks; a file is included by a line `#import \"file.wgsl\"`"
+                "WGSL has no quotation marks; a choice is a number from 0, and a file is included by a line `#import \"file.wgsl\"`"
                     .to_owned(),
             )),
         }

@@ -271,4 +271,43 @@ fn lobe(x: f32) -> f32 { x = 1.0; return x; }⏎¦¦x = 1.0;¦`x` keeps its valu
 ¦let r = reflect(-l, frame.n); let x = pow(max(dot(r, v), 0), m.shininess);¦shininess¦no parameter shininess; the model declares base_colour, k_s and steps
 ¦let __x = 1.0;¦__x¦`__x` begins with two underscores, which are reserved; choose another name
 fn lobe(x: f32) -> f32 { return x * m.k_s; }⏎¦¦m.k_s¦lobe has no parameter m; declare it: `fn lobe(…, m: Parameters)`
+¦let x = vec3(1.0) * 2.0 +;¦;¦a value is missing before `;`
+¦return Terms { ambient: vec3(0.0) };¦{ ambien¦a struct is made with round brackets: `Terms(…)`
+¦let x = frame.n.normalize();¦();¦WGSL has no methods; write `normalize(…)` with the value in the brackets
+¦let x = l.dot(frame.n);¦(frame.n);¦WGSL has no methods; write `dot(…)` with the value in the brackets
+¦x = 1.0;¦x = 1.0;¦`x` is not defined
+¦let a, b = 1.0;¦, b = 1.¦each let declares one name
+¦var x: f32 = vec3(1.0);¦x: f32 =¦`x` is declared as a number, but `vec3(1.0)` is a vec3<f32>; to get a number from a vector, use a component such as `.x`, or `dot`, or `length`
+¦fn inner() { }¦inner¦a function cannot be defined within another one
+¦let x = if cos_l > 0.0 { 1.0 } else { 0.0 };¦cos_l¦if has no value in WGSL; write `select(if_false, if_true, condition)`
+¦let x = smoothstep(0, 1, l);¦l);¦the arguments of smoothstep(low, high, x) must have the same type, but `0` is a number and `l` is a vec3<f32>; write `vec3(0)`
+¦let x = cos_l as f32;¦as f32;¦a value changes its type by the name of the type: `f32(x)`
+¦let x = f32(l);¦l);¦a value of type vec3<f32> cannot become f32; use a component such as `.x`, or `dot`, or `length`
+¦let x = vec3<f32>(l, v);¦vec3¦vec3 takes 3 numbers, or one for all, but 6 are given
+¦for (var i = 0; i < 3; i += 1.0) { }¦1.0¦this must be a whole number (i32), but `1.0` is a number; a var that begins as `1.0` instead of `1` is a number
+¦var a: array<f32>;¦var¦`a` cannot have this type; an array needs its length: `array<f32, 3>`
+¦return (vec3(0.0), m.base_colour * cos_l, vec3(0.0));¦, m.base¦these brackets hold several values; put what they make before them, such as `Terms` or `vec3`
+¦return vec4(m.base_colour, 1.0);¦return¦response must return Terms(ambient, diffuse, specular), each a vec3<f32>, but `vec4(m.base_colour, 1.0)` is a vec4<f32>; write `return Terms(vec3(0.0), …, vec3(0.0));`
+¦let x = cos_l > 0.0 and true;¦and¦and is written &&
+¦let x = not true;¦true¦not is written !
+var<private> a: f32 = 1;⏎var b: f32;⏎¦¦var¦a variable outside functions is declared with `var<private> b`
+fn lobe(x: f32, x: f32) -> f32 { return x; }⏎¦¦x: f32)¦`x` is already defined in line 2; choose another name
+fn dot(x: f32) -> f32 { return x; }⏎¦¦dot¦`dot` is a function of WGSL; choose another name
+struct Parameters { a: f32 }⏎¦¦Parameters¦Parameters is defined by the declaration of the model; choose another name
+fn helper(x : f32) -> f32 {⏎  return x⏎}⏎¦¦x¦a ; is missing after `x`
+fn helper(x : f32) -> {⏎  return x;⏎}⏎¦¦{¦the type of the result is missing after ->
+fn helper(x : f32) f32 {⏎  return x;⏎}⏎¦¦f32¦the type of a result comes after ->: `-> f32`
+func helper(x : f32) -> f32 {⏎  return x;⏎}⏎¦¦func¦a function begins with fn: `fn helper(x: f32) -> f32 { … }`
+¦let x = 1,5;¦,5;¦a comma cannot stand here; decimals have a point, as in `1.5`
+¦let x := 1.0;¦= 1.0;¦write = instead of :=
+¦let x == 1.0;¦== 1.0;¦a value is set with a single =
+¦cos_l == 1.0;¦== 1.0;¦this is not a statement: a statement sets a var or calls a function
+¦cos_l;¦;¦this is not a statement: a statement sets a var or calls a function
+¦let x = M.base_colour;¦M.base_colour¦`M` is not defined; did you mean `m`?
+¦let x = mix(0.0, 1.0, true);¦true¦argument 3 of mix(a, b, t) is `true`, true or false; write `select(0.0, 1.0, true)`
+¦let x = select(0.0, 1.0, cos_l);¦select¦the condition of select must be true or false, but `cos_l` is a number; write `cos_l > 0`
+¦let x = i32(cos_l) + 0.5;¦i32¦+ cannot combine `i32(cos_l)`, a whole number (i32), with `0.5`, a number; write `f32(i32(cos_l))`
+¦var x = 1; x = 0.5;¦0.5¦`x` is a whole number (i32), but `0.5` is a number; a var that begins as `1.0` instead of `1` is a number
+¦var x = 1; x = cos_l;¦x = cos_¦`x` is a whole number (i32), but `cos_l` is a number; write `i32(cos_l)`
+¦var x = 1; x += cos_l;¦x += cos¦`x` is a whole number (i32), but `cos_l` is a number; write `i32(cos_l)`
 "##;

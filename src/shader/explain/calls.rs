@@ -41,6 +41,11 @@ pub(super) fn explained(scan: &Scan, complaint: &Complaint) -> Option<Explained>
     if let Some([got, expected]) = converts {
         // The first place is that of the declaration, with a struct.
         let value = labels.last()?;
+        if let Some(name) = scan.name_of(scan.at(value.range.start)) {
+            let target = shown(first.source().split('=').next().unwrap_or_default().trim());
+            let message = format!("{target} is {}, but {}", called(expected), misfit(expected, got, name));
+            return Some((place(first), message));
+        }
         return Some((
             place(value),
             converted(scan, scan.at(value.range.start), expected, got, value.source()),

@@ -120,7 +120,9 @@ impl Complaint<'_> {
             true => (previous, here),
             false => (current, there),
         };
-        let message = if here == there {
+        let message = if file.starts_with('(') {
+            format!("{name} is defined by the declaration of the model; choose another name")
+        } else if here == there {
             format!("`{name}` is already defined in line {line}; choose another name")
         } else {
             format!("{file} defines {name} too; choose another name")

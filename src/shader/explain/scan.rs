@@ -99,7 +99,8 @@ impl<'a> Scan<'a> {
         for (i, token) in self.tokens.iter().enumerate().take(token).rev() {
             match token.kind {
                 Kind::Close | Kind::TemplateClose => depth += 1,
-                Kind::Open | Kind::TemplateOpen if depth == 0 => return Some((i, commas)),
+                Kind::Open if depth == 0 && token.text == "(" => return Some((i, commas)),
+                Kind::Open | Kind::TemplateOpen if depth == 0 => return None,
                 Kind::Open | Kind::TemplateOpen => depth -= 1,
                 Kind::Comma if depth == 0 => commas += 1,
                 Kind::Semicolon if depth == 0 => return None,
@@ -107,6 +108,15 @@ impl<'a> Scan<'a> {
             }
         }
         None
+    }
+
+    /// The name of the value that begins at a token, where that is its definition: the compiler names this place, and not
+    /// that of the use.
+    pub fn name_of(&self, token: usize) -> Option<&'a str> {
+        if self.before(token, 1) == "=" && self.before(token, 3) == "let" {
+            return Some(self.before(token, 2));
+        }
+        (self.word(token + 1) == ":").then(|| self.word(token))
     }
 
     /// The name of the function around a token.
@@ -236,6 +246,9 @@ pub(super) fn remedy(expected: &str, got: &str, value: &str) -> String {
     {
         return format!("; take its `.{}`", if width(expected) == Some('2') { "xy" } else { "xyz" });
     }
+    if matches!(expected, "i32" | "u32") && got == "{AbstractFloat}" {
+        return "; a var that begins as `1.0` instead of `1` is a number".to_owned();
+    }
     match fitted(expected, got, value) {
         code if code.is_empty() => String::new(),
         _ if width(got).is_some() && width(expected).is_none() => {
@@ -290,9 +303,13 @@ pub(super) fn result(scan: &Scan, function: &str, expected: Option<&str>, got: &
     let Some(of) = scan.declared(expected) else {
         return format!("{function} must return {}, but {}", called(expected), misfit(expected, got, value));
     };
+    let one = |part: &str| match fitted(part, got, value) {
+        nothing if nothing.is_empty() => "…".to_owned(),
+        code => code,
+    };
     let example = match (expected == ONE_TERM.0, of.fields.first()) {
         (true, Some((_, part))) => {
-            format!("; write `return {};`", ONE_TERM.1.replace('…', &fitted(part, got, value)))
+            format!("; write `return {};`", ONE_TERM.1.replace('…', &one(part)))
         }
         _ => String::new(),
     };

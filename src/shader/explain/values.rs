@@ -27,6 +27,10 @@ pub(super) fn explained(scan: &Scan, module: &Module, error: &ValidationError) -
             let what = "is not available to a model, which is evaluated without a picture too";
             return Some((Some(token.at), format!("`{}` {what}", token.text)));
         }
+        ValidationError::GlobalVariable { name, .. } => {
+            let message = format!("a variable outside functions is declared with `var<private> {name}`");
+            return Some((None, message));
+        }
         _ => return None,
     };
     let values = Values::new(scan, module, name, function);
@@ -113,6 +117,23 @@ impl<'a> Values<'a> {
                 let at = self.place(wrong)?;
                 return self.composed(at, *ty, components);
             }
+            Expression::Select { condition, accept, reject } => {
+                let of = self.of(*condition)?;
+                if of.ends_with("bool") || of.ends_with("bool>") {
+                    let (a, b) = (self.of(*reject)?, self.of(*accept)?);
+                    format!(
+                        "the two values of select must have the same type, but are {} and {}",
+                        called(&a),
+                        called(&b)
+                    )
+                } else {
+                    let value = self.source(*condition);
+                    format!(
+                        "the condition of select must be true or false, but {}",
+                        misfit("bool", &of, value)
+                    )
+                }
+            }
             Expression::Access { index, .. } => {
                 let of = self.of(*index)?;
                 format!("an index is a whole number, but {}", misfit("i32", &of, self.source(*index)))
@@ -166,6 +187,8 @@ impl<'a> Values<'a> {
             remedy("bool", of, value)
         } else if compares && (a.starts_with("vec") || b.starts_with("vec")) {
             "; compare a component or the length".to_owned()
+        } else if a == "bool" || b == "bool" {
+            String::new()
         } else if matches!(a.as_str(), "i32" | "u32") {
             remedy("f32", &a, first)
         } else if let Some(columns) = a.strip_prefix("mat").and_then(|rest| rest.get(..1)) {
@@ -291,8 +314,18 @@ impl<'a> Values<'a> {
                     ),
                 ))
             }
+            FunctionError::LocalVariable { name, .. } => Some((
+                None,
+                format!("`{name}` cannot have this type; an array needs its length: `array<f32, 3>`"),
+            )),
             FunctionError::InvalidCall { function, error } => {
-                let declared = self.scan.declared(self.module.functions[*function].name.as_deref()?)?;
+                let name = self.module.functions[*function].name.as_deref()?;
+                if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&name) {
+                    let defined = |i: &usize| self.scan.before(*i, 1) == "fn" && self.scan.word(*i) == name;
+                    let at = (0..self.scan.tokens.len()).find(defined).map(|i| self.scan.tokens[i].at);
+                    return Some((at, format!("`{name}` is a function of WGSL; choose another name")));
+                }
+                let declared = self.scan.declared(name)?;
                 match error {
                     CallError::ArgumentCount { seen, .. } => {
                         let called = |s: &Statement| matches!(s, Statement::Call { function: f, arguments, .. } if f == function && arguments.len() == *seen);

@@ -49,6 +49,7 @@ const MEANT: &[(&str, &str)] = &[
     ("fresnel", "schlick"),
     ("fresnelSchlick", "schlick"),
     ("Params", "Parameters"),
+    ("M", "m"),
 ];
 /// The parameters of `response`.
 const RECEIVED: &[(&str, &str)] =
@@ -88,7 +89,9 @@ pub(super) fn unknown(scan: &Scan, i: usize, name: &str) -> String {
             .filter(|j| (begins..i).contains(j) || matches!(scan.before(*j, 1), "fn" | "struct" | "const"));
         let known = known.map(|j| (scan.word(j), scan.word(j)));
         let own = RECEIVED.iter().map(|(word, _)| (*word, *word));
-        let built_in = naga::keywords::wgsl::BUILTIN_IDENTIFIERS.iter().map(|word| (*word, *word));
+        let resource = |word: &&&str| ["texture", "sampler", "atomic"].iter().any(|r| word.starts_with(r));
+        let built_in = naga::keywords::wgsl::BUILTIN_IDENTIFIERS.iter().filter(|word| !resource(word));
+        let built_in = built_in.map(|word| (*word, *word));
         let near = nearest(
             &spelling,
             known.chain(fields).chain(built_in).chain(own).filter(|(word, _)| word.len() > 2),
