@@ -57,7 +57,7 @@ pub fn overlays(
         all.places.extend(places);
     }
     ui.scope(|ui| {
-        let free = stage.map_or(rect, |stage| stage.paint(ui));
+        let free = stage.map_or(rect, |stage| stage.paint(ui, session));
         let (asked, covered) = stale(ui, free, session, registry);
         all.actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
@@ -215,7 +215,7 @@ fn badges(
     let per_point = ui.pixels_per_point();
     let clipped = clipping::badge(session, f64::from(picture.area() * per_point * per_point));
     let toggle = Action::View(ViewChange::Clipping(!session.view.show_clipping));
-    let told = session.disk.badge.iter().map(|badge| (badge.clone(), None));
+    let told = session.disk_badge().map(|badge| (badge, None));
     let all = hidden_terms(session, registry).into_iter().chain(told);
     let mut at = pos2(rect.left() + 8.0, top);
     for (i, (badge, action)) in all.chain(clipped.map(|badge| (badge, Some(toggle)))).enumerate() {

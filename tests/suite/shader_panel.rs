@@ -372,6 +372,30 @@ fn the_names_of_files_are_shown_whole() {
 }
 
 #[test]
+fn paths_keep_both_ends_where_there_is_little_room() {
+    let mut bench = bench_with(Vec::new());
+    bench.apply(Action::View(ViewChange::Scale(150)));
+    bench.session.view.bottom_height = 420.0;
+    bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
+    let model = "reflection/lambert.wgsl";
+    let shown: Vec<_> = texts(&mut bench).into_iter().filter(|text| text.ends_with(".wgsl")).collect();
+    assert!(shown.len() > 3, "{shown:?}");
+    for path in &shown {
+        assert!(!path.starts_with('…'), "{path}");
+    }
+    let place = bench.tree.iter().find(|s| s.label.contains(model)).expect("its row").rect;
+    bench.hover(place.right_center() + vec2(30.0, 0.0));
+    let whole = format!("/home/mira/lab/shaders/{model}");
+    assert!(texts(&mut bench).contains(&whole), "{:?}", texts(&mut bench));
+}
+
+/// The texts that are painted.
+fn texts(bench: &mut Bench) -> Vec<String> {
+    let text = |s| if let Shape::Text(t) = s { Some(t.galley.text().to_owned()) } else { None };
+    bench.shapes().into_iter().filter_map(text).collect()
+}
+
+#[test]
 fn a_model_in_a_file_is_not_called_built_in() {
     let mut bench = bare();
     bench.session.shaders.folders.shaders = None;

@@ -99,7 +99,7 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
         ui.set_width(ui.available_width() - 8.0);
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = ROW;
-        let names = (names.ceil() + 4.0).min(0.6 * ui.available_width());
+        let names = (names.ceil() + 10.0).min(0.6 * ui.available_width());
         for file in files {
             self::file(ui, session, &file, names, actions);
         }
@@ -124,28 +124,15 @@ fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Acti
         actions.push(Action::Copy(text.clone()));
     }
     let room = 0.5 * ui.available_width();
-    let shown = tail(ui, &text, TextStyle::Small, room);
-    let path = ui.label(RichText::new(shown).small().color(palette.text));
+    let font = TextStyle::Small.resolve(ui.style());
+    let (shown, _) = theme::elided_within(ui, &text, &font, palette.text, room);
+    let path = ui.label(shown);
     let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
     if let Some(models) = &session.shaders.folders.models {
         help += &format!("\nCustom models: {}", models.display());
     }
     path.on_hover_text(help);
     ui.label(theme::small(ui, "watched:"));
-}
-
-/// A path that is cut off at its beginning where it is too long: its end says more.
-fn tail(ui: &Ui, text: &str, style: TextStyle, room: f32) -> String {
-    let font = style.resolve(ui.style());
-    let width =
-        |s: &str| ui.painter().layout_no_wrap(s.to_owned(), font.clone(), egui::Color32::WHITE).size().x;
-    if width(text) <= room {
-        return text.to_owned();
-    }
-    let starts: Vec<usize> = text.char_indices().map(|(i, _)| i).skip(1).collect();
-    let cut = |i: usize| format!("…{}", &text[starts[i]..]);
-    let first = (0..starts.len()).collect::<Vec<_>>().partition_point(|&i| width(&cut(i)) > room);
-    if first < starts.len() { cut(first) } else { "…".to_owned() }
 }
 
 /// The height of a row of the list, points.
@@ -189,11 +176,9 @@ pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, names: f32, acti
                 let mark = ui.label(RichText::new("● edited").small().color(palette.accent));
                 mark.on_hover_text("This file differs from the copy that is built in.");
             }
-            let room = ui.available_width();
-            let shown = tail(ui, path, TextStyle::Monospace, room);
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.label(RichText::new(shown).monospace().color(palette.weak));
-            });
+            let font = TextStyle::Monospace.resolve(ui.style());
+            let (shown, _) = theme::elided_within(ui, path, &font, palette.weak, ui.available_width());
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.label(shown));
         });
     });
     row.response.on_hover_ui(|ui| {
