@@ -47,7 +47,7 @@ pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_width(440.0)
+        .default_width(480.0)
         .anchor(Align2::CENTER_CENTER, Vec2::ZERO)
         .show(ctx, |ui| about(ui, session, registry));
     if open != session.view.about_open {

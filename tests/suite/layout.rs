@@ -169,7 +169,7 @@ fn glyphs(text: &TextShape) -> String {
 #[test]
 fn the_last_message_is_whole_where_there_is_room() {
     let mut bench = bench(150);
-    let words = "Saved to /home/mira/lab/scenes/exercise_1b.json.";
+    let words = "Saved to /home/mira/courses/computer_graphics/scenes/lesson_3/exercise_1b.json.";
     bench.session.say(Severity::Info, words);
     bench.settle();
     let whole = |shape: Shape| match shape {
