@@ -23,6 +23,8 @@ use crate::{
 
 /// The least width of a picture with axes: in a narrower one they would hide more than they say.
 const AXES: f32 = 240.0;
+/// The side of their corner, points.
+const AXES_CORNER: f32 = 84.0;
 
 /// The result of painting the overlays.
 #[derive(Debug, Default)]
@@ -68,7 +70,8 @@ pub fn overlays(
     });
     if stage.is_none() {
         all.written.push(caption(ui, rect, session, registry));
-        if rect.width() >= AXES {
+        let corner = Rect::from_min_max(rect.right_bottom() - vec2(AXES_CORNER, AXES_CORNER), rect.max);
+        if rect.width() >= AXES && !all.written.iter().any(|place| place.intersects(corner)) {
             all.written.push(axes(ui, rect, session));
         }
     }

@@ -228,6 +228,25 @@ fn fields_show_their_numbers_whole_or_rounded_and_give_the_whole_on_request() {
 }
 
 #[test]
+fn the_colour_of_a_temperature_stands_beside_its_choice() {
+    for scale in [100, 125, 150, 200] {
+        let mut bench = bench(scale);
+        bench.size.y = 2000.0;
+        bench.apply(Action::Select(Selection::Light(0)));
+        bench.apply(Action::Edit(Edit::Light(0, LightField::ColourTemperature(2700.0))));
+        let choice = bench.find("Colour by: temperature").expect("a choice").rect;
+        let sample = bench.shapes().into_iter().find_map(|shape| match shape {
+            Shape::Rect(r) if r.rect.size() == vec2(44.0, 22.0) && r.rect.left() > choice.left() => {
+                Some(r.rect)
+            }
+            _ => None,
+        });
+        let sample = sample.expect("a colour");
+        assert!(choice.right() + 4.0 <= sample.left(), "{scale} %: {choice:?}, {sample:?}");
+    }
+}
+
+#[test]
 fn the_menus_fit_a_window_in_which_everything_is_larger() {
     for (menu, last) in [("File", "Quit"), ("Edit", "Export shaders for editing…"), ("View", "Full screen")]
     {

@@ -161,7 +161,7 @@ fn select_all(ui: &Ui, id: Id, text: &str) {
 }
 
 /// The room of an error, and its distance from the panel, points.
-const COMPLAINT: f32 = 320.0;
+const COMPLAINT: f32 = 352.0;
 const BESIDE: f32 = 4.0;
 
 /// The error beside the panel of a field, at its height: so nothing moves while one types, and no other knob is

@@ -1,9 +1,10 @@
 //! The list of the shader files that the picture is made of.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use bevy_egui::egui::{
-    self, Align, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
+    self, Align, Color32, FontId, Galley, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo,
+    WidgetType, vec2,
 };
 
 use super::missing_model;
@@ -135,6 +136,16 @@ fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Acti
     ui.label(theme::small(ui, "watched:"));
 }
 
+/// A path, without its folders where there is little room.
+fn short(ui: &Ui, path: &str, font: &FontId, colour: Color32, room: f32) -> Arc<Galley> {
+    let file = path.rsplit('/').next().unwrap_or(path);
+    [path, &format!("…/{file}")]
+        .map(|text| ui.painter().layout_no_wrap(text.to_owned(), font.clone(), colour))
+        .into_iter()
+        .find(|galley| galley.size().x <= room)
+        .unwrap_or_else(|| theme::elided_within(ui, file, font, colour, room).0)
+}
+
 /// The height of a row of the list, points.
 const ROW: f32 = 22.0;
 
@@ -177,7 +188,7 @@ pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, names: f32, acti
                 mark.on_hover_text("This file differs from the copy that is built in.");
             }
             let font = TextStyle::Monospace.resolve(ui.style());
-            let (shown, _) = theme::elided_within(ui, path, &font, palette.weak, ui.available_width());
+            let shown = short(ui, path, &font, palette.weak, ui.available_width());
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.label(shown));
         });
     });
