@@ -15,6 +15,9 @@ use crate::registry::Registry;
 /// The least width of the window in which the list has two columns, points.
 const TWO_COLUMNS: f32 = 1000.0;
 
+/// The width of the line around a window, points.
+const EDGE: f32 = 1.0;
+
 /// Shows the windows that are open.
 pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
@@ -28,7 +31,7 @@ pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<
         .collapsible(false)
         .resizable(false)
         // It would stay as wide as it was at another size of everything.
-        .max_width(wide)
+        .max_width(wide + ctx.global_style().spacing.window_margin.sum().x + 2.0 * EDGE)
         .anchor(Align2::CENTER_CENTER, Vec2::ZERO)
         .show(ctx, |ui| {
             ui.set_width(wide);

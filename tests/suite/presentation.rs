@@ -221,7 +221,17 @@ fn the_list_of_keys_fits_the_size_of_everything_that_is_chosen_while_it_is_close
     for percent in [150, 100, 200, 125] {
         bench.apply(Action::View(ViewChange::Scale(percent)));
         bench.key(Key::F1, Modifiers::NONE);
-        assert_eq!(place(&bench), fresh(percent), "reopened at {percent} %");
+        let window = place(&bench);
+        assert_eq!(window, fresh(percent), "reopened at {percent} %");
+        for shape in bench.shapes() {
+            if let Shape::Rect(title) = shape
+                && (title.rect.min - window.min).length() < 3.0
+                && title.rect.height() < 60.0
+            {
+                let wide = (title.rect.right() - window.right()).abs() < 3.0;
+                assert!(wide, "{percent} %: the title ends at {:?} of {window:?}", title.rect);
+            }
+        }
         bench.key(Key::F1, Modifiers::NONE);
     }
     bench.key(Key::F1, Modifiers::NONE);
