@@ -228,6 +228,18 @@ fn fields_show_their_numbers_whole_or_rounded_and_give_the_whole_on_request() {
 }
 
 #[test]
+fn a_name_that_is_longer_than_its_field_is_told_whole() {
+    let mut bench = bench(150);
+    let name = "gold under the light: white, from the front".to_owned();
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Name(name.clone()))));
+    let field = bench.field("Name").rect;
+    let count = |bench: &mut Bench| texts(bench).iter().filter(|(text, _)| *text == name).count();
+    let before = count(&mut bench);
+    bench.hover(field.center());
+    assert_eq!(count(&mut bench), before + 1);
+}
+
+#[test]
 fn the_colour_of_a_temperature_stands_beside_its_choice() {
     for scale in [100, 125, 150, 200] {
         let mut bench = bench(scale);
