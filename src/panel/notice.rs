@@ -39,26 +39,29 @@ pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, session: &Session
     }
     told.pass = pass;
     ui.data_mut(|d| d.insert_temp(id, told));
-    let message = session.messages.last().zip(told.since).filter(|(message, since)| {
-        now - since <= if message.severity == Severity::Info { MOMENT } else { 2.0 * MOMENT }
-    });
+    let message = session.messages.last().zip(told.since);
+    let message = message.filter(|(message, said)| now - said <= moment(Some(message.severity)));
     match message {
         Some((message, said)) => plate(ui, rect, size, &message.text, Some(message.severity), said == now),
-        None if now - since <= MOMENT => {
+        None if now - since <= moment(None) => {
             plate(ui, rect, size, "Esc leaves the presentation", None, since == now);
         }
         None => {}
     }
 }
 
+/// Time for which it is said, seconds.
+fn moment(severity: Option<Severity>) -> f64 {
+    if severity.is_some_and(|severity| severity > Severity::Info) { 2.0 * MOMENT } else { MOMENT }
+}
+
 fn plate(ui: &Ui, rect: Rect, size: f32, text: &str, severity: Option<Severity>, first: bool) {
     if first {
         // Nothing else wakes a window at rest.
         let ctx = ui.ctx().clone();
-        let problem = severity.is_some_and(|severity| severity > Severity::Info);
-        let moment = if problem { 2.0 * MOMENT } else { MOMENT };
+        let wait = Duration::from_secs_f64(moment(severity) + 0.1);
         thread::spawn(move || {
-            thread::sleep(Duration::from_secs_f64(moment + 0.1));
+            thread::sleep(wait);
             ctx.request_repaint();
         });
     }

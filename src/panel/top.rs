@@ -79,7 +79,7 @@ fn caption(ui: &mut Ui, text: &str) {
 const CAPTIONS: [&str; 2] = ["Reflection", "Shading"];
 
 /// The part of the title that is left for the scene's name beside a long name of its file.
-const FILE: f32 = 0.45;
+const NAME: f32 = 0.45;
 
 /// The scene's name in a place whose size depends on the window alone, so that the menus stand still.
 fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
@@ -96,7 +96,7 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let (title, whole, room) = (session.title(), session.window_title(), width - 8.0);
     // The file has its share where both do not fit.
     let file = whole.strip_prefix(&title).unwrap_or_default();
-    let name = line(&title, (room - line(file, room).size().x).max(FILE * room));
+    let name = line(&title, (room - line(file, room).size().x).max(NAME * room));
     let file = line(file, room - name.size().x);
     let mut at = place.left_center() + vec2(4.0, 0.0);
     for galley in [name, file] {
