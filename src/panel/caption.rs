@@ -167,7 +167,7 @@ impl Lines {
     fn set(ui: &Ui, parts: &[Part], size: f32, colour: Color32, width: f32) -> (Self, usize) {
         let font = FontId::proportional(size);
         let text = |text: &str| theme::elided(ui, text, font.clone(), colour, width);
-        let dot = text(DOT);
+        let (dot, open) = (text(DOT), text(DOT.trim_end()));
         let height = text("A").size().y;
         let baseline =
             |g: &Galley| g.rows.first().and_then(|r| r.row.glyphs.first()).map_or(0.0, |g| g.pos.y);
@@ -177,7 +177,10 @@ impl Lines {
             let symbol = (!part.symbol.is_empty())
                 .then(|| maths::lay_out(ui, &maths::parse_symbol(part.symbol), 1.1 * size, colour));
             let lead = symbol.as_ref().map_or(0.0, |s| s.width + 0.3 * size);
-            if at.x > 0.0 && at.x + dot.size().x + lead + galley.size().x > width {
+            // A line that goes on ends with the sign between parts.
+            let more = if i + 1 < parts.len() { open.size().x } else { 0.0 };
+            if at.x > 0.0 && at.x + dot.size().x + lead + galley.size().x + more > width {
+                runs.push((at, open.clone()));
                 at = vec2(0.0, at.y + height);
                 rows += 1;
             } else if i > 0 {

@@ -305,7 +305,6 @@ pub(super) fn closed(ctx: &egui::Context, session: &Session) {
 pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
     let palette = Palette::here(ui);
-    let id = Id::new(CHOOSER);
     let shown = session.model_shown();
     let current = registry.model(shown);
     let name = current.map_or(shown, |m| m.declaration.name);
@@ -335,18 +334,38 @@ pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> 
         }
         return actions;
     }
+    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 156.0;
+    actions.extend(opened(Popup::from_response(&response), height, session, registry));
+    actions
+}
+
+/// The list alone, in a corner of a presentation, which has no bar: the equation is in the other.
+pub(super) fn alone(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
+    if !session.view.chooser_open {
+        return Vec::new();
+    }
+    let screen = ctx.content_rect();
+    let at = screen.right_top() + vec2(-theme::UNIT, theme::UNIT);
+    let popup = Popup::new(Id::new(CHOOSER), ctx.clone(), at, egui::LayerId::background());
+    opened(popup.align(RectAlign::BOTTOM_END), screen.height() - 172.0, session, registry)
+}
+
+/// The list in its popup, at most so high.
+fn opened(popup: Popup, height: f32, session: &Session, registry: &Registry) -> Vec<Action> {
+    let mut actions = Vec::new();
+    let id = Id::new(CHOOSER);
     let mut open = true;
     let mut chosen = None;
     let mut asked = Vec::new();
     let width = 460.0;
-    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 156.0;
-    Popup::from_response(&response)
+    popup
         .id(id)
         .open_bool(&mut open)
         .width(width)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .show(|ui| {
             ui.set_width(width);
+            let shown = session.model_shown();
             chosen = models(ui, id, height, session, registry, Some(shown), None).flatten();
             ui.separator();
             asked = author::buttons(ui, session, registry);

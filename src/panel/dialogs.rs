@@ -141,7 +141,8 @@ impl Dialogs {
         for dialog in [&mut self.open, &mut self.save, &mut self.folder] {
             let config = dialog.config_mut();
             (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
-            config.right_panel_width = Some(0.34 * size.x);
+            // So much that the buttons below the list keep their room.
+            config.right_panel_width = Some(if narrow { 0.28 } else { 0.34 } * size.x);
             // What the title says, the button that ends it says too.
             config.title_bar = !narrow;
         }

@@ -1,8 +1,8 @@
 //! The list of keys, and "about".
 
 use bevy_egui::egui::{
-    self, Align2, Color32, Id, Label, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType,
-    Window, vec2,
+    self, Align2, Color32, Id, Label, RichText, ScrollArea, Sense, TextStyle, Ui, Vec2, WidgetInfo,
+    WidgetType, Window, vec2,
 };
 
 use super::{
@@ -15,21 +15,26 @@ use crate::registry::Registry;
 /// The least width of the window in which the list has two columns, points.
 const TWO_COLUMNS: f32 = 1000.0;
 
+/// The width of the line around a window, points.
+const EDGE: f32 = 1.0;
+
 /// Shows the windows that are open.
 pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
     let mut actions = Vec::new();
     let screen = ctx.content_rect();
+    let wide = if screen.width() < TWO_COLUMNS { 560.0 } else { 720.0 };
+    let wide = f32::min(wide, screen.width() - 48.0);
     let mut open = session.view.keys_open;
     Window::new(RichText::new("Keys and mouse").heading())
         .id(Id::new("keys"))
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(screen.center())
+        // It would stay as wide as it was at another size of everything.
+        .max_width(wide + ctx.global_style().spacing.window_margin.sum().x + 2.0 * EDGE)
+        .anchor(Align2::CENTER_CENTER, Vec2::ZERO)
         .show(ctx, |ui| {
-            let wide = if screen.width() < TWO_COLUMNS { 560.0 } else { 720.0 };
-            ui.set_width(f32::min(wide, screen.width() - 48.0));
+            ui.set_width(wide);
             ScrollArea::vertical()
                 .auto_shrink([false, true])
                 .min_scrolled_height(screen.height() - 140.0)
@@ -45,9 +50,8 @@ pub fn show(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .default_width(440.0)
-        .pivot(egui::Align2::CENTER_CENTER)
-        .default_pos(screen.center())
+        .default_width(480.0)
+        .anchor(Align2::CENTER_CENTER, Vec2::ZERO)
         .show(ctx, |ui| about(ui, session, registry));
     if open != session.view.about_open {
         actions.push(Action::View(ViewChange::About(open)));

@@ -53,6 +53,7 @@ pub mod maths;
 mod menu;
 pub mod messages;
 pub mod model_override;
+mod notice;
 pub mod picture;
 mod placing;
 pub mod presentation;
@@ -184,9 +185,11 @@ pub fn show(
     let tooltips = theme::tooltips(&ctx);
     let whole = ui.available_rect_before_wrap();
 
-    // A presentation shows the bar only for the chooser that hangs on it.
     let presenting = session.view.presenting;
-    for panel in panels.at(Place::Top).filter(|_| !presenting || session.view.chooser_open) {
+    if presenting {
+        actions.extend(chooser::alone(&ctx, &session, registry));
+    }
+    for panel in panels.at(Place::Top).filter(|_| !presenting) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 4.0));
         let shown = egui::Panel::top(panel.id())
             .frame(frame)
@@ -252,7 +255,9 @@ pub fn show(
     // Nothing behind a window shows its tooltip over it.
     let windows =
         [session.view.keys_open, session.view.about_open, session.draft.is_some(), dialogs.is_open()];
-    if windows.contains(&true) {
+    if session.questions.open.is_some() {
+        theme::hide_tooltips(&ctx, &[]);
+    } else if windows.contains(&true) {
         theme::hide_tooltips(&ctx, &tooltips);
     }
     actions.extend(question::show(&ctx, &session));

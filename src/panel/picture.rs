@@ -23,6 +23,8 @@ use crate::{
 
 /// The least width of a picture with axes: in a narrower one they would hide more than they say.
 const AXES: f32 = 240.0;
+/// The side of their corner, points.
+const AXES_CORNER: f32 = 84.0;
 
 /// The result of painting the overlays.
 #[derive(Debug, Default)]
@@ -57,7 +59,7 @@ pub fn overlays(
         all.places.extend(places);
     }
     ui.scope(|ui| {
-        let free = stage.map_or(rect, |stage| stage.paint(ui));
+        let free = stage.map_or(rect, |stage| stage.paint(ui, session));
         let (asked, covered) = stale(ui, free, session, registry);
         all.actions.extend(asked);
         let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
@@ -68,7 +70,8 @@ pub fn overlays(
     });
     if stage.is_none() {
         all.written.push(caption(ui, rect, session, registry));
-        if rect.width() >= AXES {
+        let corner = Rect::from_min_max(rect.right_bottom() - vec2(AXES_CORNER, AXES_CORNER), rect.max);
+        if rect.width() >= AXES && !all.written.iter().any(|place| place.intersects(corner)) {
             all.written.push(axes(ui, rect, session));
         }
     }
@@ -215,7 +218,7 @@ fn badges(
     let per_point = ui.pixels_per_point();
     let clipped = clipping::badge(session, f64::from(picture.area() * per_point * per_point));
     let toggle = Action::View(ViewChange::Clipping(!session.view.show_clipping));
-    let told = session.disk.badge.iter().map(|badge| (badge.clone(), None));
+    let told = session.disk_badge().map(|badge| (badge, None));
     let all = hidden_terms(session, registry).into_iter().chain(told);
     let mut at = pos2(rect.left() + 8.0, top);
     for (i, (badge, action)) in all.chain(clipped.map(|badge| (badge, Some(toggle)))).enumerate() {

@@ -25,13 +25,13 @@ const PROBE: [u32; 2] = [128, 72];
 /// The most objects in such a picture: those nearest to the camera.
 const PROBED: usize = 200;
 /// Share of a new light in the range that is left up to the brightest that the display shows.
-const SHARE: f32 = 0.35;
+const SHARE: f32 = 0.75;
 /// The least that a new light adds, in the scale of the display's values from 0 to 1, even if it clips for that.
-const VISIBLE: f32 = 0.05;
+const VISIBLE: f32 = 0.07;
 /// The part of what the light reaches that may clip for that.
-const HIGHLIGHTS: f32 = 0.008;
+const HIGHLIGHTS: f32 = 0.006;
 /// The part of what the light reaches that gets at least so much brighter.
-const VISIBLE_PART: f32 = 0.04;
+const VISIBLE_PART: f32 = 0.05;
 
 /// A scene, and the camera before which something is placed.
 pub(super) struct Stand<'a> {
@@ -98,13 +98,15 @@ impl<'a> Stand<'a> {
     pub(super) fn light(&self, near: Option<Vec3>) -> Vec3 {
         let distance = (self.middle() - self.eye).length();
         let [across, up] = self.opening();
-        // Over the shoulder, from the side where there is less light.
+        // Over the shoulder or from below, from the side where there is least light: there it is noticed.
         let depth = 0.7 * distance;
-        let beside =
-            |side: f32| self.eye + self.turn * (depth * Vec3::new(side * 0.4 * across, 0.6 * up, -1.0));
+        let beside = |[side, rise]: [f32; 2]| {
+            self.eye + self.turn * (depth * Vec3::new(side * across, rise * up, -1.0))
+        };
         let wanted = near.unwrap_or_else(|| {
-            let [left, right] = [-1.0, 1.0].map(beside);
-            if self.nearest_light(left) < self.nearest_light(right) { left } else { right }
+            let sides = [[0.4, 0.6], [-0.4, 0.6], [0.4, -0.5], [-0.4, -0.5]].map(beside);
+            let dark = |a: &Vec3, b: &Vec3| self.nearest_light(*a).total_cmp(&self.nearest_light(*b));
+            sides.into_iter().min_by(dark).unwrap_or(self.eye)
         });
         let step = 0.1 * distance.min(self.scene.scene_size.corner().min_element()).max(AIR);
         let apart = |p: Vec3| {

@@ -4,8 +4,6 @@
 use std::{
     hash::{DefaultHasher, Hash, Hasher},
     ops::Range,
-    thread,
-    time::Duration,
 };
 
 use bevy_egui::egui::{
@@ -17,8 +15,9 @@ use super::{
     keys,
     marks::Lens,
     maths::{self, Sizes},
+    notice,
     state::{Action, PictureArea, Session, ViewChange},
-    theme::{self, Palette},
+    theme::Palette,
     typeset::Break,
 };
 use crate::{reflection::Term, registry::Registry};
@@ -38,8 +37,6 @@ const BESIDE: [(f32, bool); 6] =
     [(0.34, false), (0.42, false), (0.34, true), (0.5, false), (0.42, true), (0.5, true)];
 /// The part of the objects that may be hidden.
 const HIDDEN: f32 = 0.005;
-/// Time for which it tells the way out, seconds.
-const REMINDER: f64 = 5.0;
 
 /// Escape leaves, unless it is another's.
 pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
@@ -165,7 +162,7 @@ impl Stage {
 
     /// Paints equation and caption, each on a ground of its own, so that they can be read on any picture. Returns the
     /// part of the picture that is free; what is shown there is as large.
-    pub(super) fn paint(&self, ui: &mut Ui) -> Rect {
+    pub(super) fn paint(&self, ui: &mut Ui, session: &Session) -> Rect {
         let palette = Palette::here(ui);
         let height = self.whole.height();
         let padding = padding(self.whole);
@@ -173,7 +170,8 @@ impl Stage {
         let width = self.whole.width() - 2.0 * padding.x;
         let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width);
         words.paint(ui, self.caption.min + padding, palette.text);
-        reminder(ui, self.picture.with_max_y(self.caption.top().min(self.picture.bottom())), height);
+        let below = self.picture.with_max_y(self.caption.top().min(self.picture.bottom()));
+        notice::show(ui, below, CAPTION * height, since(ui).0, session);
         let mut free = self.picture;
         if !self.equation.is_empty() {
             ui.painter().rect_filled(self.plate, 8.0, palette.panel);
@@ -307,27 +305,4 @@ fn since(ui: &Ui) -> (f64, f64) {
         ui.data(|d| d.get_temp::<(f64, u64)>(id)).filter(|(_, last)| last + 2 > pass).map_or(now, |s| s.0);
     ui.data_mut(|d| d.insert_temp(id, (since, pass)));
     (since, now)
-}
-
-/// For a moment it says how to get out.
-fn reminder(ui: &Ui, rect: Rect, height: f32) {
-    let (since, now) = since(ui);
-    if now - since > REMINDER {
-        return;
-    }
-    if now == since {
-        // Nothing else wakes a window at rest.
-        let ctx = ui.ctx().clone();
-        thread::spawn(move || {
-            thread::sleep(Duration::from_secs_f64(REMINDER + 0.1));
-            ctx.request_repaint();
-        });
-    }
-    let palette = Palette::here(ui);
-    let font = FontId::proportional(CAPTION * height);
-    let galley = ui.painter().layout_no_wrap("Esc leaves the presentation".to_owned(), font, palette.text);
-    let place = Align2::RIGHT_BOTTOM
-        .anchor_size(rect.right_bottom() - vec2(12.0, 12.0), galley.size() + vec2(24.0, 12.0));
-    ui.painter().rect_filled(place, theme::UNIT, palette.panel);
-    ui.painter().galley(place.min + vec2(12.0, 6.0), galley, palette.text);
 }

@@ -58,24 +58,29 @@ impl Panel for StatusLine {
                 actions.push(Action::View(session.strip_change()));
             }
             shader_errors(ui, session, &mut actions);
-            latest(ui, session, &mut actions);
+            let selected = format!("{} selected · F1 keys", session.name_of(session.selection, registry));
+            latest(ui, session, theme::small_width(ui, &selected), &mut actions);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let name = session.name_of(session.selection, registry);
-                ui.add(egui::Label::new(theme::small(ui, format!("{name} selected · F1 keys"))).truncate());
+                ui.add(egui::Label::new(theme::small(ui, selected)).truncate());
             });
         });
         actions
     }
 }
 
-/// The last message, if it is no problem; until something is changed.
-fn latest(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+/// The part of the line that the last message may take from what stands at the right.
+const NEWS: f32 = 0.75;
+
+/// The last message, if it is no problem; until something is changed. At the right, `beside` points are wanted.
+fn latest(ui: &mut Ui, session: &Session, beside: f32, actions: &mut Vec<Action>) {
     let Some(message) = session.messages.last().filter(|m| m.severity == Severity::Info) else { return };
     let listed = session.view.bottom_open && session.view.bottom_tab == MESSAGES_TAB;
     if listed || !session.has_news() {
         return;
     }
-    let room = (ui.available_width() - 360.0).max(80.0);
+    let (all, gap) = (ui.available_width(), 2.0 * ui.spacing().item_spacing.x);
+    let button = message.offer.as_ref().map_or(0.0, |(text, _)| theme::small_width(ui, text) + 2.0 * gap);
+    let room = (all - beside - gap).max(NEWS * all) - button;
     let colour = Palette::here(ui).text;
     let galley = theme::elided(ui, &message.text, TextStyle::Small, colour, room);
     let label = ui.add(egui::Label::new(galley));

@@ -78,6 +78,9 @@ fn caption(ui: &mut Ui, text: &str) {
 /// The captions of the choices.
 const CAPTIONS: [&str; 2] = ["Reflection", "Shading"];
 
+/// The part of the title that is left for the scene's name beside a long name of its file.
+const NAME: f32 = 0.45;
+
 /// The scene's name in a place whose size depends on the window alone, so that the menus stand still.
 fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
@@ -89,9 +92,18 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.painter().rect(place, 4.0, palette.hovered, stroke, egui::StrokeKind::Inside);
     }
     let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let galley = theme::elided(ui, &session.window_title(), font, palette.text, width - 8.0);
-    let at = egui::Align2::LEFT_CENTER.anchor_size(place.left_center() + vec2(4.0, 0.0), galley.size());
-    ui.painter().galley(at.min, galley, palette.text);
+    let line = |text: &str, room: f32| theme::elided(ui, text, font.clone(), palette.text, room);
+    let (title, whole, room) = (session.title(), session.window_title(), width - 8.0);
+    // The file has its share where both do not fit.
+    let file = whole.strip_prefix(&title).unwrap_or_default();
+    let name = line(&title, (room - line(file, room).size().x).max(NAME * room));
+    let file = line(file, room - name.size().x);
+    let mut at = place.left_center() + vec2(4.0, 0.0);
+    for galley in [name, file] {
+        let rect = egui::Align2::LEFT_CENTER.anchor_size(at, galley.size());
+        ui.painter().galley(rect.min, galley, palette.text);
+        at.x = rect.right();
+    }
     let state = if session.is_dirty() { "has unsaved changes" } else { "has no unsaved changes" };
     response.widget_info(|| {
         WidgetInfo::labeled(WidgetType::Button, true, format!("{} {state}", session.window_title()))
@@ -267,31 +279,28 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                 let clipping = ViewChange::Clipping(!v.show_clipping);
                 check(ui, "Show clipped pixels", v.show_clipping, "", view(clipping), actions);
                 ui.separator();
-                check(ui, "Scene list", v.left_open, "", view(ViewChange::Left(!v.left_open)), actions);
-                check(ui, "Properties", v.right_open, "", view(ViewChange::Right(!v.right_open)), actions);
-                check(
-                    ui,
-                    "Examples",
-                    v.examples_open,
-                    "",
-                    view(ViewChange::Examples(!v.examples_open)),
-                    actions,
-                );
-                for panel in session.panels.iter().filter(|p| p.place == Place::Bottom) {
-                    let shown = v.bottom_open && v.bottom_tab == panel.id;
-                    let change = if shown {
-                        ViewChange::Bottom(false)
-                    } else {
-                        ViewChange::BottomTab(panel.id.to_owned())
-                    };
-                    let key = match panel.id {
-                        MESSAGES_TAB => "F8",
-                        SHADER_TAB => "F9",
-                        _ => "",
-                    };
-                    check(ui, panel.title, shown, key, view(change), actions);
-                }
-                ui.separator();
+                menu::submenu(ui, "Panels", |ui| {
+                    ui.set_width(0.8 * MENU_WIDTH);
+                    let (left, right) = (ViewChange::Left(!v.left_open), ViewChange::Right(!v.right_open));
+                    check(ui, "Scene list", v.left_open, "", view(left), actions);
+                    check(ui, "Properties", v.right_open, "", view(right), actions);
+                    let examples = ViewChange::Examples(!v.examples_open);
+                    check(ui, "Examples", v.examples_open, "", view(examples), actions);
+                    for panel in session.panels.iter().filter(|p| p.place == Place::Bottom) {
+                        let shown = v.bottom_open && v.bottom_tab == panel.id;
+                        let change = if shown {
+                            ViewChange::Bottom(false)
+                        } else {
+                            ViewChange::BottomTab(panel.id.to_owned())
+                        };
+                        let key = match panel.id {
+                            MESSAGES_TAB => "F8",
+                            SHADER_TAB => "F9",
+                            _ => "",
+                        };
+                        check(ui, panel.title, shown, key, view(change), actions);
+                    }
+                });
                 menu::submenu(ui, format!("Size of everything: {} %", v.scale), |ui| {
                     item(ui, "Larger", view(ViewChange::Larger), actions);
                     item(ui, "Smaller", view(ViewChange::Smaller), actions);

@@ -17,8 +17,8 @@ use crate::{registry::Registry, scene::examples::EXAMPLES};
 
 /// The size of a picture in the strip, points.
 const CARD: egui::Vec2 = vec2(112.0, 63.0);
-/// The height of two lines below it, and of the scroll bar.
-const TITLE: f32 = 42.0;
+/// The room of the scroll bar below the titles, points.
+const BAR: f32 = 10.0;
 /// The size of one in the menu.
 const ROW: egui::Vec2 = vec2(96.0, 54.0);
 /// The least height of strip and picture together, points.
@@ -50,16 +50,18 @@ pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>
                 });
             });
         });
+        let font = TextStyle::Small.resolve(ui.style());
+        let title = |name: &str| ui.painter().layout(name.to_owned(), font.clone(), palette.text, CARD.x);
+        let titles: Vec<_> = EXAMPLES.iter().map(|example| title(&example.name)).collect();
+        let below = 4.0 + titles.iter().map(|galley| galley.size().y).fold(0.0, f32::max) + BAR;
         // Wheels turn up and down.
         ui.style_mut().always_scroll_the_only_direction = true;
         ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| {
             ui.horizontal_top(|ui| {
-                for (i, example) in EXAMPLES.iter().enumerate() {
-                    let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, TITLE), Sense::click());
+                for ((i, example), galley) in EXAMPLES.iter().enumerate().zip(titles) {
+                    let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, below), Sense::click());
                     let picture = Rect::from_min_size(rect.min, CARD);
                     face(ui, i, picture, &response, registry);
-                    let font = TextStyle::Small.resolve(ui.style());
-                    let galley = ui.painter().layout(example.name.clone(), font, palette.text, CARD.x);
                     ui.painter().galley(picture.left_bottom() + vec2(0.0, 4.0), galley, palette.text);
                     frame(ui, picture, &response);
                     if response.clicked() {
@@ -88,8 +90,9 @@ pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Acti
 pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Action>) {
     let [most, least] = MENU;
     ui.set_width((ui.ctx().content_rect().right() - left - 40.0).clamp(least, most));
-    let most = 0.75 * ui.ctx().content_rect().height();
-    ScrollArea::vertical().max_height(most).show(ui, |ui| {
+    // The menu moves up where it needs to.
+    let most = ui.ctx().content_rect().height() - 40.0;
+    ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
         for (i, example) in EXAMPLES.iter().enumerate() {
             let palette = Palette::here(ui);
             let left = 4.0 + ROW.x + 10.0;

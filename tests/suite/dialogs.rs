@@ -2,10 +2,14 @@
 
 use std::fs;
 
-use bevy_egui::egui::{Color32, Event, Id, Key, Modifiers, Order, Shape, vec2};
+use bevy_egui::egui::{
+    Color32, Event, Id, Key, Modifiers, Order, Shape, containers::panel::PanelState, vec2,
+};
 use lights_camera_models::{
+    document::Edit,
     optics::colour::srgb_decode,
     panel::{
+        caption::caption_text,
         state::{Action, Effect, Session, ThemeChoice, ViewChange},
         theme::Palette,
     },
@@ -164,6 +168,46 @@ fn what_stands_behind_a_window_says_nothing_over_it() {
         bench.hover(control.center());
         assert!(!said(&mut bench), "{key:?}");
         bench.key(Key::Escape, Modifiers::NONE);
+    }
+}
+
+#[test]
+fn no_tooltip_stands_over_a_question() {
+    let mut bench = Bench::with_model("blinn_phong");
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::Scale(150)));
+    bench.apply(Action::Edit(Edit::ShadingModel("derivative".to_owned())));
+    let whole = caption_text(&bench.session, &bench.registry);
+    let said = |bench: &mut Bench| texts(bench).contains(&whole);
+    bench.hover(bench.area.rect.left_bottom() + vec2(40.0, -16.0));
+    assert!(said(&mut bench), "there is a tooltip: {:?}", texts(&mut bench));
+    bench.apply(Action::Quit);
+    assert!(bench.says("Save the changes?") && !said(&mut bench));
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.says("Save the changes?") && said(&mut bench));
+}
+
+#[test]
+fn the_buttons_of_a_dialog_are_clear_of_its_preview() {
+    for (size, percent) in [(1280.0, 100), (1280.0, 125), (1280.0, 150), (1280.0, 175), (1280.0, 200)] {
+        let (mut bench, _folder) = open(ThemeChoice::Light, percent);
+        bench.size = vec2(size, 0.5625 * size);
+        bench.settle();
+        let panel = |name: &str| {
+            let id = Id::new("open dialog").with(name);
+            PanelState::load(&bench.ctx, id).unwrap_or_else(|| panic!("no {name}")).outer_rect
+        };
+        let (bottom, preview) = (panel("bottom_panel"), panel("right_panel"));
+        assert!(
+            bottom.right() <= preview.left() + 1.0,
+            "{percent} %: {bottom:?} reaches into the preview {preview:?}"
+        );
+        let word = bench.shapes().into_iter().find_map(|shape| match shape {
+            Shape::Text(text) if text.galley.text().ends_with("Open") => Some(text.visual_bounding_rect()),
+            _ => None,
+        });
+        let word = word.expect("a button");
+        assert!(bottom.contains_rect(word) && word.right() < preview.left() - 8.0, "{percent} %: {word:?}");
     }
 }
 

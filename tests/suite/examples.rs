@@ -126,6 +126,54 @@ fn the_wheel_scrolls_the_strip_and_titles_are_whole() {
 }
 
 #[test]
+fn titles_of_the_strip_are_clear_of_its_scroll_bar() {
+    for scale in [100, 150] {
+        let mut bench = Bench::new(Session::default());
+        bench.size = vec2(1280.0, 720.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::View(ViewChange::Examples(true)));
+        let shapes = bench.shapes();
+        let bar = shapes.iter().filter_map(|shape| match shape {
+            Shape::Rect(r) if (2.0..12.0).contains(&r.rect.height()) && r.rect.width() > 60.0 => Some(r.rect),
+            _ => None,
+        });
+        let bar = bar.max_by(|a, b| a.top().total_cmp(&b.top())).expect("it scrolls");
+        for shape in &shapes {
+            if let Shape::Text(text) = shape
+                && EXAMPLES.iter().any(|e| e.name == text.galley.text())
+                && text.pos.y > bench.area.rect.bottom()
+            {
+                let title = text.visual_bounding_rect();
+                assert!(
+                    title.bottom() < bar.top(),
+                    "{scale} %: {} at {title:?}, {bar:?}",
+                    text.galley.text()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_menu_of_the_examples_does_not_scroll_where_there_is_room() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1920.0, 1080.0);
+    bench.settle();
+    bench.click("File");
+    bench.click("Examples ⏵");
+    let last = EXAMPLES.last().expect("there are some");
+    let entry = bench.find(&format!("Example: {}", last.name)).expect("an entry").rect;
+    let name = bench.shapes().into_iter().find_map(|shape| match shape {
+        Shape::Text(text) if text.galley.text() == last.name => Some(text.visual_bounding_rect()),
+        _ => None,
+    });
+    assert!(entry.bottom() <= 1080.0 && name.is_some_and(|name| entry.contains_rect(name)), "{entry:?}");
+    // What is scrolled out is not under the pointer.
+    let layer = bench.ctx.layer_id_at(entry.center()).expect("a menu");
+    assert_eq!(layer.order, egui::Order::Foreground, "{entry:?}");
+}
+
+#[test]
 fn the_menu_of_the_examples_says_all_of_them_and_leaves_the_menu_before_it_free() {
     let mut bench = Bench::new(Session::default());
     bench.size = vec2(1280.0, 720.0);

@@ -172,6 +172,25 @@ fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
 }
 
 #[test]
+fn a_new_light_is_noticed_at_once() {
+    let registry = Registry::builtin();
+    let shown = |b: f32| srgb_encode(b.min(1.0));
+    for kind in registry.lights() {
+        let kind = kind.declaration.id;
+        let mut session = Session::default();
+        let before = brightness(&session, &registry);
+        session.apply(Action::AddLight(kind.to_owned()), &registry);
+        let after = brightness(&session, &registry);
+        let gains = after.iter().zip(&before).map(|(a, b)| shown(*a) - shown(*b));
+        let noticed = gains.filter(|gain| *gain > 0.1).count() as f32 / before.len() as f32;
+        println!("{kind} {noticed} {:?}", session.document.lights[1]);
+        // The cone of a spot is narrow.
+        let least = if kind == "spot" { 0.05 } else { 0.15 };
+        assert!(noticed > least, "{kind}: {noticed} of the objects get brighter, visibly");
+    }
+}
+
+#[test]
 fn a_curve_of_tone_mapping_leaves_a_new_light_more_room() {
     let registry = Registry::builtin();
     let mut session = Session::default();

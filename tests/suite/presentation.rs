@@ -9,7 +9,7 @@ use lights_camera_models::{
     panel::{
         marks::Lens,
         maths::definitions,
-        state::{Action, Clipping, Effect, SCALES, Session, ViewChange},
+        state::{Action, Clipping, Effect, SCALES, Session, Severity, ViewChange},
     },
     registry::Registry,
     scene::{Scene, examples::EXAMPLES},
@@ -206,6 +206,77 @@ fn the_list_of_keys_is_whole_at_every_size() {
                 .collect();
         assert!(edges.len() == 1, "one edge for all groups of a column: {edges:?}");
     }
+}
+
+#[test]
+fn the_list_of_keys_fits_the_size_of_everything_that_is_chosen_while_it_is_closed_or_open() {
+    let place = |bench: &Bench| bench.ctx.memory(|m| m.area_rect(egui::Id::new("keys"))).expect("it is open");
+    let fresh = |percent| {
+        let mut bench = bench((1280.0, 720.0), "phong");
+        bench.apply(Action::View(ViewChange::Scale(percent)));
+        bench.key(Key::F1, Modifiers::NONE);
+        place(&bench)
+    };
+    let mut bench = bench((1280.0, 720.0), "phong");
+    for percent in [150, 100, 200, 125] {
+        bench.apply(Action::View(ViewChange::Scale(percent)));
+        bench.key(Key::F1, Modifiers::NONE);
+        let window = place(&bench);
+        assert_eq!(window, fresh(percent), "reopened at {percent} %");
+        for shape in bench.shapes() {
+            if let Shape::Rect(title) = shape
+                && (title.rect.min - window.min).length() < 3.0
+                && title.rect.height() < 60.0
+            {
+                let wide = (title.rect.right() - window.right()).abs() < 3.0;
+                assert!(wide, "{percent} %: the title ends at {:?} of {window:?}", title.rect);
+            }
+        }
+        bench.key(Key::F1, Modifiers::NONE);
+    }
+    bench.key(Key::F1, Modifiers::NONE);
+    bench.apply(Action::View(ViewChange::Scale(175)));
+    assert_eq!(place(&bench), fresh(175), "while it is open");
+}
+
+#[test]
+fn a_presentation_says_for_a_moment_what_happened() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    let texts = |bench: &mut Bench| -> Vec<String> {
+        let text = |s| if let Shape::Text(t) = s { Some(t.galley.job.text.clone()) } else { None };
+        bench.shapes().into_iter().filter_map(text).collect()
+    };
+    let words = "Saved to /home/mira/room.json.";
+    let said = |bench: &mut Bench| texts(bench).iter().any(|text| text == words);
+    bench.session.say(Severity::Info, words);
+    bench.key(Key::F5, Modifiers::NONE);
+    assert!(!said(&mut bench), "what was said before is none of its news");
+    assert!(texts(&mut bench).iter().any(|text| text == "Esc leaves the presentation"));
+    for _ in 0..2 {
+        // The same again is news again.
+        bench.session.say(Severity::Info, words);
+        bench.settle();
+        assert!(said(&mut bench));
+        assert!(!texts(&mut bench).iter().any(|text| text.starts_with("Esc")), "one at a time");
+        // A frame is a thirtieth of a second.
+        (0..160).for_each(|_| drop(bench.frame(Vec::new())));
+        assert!(!said(&mut bench), "for a moment");
+    }
+}
+
+#[test]
+fn the_chooser_of_a_presentation_comes_without_the_bar() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    bench.key(Key::F5, Modifiers::NONE);
+    let picture = bench.area.clone();
+    bench.letter(Key::R, "r");
+    assert!(bench.says("Search reflection models") && bench.says("Oren–Nayar"), "the list");
+    for gone in ["File", "Shading: Gouraud", "Reflection model: Phong"] {
+        assert!(bench.find(gone).is_none(), "{gone}");
+    }
+    assert_eq!((bench.area.rect, bench.area.frame), (picture.rect, picture.frame), "nothing moves");
+    bench.click_at(egui::pos2(20.0, 400.0), egui::PointerButton::Primary);
+    assert!(!bench.session.view.chooser_open, "a click beside it closes it");
 }
 
 /// The heights of the capitals on screen, points, with the text that they are in.

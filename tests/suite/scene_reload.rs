@@ -292,6 +292,20 @@ fn an_empty_or_half_written_file_is_given_a_moment() {
 }
 
 #[test]
+fn the_badge_of_a_broken_file_tells_if_unsaved_changes_are_shown() {
+    let mut desk = Desk::new();
+    let badge = |desk: &Desk| desk.session.disk_badge().map(|badge| badge.text);
+    assert_eq!(badge(&desk), None);
+    desk.edited("{ nonsense");
+    let plain = "room.json has errors: showing the last good version";
+    assert_eq!(badge(&desk).as_deref(), Some(plain));
+    desk.change();
+    assert_eq!(badge(&desk), Some(format!("{plain} with your unsaved changes")));
+    desk.act(Action::Undo);
+    assert_eq!(badge(&desk).as_deref(), Some(plain));
+}
+
+#[test]
 fn a_broken_file_leaves_the_scene_and_says_where() {
     let mut desk = Desk::new();
     let broken = |k_d: &str| {

@@ -142,6 +142,15 @@ fn many_models_and_long_messages_stay_on_the_picture() {
         let (_, rect) = badge(&bench).expect("a badge");
         let picture = bench.area.rect;
         assert!(picture.contains_rect(rect), "{size:?} {large}: {rect:?} in {picture:?}");
+        // Where it needs the corner of the axes, there are none.
+        for shape in bench.shapes() {
+            if let Shape::Circle(circle) = shape
+                && circle.radius > 20.0
+            {
+                let disc = circle.visual_bounding_rect();
+                assert!(!disc.intersects(rect), "{size:?} {large}: {disc:?} lies over {rect:?}");
+            }
+        }
     }
 }
 
@@ -369,6 +378,39 @@ fn the_names_of_files_are_shown_whole() {
         }
         assert!(names > 0, "{scale} %");
     }
+}
+
+#[test]
+fn paths_keep_both_ends_where_there_is_little_room() {
+    let mut bench = bench_with(Vec::new());
+    let folder = "/home/mira/courses/computer_graphics_2026/lab/shaders";
+    bench.session.shaders.folders.shaders = Some(PathBuf::from(folder));
+    bench.apply(Action::View(ViewChange::Scale(150)));
+    bench.session.view.bottom_height = 420.0;
+    bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
+    let shown = texts(&mut bench);
+    let folder = shown.iter().find(|text| text.ends_with("lab/shaders")).expect("the folder that is watched");
+    assert!(folder.starts_with("/home") && folder.contains('…'), "{folder}");
+    // Beside the line of an error, the name of the file is what counts.
+    bench.session.shaders.troubles = vec![broken_lambert()];
+    bench.settle();
+    let shown = texts(&mut bench);
+    for file in ["…/gouraud.wgsl", "…/point.wgsl"] {
+        assert!(shown.iter().any(|text| text == file), "{file}: {shown:?}");
+    }
+    bench.session.shaders.troubles.clear();
+    bench.settle();
+    let model = "reflection/lambert.wgsl";
+    let row = bench.tree.iter().find(|s| s.label == format!("the model: {model}")).expect("its row").rect;
+    bench.hover(row.center());
+    let whole = format!("/home/mira/courses/computer_graphics_2026/lab/shaders/{model}");
+    assert!(texts(&mut bench).contains(&whole), "{:?}", texts(&mut bench));
+}
+
+/// The texts that are painted.
+fn texts(bench: &mut Bench) -> Vec<String> {
+    let text = |s| if let Shape::Text(t) = s { Some(t.galley.text().to_owned()) } else { None };
+    bench.shapes().into_iter().filter_map(text).collect()
 }
 
 #[test]

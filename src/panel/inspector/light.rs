@@ -10,7 +10,7 @@ use crate::{
     panel::{
         knob::{self, Caption},
         maths,
-        segmented::segmented,
+        segmented::{segment_width, segmented},
         state::{Action, Session},
         theme,
     },
@@ -145,12 +145,20 @@ fn brightness(ui: &mut Ui, light: &Light, entry: &LightEntry) -> Option<LightFie
     }
 }
 
+/// The points that the colour of a temperature takes, with the room of a unit.
+const SAMPLE: f32 = 44.0 + 22.0;
+
 /// The colour of a light: sRGB, or the temperature of a black body.
 fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
     let mut out = None;
     ui.horizontal(|ui| {
         ui.set_min_height(30.0);
-        ui.label(theme::small(ui, "Colour from"));
+        // Beside the choice, the colour of a temperature has its place.
+        let choices = ["RGB", "temperature"];
+        let buttons: f32 = choices.iter().map(|choice| segment_width(ui, choice)).sum();
+        let room = ui.available_width() - buttons - SAMPLE - 2.0 * ui.spacing().item_spacing.x;
+        let word = ["Colour from", "Colour"].into_iter().find(|word| theme::small_width(ui, word) < room);
+        word.map(|word| ui.label(theme::small(ui, word)));
         let chosen = usize::from(light.colour_temperature.is_some());
         let tip = |ui: &mut Ui, i: usize| {
             ui.label(if i == 0 {
@@ -159,7 +167,7 @@ fn light_colour(ui: &mut Ui, light: &Light) -> Option<LightField> {
                 "The temperature of a black body that glows in this colour."
             });
         };
-        match segmented(ui, "Colour by", &["RGB", "temperature"], Some(chosen), tip) {
+        match segmented(ui, "Colour by", &choices, Some(chosen), tip) {
             Some(0) => out = Some(LightField::Colour(light.rgb8())),
             Some(_) => {
                 out = Some(LightField::ColourTemperature(temperature::nearest_temperature(light.colour)))

@@ -136,7 +136,8 @@ pub(super) fn text_field(
             set(text);
         }
     }
-    response.on_hover_text(label);
+    // A name may be longer than its field.
+    response.on_hover_text(if kind == Text::Heading && !value.is_empty() { value } else { label });
 }
 
 pub(super) fn position_limits(size: SceneSize) -> [Limits; 3] {

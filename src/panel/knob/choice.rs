@@ -47,7 +47,8 @@ pub(in crate::panel) fn drop_down<R>(
     id: Id,
     list: impl FnOnce(&mut Ui, Id) -> Option<R>,
 ) -> Option<R> {
-    let width = 352.0;
+    // The authors of most models fit beside their names.
+    let width = f32::min(460.0, button.ctx.content_rect().width() - 32.0);
     let list_id = id.with("list");
     let popup = Popup::from_toggle_button_response(button)
         .id(id)

@@ -4,7 +4,8 @@
 //! corrected or given up with Escape.
 
 use bevy_egui::egui::{
-    self, Align, Align2, Area, Id, Key, Order, Response, RichText, Stroke, TextEdit, Ui, WidgetInfo, vec2,
+    self, Align, Align2, Area, Id, Key, Order, Response, RichText, Stroke, TextEdit, TextStyle, Ui,
+    WidgetInfo, pos2, vec2,
 };
 
 use super::slider::{nudge, round_to};
@@ -58,11 +59,17 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     if draft.as_ref().is_some_and(|d| d.last != value) {
         draft = None;
     }
-    let mut text = draft.as_ref().map_or_else(|| number(value), |d| d.text.clone());
+    let focused = ui.memory(|m| m.has_focus(id));
+    let whole = number(value);
+    let mut text = match &draft {
+        Some(draft) => draft.text.clone(),
+        None if focused => whole.clone(),
+        None => fitted(ui, value, width - PADDING),
+    };
+    let cut = draft.is_none() && text != whole;
     let problem = |text: &str| read(text, limits).err();
     let wrong = draft.as_ref().and_then(|d| problem(&d.text));
 
-    let focused = ui.memory(|m| m.has_focus(id));
     // The arrow keys turn the value; taken before the text field sees them.
     let mut step = 0.0;
     if focused {
@@ -77,11 +84,15 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
         });
     }
 
-    let response = text_edit(ui, id, name, &number(value), "", &mut text, width, wrong.is_some());
+    let mut response = text_edit(ui, id, name, &whole, "", &mut text, width, wrong.is_some());
+    if cut && !response.has_focus() {
+        response = response.on_hover_text(&whole);
+    }
 
     let mut out = None;
     if response.gained_focus() {
-        draft = Some(Draft { text: text.clone(), before: value, last: value });
+        let text = if response.changed() { text.clone() } else { whole };
+        draft = Some(Draft { text, before: value, last: value });
     }
     if response.changed() {
         let d = draft.get_or_insert_with(|| Draft { text: String::new(), before: value, last: value });
@@ -122,6 +133,24 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     Field { response, value: out.filter(|v| *v as f32 != value as f32 || limits.whole && *v != value), error }
 }
 
+/// The points of a field that its text does not have.
+const PADDING: f32 = 10.0;
+
+/// A number as long as there is room for: with fewer decimals where it is wider.
+fn fitted(ui: &Ui, value: f64, room: f32) -> String {
+    let font = TextStyle::Body.resolve(ui.style());
+    let fits = |text: &String| {
+        ui.painter().layout_no_wrap(text.clone(), font.clone(), egui::Color32::WHITE).size().x <= room
+    };
+    let whole = number(value);
+    if fits(&whole) {
+        return whole;
+    }
+    let rounded = (0..4).rev().map(|decimals| round_to(value, 0.1_f64.powi(decimals)));
+    // 0 would say something else than a small number.
+    rounded.filter(|v| *v != 0.0).map(number).find(fits).unwrap_or(whole)
+}
+
 fn select_all(ui: &Ui, id: Id, text: &str) {
     use egui::text::{CCursor, CCursorRange};
     if let Some(mut state) = egui::text_edit::TextEditState::load(ui.ctx(), id) {
@@ -131,24 +160,28 @@ fn select_all(ui: &Ui, id: Id, text: &str) {
     }
 }
 
-/// The error below a field. It lies over the widgets there, so that nothing moves while one types, and goes when
-/// the focus and the pointer do; the field stays red.
+/// The room of an error, and its distance from the panel, points.
+const COMPLAINT: f32 = 352.0;
+const BESIDE: f32 = 4.0;
+
+/// The error beside the panel of a field, at its height: so nothing moves while one types, and no other knob is
+/// covered. It goes when the focus and the pointer do; the field stays red.
 pub(super) fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
     if !(field.has_focus() || field.hovered()) || !ui.is_rect_visible(field.rect) {
         return;
     }
     let palette = Palette::here(ui);
-    let gap = vec2(0.0, 4.0);
-    let below = field.rect.bottom() + 56.0 < ui.ctx().content_rect().bottom();
-    let (pivot, at) = if below {
-        (Align2::RIGHT_TOP, field.rect.right_bottom() + gap)
+    // Where there is no room beside it, as in a popup at the edge, it is below.
+    let left = ui.clip_rect().left() - BESIDE;
+    let (pivot, at) = if left - ui.ctx().content_rect().left() > COMPLAINT {
+        (Align2::RIGHT_CENTER, pos2(left, field.rect.center().y))
     } else {
-        (Align2::RIGHT_BOTTOM, field.rect.right_top() - gap)
+        (Align2::RIGHT_TOP, field.rect.right_bottom() + vec2(0.0, 4.0))
     };
     let area = Area::new(field.id.with("complaint")).order(Order::Tooltip).interactable(false);
     area.pivot(pivot).fixed_pos(at).constrain(true).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).stroke(Stroke::new(1.0, palette.error)).show(ui, |ui| {
-            ui.set_max_width(300.0);
+            ui.set_max_width(COMPLAINT - 32.0);
             let text = format!("{error}; the picture keeps {kept}");
             ui.add(egui::Label::new(RichText::new(text).small().color(palette.error)).wrap());
         });
@@ -185,7 +218,7 @@ fn text_edit(
     let edit = TextEdit::singleline(text)
         .id(id)
         .hint_text(RichText::new(hint).color(palette.weak))
-        .desired_width(width - 10.0)
+        .desired_width(width - PADDING)
         .min_size(vec2(width, 22.0))
         .vertical_align(Align::Center)
         .horizontal_align(Align::Max)
@@ -198,7 +231,8 @@ fn text_edit(
         info
     });
     if response.gained_focus() {
-        select_all(ui, id, text);
+        // The text may have been rounded until now.
+        select_all(ui, id, if shown.len() > text.len() { shown } else { text });
     }
     response
 }

@@ -55,6 +55,11 @@ pub(super) fn axis_letter(
         .on_hover_text("Drag sideways to change the value");
 }
 
+/// The points of three letters, the unit, and the gaps between these and three fields.
+const BETWEEN: f32 = 3.0 * 14.0 + 18.0 + 6.0 * 4.0;
+/// The least width of a field beside the word, points: that of a number with a sign and three decimals.
+const LEAST: f32 = 56.0;
+
 /// Three letters with a field each, and the unit at the end of the line. Returns the new value, and the first
 /// error with the value that is kept and its field.
 fn three_fields(
@@ -67,9 +72,7 @@ fn three_fields(
 ) -> (Option<Vec3>, Option<(String, f64, Response)>) {
     let mut out = None;
     let mut wrong = None;
-    // Three letters, three fields, the unit, and the gaps between the seven.
-    let room = ui.available_width() - (3.0 * 14.0 + 18.0 + 6.0 * 4.0);
-    let width = (room / 3.0).clamp(36.0, 96.0).floor();
+    let width = ((ui.available_width() - BETWEEN) / 3.0).clamp(36.0, 96.0).floor();
     for axis in 0..3 {
         let component = f64::from(value.to_array()[axis]);
         let name = format!("{} {}", caption.label, letters[axis]);
@@ -102,12 +105,11 @@ pub fn vector_knob(
     let mut out = None;
     ui.add_enabled_ui(caption.disabled.is_none(), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
-            let font = TextStyle::Body.resolve(ui.style());
-            let colour = Palette::here(ui).text;
-            let galley = ui.painter().layout_no_wrap(caption.label.to_owned(), font, colour);
-            let column = galley.size().x.max(54.0);
+        let font = TextStyle::Body.resolve(ui.style());
+        let colour = Palette::here(ui).text;
+        let galley = ui.painter().layout_no_wrap(caption.label.to_owned(), font, colour);
+        let column = galley.size().x.max(54.0);
+        let word = |ui: &mut Ui| {
             let (rect, label) = ui.allocate_exact_size(vec2(column, 22.0), Sense::hover());
             ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, colour);
             label.on_hover_ui(|ui| {
@@ -117,6 +119,18 @@ pub fn vector_knob(
                     ui.label(theme::small(ui, format!("{letter}: {}", limits.rule())));
                 }
             });
+        };
+        // Where numbers would be cut beside it, the word has a line of its own.
+        let beside = ui.available_width() - column - 4.0 - BETWEEN >= 3.0 * LEAST;
+        let word = if beside {
+            Some(word)
+        } else {
+            word(ui);
+            None
+        };
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            word.into_iter().for_each(|word| word(ui));
             let (new, wrong) = three_fields(ui, id, caption, LETTERS, value, limits);
             out = new;
             if let Some((error, kept, field)) = wrong {

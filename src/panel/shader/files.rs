@@ -1,9 +1,10 @@
 //! The list of the shader files that the picture is made of.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use bevy_egui::egui::{
-    self, Align, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
+    self, Align, Color32, FontId, Galley, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo,
+    WidgetType, vec2,
 };
 
 use super::missing_model;
@@ -99,7 +100,7 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
         ui.set_width(ui.available_width() - 8.0);
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = ROW;
-        let names = (names.ceil() + 4.0).min(0.6 * ui.available_width());
+        let names = (names.ceil() + 10.0).min(0.6 * ui.available_width());
         for file in files {
             self::file(ui, session, &file, names, actions);
         }
@@ -124,8 +125,9 @@ fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Acti
         actions.push(Action::Copy(text.clone()));
     }
     let room = 0.5 * ui.available_width();
-    let shown = tail(ui, &text, TextStyle::Small, room);
-    let path = ui.label(RichText::new(shown).small().color(palette.text));
+    let font = TextStyle::Small.resolve(ui.style());
+    let (shown, _) = theme::elided_within(ui, &text, &font, palette.text, room);
+    let path = ui.label(shown);
     let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
     if let Some(models) = &session.shaders.folders.models {
         help += &format!("\nCustom models: {}", models.display());
@@ -134,18 +136,14 @@ fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Acti
     ui.label(theme::small(ui, "watched:"));
 }
 
-/// A path that is cut off at its beginning where it is too long: its end says more.
-fn tail(ui: &Ui, text: &str, style: TextStyle, room: f32) -> String {
-    let font = style.resolve(ui.style());
-    let width =
-        |s: &str| ui.painter().layout_no_wrap(s.to_owned(), font.clone(), egui::Color32::WHITE).size().x;
-    if width(text) <= room {
-        return text.to_owned();
-    }
-    let starts: Vec<usize> = text.char_indices().map(|(i, _)| i).skip(1).collect();
-    let cut = |i: usize| format!("…{}", &text[starts[i]..]);
-    let first = (0..starts.len()).collect::<Vec<_>>().partition_point(|&i| width(&cut(i)) > room);
-    if first < starts.len() { cut(first) } else { "…".to_owned() }
+/// A path, without its folders where there is little room.
+fn short(ui: &Ui, path: &str, font: &FontId, colour: Color32, room: f32) -> Arc<Galley> {
+    let file = path.rsplit('/').next().unwrap_or(path);
+    [path, &format!("…/{file}")]
+        .map(|text| ui.painter().layout_no_wrap(text.to_owned(), font.clone(), colour))
+        .into_iter()
+        .find(|galley| galley.size().x <= room)
+        .unwrap_or_else(|| theme::elided_within(ui, file, font, colour, room).0)
 }
 
 /// The height of a row of the list, points.
@@ -189,11 +187,9 @@ pub(super) fn file(ui: &mut Ui, session: &Session, file: &File, names: f32, acti
                 let mark = ui.label(RichText::new("● edited").small().color(palette.accent));
                 mark.on_hover_text("This file differs from the copy that is built in.");
             }
-            let room = ui.available_width();
-            let shown = tail(ui, path, TextStyle::Monospace, room);
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.label(RichText::new(shown).monospace().color(palette.weak));
-            });
+            let font = TextStyle::Monospace.resolve(ui.style());
+            let shown = short(ui, path, &font, palette.weak, ui.available_width());
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.label(shown));
         });
     });
     row.response.on_hover_ui(|ui| {

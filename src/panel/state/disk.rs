@@ -55,6 +55,17 @@ impl Session {
         };
     }
 
+    /// The remark on the document's file, if there is one.
+    #[must_use]
+    pub fn disk_badge(&self) -> Option<Badge> {
+        let mut badge = self.disk.badge.clone()?;
+        // The file cannot be read, so what is shown is the scene before it, or what became of that here.
+        if badge.severity == Severity::Error && self.is_dirty() {
+            badge.text += " with your unsaved changes";
+        }
+        Some(badge)
+    }
+
     /// The document is as its file has it, or is another one.
     pub(super) fn disk_saved(&mut self) {
         self.disk_settled();

@@ -52,6 +52,8 @@ pub struct Messages {
     undo: Option<Step>,
     /// The last step when the last message about this document was added.
     said_at: Option<Step>,
+    /// The number of messages that were ever added.
+    added: usize,
 }
 
 /// The number of steps that are done, and the name of the last one.
@@ -68,6 +70,7 @@ impl Deref for Messages {
 impl Messages {
     /// Adds a message, unless the last one says the same.
     pub fn add(&mut self, note: Note) {
+        self.added += 1;
         if self.last() == Some(&note) {
             return;
         }
@@ -101,6 +104,12 @@ impl Messages {
     /// No message is about the document that is opened now.
     pub(super) fn another_document(&mut self) {
         self.said_at = None;
+    }
+
+    /// The number of messages that were ever added: it tells the same one, said again, from none.
+    #[must_use]
+    pub fn added(&self) -> usize {
+        self.added
     }
 
     /// Removes a message.
