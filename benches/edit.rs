@@ -1,12 +1,14 @@
-//! What a change of a scene of ten thousand objects costs, from the document to what the renderer is handed: medians
-//! in microseconds. Nothing is drawn.
+//! The cost of changes of a scene of ten thousand objects, from the document to the renderer's input: medians in
+//! microseconds. Nothing is drawn.
 
-use std::time::Instant;
+use std::{path::Path, time::Instant};
 
 use bevy::ecs::prelude::*;
 use glam::Vec3;
 use lights_camera_models::{
+    custom,
     document::{Document, Edit, ObjectField, Selection},
+    panel::{follow::follow_registry, state::Session},
     parameter::Value,
     registry::Registry,
     render::{
@@ -48,19 +50,28 @@ fn main() {
     let world = renderer.app().world_mut();
     report("nothing changed", |_| world.run_schedule(LabFrame));
     let registry = Registry::builtin();
-    world.insert_resource(Shown(Document::new(scene)));
+    world.insert_resource(Shown(Document::new(scene.clone())));
     let mut follow = Schedule::default();
     follow.add_systems(show);
-    let mut edit = |world: &mut World, field: ObjectField| {
-        let document = &mut world.resource_mut::<Shown>().0;
-        document.edit(Edit::Object(OBJECTS / 2, field), Selection::Room, &registry).expect("legal");
+    let mut change = |world: &mut World, change: &dyn Fn(&mut Document)| {
+        change(&mut world.resource_mut::<Shown>().0);
         follow.run(world);
         world.run_schedule(LabFrame);
     };
+    let edit = |document: &mut Document, field: ObjectField| {
+        document.edit(Edit::Object(OBJECTS / 2, field), Selection::Room, &registry).expect("legal");
+    };
     report("a parameter of one object", |i| {
-        edit(world, ObjectField::Material("k_d", Value::Number(i as f32 / ROUNDS as f32)));
+        let field = || ObjectField::Material("k_d", Value::Number(i as f32 / ROUNDS as f32));
+        change(world, &|document| edit(document, field()));
     });
-    report("the size of one object", |i| edit(world, ObjectField::Size(0.05 + i as f32 * 1e-4)));
+    report("the size of one object", |i| {
+        change(world, &|document| edit(document, ObjectField::Size(0.05 + i as f32 * 1e-4)));
+    });
+    report("one object removed", |_| {
+        change(world, &|document| document.remove(Selection::Object(OBJECTS / 2), &registry));
+    });
+    report("one object brought back", |_| change(world, &|document| drop(document.undo().expect("a step"))));
     report("a component of one object", |i| {
         let object = world.resource::<SceneEntities>().objects[17];
         let mut object = world.get_mut::<LitObject>(object).expect("it is an object");
@@ -71,6 +82,22 @@ fn main() {
         world.resource_mut::<CurrentScene>().0.objects[OBJECTS / 2].size = 0.1 + i as f32 * 1e-4;
         world.run_schedule(LabFrame);
     });
+
+    // A custom model loses a parameter that every object has, and gets it back.
+    let registries = ["gloss", "sheen_of_mine"].map(|parameter| {
+        let text = format!(
+            "/* lcm {{ \"parameters\": [{{ \"name\": \"{parameter}\" }}] }} */\nfn response(l: vec3<f32>, v: vec3<f32>, \
+             frame: Frame, m: Parameters) -> Terms {{\n    return Terms(vec3(0.0), vec3(0.5), vec3(0.0));\n}}\n"
+        );
+        let mut registry = Registry::builtin();
+        let model = custom::read(Path::new("models/mine.wgsl"), &text, &registry).expect("it is correct");
+        registry.put_custom_model(model);
+        registry
+    });
+    let mut scene = Scene { reflection_model: "mine".to_owned(), ..scene };
+    scene.objects.iter_mut().for_each(|object| object.material.set("gloss", Value::Number(0.75)));
+    let mut session = Session::new(scene);
+    report("a parameter of a model", |i| follow_registry(&mut session, &registries[(i + 1) % 2]));
 }
 
 fn report(what: &str, mut act: impl FnMut(usize)) {

@@ -1,15 +1,14 @@
 //! The changes that can be made to a scene, and their names in the history.
 
+use std::{f64::consts::GOLDEN_RATIO, iter};
+
 use glam::Vec3;
 
-use super::{
-    Document, Extent, Selection,
-    names::{Names, name_of},
-};
+use super::{Document, Extent, Selection, names::Names};
 use crate::{
     parameter::Value,
     registry::Registry,
-    scene::{Display, Light, Object, Observer, SceneSize},
+    scene::{Display, Light, Object, Observer, SceneSize, check},
 };
 
 /// A change of the scene.
@@ -115,12 +114,14 @@ impl LightField {
         .to_owned()
     }
 
-    fn put(self, light: &mut Light, registry: &Registry) {
+    fn put(self, light: &mut Light, registry: &Registry, room: SceneSize) {
         // A field that is absent gets the value that it has when the file is read again.
         match self {
             Self::Name(name) => light.name = named(&name),
             Self::Enabled(on) => light.enabled = on,
-            Self::Type(id) => light.light_type = id,
+            Self::Type(id) => {
+                registry.light(&id).into_iter().for_each(|entry| light.set_type(entry, registry, room));
+            }
             Self::Position(p) => light.position = Some(p),
             Self::Direction(d) => light.direction = Some(d),
             Self::Colour(c) => (light.colour, light.colour_temperature) = (c, None),
@@ -192,12 +193,6 @@ fn step(label: &str, part: &str) -> String {
 }
 
 impl Document {
-    /// The name of a part.
-    #[must_use]
-    pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
-        name_of(&self.scene, part, registry)
-    }
-
     /// Makes a change, if the rules of scenes allow it. `selection` is the present one.
     ///
     /// # Errors
@@ -235,10 +230,15 @@ impl Document {
                 rest(self, &step, &mut |s| s.shading_model.clone_from(&id));
             }
             Edit::Observer(observer) => rest(self, "Observer", &mut |s| s.observer = observer),
+            Edit::Light(i, LightField::Type(id)) => {
+                self.change_light_type(i, &id, None, selection, registry)?;
+            }
             Edit::Light(i, field) => {
                 let label = field.label(&self.scene.lights[i], registry);
                 let name = step(&label, &self.name_of(Selection::Light(i), registry));
-                self.change(name, Extent::Light(i), selection, |s| field.put(&mut s.lights[i], registry));
+                self.change(name, Extent::Light(i), selection, |s| {
+                    field.put(&mut s.lights[i], registry, s.scene_size);
+                });
             }
             // The others keep their numbers.
             Edit::Object(i, field @ (ObjectField::Name(_) | ObjectField::Type(_))) => {
@@ -256,24 +256,44 @@ impl Document {
         Ok(())
     }
 
-    /// Changes the type of a light. `position` and `direction` are for types that need them.
+    /// Changes the type of a light, which gets everything that the type requires. `place` is a position and a
+    /// direction for one that has none; without it, the light hangs in the middle of the room and shines down.
+    ///
+    /// # Errors
+    /// Why it is refused; the scene stays as it is.
     pub fn change_light_type(
         &mut self,
         i: usize,
         id: &str,
-        (position, direction): (Vec3, Vec3),
+        place: Option<(Vec3, Vec3)>,
         selection: Selection,
         registry: &Registry,
-    ) {
-        let Some(new) = registry.light(id).filter(|_| i < self.scene.lights.len()) else { return };
+    ) -> Result<(), String> {
+        let field = LightField::Type(id.to_owned());
+        self.check(&Edit::Light(i, field.clone()), registry)?;
         let name = step("Type", &self.name_of(Selection::Light(i), registry));
         self.change_parts(name, selection, registry, |document, names| {
             names.lights[i] = None;
             let room = document.scene.scene_size;
             let light = &mut document.scene.lights[i];
-            (light.position, light.direction) = (Some(position), Some(direction));
-            light.set_type(new, registry, room);
+            let has_place = light.position.is_some();
+            if let Some((position, direction)) = place.filter(|(_, d)| check::direction(*d).is_ok()) {
+                light.position.get_or_insert(position);
+                light.direction.get_or_insert(direction);
+            }
+            field.put(light, registry, room);
+            if let Some(position) = light.position.filter(|_| !has_place) {
+                // Heights that stay apart, however many others are in the way.
+                let height = |k: usize| (k as f64 * GOLDEN_RATIO).fract() as f32 * room.height;
+                let column =
+                    (1..document.scene.objects.len() + 3).map(|k| (0.5 * room.corner()).with_y(height(k)));
+                let is_free =
+                    |p: &Vec3| document.check(&Edit::Light(i, LightField::Position(*p)), registry).is_ok();
+                let free = iter::once(position).chain(column).find(is_free);
+                document.scene.lights[i].position = free;
+            }
         });
+        Ok(())
     }
 
     /// Inserts a light into the list. `verb` begins the name of the step: "Add", "Duplicate".

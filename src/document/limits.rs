@@ -25,7 +25,7 @@ pub struct Limits {
     pub slider_max: f64,
     /// True if only whole numbers are legal.
     pub whole: bool,
-    /// Why the limits are where they are, when the numbers alone do not say it.
+    /// The reason for the limits, where the numbers alone do not say it.
     pub because: Option<String>,
 }
 

@@ -18,6 +18,7 @@ use crate::{
 
 mod edit;
 mod history;
+mod index;
 pub mod limits;
 pub mod names;
 mod rules;
@@ -25,6 +26,7 @@ mod rules;
 pub use edit::{Edit, LightField, ObjectField};
 pub(crate) use history::difference;
 use history::{History, Ids, Patch, rest_of};
+use index::{Index, Visits};
 
 /// The gesture of all that systems change.
 const SYSTEMS: u64 = u64::MAX;
@@ -90,6 +92,9 @@ impl Extent {
 pub struct Document {
     scene: Scene,
     ids: Ids,
+    /// Unset until it is needed.
+    index: OnceLock<Index>,
+    visits: Visits,
     /// The next id.
     next: u64,
     /// The scene as it is in the file.
@@ -136,6 +141,8 @@ impl Document {
             saved: scene.clone(),
             scene,
             ids: Ids::default(),
+            index: OnceLock::new(),
+            visits: Visits::default(),
             next: 0,
             differs: OnceLock::new(),
             history: History::default(),
@@ -188,8 +195,11 @@ impl Document {
         (!parts.contains(&Extent::All)).then_some(parts)
     }
 
-    /// A part of the scene has another value.
-    fn touch(&mut self, part: Extent) {
+    /// A part of the scene has another value; `moved` if parts may have other places or types than before.
+    fn touch(&mut self, part: Extent, moved: bool) {
+        if moved {
+            self.index.take();
+        }
         if self.recent.len() == RECENT {
             self.recent.pop_front();
         }
@@ -219,7 +229,7 @@ impl Document {
     /// The index of an object, by its id.
     #[must_use]
     pub fn object(&self, id: PartId) -> Option<usize> {
-        self.ids.objects.iter().position(|known| *known == id)
+        self.index().objects.place(id)
     }
 
     /// The id of a light, by its index.
@@ -231,7 +241,21 @@ impl Document {
     /// The index of a light, by its id.
     #[must_use]
     pub fn light(&self, id: PartId) -> Option<usize> {
-        self.ids.lights.iter().position(|known| *known == id)
+        self.index().lights.place(id)
+    }
+
+    fn index(&self) -> &Index {
+        self.visits.add(1);
+        self.index.get_or_init(|| {
+            self.visits.add(self.scene.lights.len() + self.scene.objects.len());
+            Index::of(&self.scene, &self.ids)
+        })
+    }
+
+    /// The number of lights and objects visited since the start to find parts by their ids, and numbers for their names.
+    #[must_use]
+    pub fn visits(&self) -> u64 {
+        self.visits.count()
     }
 
     /// Changes the scene within an extent, as one step of that name. `selection` is what is selected now. A change to
@@ -254,35 +278,39 @@ impl Document {
 
     /// Changes a part of the document. Returns the difference.
     fn patch(&mut self, part: Extent, change: impl FnOnce(&mut Self)) -> Patch {
-        let patch = match part {
+        let (patch, moved) = match part {
             Extent::Rest => {
                 let old = rest_of(&self.scene);
                 change(self);
-                Patch::of_rest(old, rest_of(&self.scene))
+                (Patch::of_rest(old, rest_of(&self.scene)), false)
             }
             Extent::Light(i) => {
                 let Some((old, id)) = self.scene.lights.get(i).cloned().zip(self.light_id(i)) else {
                     return Patch::default();
                 };
                 change(self);
-                Patch::of_light(i, id, old, self.scene.lights[i].clone())
+                let new = self.scene.lights[i].clone();
+                let retyped = old.light_type != new.light_type;
+                (Patch::of_light(i, id, old, new), retyped)
             }
             Extent::Object(i) => {
                 let Some((old, id)) = self.scene.objects.get(i).cloned().zip(self.object_id(i)) else {
                     return Patch::default();
                 };
                 change(self);
-                Patch::of_object(i, id, old, self.scene.objects[i].clone())
+                let new = self.scene.objects[i].clone();
+                let retyped = old.object_type != new.object_type;
+                (Patch::of_object(i, id, old, new), retyped)
             }
             Extent::All => {
                 let (old, ids) = (self.scene.clone(), self.ids.clone());
                 change(self);
                 self.give_ids();
-                Patch::between((&old, &ids), (&self.scene, &self.ids))
+                (Patch::between((&old, &ids), (&self.scene, &self.ids)), true)
             }
         };
         if !patch.is_empty() {
-            self.touch(part);
+            self.touch(part, moved);
         }
         patch
     }
@@ -305,7 +333,7 @@ impl Document {
     pub fn amend(&mut self, change: impl FnOnce(&mut Scene)) {
         change(&mut self.scene);
         self.give_ids();
-        self.touch(Extent::All);
+        self.touch(Extent::All, true);
     }
 
     /// Replaces the scene by another version of it, as one step: parts that are equal, or have the same name, or else the
@@ -435,7 +463,7 @@ impl Document {
     pub fn undo(&mut self) -> Option<(String, Selection)> {
         self.end_gesture();
         let (name, selection, part) = self.history.undo(&mut self.scene, &mut self.ids)?;
-        self.touch(part);
+        self.touch(part, part != Extent::Rest);
         Some((name, selection))
     }
 
@@ -443,7 +471,7 @@ impl Document {
     pub fn redo(&mut self) -> Option<(String, Selection)> {
         self.end_gesture();
         let (name, selection, part) = self.history.redo(&mut self.scene, &mut self.ids)?;
-        self.touch(part);
+        self.touch(part, part != Extent::Rest);
         Some((name, selection))
     }
 

@@ -1,35 +1,34 @@
 //! The names of the parts of a scene. A part without a name is called by its type and number, and keeps that name for
 //! life: it is written down when others come and go.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
-use super::Selection;
+use super::{Document, Selection, index::numbers};
 use crate::{registry::Registry, scene::Scene};
 
-/// The name of a part, else its type and its number among parts of that type.
-#[must_use]
-pub fn name_of(scene: &Scene, part: Selection, registry: &Registry) -> String {
-    match part {
-        Selection::Room => "Room".to_owned(),
-        Selection::Observer => "Observer".to_owned(),
-        Selection::Light(i) => {
-            let Some(light) = scene.lights.get(i) else { return "light".to_owned() };
-            let number = || scene.lights[..=i].iter().filter(|l| l.light_type == light.light_type).count();
-            light
-                .name
-                .clone()
-                .unwrap_or_else(|| format!("{} {}", light_type(&light.light_type, registry), number()))
-        }
-        Selection::Object(i) => {
-            let Some(object) = scene.objects.get(i) else { return "object".to_owned() };
-            let number =
-                || scene.objects[..=i].iter().filter(|o| o.object_type == object.object_type).count();
-            object
-                .name
-                .clone()
-                .unwrap_or_else(|| format!("{} {}", object_type(&object.object_type, registry), number()))
+impl Document {
+    /// The name of a part, else its type and its number among parts of that type.
+    #[must_use]
+    pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
+        match part {
+            Selection::Room => "Room".to_owned(),
+            Selection::Observer => "Observer".to_owned(),
+            Selection::Light(i) => {
+                let Some(light) = self.lights.get(i) else { return "light".to_owned() };
+                let number = || self.index().lights.number(i);
+                name(&light.name, light_type(&light.light_type, registry), number)
+            }
+            Selection::Object(i) => {
+                let Some(object) = self.objects.get(i) else { return "object".to_owned() };
+                let number = || self.index().objects.number(i);
+                name(&object.name, object_type(&object.object_type, registry), number)
+            }
         }
     }
+}
+
+fn name(own: &Option<String>, type_name: &str, number: impl FnOnce() -> usize) -> String {
+    own.clone().unwrap_or_else(|| format!("{type_name} {}", number()))
 }
 
 fn light_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
@@ -92,12 +91,7 @@ impl Names {
     }
 }
 
-fn numbered<'a>(parts: impl Iterator<Item = (&'a Option<String>, &'a str)>) -> Vec<Option<String>> {
-    let mut numbers: HashMap<&str, usize> = HashMap::new();
-    let name = |(own, type_name): (&Option<String>, &'a str)| {
-        let number = numbers.entry(type_name).or_default();
-        *number += 1;
-        own.clone().unwrap_or_else(|| format!("{type_name} {number}"))
-    };
-    parts.map(name).map(Some).collect()
+fn numbered<'a>(parts: impl Iterator<Item = (&'a Option<String>, &'a str)> + Clone) -> Vec<Option<String>> {
+    let numbers = numbers(parts.clone().map(|(_, type_name)| type_name));
+    parts.zip(numbers).map(|((own, type_name), number)| Some(name(own, type_name, || number))).collect()
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{Document, Edit, LightField, ObjectField, Selection, limits, names::name_of};
+use super::{Document, Edit, LightField, ObjectField, Selection, limits};
 use crate::{
     parameter::Value,
     registry::Registry,
@@ -13,14 +13,14 @@ impl Document {
     /// The limits of one extent of the room.
     #[must_use]
     pub fn dimension_limits(&self, axis: usize, registry: &Registry) -> limits::Limits {
-        limits::dimension(&self.scene, axis, |part| name_of(&self.scene, part, registry))
+        limits::dimension(&self.scene, axis, |part| self.name_of(part, registry))
     }
 
     /// Checks an edit against the rules of scenes, with the limits that widgets show.
     pub(super) fn check(&self, edit: &Edit, registry: &Registry) -> Result<(), String> {
         let light = |i: usize| self.scene.lights.get(i).ok_or_else(|| "there is no such light".to_owned());
         let object = |i: usize| self.scene.objects.get(i).ok_or_else(|| "there is no such object".to_owned());
-        let name = |part| name_of(&self.scene, part, registry);
+        let name = |part| self.name_of(part, registry);
         let known = |yes: bool, what: &str, id: &str| {
             if yes { Ok(()) } else { Err(format!("There is no {what} called “{id}”.")) }
         };

@@ -1,16 +1,15 @@
-//! Custom models are read again while the window is open: what becomes of the values of the document that
-//! no model takes any more.
+//! The values of the document that no model takes any more, as custom models change while the window is open.
 //!
 //! They are stashed, so that the document can be saved, and come back when a model takes them again.
 
 use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 
 use super::state::{Kept, ParameterPlace, Session, Severity, StashedValues};
-use crate::document::Selection;
 use crate::{
-    document::PartId,
+    document::{PartId, Selection},
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
     registry::Registry,
+    scene::Object,
 };
 
 /// A value of the document that becomes another one.
@@ -60,10 +59,7 @@ fn plan(session: &Session, registry: &Registry) -> (Vec<Change>, StashedValues) 
     let mut changes = Vec::new();
     let mut stashed = StashedValues::default();
     let mut gone = BTreeMap::new();
-    let mut place_value = |id: PartId, name: &Cow<'static, str>, wanted: &Value, from: Option<&Value>| {
-        let Some(object) = session.document.object(id).and_then(|i| session.document.objects.get(i)) else {
-            return;
-        };
+    let mut place_value = |id, object: &Object, name: &Cow<'static, str>, wanted: &Value, from| {
         let declarations = declarations(registry, session.document.model_of(object), name);
         let to = legal(&declarations, wanted);
         if to.as_ref() != Some(wanted) {
@@ -81,13 +77,13 @@ fn plan(session: &Session, registry: &Registry) -> (Vec<Change>, StashedValues) 
         for (name, value) in &object.material.0 {
             let kept = session.stashed.0.get(&(id, name.clone()));
             let kept = kept.filter(|kept| kept.instead.as_ref() == Some(value));
-            place_value(id, name, kept.map_or(value, |kept| &kept.wanted), Some(value));
+            place_value(id, object, name, kept.map_or(value, |kept| &kept.wanted), Some(value));
         }
     }
     for ((id, name), kept) in &session.stashed.0 {
         match session.document.object(*id).and_then(|i| session.document.objects.get(i)) {
             Some(object) if kept.instead.is_none() && !object.material.0.contains_key(name) => {
-                place_value(*id, name, &kept.wanted, None);
+                place_value(*id, object, name, &kept.wanted, None);
             }
             Some(_) => {}
             // Undoing may bring the object back.
@@ -246,7 +242,7 @@ mod tests {
     use crate::{
         custom,
         document::Document,
-        scene::{Object, Scene, check, load, save},
+        scene::{Scene, check, load, save},
     };
 
     /// Lambert's law with these parameters, of which it uses none.

@@ -1,9 +1,13 @@
-//! What a change of one object of thousands costs, counted rather than timed.
+//! The cost of changes among thousands of objects, counted rather than timed.
+
+use std::path::Path;
 
 use bevy::ecs::{prelude::*, system::RunSystemOnce as _};
 use glam::Vec3;
 use lights_camera_models::{
+    custom,
     document::{Document, Edit, ObjectField, Selection},
+    panel::{follow::follow_registry, state::Session},
     parameter::Value,
     registry::Registry,
     render::{
@@ -22,7 +26,7 @@ const SIZE: u32 = 96;
 /// More bytes than any row of a table has.
 const ROW: u64 = 1024;
 
-fn scene() -> Scene {
+fn scene(objects: usize) -> Scene {
     let object = |i: usize| {
         let place = Vec3::new((i % 100) as f32, (i / 100) as f32, 0.0) * 0.09 + Vec3::new(0.5, 0.5, 2.0);
         let mut object =
@@ -30,7 +34,7 @@ fn scene() -> Scene {
         object.material.set("base_colour", Value::Colour([(i % 251) as u8, (i % 241) as u8, 90]));
         object
     };
-    Scene { objects: (0..OBJECTS).map(object).collect(), ..Scene::default() }
+    Scene { objects: (0..objects).map(object).collect(), ..Scene::default() }
 }
 
 fn renderer(scene: &Scene) -> GpuRenderer {
@@ -69,7 +73,7 @@ fn show(world: &mut World, document: &Document) {
 #[test]
 fn a_change_of_one_object_of_thousands_is_work_for_that_one() {
     let registry = Registry::builtin();
-    let mut document = Document::new(scene());
+    let mut document = Document::new(scene(OBJECTS));
     let mut renderer = renderer(&document);
     // Views without overrides alone, then one with beside them.
     for views in [1, 2] {
@@ -129,7 +133,7 @@ fn a_change_of_one_object_of_thousands_is_work_for_that_one() {
 
 #[test]
 fn rows_that_change_together_are_handed_over_together() {
-    let mut scene = scene();
+    let mut scene = scene(OBJECTS);
     let mut renderer = renderer(&scene);
     for object in &mut scene.objects {
         object.material.set("base_colour", Value::Colour([9, 9, 9]));
@@ -139,4 +143,53 @@ fn rows_that_change_together_are_handed_over_together() {
     let picture = renderer.read().expect("the picture can be read");
     let mut alone = self::renderer(&scene);
     assert!(picture == alone.read().expect("the picture can be read"));
+}
+
+#[test]
+fn a_change_of_the_models_is_work_in_proportion_to_the_objects() {
+    let put = |registry: &mut Registry, parameter: &str| {
+        let text = format!(
+            "/* lcm {{ \"parameters\": [{{ \"name\": \"{parameter}\" }}] }} */\nfn response(l: vec3<f32>, v: vec3<f32>, frame: \
+             Frame, m: Parameters) -> Terms {{\n    return Terms(vec3(0.0), vec3(max(dot(frame.n, l), 0.0)), vec3(0.0));\n}}\n"
+        );
+        let model = custom::read(Path::new("models/mine.wgsl"), &text, registry).expect("it is correct");
+        registry.put_custom_model(model);
+    };
+    for objects in [2_000, 10_000] {
+        let mut registry = Registry::builtin();
+        put(&mut registry, "gloss");
+        let mut scene = scene(objects);
+        scene.reflection_model = "mine".to_owned();
+        scene.objects.iter_mut().for_each(|object| object.material.set("gloss", Value::Number(0.75)));
+        let mut session = Session::new(scene.clone());
+        // The parameter goes, and comes back.
+        for (parameter, left) in [("sheen_of_mine", 0), ("gloss", objects)] {
+            put(&mut registry, parameter);
+            let before = session.document.visits();
+            follow_registry(&mut session, &registry);
+            let visits = session.document.visits() - before;
+            let glossy = session.document.objects.iter().filter(|o| o.material.0.contains_key("gloss"));
+            assert_eq!(glossy.count(), left);
+            assert!(visits <= 4 * objects as u64, "{objects} objects, {parameter}: {visits} visits");
+        }
+        assert!(*session.document == scene);
+    }
+}
+
+#[test]
+fn names_of_thousands_are_found_without_counting_each_anew() {
+    let registry = Registry::builtin();
+    let mut document = Document::new(scene(OBJECTS));
+    let visits = |document: &Document| {
+        let before = document.visits();
+        for i in 0..OBJECTS {
+            assert_eq!(document.name_of(Selection::Object(i), &registry), format!("Cube {}", i + 1));
+        }
+        document.visits() - before
+    };
+    assert!((1..=3 * OBJECTS as u64).contains(&visits(&document)));
+    // Moving one changes no number.
+    let field = ObjectField::Position(Vec3::new(0.5, 0.5, 1.0));
+    document.edit(Edit::Object(3, field), Selection::Room, &registry).expect("legal");
+    assert_eq!(visits(&document), OBJECTS as u64);
 }

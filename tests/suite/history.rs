@@ -7,7 +7,7 @@ use glam::Vec3;
 use lights_camera_models::{
     document::{Document, Edit, Extent, LightField, ObjectField, Selection},
     panel::state::{Action, Session},
-    parameter::Value,
+    parameter::{ParameterKind, Value},
     registry::Registry,
     scene::{Display, Object, Observer, Scene, SceneSize, check},
 };
@@ -333,4 +333,63 @@ fn a_drag_of_a_knob_is_one_step() {
     assert_eq!(bench.session.document.steps().collect::<Vec<_>>(), ["Shininess of Sphere 1"]);
     bench.key(Key::Z, Modifiers::COMMAND);
     assert_eq!(exponent(&bench), before);
+}
+
+#[test]
+fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
+    let registry = Registry::builtin();
+    // Others stand where a lamp would hang.
+    let default = Scene::default();
+    let middle = (0.5 * default.scene_size.corner()).with_y(8.0);
+    let objects = vec![Object { position: middle, ..Object::default() }, Object::default()];
+    let mut document = Document::new(Scene { objects, ..default });
+    let edit = |document: &mut Document, field| {
+        document.end_gesture();
+        let before = document.scene().clone();
+        document.edit(Edit::Light(0, field), Selection::Room, &registry).expect("legal");
+        assert_eq!(check::scene(document, &registry), []);
+        let after = document.scene().clone();
+        document.undo().expect("a step");
+        assert!(*document == before, "undoing");
+        document.redo().expect("a step");
+        assert!(*document == after, "redoing");
+    };
+    for from in registry.lights() {
+        for to in registry.lights().iter().filter(|to| to.declaration.id != from.declaration.id) {
+            for entry in [from, to] {
+                if document.lights[0].light_type == entry.declaration.id {
+                    continue;
+                }
+                edit(&mut document, LightField::Type(entry.declaration.id.to_owned()));
+                for p in entry.declaration.parameters {
+                    if let ParameterKind::Number { min, .. } = p.kind {
+                        edit(&mut document, LightField::Parameter(p.name, Value::Number(min + 0.5)));
+                    }
+                }
+                if entry.declaration.has_direction {
+                    let direction = Vec3::new(1.0, -2.0, document.done() as f32);
+                    edit(&mut document, LightField::Direction(direction));
+                }
+            }
+        }
+    }
+    // A place that is taken, outside, or no place at all, and a direction that is none.
+    for position in [middle, Vec3::splat(5.0), document.observer.position, Vec3::splat(99.0), Vec3::NAN] {
+        for direction in [Vec3::ZERO, Vec3::NAN, Vec3::X] {
+            for id in ["directional", "spot"] {
+                let place = Some((position, direction));
+                document.change_light_type(0, id, place, Selection::Room, &registry).expect("legal");
+                assert_eq!(check::scene(&document, &registry), []);
+            }
+        }
+    }
+    // The others keep their names, and a type that nobody knows is refused.
+    document.insert_light(1, document.lights[0].clone(), "Add", Selection::Room, &registry);
+    let name = document.name_of(Selection::Light(1), &registry);
+    edit(&mut document, LightField::Type("point".to_owned()));
+    assert_eq!(document.name_of(Selection::Light(1), &registry), name);
+    let before = document.scene().clone();
+    let unknown = Edit::Light(0, LightField::Type("laser".to_owned()));
+    assert!(document.edit(unknown, Selection::Room, &registry).is_err());
+    assert!(*document == before);
 }

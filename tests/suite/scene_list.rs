@@ -4,7 +4,7 @@ use std::{collections::BTreeSet, path::PathBuf};
 
 use bevy_egui::egui::{Key, Modifiers, PointerButton, Shape, accesskit::Role};
 use lights_camera_models::{
-    document::{Edit, LightField, ObjectField, Selection, names::name_of},
+    document::{Edit, LightField, ObjectField, Selection},
     optics::TermSelection,
     panel::{
         caption::caption_text,
@@ -36,8 +36,8 @@ fn with_objects(kinds: &[&str]) -> Session {
 }
 
 fn names(bench: &Bench) -> Vec<String> {
-    let scene = &bench.session.document;
-    (0..scene.objects.len()).map(|i| name_of(scene, Selection::Object(i), &bench.registry)).collect()
+    let document = &bench.session.document;
+    (0..document.objects.len()).map(|i| document.name_of(Selection::Object(i), &bench.registry)).collect()
 }
 
 #[test]
@@ -200,7 +200,7 @@ fn a_part_keeps_its_name_for_life() {
     bench.apply(Action::AddLight("spot".to_owned()));
     bench.apply(Action::Remove(Selection::Light(0)));
     let lights: Vec<_> =
-        (0..2).map(|i| name_of(&bench.session.document, Selection::Light(i), &bench.registry)).collect();
+        (0..2).map(|i| bench.session.document.name_of(Selection::Light(i), &bench.registry)).collect();
     assert_eq!(lights, ["Point 2", "Spot 1"]);
 }
 
@@ -277,7 +277,7 @@ fn saving_says_where_and_offers_to_keep_the_view() {
     bench.effects.clear();
     bench.click("Set observer to this view");
     assert_eq!(bench.effects, [Effect::ObserverFromView]);
-    // What is typed with its extension gets no second one, and is not replaced unasked.
+    // A name typed with its extension gets no second one, and the file is not replaced unasked.
     bench.effects.clear();
     bench.apply(Action::SaveAs(PathBuf::from("/somewhere/a.json.json")));
     assert_eq!(
@@ -315,7 +315,7 @@ fn the_caption_has_key_values_in_the_order_of_their_declaration() {
         assert!(caption.contains(values), "{caption}");
         assert!(caption.matches(" · ").count() <= 6, "{caption}");
     }
-    // What was changed is shown, wherever it stands.
+    // A parameter that was changed is shown, wherever it stands.
     let mut bench = Bench::with_model("disney");
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Material("clearcoat", Value::Number(0.25)))));
     assert!(caption_text(&bench.session, &bench.registry).ends_with(" 0.25"));

@@ -25,10 +25,7 @@ impl Session {
         let named =
             matches!(edit, Edit::Light(_, LightField::Name(_)) | Edit::Object(_, ObjectField::Name(_)));
         let done = match edit {
-            Edit::Light(i, LightField::Type(id)) if registry.light(&id).is_some() => {
-                self.change_light_type(i, &id, registry);
-                Ok(())
-            }
+            Edit::Light(i, LightField::Type(id)) => self.change_light_type(i, &id, registry),
             edit => self.document.edit(edit, self.selection, registry),
         };
         if let Err(why) = done {
@@ -73,12 +70,13 @@ impl Session {
         (done, last.map(str::to_owned))
     }
 
-    pub(super) fn change_light_type(&mut self, i: usize, id: &str, registry: &Registry) {
-        let Some(light) = self.document.lights.get(i) else { return };
+    /// A light that gets a position with its new type is placed in view.
+    fn change_light_type(&mut self, i: usize, id: &str, registry: &Registry) -> Result<(), String> {
+        let position = self.document.lights.get(i).and_then(|light| light.position);
         let stand = self.stand(registry);
-        let position = light.position.unwrap_or_else(|| stand.light(None));
-        let direction = light.direction.unwrap_or_else(|| stand.towards_middle(position));
-        self.document.change_light_type(i, id, (position, direction), self.selection, registry);
+        let position = position.unwrap_or_else(|| stand.light(None));
+        let place = Some((position, stand.towards_middle(position)));
+        self.document.change_light_type(i, id, place, self.selection, registry)
     }
 
     /// Takes a step back, or does it again, until so many are done.
