@@ -11,8 +11,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{About, Document, Journal, Store};
-use crate::scene::save;
+use super::{About, Journal, Store};
+use crate::{
+    document::{Document, Revision},
+    registry::Registry,
+    scene::{Scene, save},
+};
 
 /// A copy is written this long after the first change that is not in it.
 const DELAY: Duration = Duration::from_secs(1);
@@ -29,10 +33,22 @@ struct Shared {
     done: Condvar,
 }
 
+/// A document with unsaved changes.
+#[derive(Clone)]
+struct Unsaved {
+    about: About,
+    /// The scene. It may break rules: unfinished work is work.
+    scene: Scene,
+    /// The document's value that the scene is equal to.
+    revision: Revision,
+    /// The registry at the time, for the order of parameters.
+    registry: Arc<Registry>,
+}
+
 #[derive(Default)]
 struct State {
-    /// The document that should be on disk; none without unsaved changes.
-    wanted: Option<Arc<Document>>,
+    /// The document that should be on disk; none without unsaved changes. Shared with the thread while that writes it.
+    wanted: Option<Arc<Unsaved>>,
     /// A copy that another window left, to be continued.
     adopted: Option<Journal>,
     /// Counts the changes of what is wanted, and up to which it is on disk.
@@ -103,27 +119,41 @@ impl Keeper {
         keeper
     }
 
-    /// The document has unsaved changes: this is what must not be lost.
-    pub fn keep(&self, document: Document) {
-        self.0.want(Some(document), None);
+    /// The document has unsaved changes: this is what must not be lost. Copies the parts that changed since it was kept
+    /// last, and does nothing if none did.
+    pub fn keep(&self, document: &Document, about: About, registry: &Arc<Registry>) {
+        let mut state = self.0.lock();
+        let parts = state.wanted.as_ref().and_then(|kept| document.changes_since(kept.revision));
+        match (&mut state.wanted, parts) {
+            (Some(kept), Some(parts)) if parts.is_empty() && kept.about == about => return,
+            (Some(kept), Some(parts)) => {
+                // While the thread writes what is kept, this copies all of it, at most once in each writing.
+                let kept = Arc::make_mut(kept);
+                parts.iter().for_each(|part| part.copy(document, &mut kept.scene));
+                (kept.about, kept.revision) = (about, document.revision());
+                kept.registry = registry.clone();
+            }
+            (wanted, _) => *wanted = Some(Arc::new(Unsaved::new(document, about, registry))),
+        }
+        self.0.changed(state);
     }
 
     /// There are no unsaved changes: no copy is needed, and there is none soon.
     pub fn forget(&self) {
-        self.0.want(None, None);
+        let mut state = self.0.lock();
+        if state.wanted.take().is_some() {
+            // A copy that is no longer needed goes at once.
+            state.urgent = true;
+            self.0.changed(state);
+        }
     }
 
     /// The copy that another window left is the document now.
-    pub fn adopt(&self, journal: Journal, document: Document) {
-        self.0.want(Some(document), Some(journal));
-    }
-
-    /// True if this is what is kept already, or will be soon.
-    #[must_use]
-    pub fn keeps(&self, is: impl FnOnce(&Document) -> bool) -> bool {
-        // Comparing takes a while: not under the lock.
-        let wanted = self.0.lock().wanted.clone();
-        wanted.is_some_and(|document| is(&document))
+    pub fn adopt(&self, journal: Journal, document: &Document, about: About, registry: &Arc<Registry>) {
+        let mut state = self.0.lock();
+        state.wanted = Some(Arc::new(Unsaved::new(document, about, registry)));
+        state.adopted = Some(journal);
+        self.0.changed(state);
     }
 
     /// True if there are unsaved changes to keep.
@@ -171,22 +201,24 @@ impl Keeper {
     }
 }
 
+impl Unsaved {
+    fn new(document: &Document, about: About, registry: &Arc<Registry>) -> Self {
+        Self {
+            about,
+            scene: document.scene().clone(),
+            revision: document.revision(),
+            registry: registry.clone(),
+        }
+    }
+}
+
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn want(&self, document: Option<Document>, adopted: Option<Journal>) {
-        let mut state = self.lock();
-        if document.is_none() && state.wanted.is_none() {
-            return;
-        }
-        if document.is_none() {
-            // What is no longer needed goes at once.
-            state.urgent = true;
-        }
-        state.wanted = document.map(Arc::new);
-        state.adopted = adopted.or_else(|| state.adopted.take());
+    /// Something else is wanted than before.
+    fn changed(&self, mut state: MutexGuard<'_, State>) {
         state.change += 1;
         state.since.get_or_insert_with(Instant::now);
         self.work.notify_all();
@@ -219,7 +251,7 @@ impl Shared {
     }
 
     /// Waits until there is something to do, and a caller waits or enough time has passed.
-    fn next(&self) -> (u64, Option<Arc<Document>>, Option<Journal>) {
+    fn next(&self) -> (u64, Option<Arc<Unsaved>>, Option<Journal>) {
         let mut state = self.lock();
         loop {
             let waits = state.since.map(|since| DELAY.saturating_sub(since.elapsed()));
@@ -252,12 +284,12 @@ impl Writer {
     /// Writes or removes the copy. Returns its file, if there is one.
     fn bring_up_to_date(
         &mut self,
-        wanted: Option<&Document>,
+        wanted: Option<&Unsaved>,
         adopted: Option<Journal>,
     ) -> io::Result<Option<PathBuf>> {
         // One window has one copy. That of its own is of what the user gave up for the other.
         let own = adopted.and_then(|adopted| self.journal.replace(adopted));
-        let Some(Document { about, scene, registry }) = wanted else {
+        let Some(Unsaved { about, scene, registry, .. }) = wanted else {
             own.into_iter().chain(self.journal.take()).for_each(Journal::remove);
             return Ok(None);
         };
@@ -287,17 +319,24 @@ mod tests {
     use std::{fs, sync::mpsc};
 
     use super::*;
-    use crate::{registry::Registry, scene::Scene};
+    use crate::{
+        document::{Edit, Extent, ObjectField, Selection},
+        scene::Object,
+    };
 
     /// Generous, since machines are busy.
     const LONG: Duration = Duration::from_secs(60);
 
+    fn about(title: &str) -> About {
+        About { title: title.to_owned(), path: Some("/room.json".into()), ..About::default() }
+    }
+
     fn document(title: &str) -> Document {
-        Document {
-            about: About { title: title.to_owned(), path: Some("/room.json".into()), ..About::default() },
-            scene: Scene { name: Some(title.to_owned()), ..Scene::default() },
-            registry: Arc::new(Registry::builtin()),
-        }
+        Document::new(Scene { name: Some(title.to_owned()), ..Scene::default() })
+    }
+
+    fn keep(keeper: &Keeper, title: &str) {
+        keeper.keep(&document(title), about(title), &Arc::new(Registry::builtin()));
     }
 
     fn store() -> (Store, tempfile::TempDir) {
@@ -333,8 +372,8 @@ mod tests {
         let (store, folder) = store();
         let keeper = Keeper::start(Some(store), || {});
         assert!(!keeper.is_needed());
-        keeper.keep(document("first"));
-        assert!(keeper.is_needed() && keeper.keeps(|d| d.about.title == "first"));
+        keep(&keeper, "first");
+        assert!(keeper.is_needed());
         until("written", || copies(&folder) == 1);
         keeper.forget();
         assert!(!keeper.is_needed());
@@ -348,7 +387,7 @@ mod tests {
         let keeper = Keeper::start(Some(store), || {});
         for i in 0..5 {
             let title = i.to_string();
-            keeper.keep(document(&title));
+            keep(&keeper, &title);
             let file = kept(&keeper);
             let text = fs::read_to_string(file).expect("there");
             assert!(text.contains(&format!("\"name\": \"{title}\"")), "{text}");
@@ -362,7 +401,7 @@ mod tests {
         // Each would wait for a second.
         let begin = Instant::now();
         for i in 0..60 {
-            keeper.keep(document(&i.to_string()));
+            keep(&keeper, &i.to_string());
             kept(&keeper);
         }
         assert!(begin.elapsed() < DELAY * 45, "{:?}", begin.elapsed());
@@ -380,7 +419,7 @@ mod tests {
             let keeper = Keeper::start(store, move || {
                 let _ = send.send(());
             });
-            keeper.keep(document("room"));
+            keep(&keeper, "room");
             match keeper.settle(LONG) {
                 Settled::Lost { title, why } => assert!(title == "room" && why.contains(reason), "{why}"),
                 other => panic!("{other:?}"),
@@ -395,21 +434,75 @@ mod tests {
     fn a_copy_that_was_left_is_gone_on_with() {
         let (store, folder) = store();
         let mut journal = store.begin().expect("made");
-        journal.write(&document("left").about, "{}").expect("written");
+        journal.write(&about("left"), "{}").expect("written");
         let file = journal.file();
         drop(journal);
 
         let left = store.left().pop().expect("offered");
         let keeper = Keeper::start(Some(store.clone()), || {});
         // A copy of its own gives way.
-        keeper.keep(document("own"));
+        keep(&keeper, "own");
         assert_ne!(kept(&keeper), file);
-        keeper.adopt(left.journal, document("left"));
+        keeper.adopt(left.journal, &document("left"), about("left"), &Arc::new(Registry::builtin()));
         assert_eq!(kept(&keeper), file);
         assert_eq!(copies(&folder), 1);
         assert!(fs::read_to_string(&file).expect("there").contains("\"name\": \"left\""));
         keeper.forget();
         assert_eq!(keeper.settle(LONG), Settled::Nothing);
         assert_eq!(copies(&folder), 0);
+    }
+
+    #[test]
+    fn a_change_of_one_part_is_copied_alone_and_nothing_is_lost() {
+        // Without the thread, which would share what is kept while it writes.
+        let keeper =
+            Keeper(Arc::new(Shared { state: Mutex::default(), work: Condvar::new(), done: Condvar::new() }));
+        let registry = Arc::new(Registry::builtin());
+        let ball = |i: usize| Object { name: Some(format!("ball {i}")), ..Object::default() };
+        let mut document = Document::new(Scene { objects: (0..3).map(ball).collect(), ..Scene::default() });
+        let keep = |document: &Document, title: &str| {
+            keeper.keep(document, about(title), &registry);
+            let state = keeper.0.lock();
+            let kept = state.wanted.clone().expect("kept");
+            assert!(*document == kept.scene && kept.about.title == title);
+            (
+                kept.scene.objects.iter().map(|o| o.name.as_deref().map(str::as_ptr)).collect::<Vec<_>>(),
+                state.change,
+            )
+        };
+        let (before, change) = keep(&document, "a");
+        assert_eq!(keep(&document, "a"), (before.clone(), change), "nothing changed");
+        let edit = |document: &mut Document, size: f32| {
+            let edit = Edit::Object(1, ObjectField::Size(size));
+            document.edit(edit, Selection::Room, &registry).expect("legal");
+        };
+        edit(&mut document, 0.5);
+        let (after, _) = keep(&document, "a");
+        assert_eq!([0, 2].map(|i| after[i]), [0, 2].map(|i| before[i]), "the others are not copied");
+        let (renamed, later) = keep(&document, "b");
+        assert!(renamed == after && later == change + 2, "the file is another, the scene is not");
+        // The thread writes, meanwhile the document changes: what is written stays as it is.
+        let written = keeper.0.lock().wanted.clone().expect("kept");
+        edit(&mut document, 0.75);
+        keep(&document, "b");
+        assert_eq!(written.scene.objects[1].size, 0.5);
+        drop(written);
+        document.undo().expect("a step");
+        keep(&document, "b");
+        document.redo().expect("a step");
+        keep(&document, "b");
+        document.remove(Selection::Object(0), &registry);
+        keep(&document, "b");
+        document.change("Display", Extent::Rest, Selection::Room, |s| s.display.exposure = 1.0);
+        keep(&document, "b");
+        // More changes than a document remembers, and another document.
+        for i in 0..100 {
+            edit(&mut document, 0.1 + i as f32 / 100.0);
+        }
+        keep(&document, "b");
+        keep(&Document::new(Scene::default()), "c");
+        keeper.forget();
+        assert!(!keeper.is_needed());
+        keep(&document, "b");
     }
 }

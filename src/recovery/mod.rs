@@ -7,14 +7,11 @@
 //!
 //! A copy is a scene file like any other, `scene.json`, with [`About`] beside it. No Bevy in here.
 
-use std::{path::PathBuf, sync::Arc, time::Duration};
+use std::{path::PathBuf, time::Duration};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    registry::Registry,
-    scene::{Scene, load::Stamp},
-};
+use crate::scene::load::Stamp;
 
 mod keeper;
 mod store;
@@ -35,17 +32,6 @@ pub struct About {
     pub stamp: Option<Stamp>,
     /// The process that wrote the copy.
     pub process: u32,
-}
-
-/// A document with unsaved changes, as it is handed to the [`Keeper`].
-#[derive(Clone, Debug)]
-pub struct Document {
-    /// Its title and its file.
-    pub about: About,
-    /// The scene. It may break rules: unfinished work is work.
-    pub scene: Scene,
-    /// The registry at the time, for the order of parameters.
-    pub registry: Arc<Registry>,
 }
 
 /// The age of a copy in words: "5 minutes ago".

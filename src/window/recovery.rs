@@ -22,7 +22,7 @@ use crate::{
         files::Files as _,
         state::{Action, LabEffect, Offer, Question, RecoveryChoice, Session, Severity},
     },
-    recovery::{About, Document, Keeper, Left, Store, ago},
+    recovery::{About, Keeper, Left, Store, ago},
     registry::Registry,
     signals::Interrupt,
 };
@@ -131,9 +131,8 @@ impl Recovery {
                 if let Some(path) = &left.about.path {
                     files.expect(path, left.about.stamp);
                 }
-                self.farewell
-                    .keeper
-                    .adopt(left.journal, document(session, files, Arc::new(registry.clone())));
+                let registry = Arc::new(registry.clone());
+                self.farewell.keeper.adopt(left.journal, &session.document, about(session, files), &registry);
                 let more = self.left.len();
                 self.left.clear();
                 if more > 0 {
@@ -147,11 +146,6 @@ impl Recovery {
             RecoveryChoice::Later => self.left.clear(),
         }
     }
-}
-
-/// The document with its unsaved changes.
-fn document(session: &Session, files: &DiskFiles, registry: Arc<Registry>) -> Document {
-    Document { about: about(session, files), scene: session.document.scene().clone(), registry }
 }
 
 fn about(session: &Session, files: &DiskFiles) -> About {
@@ -230,13 +224,6 @@ pub(super) fn keep(
         recovery.farewell.keeper.forget();
         return;
     }
-    let now = about(&session, &files);
-    if !recovery.farewell.keeper.keeps(|kept| kept.about == now && session.document == kept.scene) {
-        let registry = recovery.registry.get_or_insert_with(|| Arc::new(registry.clone()));
-        recovery.farewell.keeper.keep(Document {
-            about: now,
-            scene: session.document.scene().clone(),
-            registry: registry.clone(),
-        });
-    }
+    let registry = recovery.registry.get_or_insert_with(|| Arc::new(registry.clone()));
+    recovery.farewell.keeper.keep(&session.document, about(&session, &files), registry);
 }

@@ -3,6 +3,8 @@
 use std::{
     fs,
     path::{Path, PathBuf},
+    sync::Arc,
+    time::Duration,
 };
 
 use glam::Vec3;
@@ -14,6 +16,7 @@ use lights_camera_models::{
         state::{Action, Answer, Effect, Question, Session},
     },
     parameter::Value,
+    recovery::{About, Keeper, Settled, Store},
     registry::Registry,
     scene::{
         Display, Observer, Scene, SceneSize, check,
@@ -28,7 +31,7 @@ use crate::{gpu_parity::random_values, reload::random::Random};
 /// As many steps a history keeps.
 const MOST_STEPS: usize = 500;
 
-/// What comes back with a step.
+/// The state that comes back with a step.
 #[derive(Clone, Debug, PartialEq)]
 struct State {
     scene: Scene,
@@ -43,6 +46,9 @@ struct Desk {
     registry: Registry,
     random: Random,
     path: PathBuf,
+    /// Keeps recovery copies.
+    keeper: Keeper,
+    shared: Arc<Registry>,
     /// The state after so many steps.
     states: Vec<State>,
     /// The selection before and after each step.
@@ -56,8 +62,11 @@ impl Desk {
         let session = Session::default();
         fs::write(&path, save::to_json(&session.document, None, &registry)).unwrap();
         let files = DiskFiles::new(None, None);
+        let keeper = Keeper::start(Some(Store::new(folder.join("copies"))), || {});
+        let shared = Arc::new(registry.clone());
+        let (states, selections) = (vec![], vec![]);
         let mut desk =
-            Self { session, files, registry, random: Random(seed), path, states: vec![], selections: vec![] };
+            Self { session, files, registry, random: Random(seed), path, keeper, shared, states, selections };
         let open = Effect::OpenFile(desk.path.clone());
         desk.carry_out(vec![open]);
         desk.states.push(desk.state());
@@ -371,7 +380,7 @@ impl Desk {
         removed
     }
 
-    /// Does something, and records what became of the document.
+    /// Does something, and records the resulting document.
     fn record(&mut self) {
         if self.below(3) > 0 {
             self.session.document.end_gesture();
@@ -405,7 +414,7 @@ impl Desk {
         }
     }
 
-    /// What holds at all times.
+    /// The invariants.
     fn check(&self, after: &str) {
         let document = &self.session.document;
         let problems = check::scene(document, &self.registry);
@@ -414,6 +423,18 @@ impl Desk {
         let mut ids: Vec<_> = self.state().lights.into_iter().chain(self.state().objects).collect();
         ids.sort_unstable();
         assert!(ids.iter().all(Option::is_some) && ids.windows(2).all(|pair| pair[0] != pair[1]));
+        for (i, light) in document.lights.iter().enumerate() {
+            assert_eq!(document.light_id(i).and_then(|id| document.light(id)), Some(i), "after {after}");
+            let same = document.lights[..=i].iter().filter(|l| l.light_type == light.light_type).count();
+            let name = document.name_of(Selection::Light(i), &self.registry);
+            assert!(light.name.is_some() || name.ends_with(&format!(" {same}")), "after {after}: {name}");
+        }
+        for (i, object) in document.objects.iter().enumerate() {
+            assert_eq!(document.object_id(i).and_then(|id| document.object(id)), Some(i), "after {after}");
+            let same = document.objects[..=i].iter().filter(|o| o.object_type == object.object_type).count();
+            let name = document.name_of(Selection::Object(i), &self.registry);
+            assert!(object.name.is_some() || name.ends_with(&format!(" {same}")), "after {after}: {name}");
+        }
         let exists = match self.session.selection {
             Selection::Light(i) => i < document.lights.len(),
             Selection::Object(i) => i < document.objects.len(),
@@ -421,6 +442,16 @@ impl Desk {
         };
         assert!(exists, "after {after}: {:?} is selected", self.session.selection);
         assert!(document.steps().len() <= MOST_STEPS);
+        self.keeper.keep(document, About::default(), &self.shared);
+    }
+
+    /// The recovery copy is the document.
+    fn check_copy(&self) {
+        let Settled::Kept { file, .. } = self.keeper.settle(Duration::from_secs(60)) else {
+            panic!("there is a copy");
+        };
+        let text = save::to_json(&self.session.document, None, &self.registry);
+        assert_eq!(fs::read_to_string(file).unwrap(), text);
     }
 
     /// Undoes everything and does it all again.
@@ -434,6 +465,7 @@ impl Desk {
             self.check("undoing");
         }
         assert_eq!(self.session.document.done(), 0);
+        self.check_copy();
         for step in 0..self.selections.len() {
             self.act(Action::Redo);
             let name = self.session.document.steps().nth(step).map(str::to_owned);
@@ -447,7 +479,7 @@ impl Desk {
 
 #[test]
 fn an_hour_of_editing_is_undone_and_redone_exactly() {
-    /// How many hours; `LCM_FUZZ_ROUNDS` says more.
+    /// The number of hours; `LCM_FUZZ_ROUNDS` overrides it.
     const HOURS: u64 = 4;
     let hours = std::env::var("LCM_FUZZ_ROUNDS").ok().and_then(|n| n.parse().ok()).unwrap_or(HOURS);
     for hour in 0..hours {
@@ -463,6 +495,9 @@ fn an_hour_of_editing_is_undone_and_redone_exactly() {
                 assert_eq!(desk.state(), desk.states[step]);
             }
             desk.record();
+            if round % 97 == 0 {
+                desk.check_copy();
+            }
         }
         desk.back_and_forth();
         // Beyond the bound, the oldest steps give way.
