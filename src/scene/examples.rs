@@ -90,7 +90,12 @@ mod tests {
         assert_eq!(known, files);
         for example in EXAMPLES.iter() {
             assert!(!example.name.is_empty() && !example.description.is_empty(), "{}", example.file);
-            assert!(example.scene(&Registry::builtin()).is_ok(), "{}", example.file);
+            let scene = example.scene(&Registry::builtin()).expect(example.file);
+            // In prose, parameters have names and not identifiers.
+            let names = scene.lights.iter().map(|l| &l.name).chain(scene.objects.iter().map(|o| &o.name));
+            for text in names.flatten().chain([&example.name, &example.description]) {
+                assert!(!text.contains('_'), "{}: {text}", example.file);
+            }
         }
     }
 }
