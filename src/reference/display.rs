@@ -75,14 +75,14 @@ pub fn encode8(x: f32) -> u8 {
 }
 
 /// The steps from a pixel of light to a pixel on the display, with common parts calculated once.
-pub(super) struct Developer {
+pub(super) struct DisplayTransform {
     display: Display,
     exposure: f32,
     background: Vec3,
     encoder: &'static Encoder,
 }
 
-impl Developer {
+impl DisplayTransform {
     pub(super) fn new(display: &Display) -> Self {
         Self {
             display: *display,
@@ -93,7 +93,7 @@ impl Developer {
     }
 
     /// Light of objects, and the fraction of the pixel that they cover, to sRGB.
-    pub(super) fn develop(&self, pixel: Vec4) -> [u8; 3] {
+    pub(super) fn apply(&self, pixel: Vec4) -> [u8; 3] {
         let mut c = pixel.truncate() * self.exposure + (1.0 - pixel.w) * self.background;
         if self.display.encoding == Encoding::Off {
             // Encoding follows and must return the number itself.
@@ -148,17 +148,17 @@ mod tests {
         for encoding in Encoding::ALL {
             for exposure in [-3.0, 0.0, 3.0] {
                 let display = Display { exposure, encoding, tone_mapping: ToneMapping::None };
-                assert_eq!(Developer::new(&display).develop(Vec4::ZERO), BACKGROUND);
+                assert_eq!(DisplayTransform::new(&display).apply(Vec4::ZERO), BACKGROUND);
             }
         }
         let bright = Display { exposure: 1.0, ..Display::default() };
         let pixel = Vec4::new(0.1, 0.2, 0.3, 1.0);
-        assert_eq!(Developer::new(&bright).develop(pixel), [0.2, 0.4, 0.6].map(encode8));
+        assert_eq!(DisplayTransform::new(&bright).apply(pixel), [0.2, 0.4, 0.6].map(encode8));
     }
 
     #[test]
     fn without_encoding_numbers_go_to_the_display_as_they_are() {
         let display = Display { encoding: Encoding::Off, ..Display::default() };
-        assert_eq!(Developer::new(&display).develop(Vec4::new(0.0, 0.5, 2.0, 1.0)), [0, 128, 255]);
+        assert_eq!(DisplayTransform::new(&display).apply(Vec4::new(0.0, 0.5, 2.0, 1.0)), [0, 128, 255]);
     }
 }

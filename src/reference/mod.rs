@@ -42,7 +42,7 @@ mod lighting;
 mod raster;
 
 pub use crate::optics::colour::BACKGROUND;
-use display::Developer;
+use display::DisplayTransform;
 pub use display::encode8;
 use lighting::Lights;
 use raster::{Placed, Screen, TILE, Tile, Triangle, set_up};
@@ -90,11 +90,11 @@ impl Picture {
     /// the top.
     #[must_use]
     pub fn to_rgb8(&self, display: &Display) -> Vec<u8> {
-        let developer = Developer::new(display);
+        let display = DisplayTransform::new(display);
         let mut out = vec![0; self.pixels.len() * 3];
         out.par_chunks_mut(3 * 4096).zip(self.pixels.par_chunks(4096)).for_each(|(out, pixels)| {
             for (out, &pixel) in out.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
-                *out = developer.develop(pixel);
+                *out = display.apply(pixel);
             }
         });
         out
@@ -112,9 +112,9 @@ pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Pictur
 /// holding the whole picture in floating point.
 #[must_use]
 pub fn render_rgb8(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<u8> {
-    let developer = Developer::new(&scene.display);
-    let background = developer.develop(Vec4::ZERO);
-    draw(scene, registry, settings, None, background, |pixel| developer.develop(pixel)).into_flattened()
+    let display = DisplayTransform::new(&scene.display);
+    let background = display.apply(Vec4::ZERO);
+    draw(scene, registry, settings, None, background, |pixel| display.apply(pixel)).into_flattened()
 }
 
 /// The same, unless it is not finished by then.
@@ -125,9 +125,9 @@ pub fn render_rgb8_until(
     settings: &Settings,
     end: Instant,
 ) -> Option<Vec<u8>> {
-    let developer = Developer::new(&scene.display);
-    let background = developer.develop(Vec4::ZERO);
-    let pixels = draw(scene, registry, settings, Some(end), background, |pixel| developer.develop(pixel));
+    let display = DisplayTransform::new(&scene.display);
+    let background = display.apply(Vec4::ZERO);
+    let pixels = draw(scene, registry, settings, Some(end), background, |pixel| display.apply(pixel));
     (Instant::now() < end).then(|| pixels.into_flattened())
 }
 
