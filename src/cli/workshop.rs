@@ -89,7 +89,7 @@ impl Workshop {
             Reading::Broken(problems) => {
                 complain(all_annotated(&problems));
                 self.registry.remove_model(id);
-                // What is wrong is said by now; where, is as good as a name.
+                // The problems are reported by now; their place is as good as a name.
                 if let Some((path, first)) = problems.first() {
                     let place = format!("{}:{}:{}", path.display(), first.line, first.column);
                     self.registry.mark_broken(id, place);

@@ -156,7 +156,7 @@ fn a_new_model_with_a_mistake_is_a_stand_in_and_mended_by_the_file_that_it_lacks
     assert_eq!(bench.adopt(), 1);
     assert_eq!(bench.registry.extent("matt"), Some(Extent::Whole));
     assert_eq!(bench.problems(), [""; 0]);
-    // What is drawn with is read again when a file that it imports changes, and kept if it does not fit any more.
+    // A shader in use is read again when a file that it imports changes, and kept if it no longer fits.
     bench.save("models/help.wgsl", &format!("{HELP}// edited\n"));
     assert_eq!(bench.adopt(), 1);
     bench.save("models/help.wgsl", "fn other() {}\n");

@@ -184,7 +184,7 @@ fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &ModelDraft) 
 /// The height of what is said of a name, points.
 const SAID: f32 = 68.0;
 
-/// What becomes of a name, or why nothing does.
+/// The identifier made from a name, or the reason why there is none.
 fn said_of(ui: &mut Ui, session: &Session, checked: &Result<String, NameProblem>) -> Option<Action> {
     let palette = Palette::here(ui);
     match checked {

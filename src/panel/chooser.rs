@@ -370,7 +370,7 @@ fn opened(popup: Popup, height: f32, session: &Session, registry: &Registry) -> 
             ui.separator();
             asked = author::buttons(ui, session, registry);
         });
-    // What is asked next stands on its own.
+    // The next question stands on its own.
     open &= asked.is_empty();
     actions.extend(asked);
     if let Some(model) = chosen {

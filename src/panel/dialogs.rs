@@ -143,7 +143,7 @@ impl Dialogs {
             (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
             // So much that the buttons below the list keep their room.
             config.right_panel_width = Some(if narrow { 0.28 } else { 0.34 } * size.x);
-            // What the title says, the button that ends it says too.
+            // The button that ends it says the same as the title.
             config.title_bar = !narrow;
         }
         let was_open = *self.open.state() == DialogState::Open;

@@ -23,7 +23,7 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                 Vec::new()
             }
             Opened::Failed(problems) => {
-                // The latest stands on top: the first problem, and above it what it means.
+                // The latest message stands on top: the first problem, and above it the consequence.
                 for problem in problems.into_iter().rev() {
                     session.say(Severity::Error, problem);
                 }

@@ -17,20 +17,20 @@ pub trait Files: Send + Sync + 'static {
     fn save(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
     /// Reads a scene file if its content is another one than when it was opened or saved.
     fn look(&mut self, path: &Path, registry: &Registry) -> Looked;
-    /// From now on this is what saving may replace: a content, or that there is no file.
+    /// Sets the state of the file that saving may replace: its content, or its absence.
     fn expect(&mut self, path: &Path, version: Option<Stamp>);
 }
 
 /// The result of looking at a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Looked {
-    /// It is as it was last seen.
+    /// It is unchanged.
     Same,
     /// There is no such file.
     Gone,
-    /// Its content is another one.
+    /// Its content has changed.
     Changed {
-        /// Tells this content from others.
+        /// The fingerprint of the content.
         version: Stamp,
         /// Its content.
         content: Opened,
@@ -62,6 +62,6 @@ pub enum Saved {
     Done,
     /// Somebody else changed it; it was left alone.
     ChangedOnDisk,
-    /// It could not be written: why.
+    /// The reason why it could not be written.
     Failed(String),
 }

@@ -42,7 +42,7 @@ pub(super) fn remember_regions(ctx: &Context) {
     });
 }
 
-/// What F6 leads to in the part of the window where it is, in place of the first: the row that is selected.
+/// The target of F6 in its part of the window, instead of the first: the selected row.
 pub(super) fn first(ctx: &Context, id: Id) {
     ctx.data_mut(|d| d.insert_temp(memory().with("first"), id));
 }
@@ -105,7 +105,7 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
         })
         .collect();
     let here = focused(ctx).and_then(|w| regions.iter().position(|(_, r)| r.contains(w.rect.center())));
-    // What is over the picture comes after the picture itself.
+    // Anything over the picture comes after the picture itself.
     let over = regions.iter().position(|(region, _)| *region == Region::Picture);
     let count = over.unwrap_or(regions.len());
     let sent = ctx.data(|d| d.get_temp(picture())).unwrap_or(false);

@@ -28,7 +28,7 @@ fn enter(ctx: &Context, menu: Id) {
 
 /// The bar of menus: each opens with Alt and its letter, the first with F10; Left and Right go to the neighbours.
 pub(super) fn bar(ctx: &Context, menus: &[(Key, Response)]) {
-    // What must be answered or chosen first has the keys.
+    // A question or a choice that must be dealt with first has the keys.
     if ctx.memory(egui::Memory::top_modal_layer).is_some() {
         return;
     }
@@ -102,7 +102,7 @@ pub(super) fn walk(ctx: &Context) {
     if !Popup::is_any_open(ctx) || ctx.text_edit_focused() {
         return;
     }
-    // What is dragged, as in a picker of colours, has the arrows for itself.
+    // A widget that is dragged, such as a colour picker, has the arrows to itself.
     let now = focused(ctx).filter(|w| w.layer_id.order == Order::Foreground);
     if now.is_some_and(|w| w.sense.senses_drag()) {
         return;

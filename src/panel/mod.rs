@@ -368,7 +368,7 @@ fn bottom(
     }
 }
 
-/// What keeps the pointer from the picture, as it was shown last.
+/// The areas that keep the pointer from the picture, as they were shown last.
 #[derive(Clone, Debug, Default)]
 struct Cover {
     /// Places over the picture that can be clicked.

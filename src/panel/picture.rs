@@ -292,7 +292,7 @@ fn axes(ui: &Ui, rect: Rect, session: &Session) -> Rect {
     let inverse = session.facts.camera.inverse();
     let mut ends: Vec<(Vec3, &str)> =
         [(Vec3::X, "x"), (Vec3::Y, "y"), (Vec3::Z, "z")].into_iter().map(|(a, n)| (inverse * a, n)).collect();
-    // What points away from the eye is painted first.
+    // Axes that point away from the eye are painted first.
     ends.sort_by(|a, b| a.0.z.total_cmp(&b.0.z));
     for (direction, name) in ends {
         let length = radius * 0.66;

@@ -161,7 +161,7 @@ impl<'a> Stand<'a> {
         for (before, added) in before.pixels.iter().zip(&added.pixels) {
             let (before, added) = (before.truncate().max_element(), added.truncate().max_element());
             if before >= limit {
-                // What clips already cannot be spared.
+                // A pixel that clips already cannot be spared.
                 clipped += 1;
             } else if added > 1e-9 {
                 let brighter = srgb_decode((srgb_encode(before / limit) + VISIBLE).min(1.0)) * limit;

@@ -118,7 +118,7 @@ impl Stage {
         if wide.iter().all(|b| b.broken > Break::Sign || b.size.y > limit) {
             wide.extend([block(2, most, true), block(3, most, true), block(4, most, true)]);
         }
-        // The better it is broken, the better it can be read: rather it is higher.
+        // A block with better breaks is easier to read, even if it is higher.
         let mut all: Vec<&Block> = wide.iter().chain([&narrow]).collect();
         let limits =
             [Break::Sign, Break::Product].into_iter().flat_map(|broken| [(broken, limit), (broken, tall)]);

@@ -1,4 +1,4 @@
-//! The document's file changed on disk: what becomes of the document.
+//! The effect of changes to the document's file on disk.
 //!
 //! Whoever edits the file elsewhere sees the scene follow. What was changed in the window is never
 //! replaced without a question, and a file that cannot be used replaces nothing.
@@ -70,7 +70,7 @@ fn take(
     (scene, defaulted): (Scene, Vec<String>),
     discard: bool,
 ) -> Vec<Effect> {
-    // What a recovered document began with is not known.
+    // The file from which a recovered document began is not known.
     let edited = (session.disk.recovered || session.document.differs()) && session.document != scene;
     if edited && !discard && (session.disk.recovered || scene != *session.document.saved()) {
         if session.disk.asked != Some(Some(version)) {

@@ -119,7 +119,7 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
 /// Reads the settings of the last session into the state; says so when they cannot be read.
 pub fn load_settings(session: &mut Session) {
     if let Some(folder) = folder() {
-        // What is unfinished in there is settings, and those are read in a moment.
+        // The only unfinished files in there are settings, which are read in a moment.
         let _ = tidy(&folder);
         let (settings, complaint) = load(&folder);
         session.adopt(settings);

@@ -408,7 +408,7 @@ fn rename(
     });
     if first {
         response.request_focus();
-        // What is typed takes the place of the old name.
+        // Typing replaces the old name.
         let mut state = egui::text_edit::TextEditState::load(ui.ctx(), response.id).unwrap_or_default();
         let all = egui::text::CCursorRange::two(
             egui::text::CCursor::new(0),

@@ -206,7 +206,7 @@ mod tests {
                 for _ in 0..1 + round % 2 {
                     said.push(change(&mut world, &mut random));
                 }
-                // What a rule refuses goes back to the entities in the next frame, and a lost entity comes with the
+                // A change that a rule refuses is undone in the entities in the next frame; a lost entity comes with the
                 // next change.
                 schedule.run(&mut world);
                 world.resource_mut::<CurrentScene>().set_changed();

@@ -55,7 +55,7 @@ pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Opt
     None
 }
 
-/// Where custom models are: where they are read from, else where they would be looked for.
+/// The folder from which custom models are read, else the one in which they would be looked for.
 fn models_folder(registry: &Registry) -> Option<PathBuf> {
     registry.custom_folder().map(Path::to_owned).or_else(|| Folders::find(None, None).ok()?.models)
 }

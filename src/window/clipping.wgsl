@@ -1,4 +1,4 @@
-// How many pixels of each field of a grid over the picture clip.
+// The number of pixels that clip in each field of a grid over the picture.
 
 struct Ask {
     // The extent of the picture.

@@ -81,7 +81,7 @@ pub(super) fn carry_out(
             }
             other => {
                 let more = run_files(&mut session, &registry, other.clone(), &mut *files);
-                // What comes back unchanged is nobody's.
+                // An effect that comes back unchanged is nobody's.
                 pending.extend(more.into_iter().rev().filter(|e| *e != other));
             }
         }

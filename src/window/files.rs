@@ -83,7 +83,7 @@ impl Files for DiskFiles {
         match files::kind(path) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Looked::Gone,
             Ok(Kind::Pipe | Kind::Device) if self.stream.as_deref() == Some(path) => return Looked::Same,
-            // What a file has become instead is an error like any other.
+            // Anything else in its place is an error like any other.
             _ => {}
         }
         let bytes = match load::bytes(path) {

@@ -71,7 +71,7 @@ fn checked(program: &Path, id: &str, folders: &Folders) -> Outcome {
     let read = |stream: Option<Box<dyn std::io::Read + Send>>| {
         thread::spawn(move || {
             let mut text = String::new();
-            // What is no text is no report either.
+            // A report is text; anything else is none.
             let _ = stream.map(|mut stream| stream.read_to_string(&mut text));
             text
         })

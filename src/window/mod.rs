@@ -120,7 +120,7 @@ impl Plugin for WindowSystemsPlugin {
                     picture::fit_picture.after(EguiPostUpdateSet::EndPass).before(ViewSystems),
                     picture::show_picture.after(ViewSystems),
                     (shell::window_title, shell::fullscreen).run_if(session_changed),
-                    // What the panels change is to be drawn: what they changed last is known by now.
+                    // The last changes by the panels are known by now, and are to be drawn.
                     redraw::redraw
                         .after(EguiPostUpdateSet::ProcessOutput)
                         .before(EguiPostUpdateSet::PostProcessOutput),

@@ -173,7 +173,7 @@ fn add_with_display<M>(app: &mut App, plugins: impl Plugins<M>) -> Result<(), Fa
             .map(String::as_str)
             .or_else(|| payload.downcast_ref::<&str>().copied())
             .and_then(|text| text.lines().next())
-            // What the windowing library says names its own source files, not the cause.
+            // The windowing library names its own source files, not the cause.
             .filter(|text| !text.contains("event loop"))
             .map_or_else(|| "it does not answer".to_owned(), str::to_owned);
         let named = ["DISPLAY", "WAYLAND_DISPLAY"]
@@ -196,8 +196,8 @@ fn log_plugin(options: &ViewOptions) -> LogPlugin {
     } else if options.quiet {
         (Level::ERROR, "wgpu=error,naga=off,notify=error,bevy_render::gpu_readback=error")
     } else {
-        // That the renderer is a program on the CPU stands in the status line, and what is wrong with a
-        // shader is told in terms of its file; the rest of what is silenced here is no news to a user.
+        // The status line says that the renderer is a program on the CPU, and problems of a
+        // shader are reported in terms of its file; the other messages silenced here are no news to a user.
         (
             Level::WARN,
             "wgpu=error,naga=off,notify=error,bevy_render::renderer=error,bevy_render::gpu_readback=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",

@@ -101,7 +101,7 @@ pub(super) fn follow_cursor(
             _ => {}
         }
     }
-    // What was let go within the frame has turned nothing.
+    // A button that was released within the frame has turned nothing.
     pointer.held = buttons.get_pressed().next().is_some();
     over.now = is_over(pointer.place);
     let some = |way: Vec2| Some(way).filter(|way| *way != Vec2::ZERO);

@@ -33,7 +33,7 @@ pub(super) fn open(world: &mut World) {
         Some(folder) => assets::read_shaders(folder, &mut registry).err().unwrap_or_default(),
         None => Vec::new(),
     };
-    // What is wrong with these is found when they are looked at. Models of which the declaration is right are read
+    // Their problems are found when they are read. Models with a correct declaration are read
     // when the scene uses them.
     let declared = |path: &PathBuf| custom::id_of(path).is_some_and(|id| registry.unread_file(id).is_some());
     let broken: Vec<_> = folders

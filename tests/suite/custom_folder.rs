@@ -329,7 +329,7 @@ fn the_registry_knows_how_much_was_read_and_what_is_wanted() {
     assert_eq!(declare_rest(&mut registry).files, 0);
     bench.put("a.wgsl", &model("another_name"));
     bench.put("d.wgsl", &model("depth_d"));
-    // What is known whole is followed by whoever uses it.
+    // Users of a model that is known whole follow it.
     bench.put("b.wgsl", &model("renamed"));
     assert_eq!(declare_rest(&mut registry).files, 2);
     assert_eq!(registry.model("a").unwrap().parameters[1].name, "another_name");

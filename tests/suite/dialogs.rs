@@ -83,7 +83,7 @@ fn a_scaled_dialog_lists_many_files() {
     }
 }
 
-/// What is painted that has words.
+/// The painted texts.
 fn texts(bench: &mut Bench) -> Vec<String> {
     let text = |shape| if let Shape::Text(text) = shape { Some(text.galley.job.text.clone()) } else { None };
     bench.shapes().into_iter().filter_map(text).collect()

@@ -1,4 +1,4 @@
-//! Which editor a file is opened in.
+//! The choice of the editor in which a file is opened.
 
 use std::{
     fs,

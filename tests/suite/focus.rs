@@ -214,7 +214,7 @@ fn a_deletion_keeps_the_selection_and_is_said_with_a_way_back() {
     assert!(bench.says("Deleted “"), "{:?}", bench.session.messages);
     bench.click("Undo");
     assert_eq!(*bench.session.document.scene(), before);
-    // What would undo something else is not offered.
+    // Undo is not offered where it would undo something else.
     bench.apply(Action::Remove(Selection::Object(0)));
     bench.apply(Action::Edit(bench.session.edit_shading_model("flat")));
     assert!(bench.session.messages.iter().all(|note| note.offer.is_none()));

@@ -124,7 +124,7 @@ impl Keyboard {
         let mut reply = [0; 32];
         loop {
             self.server.read_exact(&mut reply).expect("answered");
-            // What is neither an answer nor an error is news, of which none is wanted.
+            // Anything but an answer or an error is an event, and none is wanted.
             assert_ne!(reply[0], 0, "the server refuses {request:?}: {reply:?}");
             if reply[0] == 1 {
                 break;

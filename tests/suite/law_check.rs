@@ -93,7 +93,7 @@ fn a_model_of_the_folder_that_breaks_a_law_is_shown_with_the_place() {
     let report = outcome("mine", &folders, program()).expect("was checked");
     assert_eq!(report.broken(), ["reciprocal"]);
     assert!(report.laws[0].at[0].starts_with("at l (θ "), "{:?}", report.laws[0].at);
-    // What cannot be checked says why.
+    // A model that cannot be checked says why.
     std::fs::write(folder.path().join("mine.wgsl"), "/* lcm { } */\nfn response(").expect("writable");
     let why = outcome("mine", &folders, program()).expect_err("is broken");
     assert!(why.contains("this ( is not closed"), "{why}");

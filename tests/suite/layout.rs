@@ -1,4 +1,4 @@
-//! What the panels leave to the picture, and what of them is read whole, without a window.
+//! The room that the panels leave to the picture, and the texts in them that are shown whole; without a window.
 
 use std::collections::BTreeSet;
 

@@ -198,7 +198,7 @@ fn lines(bench: &mut Bench, colour: Color32) -> Vec<Vec<Pos2>> {
     bench.shapes().into_iter().filter_map(line).collect()
 }
 
-/// What is written over the picture: badges, caption, axes.
+/// The texts over the picture: badges, caption, axes.
 fn written(bench: &mut Bench) -> Vec<Rect> {
     let [plate, disc] = [0.88, 0.72].map(|part| theme::DARK.panel.gamma_multiply(part));
     let part = |shape| match shape {

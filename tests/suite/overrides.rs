@@ -82,7 +82,7 @@ fn picture_of(renderer: &mut GpuRenderer, view: Entity) -> Vec<u8> {
     renderer.read_view(&texture).expect("the picture can be read")
 }
 
-/// How many pictures each view has drawn: those without overrides, and those with.
+/// The number of pictures drawn by each view: those without overrides, and those with.
 fn drawn(renderer: &mut GpuRenderer) -> [u64; 2] {
     let world = renderer.app().world_mut();
     let mut counts = [0; 2];
@@ -249,7 +249,7 @@ fn a_view_that_goes_leaves_nothing_behind() {
     }
 }
 
-/// What one frame changed.
+/// The changes made by one frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Resource)]
 struct Cost {
     objects: usize,

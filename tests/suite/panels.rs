@@ -170,7 +170,7 @@ pub struct Bench {
     time: f64,
     pub tree: Vec<Seen>,
     pub effects: Vec<Effect>,
-    /// What was put on the clipboard last.
+    /// The text last put on the clipboard.
     pub copied: Option<String>,
     shapes: Vec<egui::Shape>,
     painter: Painter,
@@ -349,7 +349,7 @@ impl Bench {
         self.tree.iter().any(|s| s.label.contains(words))
     }
 
-    /// What the last frame painted.
+    /// The shapes painted by the last frame.
     pub fn shapes(&mut self) -> Vec<egui::Shape> {
         self.frame(Vec::new());
         fn flat(shape: egui::Shape, all: &mut Vec<egui::Shape>) {
@@ -868,7 +868,7 @@ fn brightness_is_read_and_typed_in_candela_or_lumen() {
     bench.type_into("luminous flux", "800");
     assert_eq!(light(&bench).luminous_flux, Some(800.0));
     assert!(bench.says("= 63.66 cd"));
-    // What is saved is what was typed, and reading it gives the same light.
+    // The number is saved as it was typed, and reading it gives the same light.
     let text = crate::support::written(&bench.session.document);
     assert!(text.contains("\"luminous_flux\": 800") && !text.contains("intensity"), "{text}");
     assert_eq!(crate::support::read(&text), *bench.session.document);

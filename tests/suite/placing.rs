@@ -1,4 +1,4 @@
-//! What is added to a scene stands free and in view, and a new light shows the scene without blowing it out.
+//! New parts of a scene stand free and in view, and a new light shows the scene without blowing it out.
 
 use bevy_egui::egui::{Pos2, Rect, vec2};
 use glam::{Quat, Vec3};

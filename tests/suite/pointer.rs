@@ -46,7 +46,7 @@ fn a_press_that_comes_with_its_move_is_of_the_panel_where_it_is_made() {
     let mut pointer = Keyboard::new(screen.display());
     pointer.point_at(560, 300);
     let before = window.rest();
-    // What comes while a frame is drawn is in the next frame together: here a press on the observer's row.
+    // All events during a frame arrive together in the next one: here a press on the observer's row.
     pointer.point_at(562, 300);
     thread::sleep(Duration::from_millis(15));
     pointer.point_at(60, 80);

@@ -121,7 +121,7 @@ fn a_presentation_is_the_picture_alone_and_the_keys_go_on() {
         bench.key(Key::F11, Modifiers::NONE);
         assert_eq!((bench.session.view.fullscreen, bench.session.view.presenting), (on, false));
     }
-    // Who presents on a full screen is back on one afterwards.
+    // A presentation begun in full screen ends in full screen.
     for key in [Key::F11, Key::F5, Key::F5] {
         bench.key(key, Modifiers::NONE);
     }
@@ -187,7 +187,7 @@ fn the_list_of_keys_is_whole_at_every_size() {
         // The longest may be scrolled out.
         let long = "To the next panel, to the one before; Tab moves on within it, Esc leaves";
         let long = place(long).unwrap_or(open);
-        // What is scrolled out is cut above and below, but not at the sides.
+        // Scrolled text is cut above and below, but not at the sides.
         let room = area.shrink2(vec2(14.0, 0.0));
         for rect in [open, long, place("Ctrl+O").expect("its key")] {
             assert!(
@@ -521,7 +521,7 @@ fn the_menus_stand_at_the_same_place_in_every_scene() {
     assert!(bench.says(long));
 }
 
-/// Where everything is that has a name of its own.
+/// The places of everything that has a name of its own.
 fn places(bench: &Bench) -> HashMap<String, egui::Rect> {
     let named = bench.tree.iter().filter(|s| !s.label.is_empty());
     let once = named.filter(|s| bench.tree.iter().filter(|o| o.label == s.label).count() == 1);

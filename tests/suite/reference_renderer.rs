@@ -116,7 +116,7 @@ fn interpolation_is_perspective_correct() {
         let to_light = light - p;
         20.0 / to_light.length_squared() * to_light.normalize().dot(normal).max(0.0)
     };
-    // Where the ends of the face lie on the screen, as slopes of rays.
+    // The ends of the face on the screen, as slopes of rays.
     let slope = |p: Vec3| (p.x - eye.x) / (eye.z - p.z);
     let ends = [middle - 2.0 * along, middle + 2.0 * along];
     let (mut worst, mut worst_affine, mut count) = (0.0f32, 0.0f32, 0);

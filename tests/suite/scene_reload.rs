@@ -1,5 +1,4 @@
-//! The file of the open scene changes on disk: what becomes of the document, with real files and
-//! without a window.
+//! The document as its file changes on disk, with real files and without a window.
 
 use std::{fs, path::PathBuf};
 
@@ -27,7 +26,7 @@ struct Desk {
     session: Session,
     files: DiskFiles,
     registry: Registry,
-    /// What is left to the window: all but what is done with files.
+    /// The effects left to the window: all but those on files.
     left: Vec<Effect>,
     folder: tempfile::TempDir,
 }
@@ -179,7 +178,7 @@ fn an_edit_elsewhere_becomes_the_document_and_the_view_stays() {
 
 #[test]
 fn opening_a_file_by_hand_does_go_back_to_the_observer() {
-    // What the test above must not find.
+    // The case that the test above must not find.
     let mut desk = Desk::new();
     desk.act(Action::Reload);
     assert!(desk.left.contains(&Effect::DocumentChanged));
@@ -258,7 +257,7 @@ fn the_selection_follows_what_it_points_at() {
     assert_eq!(select(2, &fewer), Selection::Object(1));
     // One that is edited in its place is still the same one.
     assert_eq!(select(1, &grown(1, 0.3)), Selection::Object(1));
-    // What is gone gives way to what is there.
+    // Deleted objects give way to those that exist.
     let mut one = three();
     one.objects.truncate(1);
     assert_eq!(select(1, &one), Selection::Object(0));
@@ -378,7 +377,7 @@ fn missing_parts_are_not_taken_unasked() {
     assert_eq!(desk.session.questions.open, None, "who types elsewhere is not stopped by a question");
     assert_eq!(desk.badge(), "room.json has errors: showing the last good version");
     assert_eq!(desk.said("shading_model is missing"), 1);
-    // Who agreed to a default has agreed.
+    // Consent to a default holds from then on.
     let mut desk = Desk::new();
     desk.write(&lacking(&three(), "shading_model"));
     desk.act(Action::Reload);

@@ -17,7 +17,7 @@ use std::{
 pub struct Screen {
     server: Child,
     display: String,
-    /// Where the server keeps what it shows, for all to read.
+    /// The folder in which the server keeps its screen, for all to read.
     memory: tempfile::TempDir,
 }
 
@@ -83,7 +83,7 @@ impl Screen {
         Running { screen: self, program, said, _folder: folder }
     }
 
-    /// What is on the screen now.
+    /// The present content of the screen.
     pub fn look(&self) -> Picture {
         let bytes =
             fs::read(self.memory.path().join("Xvfb_screen0")).expect("the server keeps its picture there");
@@ -124,7 +124,7 @@ impl Running<'_> {
     /// Software Vulkan on a busy machine takes its time.
     const DEADLINE: Duration = Duration::from_secs(60);
 
-    /// What the program wrote to standard error so far.
+    /// The program's output to standard error so far.
     pub fn said(&self) -> String {
         fs::read_to_string(&self.said).expect("readable")
     }
@@ -243,7 +243,7 @@ impl Picture {
         y.flat_map(move |y| x.clone().map(move |x| (x, y))).map(|(x, y)| self.at(x, y))
     }
 
-    /// How many different colours there are in a part.
+    /// The number of different colours in a part.
     pub fn colours(&self, x: Range<u32>, y: Range<u32>) -> usize {
         let mut seen: Vec<_> = self.part(x, y).collect();
         seen.sort_unstable();
@@ -251,7 +251,7 @@ impl Picture {
         seen.len()
     }
 
-    /// How many pixels of a part are as asked.
+    /// The number of pixels of a part that satisfy a condition.
     pub fn count(&self, x: Range<u32>, y: Range<u32>, is: impl Fn([u8; 3]) -> bool) -> usize {
         self.part(x, y).filter(|p| is(*p)).count()
     }

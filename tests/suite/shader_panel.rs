@@ -653,7 +653,7 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     let said = bench.session.messages.last().map(|m| m.text.clone()).unwrap_or_default();
     assert!(said.contains(&*file.to_string_lossy()) && said.contains("was written"), "{said}");
     assert_eq!(bench.session.wanted_model, Some(name()));
-    // What the reload system does when it sees the file.
+    // As the reload system does when it sees the file.
     let model = custom::read(&file, &text, &bench.registry).map_err(|all| all[0].to_string())?;
     bench.registry.put_custom_model(model);
     bench.settle();

@@ -109,7 +109,7 @@ impl Desk {
         window
     }
 
-    /// What windows that run no longer left.
+    /// The copies left by windows that no longer run.
     fn left(&self) -> Vec<Left> {
         Store::new(self.folder.path().join("data/recovery")).left()
     }
@@ -351,7 +351,7 @@ fn what_a_killed_window_left_is_offered_until_the_user_decides() {
     assert_eq!(window.ended().1, "", "the scene that is shown is saved");
     assert_eq!(desk.copy("mod_lambert"), copy);
 
-    // What is recovered is as unsaved as it was, and belongs to the same file.
+    // The recovered document is as unsaved as it was, and belongs to the same file.
     let mut window = desk.start_with_question(&[]);
     desk.press(&[Key::Return]);
     window.until("no question", asks_nothing);

@@ -38,7 +38,7 @@ fn a_pointer_over_the_panels_draws_no_picture_and_a_drag_in_the_picture_does() {
         }
     });
     assert!(panels >= 20, "the panels follow the pointer: {panels}");
-    // How many pictures the start takes depends on when its shaders are ready.
+    // The number of pictures at the start depends on when its shaders are ready.
     assert!(changes <= calm + 2, "hovering changed the state in {changes} frames, and nothing in {calm}");
     assert!(hovered <= still + 4, "{hovered} pictures, and {still} without a pointer");
     let [_, dragged, turned] = frames(|pointer| {

@@ -33,7 +33,7 @@ fn scene(colour: [u8; 3]) -> String {
     )
 }
 
-/// Whether the picture shows a sphere that is all in one channel.
+/// True if the picture shows a sphere that is all in one channel.
 fn shows(channel: usize) -> impl Fn(&Picture) -> bool {
     move |picture| {
         let lit = |p: [u8; 3]| p[channel] > 100 && (0..3).all(|c| c == channel || p[c] < 40);
@@ -41,7 +41,7 @@ fn shows(channel: usize) -> impl Fn(&Picture) -> bool {
     }
 }
 
-/// Whether there is a badge with the colour of errors at the upper left of the picture.
+/// True if there is a badge in the colour of errors at the upper left of the picture.
 fn error_badge(picture: &Picture) -> bool {
     picture.count(210..700, 40..90, |p| p == [0xff, 0x8a, 0x7a]) > 100
 }
@@ -134,7 +134,7 @@ fn until_said(window: &Running<'_>, expected: impl Fn(&str) -> bool) -> String {
     }
 }
 
-/// Whether something in the colour of errors stands on the picture: the badge and the frame of stale shaders.
+/// True if the picture has something in the colour of errors: the badge and the frame of stale shaders.
 fn stale(picture: &Picture) -> bool {
     picture.count(210..920, 40..560, |p| p == [0xff, 0x8a, 0x7a]) > 1000
 }

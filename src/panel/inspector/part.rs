@@ -73,7 +73,7 @@ pub(super) fn header(
     ui.add_space(4.0);
 }
 
-/// What a field for text holds.
+/// The content of a field for text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Text {
     /// A name, in the size of headings.

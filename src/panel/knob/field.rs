@@ -97,7 +97,7 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     if response.changed() {
         let d = draft.get_or_insert_with(|| Draft { text: String::new(), before: value, last: value });
         d.text.clone_from(&text);
-        // What was typed on the way to something illegal (3, 30, 300) was never meant: the value from
+        // Numbers on the way to an illegal one (3, 30, 300) were never meant: the value from
         // before counts again.
         out =
             read(&text, limits).ok().or_else(|| Some(d.before).filter(|v| *v != value && limits.allows(*v)));

@@ -5,7 +5,7 @@ use glam::{Quat, Vec3};
 
 use crate::{panel::state::Session, scene::observer::vertical_field_of_view};
 
-/// What is nearer to the camera than this is not drawn, metres.
+/// Anything nearer to the camera is not drawn, metres.
 const NEAR: f32 = 0.05;
 
 /// The way from the room to the picture: what the camera of the window shows in a rectangle.
@@ -53,7 +53,7 @@ impl Lens {
         self.rect
     }
 
-    /// How many metres at a point of the room are so many points of the picture.
+    /// The length in metres, at a point of the room, of so many points of the picture.
     pub(super) fn metres(&self, p: Vec3, points: f32) -> f32 {
         points * (-self.seen(p).z).max(NEAR) / self.scale
     }

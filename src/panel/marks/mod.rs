@@ -72,7 +72,7 @@ pub fn marks(
         false => OFF,
     };
     let places = places(scene, registry, &lens, overlays);
-    // What is selected is drawn last, over the others.
+    // The selected one is drawn last, over the others.
     let mut order: Vec<usize> = (0..scene.lights.len()).collect();
     order.sort_by_key(|i| chosen(*i));
     for i in order {
@@ -109,7 +109,7 @@ pub fn marks(
     edge::arrows(ui, &painter, (rect, overlays), &outside, session, registry, colour_of)
 }
 
-/// How large the mark of a light is.
+/// The size of the mark of a light.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Size {
     /// Among many.
@@ -216,7 +216,7 @@ fn frame(ui: &Ui, ink: &mut Ink, object: &Object, registry: &Registry) {
     let (lens, turn) = (ink.lens, rotation(object.rotation));
     let view = lens.rect().shrink(FRAME);
     let seen = mesh.iter().map(|p| lens.project(object.position + turn * (object.size * *p)));
-    // What reaches behind the camera is all around it.
+    // A part that reaches behind the camera is all around it.
     let around = match seen.collect::<Option<Vec<_>>>() {
         Some(points) => Rect::from_points(&points).expand(FRAME),
         None => view,

@@ -19,7 +19,7 @@ pub(super) const SHORT: f32 = 28.0;
 const AIR: f32 = 7.0;
 /// Places along a way that are tried.
 const STEPS: usize = 32;
-/// What fills a larger part of the picture is what the others stand on.
+/// An object that fills a larger part of the picture is the floor on which the others stand.
 const FLOOR: f32 = 0.4;
 /// The most objects that are kept clear of: more would fill the picture.
 const OBJECTS: usize = 256;
@@ -36,7 +36,7 @@ pub fn anchor(light: &Light, scene: &Scene) -> Option<Vec3> {
     })
 }
 
-/// Where the mark of each light of a scene is: for light from a direction, beside the objects and as far from them as
+/// The position of the mark of each light: for light from a direction, beside the objects and as far from them as
 /// it can be seen, and not where something is written over the picture.
 #[must_use]
 pub fn places(scene: &Scene, registry: &Registry, lens: &Lens, overlays: &[Rect]) -> Vec<Option<Vec3>> {
@@ -133,7 +133,7 @@ fn border(rect: Rect, way: Vec2) -> impl Iterator<Item = Pos2> {
     })
 }
 
-/// Where the way from the middle meets the frame.
+/// The point at which the way from the middle meets the frame.
 pub(super) fn at_edge(frame: Rect, way: Vec2) -> Pos2 {
     let half = 0.5 * frame.size();
     let reach = |half: f32, way: f32| if way.abs() > 1e-6 { half / way.abs() } else { f32::INFINITY };

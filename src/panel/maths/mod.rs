@@ -203,7 +203,7 @@ mod tests {
         ctx.fonts_mut(|fonts| {
             for family in [theme::maths(), theme::maths_italic(), egui::FontFamily::Proportional] {
                 let font = egui::FontId::new(17.0, family);
-                // Where a character is drawn on the texture: the same place for all that are missing.
+                // The place of a character on the texture, which is the same for all that are missing.
                 let mut place = |c: char| {
                     let galley = fonts.layout_no_wrap(c.to_string(), font.clone(), Color32::WHITE);
                     galley.rows[0].row.glyphs[0].uv_rect

@@ -47,7 +47,7 @@ impl Panel for Shader {
         let palette = Palette::here(ui);
         let whole = ui.available_rect_before_wrap();
         let gap = 12.0;
-        // What is wrong comes first where there is little room.
+        // Problems come first where there is little room.
         let share = if session.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
         let left = (share * whole.width()).clamp(240.0, 620.0);
         let columns = whole.split_left_right_at_x(whole.left() + left + gap);

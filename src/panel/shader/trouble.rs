@@ -61,7 +61,7 @@ pub fn excerpt(source: &str, column: usize, room: usize) -> Excerpt {
         caret -= indent;
     }
     if chars.len() > room {
-        // What stands before the place explains more than what stands after it.
+        // The text before the place explains more than the text after it.
         let start = (caret + room / 3 + 1).saturating_sub(room).min(chars.len() - room);
         let end = (start + room).min(chars.len());
         let (cut_start, cut_end) = (start > 0, end < chars.len());
@@ -87,7 +87,7 @@ pub fn report(trouble: &Trouble) -> String {
 
 pub(super) fn troubles(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let mut all: Vec<_> = session.shaders.troubles.iter().collect();
-    // What the picture suffers from comes first.
+    // Problems that affect the picture come first.
     all.sort_by_key(|t| t.stale.is_empty());
     ScrollArea::vertical().id_salt("troubles").auto_shrink(false).show(ui, |ui| {
         ui.set_width(ui.available_width() - 8.0);

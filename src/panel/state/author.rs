@@ -107,7 +107,7 @@ impl Session {
     }
 
     fn create(&mut self, registry: &Registry) -> Vec<Effect> {
-        // What is wrong stands beside the field.
+        // The problem is shown beside the field.
         let checked = self.draft.as_ref().and_then(|draft| check_name(&draft.name, registry).ok());
         let Some((id, draft)) = checked.and_then(|id| Some((id, self.draft.take()?))) else {
             return Vec::new();

@@ -13,7 +13,7 @@ use crate::{
 /// The most files that the list of recent files holds.
 pub const RECENT_FILES: usize = 10;
 
-/// The file that is meant by what was typed as the name of a scene: it ends in `.json`, once.
+/// The file meant by a name typed for a scene: it ends in `.json`, once.
 fn scene_file(typed: &Path) -> PathBuf {
     let json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     match (json(typed), typed.file_stem().map(Path::new)) {

@@ -99,7 +99,7 @@ impl Session {
             Selection::Light(_) | Selection::Object(_) if self.exists(part) => {
                 let text = format!("Deleted “{}”.", self.name_of(part, registry));
                 self.document.remove(part, registry);
-                // What was selected stays so; in the place of what is gone comes its neighbour.
+                // The selection stays; if it was deleted, its neighbour takes its place.
                 let (lights, objects) = (self.document.lights.len(), self.document.objects.len());
                 self.select_new(match (self.selection, part) {
                     (Selection::Light(at), Selection::Light(gone)) => {

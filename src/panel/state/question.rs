@@ -154,7 +154,7 @@ impl Session {
                 vec![Effect::OpenFile(path)]
             }
             (Question::NewerOnDisk { path, scene, version }, Answer::Keep) => {
-                // What is on disk is known now: saving replaces it.
+                // The file on disk is known now: saving replaces it.
                 self.document.set_saved(*scene);
                 self.disk.recovered = false;
                 self.disk_settled();

@@ -108,7 +108,7 @@ impl Evaluator {
         check::validate(&composed).map_err(GpuError::Invalid)?;
         let RenderResources(device, queue, ..) = device()?;
         let row = row(&device, model, &Values::default(), Encoding::Srgb);
-        // What users write may ask for what is not bound here.
+        // Users' shaders may ask for bindings that do not exist here.
         let scope = device.wgpu_device().push_error_scope(wgpu::ErrorFilter::Validation);
         let text = composed.text.clone();
         let module = device.create_and_validate_shader_module(ShaderModuleDescriptor {

@@ -49,7 +49,7 @@ use crate::{
     shader::check::ShaderProblem,
 };
 
-/// Why the GPU renderer could not draw.
+/// The reason why the GPU renderer could not draw.
 #[derive(Debug, Error)]
 pub enum GpuError {
     /// No Vulkan adapter, not even a software one.

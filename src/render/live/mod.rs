@@ -229,7 +229,7 @@ pub(super) fn exchange(world: &mut World) {
         world.resource_scope(|world, mut live: Mut<LiveShaders>| live.read_wanted(world));
     }
     if !world.resource::<LiveShaders>().status.troubles.is_empty() {
-        // What has an error may have come into the picture or left it; it is swapped after this.
+        // Objects with a faulty shader may have come into the picture or left it; they are swapped after this.
         let mut drawn = world.query_filtered::<(), Changed<Drawn>>();
         if other_scene || drawn.iter(world).next().is_some() {
             world.resource_mut::<LiveShaders>().stale_status = true;

@@ -167,7 +167,7 @@ impl LiveShaders {
     pub(super) fn asset(&self, composed: &Composed, key: Key, registry: &Registry) -> Shader {
         let mut shader = Shader::from_wgsl(slim(&composed.text), path_of_asset(key));
         if !self.library.is_built_in(composed, registry) {
-            // What users write may read outside of arrays.
+            // Users' shaders may read outside of arrays.
             shader.validate_shader = ValidateShader::Enabled;
         }
         shader

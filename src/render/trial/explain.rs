@@ -13,7 +13,7 @@ use crate::shader::{
 /// As naga_oil packs the number of a module into positions in the text.
 const POSITION: usize = (1 << 21) - 1;
 
-/// That a module of Bevy is asked for that there is not: by the line that imports it, or by the line that uses a
+/// The problem of a module of Bevy that does not exist: at the line that imports it, or at the line that uses a
 /// name that nothing imports.
 pub(super) fn unknown_import(composed: &Composed, name: &str, tools: Tools) -> Box<ShaderProblem> {
     let modules: Vec<_> =

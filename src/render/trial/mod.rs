@@ -146,7 +146,7 @@ impl Bench {
         let example = self.example.clone();
         let example = example.lock();
         let Some(example) = example.as_ref() else { return Verdict::NotYet };
-        // What composes shaders unwraps here and there.
+        // The composer of shaders unwraps here and there.
         match quietly(|| attempt(&mut self.cache, composed, faces, example, tools)) {
             Some(Ok(())) => Verdict::Good,
             Some(Err(Refusal::NotYet)) => Verdict::NotYet,

@@ -103,7 +103,7 @@ struct State {
 #[derive(Debug)]
 struct Kept {
     verdict: Verdict,
-    /// When it was asked for last.
+    /// The frame in which it was last asked for.
     frame: u64,
     /// False if the shader was not tried: the next who asks has it tried again.
     lasting: bool,
@@ -113,7 +113,7 @@ struct Kept {
 struct Waiting {
     key: u64,
     request: Request,
-    /// When it was asked for last.
+    /// The frame in which it was last asked for.
     frame: u64,
 }
 
@@ -238,7 +238,7 @@ impl Worker {
         }
     }
 
-    /// Has a shader tried; or why it could not be.
+    /// Has a shader tried. Returns the answer, or the reason why there is none.
     fn verdict(&mut self, request: &Request) -> Result<Verdict, String> {
         let line = serde_json::to_string(request).map_err(|why| why.to_string())?;
         for attempt in 0..2 {
@@ -372,7 +372,7 @@ impl Running {
 
     fn send(&self, line: &str) {
         if let Some(requests) = &self.requests {
-            // That nobody takes it shows when no answer comes.
+            // If nobody takes it, no answer comes.
             let _ = requests.send(line.to_owned());
         }
     }
@@ -397,7 +397,7 @@ impl Running {
         }
     }
 
-    /// Ends it, however it is; how it ended.
+    /// Ends it, whatever its state. Returns how it ended.
     fn end(&mut self) -> Option<ExitStatus> {
         self.requests = None;
         // A process whose output is closed is about to end by itself, and says better how.

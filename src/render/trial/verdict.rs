@@ -7,14 +7,14 @@ use crate::shader::check::ShaderProblem;
 pub enum Verdict {
     /// It can be drawn with.
     Good,
-    /// It cannot, and this is why.
+    /// It cannot, for this reason.
     Bad(Box<ShaderProblem>),
     /// Not known yet: nothing has been drawn, or the process that tries is still at it. Ask again in the next
     /// frame.
     NotYet,
 }
 
-/// Why a trial did not succeed.
+/// The reason why a trial did not succeed.
 pub(super) enum Refusal {
     NotYet,
     Problem(Box<ShaderProblem>),
