@@ -1,7 +1,7 @@
 //! The documents: their tables match the registry, their examples match the program, and the tour of the README is
 //! right.
 
-use std::fs;
+use std::{fs, io};
 
 use glam::Vec3;
 use lights_camera_models::{
@@ -366,6 +366,28 @@ fn the_gallery_shows_every_model_as_it_is() {
             assert!(SAME_RENDERER.broken(one, other).is_some(), "{a} and {b} look the same");
         }
     }
+}
+
+#[test]
+fn pictures_of_scenes_are_called_as_their_scenes() {
+    let folder = root().join("docs/images");
+    let mut found = 0;
+    for entry in fs::read_dir(folder).expect("there") {
+        let path = entry.expect("readable").path();
+        if path.extension().is_none_or(|extension| extension != "png") {
+            continue;
+        }
+        let file = io::BufReader::new(fs::File::open(&path).expect("readable"));
+        let picture = ::png::Decoder::new(file).read_info().expect("a PNG file");
+        let texts = &picture.info().uncompressed_latin1_text;
+        let text = |keyword: &str| texts.iter().find(|t| t.keyword == keyword).map(|t| t.text.as_str());
+        let Some(source) = text("Source") else { continue };
+        let scene =
+            load::file(&root().join(source), &Registry::builtin(), Defaults::Use).expect("valid").scene;
+        assert_eq!(text("Title"), scene.name.as_deref(), "{}: render it again", path.display());
+        found += 1;
+    }
+    assert!(found >= 3, "{found} pictures");
 }
 
 #[test]
