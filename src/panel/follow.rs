@@ -6,7 +6,7 @@ use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 
 use super::state::{Kept, ParameterPlace, Session, Severity, StashedValues};
 use crate::{
-    document::{PartId, Selection},
+    document::Selection,
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
     registry::Registry,
     scene::Object,
