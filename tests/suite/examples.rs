@@ -232,7 +232,7 @@ fn the_window_shows_the_examples_when_it_opens_without_a_file() {
     use crate::screen::Screen;
     let screen = Screen::new(1280, 720);
     // The strip has the colour of the panels where else the picture's surround would be.
-    let panel = |p: &crate::screen::Picture| p.count(300..700, 567..575, |c| c == [21, 21, 21]) > 1500;
+    let panel = |p: &crate::screen::Picture| p.count(300..700, 553..561, |c| c == [21, 21, 21]) > 1500;
     let scene = format!("{}/scenes/default.json", env!("CARGO_MANIFEST_DIR"));
     screen.start(&["view", "--size", "1280x720"]).until("the examples", panel);
     let mut window = screen.start(&["view", &scene, "--size", "1280x720"]);
