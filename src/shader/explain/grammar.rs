@@ -104,7 +104,7 @@ const TYPES: &[&str] = &[
     "float3", "float4", "ivec2", "ivec3", "mat2", "mat3", "mat4", "void",
 ];
 
-/// What was expected, the word before, the word found, and the message. An empty text stands for anything, `TYPE` for a
+/// The expected word, the word before, the one found, and the message. An empty text stands for anything, `TYPE` for a
 /// type, `WORD` for a name; `|` separates alternatives. In the message, `{before}` and `{found}` are these words,
 /// `{earlier}` that before both, `{next}` that after, `{type}` the type as it is written here.
 const UNEXPECTED: &[(&str, &str, &str, &str)] = &[
