@@ -4,22 +4,23 @@
 //! uses only those above it, which `tests/suite/modules.rs` checks.
 //!
 //! ```text
-//! JSON ─► scene ─► entities ─► materials, lights, meshes ─► a texture per view ─► window
-//!           ▲                  reflection, shading, light, shape
-//!         panel
+//! JSON ─► scene ─► document ─► entities ─► materials, lights, meshes ─► a texture per view ─► window
+//!                   ▲                      reflection, shading, light, shape
+//!   panels, files reloaded,
+//!   components changed by systems
 //! ```
 //!
 //! The outside of the program:
 //!
 //! - [`text`]: words for messages, and JSON whose values know their place.
-//! - [`files`]: the one guard between the program and files.
-//! - [`failure`]: the reason why a command failed.
-//! - [`signals`]: requests from outside to end the program.
-//! - [`watch`]: changes of files on disk.
+//! - [`files`]: every read and write: size limits, atomic replacement.
+//! - [`failure`]: why a command failed, and its exit status.
+//! - [`signals`]: Ctrl+C and termination signals.
+//! - [`watch`]: file watching.
 //!
 //! The equations:
 //!
-//! - [`optics`]: the vocabulary of every model, pure functions on vectors.
+//! - [`optics`]: the vocabulary of every model: geometry, radiometry (1/d², cones), colour, tone mapping, D, G, F, albedo.
 //! - [`parameter`]: the declaration of a knob, values by name, and their layout for shaders.
 //! - [`shader`]: WGSL text in, WGSL text out: composing, checking, interpreting.
 //! - [`reflection`], [`shading`], [`light`], [`shape`]: a trait and a list each; one file per model, per shading
@@ -33,7 +34,7 @@
 //! - [`document`]: the one writer of the scene: edits, checks, undo and redo.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
 //! - [`library`]: the shader library: the files of all shader texts, and their errors.
-//! - [`recovery`]: copies of unsaved work, for the next start.
+//! - [`recovery`]: crash recovery of unsaved work.
 //! - [`render`]: drawing with Bevy.
 //!
 //! The program:

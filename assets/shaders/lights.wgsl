@@ -12,7 +12,7 @@ const TERM_SPECULAR: u32 = 3u;
 // One light, the twin of `LightRecord` in src/light/mod.rs.
 struct Light {
     position: vec3<f32>,
-    kind: u32,
+    light_type: u32,
     direction: vec3<f32>,
     intensity: f32,
     colour: vec3<f32>,

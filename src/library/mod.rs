@@ -2,7 +2,8 @@
 //! each that was good last, and the problems of those that cannot be used.
 //!
 //! The texts that are drawn with and the folders are held by the [`Registry`](crate::registry::Registry), which the
-//! library keeps up to date; it holds only the texts that are not drawn with.
+//! library keeps up to date; it holds only the texts that are not drawn with. [`Library`] is in `texts`, problems in
+//! `problem` and `blame`, what panels are told in [`status`], reading on a thread in [`reading`].
 
 pub mod assets;
 mod blame;

@@ -1,4 +1,4 @@
-//! Light types: the amount and direction of the light that arrives at a point (R9).
+//! Light types: the amount and direction of the light that arrives at a point.
 //!
 //! **To add one**: write `light/x.rs` and `assets/shaders/light/x.wgsl`, and add its name to
 //! [`register_builtin`].
@@ -78,7 +78,7 @@ pub struct Declaration {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightRecord {
     /// Index of the type in the registry.
-    pub kind: u32,
+    pub light_type: u32,
     /// Its position, metres; zero if the type has none.
     pub position: Vec3,
     /// The direction in which it shines, unit vector; zero if the type has none.

@@ -1,4 +1,4 @@
-//! Directions at a surface point (R8). All vectors are unit vectors; `l` points from the surface
+//! Directions at a surface point. All vectors are unit vectors; `l` points from the surface
 //! **to** the light, `v` to the observer.
 
 use glam::{DVec3, Vec2, Vec3};

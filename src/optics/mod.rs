@@ -25,14 +25,14 @@ use glam::Vec3;
 /// the equation.
 ///
 /// The sum is the **response** `π · f_r(l, v) · cos θ_i` (dimensionless, linear RGB); the ambient
-/// term is the part that does not depend on any direction (`I_a` of the CA, DD3).
+/// term is the part that does not depend on any direction (`I_a`, CA DD3).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Terms {
-    /// The direction-free part, `I_a` (DD3).
+    /// The direction-free part, `I_a` (CA DD3).
     pub ambient: Vec3,
-    /// The part scattered in all directions, `I_d` (DD4).
+    /// The part scattered in all directions, `I_d` (CA DD4).
     pub diffuse: Vec3,
-    /// The part gathered around the mirror direction, `I_s` (DD5).
+    /// The part gathered around the mirror direction, `I_s` (CA DD5).
     pub specular: Vec3,
 }
 

@@ -1,4 +1,4 @@
-//! Attenuation of light: distance and cones (R9).
+//! Attenuation of light: distance and cones.
 
 use std::f64::consts::PI;
 

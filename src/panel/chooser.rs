@@ -276,7 +276,7 @@ pub fn about(ui: &mut Ui, model: &ModelEntry) {
     if !d.summary.is_empty() {
         ui.label(d.summary);
     }
-    // A file of one's own that does not claim a law does not deny it either.
+    // A custom model that does not claim a law does not deny it either.
     let own = d.family == Family::Custom;
     for (law, holds) in d.laws.list().into_iter().filter(|(_, holds)| *holds || !own) {
         let text = if holds { format!("✓ {law}") } else { format!("✗ not {law}") };

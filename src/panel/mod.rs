@@ -1,4 +1,4 @@
-//! The window: panels around the picture.
+//! The panels around the picture, in egui.
 //!
 //! A panel is a function of the state that returns actions ([`Panel`]); [`show`] lays the panels out,
 //! applies their actions to the [`Session`] and returns the effects that need files, entities or the

@@ -1,4 +1,4 @@
-//! Parameters of models and lights: one declaration drives JSON, checks, the window's knobs, the uniform layout and
+//! Parameters of models and lights: one declaration drives JSON, checks, the window's knobs, the layout in shaders and
 //! `lcm models`.
 //!
 //! Models share parameters **by name**, so changing the model keeps the user's settings. Parameters of several models

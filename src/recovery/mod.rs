@@ -5,7 +5,7 @@
 //! nothing else does. So whatever takes the window down, a signal, a crash, a lost display, at most that second is
 //! lost, and [`Store::left`] finds the copy at the next start.
 //!
-//! A copy is a scene file like any other, `scene.json`, with [`About`] beside it. No Bevy in here.
+//! `writer` decides what is written and when, `store` knows the folder. A copy is a scene file like any other, `scene.json`, with [`About`] beside it. No Bevy in here.
 
 use std::{path::PathBuf, time::Duration};
 
@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::load::Stamp;
 
-mod keeper;
 mod store;
+mod writer;
 
-pub use keeper::{Keeper, Settled};
 pub use store::{Journal, Left, MAX_COPIES, Store};
+pub use writer::{Keeper, Settled};
 
 /// Facts about the document of a copy.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -74,8 +74,9 @@ const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parame
 /// The function that hands a light to its type, by the index of the type in the registry.
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
-    let mut text =
-        String::from("fn incident(light: Light, p: vec3<f32>) -> Incident {\n    switch light.kind {\n");
+    let mut text = String::from(
+        "fn incident(light: Light, p: vec3<f32>) -> Incident {\n    switch light.light_type {\n",
+    );
     for (i, light) in lights.iter().enumerate() {
         let _ =
             writeln!(text, "        case {i}u: {{ return incident_{}(light, p); }}", light.declaration.id);

@@ -1,5 +1,5 @@
 //! The buffer of lights: one, of fixed capacity, shared by all materials and visible to the vertex
-//! and fragment stages (rule 7). Changing a light rewrites the buffer and touches no material. A view with
+//! and fragment stages. Changing a light rewrites the buffer and touches no material. A view with
 //! overrides has a buffer of its own.
 
 use bevy::{
@@ -73,7 +73,7 @@ pub fn illumination_bytes(lights: &[LightRecord], terms: TermSelection, display:
         put3(0, light.position);
         put3(16, light.direction);
         put3(32, light.colour);
-        put(base + 12, light.kind.to_le_bytes());
+        put(base + 12, light.light_type.to_le_bytes());
         put(base + 28, light.intensity.to_le_bytes());
         for (k, p) in light.parameters.into_iter().enumerate() {
             put(base + 48 + 4 * k, p.to_le_bytes());

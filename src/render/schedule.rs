@@ -8,7 +8,7 @@ use bevy::ecs::{prelude::*, schedule::ScheduleLabel};
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LabFrame;
 
-/// The order of everything that the lab does in a frame. Systems are ordered through these sets only.
+/// The order of everything that the lab does in a frame. Its systems are ordered through these sets.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LabSystems {
     /// Files are read; the scene is replaced.

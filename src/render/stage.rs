@@ -1,4 +1,4 @@
-//! Views that show the scene differently have a [`Stage`]: a render layer with a stand-in for every object, which has
+//! Views that show the scene differently have a [`Stage`]: a render layer with a copy of every object, which has
 //! the material of the view, and lights of its own. Views without [`Overrides`] share the objects themselves.
 
 use bevy::{
@@ -20,27 +20,27 @@ pub const SCENE_LAYER: usize = 0;
 /// The render layer of gizmos, which every view shows.
 pub const GIZMO_LAYER: usize = 1;
 
-/// The layer, the lights and the stand-ins of a view with overrides. Comes and goes with its [`Overrides`].
+/// The layer, the lights and the copies of the objects in a view with overrides. Comes and goes with its [`Overrides`].
 #[derive(Component, Debug)]
 #[component(on_remove = strike)]
 pub struct Stage {
     layer: usize,
     pub(super) illumination: Handle<ShaderBuffer>,
     /// By object.
-    stand_ins: EntityHashMap<Entity>,
+    copies: EntityHashMap<Entity>,
     /// The [list](SceneEntities::list) of objects that have them.
     list: Option<u64>,
 }
 
 impl Stage {
-    pub(super) fn stand_in(&self, object: Entity) -> Option<Entity> {
-        self.stand_ins.get(&object).copied()
+    pub(super) fn copy(&self, object: Entity) -> Option<Entity> {
+        self.copies.get(&object).copied()
     }
 }
 
 /// Stands for an object, whose child it is, in one view.
 #[derive(Clone, Component, Copy, Debug, PartialEq, Eq)]
-pub struct StandIn {
+pub struct ViewCopy {
     /// The view in which it is seen.
     pub view: Entity,
 }
@@ -67,7 +67,7 @@ pub(super) fn set_stages(
         let stage = Stage {
             layer,
             illumination: IlluminationBuffer::without_lights(&mut buffers).0,
-            stand_ins: EntityHashMap::default(),
+            copies: EntityHashMap::default(),
             list: None,
         };
         commands.entity(view).insert((stage, RenderLayers::from_layers(&[layer, GIZMO_LAYER])));
@@ -79,11 +79,11 @@ fn strike(mut world: DeferredWorld, context: HookContext) {
     let view = context.entity;
     let Some(stage) = world.get::<Stage>(view) else { return };
     let illumination = stage.illumination.id();
-    let stand_ins: Vec<_> = stage.stand_ins.values().copied().collect();
+    let copies: Vec<_> = stage.copies.values().copied().collect();
     world.commands().queue(move |world: &mut World| {
-        for stand_in in stand_ins {
+        for copy in copies {
             // Those of objects that are gone went with them.
-            let _ = world.try_despawn(stand_in);
+            let _ = world.try_despawn(copy);
         }
         world.resource_mut::<ParameterTables>().forget(view);
         for attachment in world.resource::<Attachments>().all() {
@@ -92,24 +92,24 @@ fn strike(mut world: DeferredWorld, context: HookContext) {
     });
 }
 
-/// Makes the stand-ins of a view for objects that have none.
-pub(super) fn stand_ins(world: &mut World, view: Entity) {
+/// Makes the copies of the objects in a view for objects that have none.
+pub(super) fn copies(world: &mut World, view: Entity) {
     let list = Some(world.resource::<SceneEntities>().list());
     let Some(mut stage) = world.get_mut::<Stage>(view).filter(|stage| stage.list != list) else { return };
-    let (layer, mut known) = (stage.layer, std::mem::take(&mut stage.bypass_change_detection().stand_ins));
+    let (layer, mut known) = (stage.layer, std::mem::take(&mut stage.bypass_change_detection().copies));
     world.resource_scope(|world, mut entities: Mut<SceneEntities>| {
         let entities = entities.bypass_change_detection();
         let objects = &entities.objects[..entities.objects.len().min(MAX_OBJECTS)];
         entities.visits += objects.len() as u64;
         if known.len() > objects.len() {
-            known.retain(|_, stand_in| world.get_entity(*stand_in).is_ok());
+            known.retain(|_, copy| world.get_entity(*copy).is_ok());
         }
         for &object in objects {
             if known.contains_key(&object) || world.get_entity(object).is_err() {
                 continue;
             }
             let parts = (
-                StandIn { view },
+                ViewCopy { view },
                 ChildOf(object),
                 Transform::IDENTITY,
                 Visibility::Inherited,
@@ -120,6 +120,6 @@ pub(super) fn stand_ins(world: &mut World, view: Entity) {
     });
     if let Some(mut stage) = world.get_mut::<Stage>(view) {
         let stage = stage.bypass_change_detection();
-        (stage.stand_ins, stage.list) = (known, list);
+        (stage.copies, stage.list) = (known, list);
     }
 }

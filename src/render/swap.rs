@@ -19,7 +19,7 @@ use super::{
     material::{Attachments, MaterialInputs},
     meshes::{ShapeMeshes, forget_unused_meshes},
     overrides::Overrides,
-    stage::{Stage, StandIn, stand_ins},
+    stage::{Stage, ViewCopy, copies},
     tables::{ParameterTables, Row},
 };
 use crate::{
@@ -39,7 +39,7 @@ struct Pending {
     /// The view with overrides in which it is seen; none for all others.
     view: Option<Entity>,
     object: Entity,
-    /// The object itself, or its stand-in in the view.
+    /// The object itself, or its copy in the view.
     drawable: Entity,
     /// The object as the view shows it.
     shown: Object,
@@ -56,7 +56,7 @@ pub struct Common {
 }
 
 /// Drawables that have never been drawn, or that wait for their shader.
-type Unfinished = (Or<(With<LitObject>, With<StandIn>)>, Or<(Without<Drawn>, With<AwaitsShader>)>);
+type Unfinished = (Or<(With<LitObject>, With<ViewCopy>)>, Or<(Without<Drawn>, With<AwaitsShader>)>);
 
 /// The objects that a frame visits.
 enum Suspects {
@@ -74,7 +74,7 @@ pub fn swap(
     world: &mut World,
     mut last: Local<Option<Common>>,
     changed: &mut QueryState<Entity, Changed<LitObject>>,
-    unfinished: &mut QueryState<(Entity, Option<(&'static StandIn, &'static ChildOf)>), Unfinished>,
+    unfinished: &mut QueryState<(Entity, Option<(&'static ViewCopy, &'static ChildOf)>), Unfinished>,
     views: &mut QueryState<Entity, (With<Stage>, With<Overrides>)>,
 ) {
     let objects = world.resource::<SceneEntities>().objects.len().min(MAX_OBJECTS);
@@ -92,7 +92,7 @@ pub fn swap(
     let views: Vec<_> = views.iter(world).collect();
     for view in iter::once(None).chain(views.into_iter().map(Some)) {
         let anew = view.is_some_and(|view| {
-            stand_ins(world, view);
+            copies(world, view);
             world.entity(view).get_ref::<Overrides>().is_some_and(|o| o.is_changed())
         });
         let suspects = if all || anew {
@@ -168,7 +168,7 @@ fn find(
     };
     let visits = objects.len() as u64;
     for entity in objects {
-        let drawable = stage.map_or(Some(entity), |stage| stage.stand_in(entity));
+        let drawable = stage.map_or(Some(entity), |stage| stage.copy(entity));
         let Some(drawable) = drawable.and_then(|d| world.get_entity(d).ok()) else { continue };
         let (drawn, waits) = (drawable.get::<Drawn>(), drawable.contains::<AwaitsShader>());
         let Some(object) = world.get_entity(entity).ok().and_then(|e| e.get_ref::<LitObject>()) else {

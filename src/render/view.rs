@@ -31,7 +31,7 @@ use super::{
     entities::CurrentScene,
     illumination::{IlluminationBuffer, ShownTerms},
     overrides::Overrides,
-    stage::{Stage, StandIn},
+    stage::{Stage, ViewCopy},
     tables::ParameterTables,
 };
 use crate::registry::Registry;
@@ -197,7 +197,7 @@ struct Changes<'w, 's> {
     shared: Res<'w, IlluminationBuffer>,
     tables: Res<'w, ParameterTables>,
     stages: Query<'w, 's, (Entity, &'static Stage)>,
-    drawn: Query<'w, 's, Option<&'static StandIn>, Changed<Drawn>>,
+    drawn: Query<'w, 's, Option<&'static ViewCopy>, Changed<Drawn>>,
     shaders: MessageReader<'w, 's, AssetEvent<Shader>>,
     meshes: MessageReader<'w, 's, AssetEvent<Mesh>>,
     buffers: MessageReader<'w, 's, AssetEvent<ShaderBuffer>>,
@@ -401,10 +401,10 @@ mod tests {
                 [true, false, false],
             ),
             (
-                "a stand-in",
+                "a copy",
                 &|app| {
-                    let stand_in = drawable(app);
-                    app.world_mut().entity_mut(stand_in).insert(StandIn { view: views[1] });
+                    let copy = drawable(app);
+                    app.world_mut().entity_mut(copy).insert(ViewCopy { view: views[1] });
                 },
                 [false, true, false],
             ),

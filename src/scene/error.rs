@@ -165,7 +165,7 @@ pub enum LoadError {
         /// At least one.
         problems: Vec<Problem>,
     },
-    /// Parts with defaults are missing, and the defaults were declined (R3).
+    /// Parts with defaults are missing, and the defaults were declined.
     #[error("{name}:{} {}", .missing.iter().find_map(|m| m.place).map_or_else(String::new, |p| format!("{p}:")), declined(.missing))]
     Missing {
         /// The file.

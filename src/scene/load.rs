@@ -1,5 +1,5 @@
-//! Reading scene files: from bytes on disk to a checked [`Scene`], with an error for everything that can be wrong (R2,
-//! R5, R6) and a question about missing parts (R3).
+//! Reading scene files: from bytes on disk to a checked [`Scene`], with an error for everything that can
+//! be wrong and a question about missing parts.
 
 use std::{
     collections::BTreeSet,
@@ -24,7 +24,7 @@ pub const MAX_FILE_BYTES: u64 = 64 << 20;
 /// The name of standard input in messages.
 pub const STDIN: &str = "standard input";
 
-/// The treatment of a missing scene size, reflection model or shading model (R3).
+/// The treatment of a missing scene size, reflection model or shading model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Defaults {
     /// The caller asks: [`Loaded::missing`] lists them, and the scene has the defaults already.

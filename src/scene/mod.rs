@@ -1,7 +1,7 @@
-//! The scene: a value (R13), usually read from JSON.
+//! The scene: a value, usually read from JSON.
 //!
-//! [`Scene`] is the basis of everything else: the loader creates it, [`render::entities`](crate::render::entities)
-//! turns it into entities, the panels edit it, the CPU renderer draws it. Angles are degrees, lengths metres, colours
+//! [`Scene`] is the basis of everything else: [`load`] reads it, and knows what may be missing; a document changes it;
+//! both renderers draw it. Angles are degrees, lengths metres, colours
 //! sRGB-encoded integers: the values as written by users.
 
 use crate::{
@@ -18,12 +18,12 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
+mod beyond_room;
 pub mod check;
 mod encoding;
 pub mod error;
 pub mod examples;
 mod format;
-mod lacking_size;
 mod layout;
 pub mod load;
 pub mod observer;
@@ -276,7 +276,7 @@ impl Default for Object {
 }
 
 impl Default for Scene {
-    /// The default scene (R4): 10×10×10, one white point light, one sphere of default material,
+    /// The default scene: 10×10×10, one white point light, one sphere of default material,
     /// Gouraud shading, Lambertian reflection.
     fn default() -> Self {
         Self {
@@ -327,12 +327,13 @@ impl Scene {
 /// A light of the scene for calculation. A light of an unknown type gives no light.
 #[must_use]
 pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRecord {
-    let Some((kind, entry)) = registry.light_index(&light.light_type).zip(registry.light(&light.light_type))
+    let Some((light_type, entry)) =
+        registry.light_index(&light.light_type).zip(registry.light(&light.light_type))
     else {
-        return LightRecord { kind: u32::MAX, ..LightRecord::default() };
+        return LightRecord { light_type: u32::MAX, ..LightRecord::default() };
     };
     LightRecord {
-        kind,
+        light_type,
         position: light.position.unwrap_or(Vec3::ZERO),
         direction: light.direction.unwrap_or(Vec3::ZERO).normalize_or_zero(),
         colour: light.colour_under(encoding),
@@ -359,7 +360,7 @@ mod tests {
     #[test]
     fn unknown_light_types_give_no_light_and_no_panic() {
         let light = Light { light_type: "laser".to_owned(), ..Light::default() };
-        assert_eq!(record(&light, &Registry::builtin(), Encoding::Srgb).kind, u32::MAX);
+        assert_eq!(record(&light, &Registry::builtin(), Encoding::Srgb).light_type, u32::MAX);
     }
 
     #[test]

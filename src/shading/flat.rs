@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::shader::wgsl;
 
-/// **Flat shading**: one colour per polygon, calculated at its centre with its face normal (DD8).
+/// **Flat shading**: one colour per polygon, calculated at its centre with its face normal (CA DD8).
 ///
 /// Source: J. Bouknight (1970), *A Procedure for Generation of Three-dimensional Half-toned Computer
 /// Graphics Presentations*. Shows the polygons themselves, and Mach bands between them.

@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::shader::wgsl;
 
-/// **Gouraud shading**: colour calculated at the vertices, interpolated between them (DD9).
+/// **Gouraud shading**: colour calculated at the vertices, interpolated between them (CA DD9).
 ///
 /// Source: H. Gouraud (1971), *Continuous Shading of Curved Surfaces*. Smooth and cheap; misses highlights that fall
 /// between the vertices.

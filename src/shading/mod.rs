@@ -1,4 +1,4 @@
-//! Shading models: where on a surface the reflection model is evaluated (R7).
+//! Shading models: where on a surface the reflection model is evaluated.
 //!
 //! **To add one**: write `shading/x.rs` and `assets/shaders/shading/x.wgsl`, and add its name to
 //! [`register_builtin`].
@@ -92,12 +92,12 @@ pub trait Lighting {
 pub struct Corner {
     /// The position.
     pub position: Vec3,
-    /// The vertex normal, DD9.
+    /// The vertex normal, CA DD9.
     pub normal: Vec3,
     /// The tangent of the vertex: the direction in which the surface is brushed. Zero if there is none, and in the CPU
     /// renderer for isotropic models.
     pub tangent: Vec3,
-    /// The normal of the polygon, DD8.
+    /// The normal of the polygon, CA DD8.
     pub face_normal: Vec3,
     /// The tangent of the polygon.
     pub face_tangent: Vec3,

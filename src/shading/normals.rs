@@ -1,4 +1,4 @@
-//! Surface normals from polygons (R7): DD8 for polygons, DD9 for vertices; tangents likewise.
+//! Surface normals from polygons: CA DD8 for polygons, CA DD9 for vertices; tangents likewise.
 
 use glam::Vec3;
 

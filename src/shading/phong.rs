@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::shader::wgsl;
 
-/// **Phong shading**: normals interpolated and renormalised, colour calculated per pixel (DD10).
+/// **Phong shading**: normals interpolated and renormalised, colour calculated per pixel (CA DD10).
 ///
 /// Source: B. T. Phong (1975), *Illumination for Computer Generated Pictures*. Not to be confused
 /// with the Phong reflection model of the same paper.

@@ -1,4 +1,4 @@
-//! Polygon meshes (AB10, AB11): a list of vertices and a set of polygons over them.
+//! Polygon meshes (CA AB10, AB11): a list of vertices and a set of polygons over them.
 
 use glam::Vec3;
 
@@ -82,7 +82,7 @@ impl PolygonMesh {
         (out, polygon.corners().len())
     }
 
-    /// The normal of every polygon, DD8.
+    /// The normal of every polygon, CA DD8.
     #[must_use]
     pub fn polygon_normals(&self) -> Vec<Vec3> {
         self.polygons
@@ -106,7 +106,7 @@ impl PolygonMesh {
             .collect()
     }
 
-    /// The normal of every vertex, DD9.
+    /// The normal of every vertex, CA DD9.
     #[must_use]
     pub fn vertex_normals(&self) -> Vec<Vec3> {
         let normals = self.polygon_normals();

@@ -56,7 +56,7 @@ pub trait ObjectType: Send + Sync + 'static {
     const DECLARATION: Declaration;
 
     /// The mesh for a legal tessellation. Coincident vertices are shared, since vertex normals are means over shared
-    /// vertices (DD9); corners run counter-clockwise seen from outside. Polygons are brushed horizontally unless the
+    /// vertices (CA DD9); corners run counter-clockwise seen from outside. Polygons are brushed horizontally unless the
     /// shape sets another direction; see [`Polygon::brushed`](mesh::Polygon::brushed).
     fn mesh(tessellation: u32) -> PolygonMesh;
 }

@@ -1,7 +1,8 @@
 //! The study: a report, with numbers, plots and pictures, of four phenomena that physically based models
 //! reproduce and Blinn–Phong does not.
 //!
-//! It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
+//! Each chapter has a file: `fresnel`, `furnace` (conservation of energy), `gold` (another light), `lobe` (the shape of
+//! the highlight); their measured data are in [`sources`]. It is the results chapter planned in E. James (2022), *Physically Based Shading Models in Real-time Rendering*.
 //! Every sentence of a conclusion that depends on a number is chosen by that number.
 
 use std::{fmt::Write as _, fs, io, path::Path, sync::Arc};
@@ -23,7 +24,6 @@ use crate::{
     },
 };
 
-pub mod data;
 pub mod fit;
 mod fresnel;
 mod furnace;
@@ -31,6 +31,7 @@ mod gold;
 mod lobe;
 pub mod plot;
 mod report;
+pub mod sources;
 
 /// The number of steps reported by [`run`].
 pub const STEPS: u64 = 5;

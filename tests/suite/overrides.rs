@@ -20,7 +20,7 @@ use lights_camera_models::{
         drawn::Drawn,
         entities::{LitObject, SceneEntities},
         overrides::Overrides,
-        stage::{GIZMO_LAYER, StandIn},
+        stage::{GIZMO_LAYER, ViewCopy},
         view::{Drawing, View, texture_of},
     },
     scene::{Display, Object, Scene},
@@ -218,7 +218,7 @@ fn a_change_of_the_overrides_draws_that_view_and_a_change_of_the_scene_draws_all
     let expected = alone(&overrides.applied(&moved), TermSelection::Diffuse);
     assert!(picture_of(&mut renderer, view) == expected);
     let world = renderer.app().world_mut();
-    assert_eq!(world.query::<&StandIn>().iter(world).count(), 3);
+    assert_eq!(world.query::<&ViewCopy>().iter(world).count(), 3);
 
     // Without overrides it shows what the others show.
     renderer.app().world_mut().entity_mut(view).remove::<Overrides>();

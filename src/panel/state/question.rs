@@ -16,7 +16,7 @@ pub enum Question {
         /// The action that was asked for.
         then: Box<Action>,
     },
-    /// A file lacks parts that have defaults (R3).
+    /// A file lacks parts that have defaults.
     MissingParts {
         /// The file.
         path: PathBuf,
@@ -25,7 +25,7 @@ pub enum Question {
         /// The missing parts.
         parts: Vec<MissingPart>,
     },
-    /// The file is empty (R2).
+    /// The file is empty.
     EmptyFile {
         /// The file.
         path: PathBuf,

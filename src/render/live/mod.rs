@@ -1,10 +1,13 @@
-//! The shaders on the picture: composed when first needed, exchanged when a file they are made of changes, and
+//! The shaders in use: composed when first needed, exchanged when a file they are made of changes, and
 //! kept when the change cannot be drawn with.
 //!
 //! Each reflection model in each shading model has one shader, and each of those goes its own way: what a change of a
 //! shared file breaks for one model does not disturb the others. A shader is exchanged only after it was tried
 //! ([`trial`](super::trial)). Its asset stays the same, so cameras, materials and objects know nothing of it. The
 //! files are the business of the [`Library`].
+//!
+//! Until a shader is ready, an object keeps its old one ([`AwaitsShader`](super::swap::AwaitsShader)); a broken custom
+//! model is drawn as grey Lambert (see [`custom`](crate::custom)).
 
 mod arriving;
 mod ready;

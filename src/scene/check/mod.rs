@@ -1,4 +1,4 @@
-//! Every constraint of a scene, once (R5, R6): for the reader, the window and the writer.
+//! Every constraint of a scene, once: for the reader, the window and the writer.
 //!
 //! A rule for one field is a function that returns `Err` with the rule as a clause, so that it can end a sentence: "k_d
 //! is 0.2, but **the diffuse coefficient must be between 0.5 and 1**". [`scene`] applies them all to a whole scene;

@@ -4,9 +4,8 @@
 use std::collections::{BTreeSet, HashSet};
 
 use super::{
-    Scene, check,
+    Scene, beyond_room, check,
     error::{LoadError, Path, Problem},
-    lacking_size,
     load::{Defaults, Missing},
 };
 use crate::{
@@ -132,7 +131,7 @@ impl<'a> Reader<'a> {
         if !self.reported.is_empty() {
             problems.retain(|problem| !problem.path.ancestors().any(|p| self.reported.contains(&p)));
         }
-        for mut problem in lacking_size::explain(problems, scene, &self.missing) {
+        for mut problem in beyond_room::explain(problems, scene, &self.missing) {
             let (at, value) = json::locate(root, &problem.path);
             if let (Some(value), Some(found)) = (value, &mut problem.found) {
                 *found = json::describe(value, self.text);

@@ -12,10 +12,10 @@ use crate::{
     registry::Registry,
     study::{
         Lab, StudyError, Table,
-        data::Sgd,
         fit::{self, Sample},
         fixed, grid,
         plot::{Axis, Line, Mark, Plot, Series},
+        sources::Sgd,
         svg, words,
     },
 };

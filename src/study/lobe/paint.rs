@@ -6,11 +6,11 @@ use super::contestant::Contestant;
 use crate::{
     optics::geometry::direction,
     study::{
-        Lab, StudyError, Table, data,
+        Lab, StudyError, Table,
         fit::{self, Fit, Sample},
         fixed,
         plot::{Axis, Line, Mark, Plot, Series},
-        svg,
+        sources, svg,
     },
 };
 
@@ -28,10 +28,11 @@ pub(in crate::study) fn paint_samples(
     id: &str,
     keep: impl Fn(f32) -> bool,
 ) -> Result<Vec<Sample>, StudyError> {
-    let all = data::paint(id);
-    let good =
-        |m: &data::Measurement| m.theta_i <= LARGEST_ANGLE && m.theta_o <= LARGEST_ANGLE && keep(m.theta_i);
-    let samples = data::samples(&all, data::brightest(&all), good);
+    let all = sources::paint(id);
+    let good = |m: &sources::Measurement| {
+        m.theta_i <= LARGEST_ANGLE && m.theta_o <= LARGEST_ANGLE && keep(m.theta_i)
+    };
+    let samples = sources::samples(&all, sources::brightest(&all), good);
     if samples.is_empty() { Err(StudyError::Data(format!("there is no paint {id}"))) } else { Ok(samples) }
 }
 
@@ -145,11 +146,11 @@ fn plots(lab: &Lab, paint: usize) -> Result<Markup, StudyError> {
 
 /// The plot of a paint in the plane of incidence, with the fits.
 fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, StudyError> {
-    let all = data::paint(id);
-    let band = data::brightest(&all);
+    let all = sources::paint(id);
+    let band = sources::brightest(&all);
     let samples = paint_samples(id, |_| true)?;
     // Positive angles on the side of the mirror direction.
-    let signed = |m: &data::Measurement| {
+    let signed = |m: &sources::Measurement| {
         let delta = m.delta_phi.rem_euclid(360.0);
         if (delta - 180.0).abs() < 1.0 {
             Some(m.theta_o)
