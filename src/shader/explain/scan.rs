@@ -215,7 +215,7 @@ pub(super) fn given(count: usize) -> String {
     if count == 1 { "1 is given".to_owned() } else { format!("{count} are given") }
 }
 
-/// A type in a sentence: "a number", "a vec3<f32>".
+/// A type in a sentence: "a number", `a vec3<f32>`.
 pub(super) fn called(of: &str) -> String {
     match of {
         "f32" | "{AbstractFloat}" | "{AbstractInt}" => "a number".to_owned(),
