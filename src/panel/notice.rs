@@ -1,4 +1,4 @@
-//! What a presentation says for a moment: the way out, and what happened. It has no status line.
+//! Messages that a presentation shows for a moment: the way out, and what happened. It has no status line.
 
 use std::{thread, time::Duration};
 

@@ -35,7 +35,7 @@ pub struct Set {
     pub ascent: f32,
     /// The room below.
     pub descent: f32,
-    /// Where the lines that it is one of are broken.
+    /// The worst break of the lines that it is one of.
     pub broken: Break,
 }
 

@@ -135,7 +135,7 @@ fn what_wgsl_allows_is_no_mistake() {
     }
 }
 
-/// What a student writes before `response`, what in it, the text at the place of the message, and the message.
+/// A student's lines before `response`, those in it, the text at the place of the message, and the message.
 const MISTAKES: &str = r##"
 ¦return Terms(0.0, m.base_colour * cos_l, vec3(0.0));¦0.0¦Terms(ambient, diffuse, specular) needs a vec3<f32> for ambient, but `0.0` is a number; write `vec3(0.0)`
 ¦return Terms(vec3(0.0), m.base_colour * cos_l, m.k_s);¦m.k_s¦Terms(ambient, diffuse, specular) needs a vec3<f32> for specular, but `m.k_s` is a number; write `vec3(m.k_s)`

@@ -140,7 +140,7 @@ fn set(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, width: f32) -> Lines {
     (lines, height)
 }
 
-/// How much room parts of an equation take, and how they are broken.
+/// The room that parts of an equation take, and their worst break.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured {
     /// The longest line.
