@@ -73,7 +73,7 @@ impl<T: Clone + PartialEq> Splice<T> {
 
     /// True if it gives one part another value.
     fn is_of_one(&self) -> bool {
-        (self.old.len(), self.new.len()) == (1, 1)
+        matches!((&self.old[..], &self.new[..]), ([old], [new]) if old.0 == new.0)
     }
 }
 
@@ -240,6 +240,15 @@ impl History {
             parts -= self.steps.remove(0).patch.parts();
         }
         self.done = self.steps.len();
+    }
+
+    /// A change belongs to the last step that is done.
+    pub(super) fn go_on(&mut self, patch: Patch) {
+        if let Some(Step { name, gesture, after, .. }) =
+            self.done.checked_sub(1).and_then(|i| self.steps.get(i))
+        {
+            self.record(name.clone(), *gesture, patch, *after);
+        }
     }
 
     /// Names the last step, where the name follows from the change.

@@ -12,7 +12,7 @@ use std::{
 
 use crate::{
     registry::Registry,
-    scene::{Light, Object, Scene, check, error::Problem},
+    scene::{Light, Object, Observer, Scene, check, error::Problem},
     text::sentence,
 };
 
@@ -210,6 +210,8 @@ impl Document {
 
     /// The scene was written to the file.
     pub fn mark_saved(&mut self) {
+        // Undoing leads back to what was saved.
+        self.end_gesture();
         self.saved = self.scene.clone();
         self.differs.take();
     }
@@ -329,6 +331,13 @@ impl Document {
         }
     }
 
+    /// Changes an object as a consequence of the last step, which undoes it too.
+    pub fn go_on(&mut self, object: usize, change: impl FnOnce(&mut Object)) {
+        let patch =
+            self.patch(Extent::Object(object), |document| change(&mut document.scene.objects[object]));
+        self.history.go_on(patch);
+    }
+
     /// Changes values without a step, as models that come and go require.
     pub fn amend(&mut self, change: impl FnOnce(&mut Scene)) {
         change(&mut self.scene);
@@ -386,6 +395,11 @@ impl Document {
     /// The first problem of the parts in which a scene may differ from this one.
     fn problem_in(&self, scene: &Scene, parts: &[Extent], registry: &Registry) -> Option<Problem> {
         if (scene.lights.len(), scene.objects.len()) != (self.lights.len(), self.objects.len()) {
+            return check::scene(scene, registry).into_iter().next();
+        }
+        let rest = |scene: &Scene| Scene { observer: Observer::default(), ..rest_of(scene) };
+        if parts.iter().any(|part| matches!(part, Extent::All | Extent::Rest)) && rest(scene) != rest(self) {
+            // Room and models have a say in everything.
             return check::scene(scene, registry).into_iter().next();
         }
         let problems = |part: &Extent| match *part {

@@ -6,7 +6,7 @@ use super::{Document, Edit, LightField, ObjectField, Selection, limits};
 use crate::{
     parameter::Value,
     registry::Registry,
-    scene::{Scene, check},
+    scene::{Object, Scene, check},
 };
 
 impl Document {
@@ -44,10 +44,15 @@ impl Document {
                 None => Ok(()),
             }
         };
-        let material = |id: &str, value: &Value| match registry.material_parameter(id) {
-            Some(p) if p.allows(value) => Ok(()),
-            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
-            None => Err(format!("No model has a parameter “{id}”.")),
+        let material = |object: &Object, id: &str, value: &Value| {
+            let own = registry.model(self.scene.model_of(object)).and_then(|m| m.parameter(id));
+            match own.or_else(|| registry.material_parameter(id)) {
+                _ if check::material_parameter(registry, self.scene.model_of(object), id, value).is_ok() => {
+                    Ok(())
+                }
+                Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+                None => Err(format!("No model has a parameter “{id}”.")),
+            }
         };
         let direction = |part: Selection, d: Vec3| {
             if check::direction(d).is_ok() {
@@ -141,8 +146,10 @@ impl Document {
                     },
                     ObjectField::Model(id) => id.as_deref().map_or(Ok(()), model),
                     ObjectField::ShadingModel(id) => id.as_deref().map_or(Ok(()), shading),
-                    ObjectField::Material(id, value) => material(id, value),
-                    ObjectField::Preset(all) => all.iter().try_for_each(|(id, value)| material(id, value)),
+                    ObjectField::Material(id, value) => material(object, id, value),
+                    ObjectField::Preset(all) => {
+                        all.iter().try_for_each(|(id, value)| material(object, id, value))
+                    }
                 }
             }
         }

@@ -26,7 +26,16 @@ struct Change {
 /// The models may be others than before: stashes what none of them takes, replaces numbers that are out of
 /// range by the nearest that is not, gives back what is taken again, and says so. What the user changed
 /// meanwhile stays. `session` is borrowed mutably only when something changes.
-pub fn follow_registry(mut session: impl DerefMut<Target = Session>, registry: &Registry) {
+pub fn follow_registry(session: impl DerefMut<Target = Session>, registry: &Registry) {
+    follow(session, registry, false);
+}
+
+/// The same where the last step gave objects another model: what follows from it belongs to that step.
+pub fn follow_model(session: &mut Session, registry: &Registry) {
+    follow(session, registry, true);
+}
+
+fn follow(mut session: impl DerefMut<Target = Session>, registry: &Registry, within_step: bool) {
     let (changes, stashed) = plan(&session, registry);
     if stashed != session.stashed {
         session.stashed = stashed;
@@ -40,15 +49,20 @@ pub fn follow_registry(mut session: impl DerefMut<Target = Session>, registry: &
         .into_iter()
         .filter_map(|change| Some((session.document.object(change.place.0)?, change.place.1, change.to)))
         .collect();
-    // No step of the user's: undoing it would bring back what no model takes.
-    session.document.amend(|scene| {
-        for (i, name, to) in changes {
-            match to {
-                Some(value) => scene.objects[i].material.set(name, value),
-                None => drop(scene.objects[i].material.0.remove(&name)),
-            }
-        }
-    });
+    let put = |object: &mut Object, name: Cow<'static, str>, to: Option<Value>| match to {
+        Some(value) => object.material.set(name, value),
+        None => drop(object.material.0.remove(&name)),
+    };
+    if within_step {
+        changes
+            .into_iter()
+            .for_each(|(i, name, to)| session.document.go_on(i, |object| put(object, name, to)));
+    } else {
+        // No step of the user's: undoing it would bring back what no model takes.
+        session.document.amend(|scene| {
+            changes.into_iter().for_each(|(i, name, to)| put(&mut scene.objects[i], name, to));
+        });
+    }
     for text in news {
         session.say(Severity::Info, text);
     }
@@ -241,17 +255,22 @@ mod tests {
     use super::*;
     use crate::{
         custom,
-        document::Document,
+        document::{Document, Edit, ObjectField},
+        panel::state::Action,
         scene::{Scene, check, load, save},
     };
 
     /// Lambert's law with these parameters, of which it uses none.
     fn put(registry: &mut Registry, parameters: &str) {
+        put_as("mine", registry, parameters);
+    }
+
+    fn put_as(id: &str, registry: &mut Registry, parameters: &str) {
         let text = format!(
             "/* lcm {{ \"parameters\": [{parameters}] }} */\nfn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, \
              m: Parameters) -> Terms {{\n    return Terms(vec3(0.0), vec3(max(dot(frame.n, l), 0.0)), vec3(0.0));\n}}\n"
         );
-        let model = custom::read(Path::new("models/mine.wgsl"), &text, registry)
+        let model = custom::read(Path::new(&format!("models/{id}.wgsl")), &text, registry)
             .unwrap_or_else(|problems| panic!("{parameters}: {problems:?}"));
         registry.put_custom_model(model);
     }
@@ -380,6 +399,36 @@ mod tests {
             &registry,
             &["polish is 3 at Sphere 1 instead of 0, since it must be greater than 0 and at most 9 now."],
         );
+    }
+
+    #[test]
+    fn a_value_follows_the_model_that_the_object_gets_and_undoing_gives_it_back() {
+        let (mut session, mut registry) = begin(&number("polish", 0.0, 100.0), "polish", Value::Number(80.0));
+        put_as("other", &mut registry, &number("polish", 0.0, 1.0));
+        let start = session.document.scene().clone();
+        let polish = |v| Edit::Object(0, ObjectField::Material("polish", Value::Number(v)));
+        let model = |id: &str| Edit::Model(id.to_owned());
+        let edit = |session: &mut Session, registry: &Registry, edit, now| {
+            session.document.end_gesture();
+            session.apply(Action::Edit(edit), registry);
+            assert_eq!(value(session, "polish"), Some(&Value::Number(now)));
+            assert_eq!(check::scene(&session.document, registry), []);
+        };
+        edit(&mut session, &registry, model("other"), 1.0);
+        edit(&mut session, &registry, model("mine"), 80.0);
+        edit(&mut session, &registry, polish(38.5), 38.5);
+        edit(&mut session, &registry, polish(120.0), 38.5);
+        edit(&mut session, &registry, model("other"), 1.0);
+        edit(&mut session, &registry, polish(0.375), 0.375);
+        edit(&mut session, &registry, polish(38.5), 0.375);
+        put(&mut registry, &number("polish", 0.0, 100.0));
+        follow_registry(&mut session, &registry);
+        assert_eq!(session.document.steps().len(), 5);
+        while session.document.done() > 0 {
+            session.apply(Action::Undo, &registry);
+            assert_eq!(check::scene(&session.document, &registry), []);
+        }
+        assert!(*session.document.scene() == start && !session.is_dirty());
     }
 
     #[test]

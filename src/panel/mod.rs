@@ -303,7 +303,8 @@ fn gesture_goes_on(ctx: &egui::Context) -> bool {
     let before = ctx.data(|data| data.get_temp::<Option<Id>>(key)).flatten();
     ctx.data_mut(|data| data.insert_temp(key, focus));
     let typing = focus.is_some() && focus == before;
-    typing || ctx.input(|input| input.pointer.any_down())
+    // A slider keeps the focus after a drag.
+    ctx.input(|input| !input.pointer.any_released() && (typing || input.pointer.any_down()))
 }
 
 /// The least height of the strip with the shaders, points.

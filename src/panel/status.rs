@@ -71,17 +71,23 @@ impl Panel for StatusLine {
 /// The part of the line that the last message may take from what stands at the right.
 const NEWS: f32 = 0.75;
 
-/// The last message, if it is no problem; until something is changed. At the right, `beside` points are wanted.
+/// The last message, until something is changed. At the right, `beside` points are wanted.
 fn latest(ui: &mut Ui, session: &Session, beside: f32, actions: &mut Vec<Action>) {
-    let Some(message) = session.messages.last().filter(|m| m.severity == Severity::Info) else { return };
+    let Some(message) = session.messages.last() else { return };
     let listed = session.view.bottom_open && session.view.bottom_tab == MESSAGES_TAB;
     if listed || !session.has_news() {
         return;
     }
+    let palette = Palette::here(ui);
+    // The sign before the count is that of the worst.
+    if session.messages.worst() != Some(message.severity) {
+        let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
+        icon::severity(ui.painter(), rect.center(), 5.5, message.severity, &palette);
+    }
     let (all, gap) = (ui.available_width(), 2.0 * ui.spacing().item_spacing.x);
     let button = message.offer.as_ref().map_or(0.0, |(text, _)| theme::small_width(ui, text) + 2.0 * gap);
     let room = (all - beside - gap).max(NEWS * all) - button;
-    let colour = Palette::here(ui).text;
+    let colour = palette.text;
     let galley = theme::elided(ui, &message.text, TextStyle::Small, colour, room);
     let label = ui.add(egui::Label::new(galley));
     label.on_hover_text(&message.text);

@@ -94,12 +94,17 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
     let line = |text: &str, room: f32| theme::elided(ui, text, font.clone(), palette.text, room);
     let (title, whole, room) = (session.title(), session.window_title(), width - 8.0);
-    // The file has its share where both do not fit.
-    let file = whole.strip_prefix(&title).unwrap_or_default();
+    // The file has its share where both do not fit, unless it repeats the name.
+    let mut file = whole.strip_prefix(&title).unwrap_or_default();
+    if line(&title, f32::INFINITY).size().x + line(file, f32::INFINITY).size().x > room
+        && repeats(&title, file)
+    {
+        file = "";
+    }
     let name = line(&title, (room - line(file, room).size().x).max(NAME * room));
     let file = line(file, room - name.size().x);
     let mut at = place.left_center() + vec2(4.0, 0.0);
-    for galley in [name, file] {
+    for galley in [name, file].into_iter().filter(|g| g.size().x > 0.0) {
         let rect = egui::Align2::LEFT_CENTER.anchor_size(at, galley.size());
         ui.painter().galley(rect.min, galley, palette.text);
         at.x = rect.right();
@@ -125,6 +130,15 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.painter().circle_filled(rect.center(), 3.5, palette.accent);
         dot.on_hover_text("Unsaved changes");
     }
+}
+
+/// True if all words of a file's name are in a title.
+fn repeats(title: &str, file: &str) -> bool {
+    let words = |text: &str| -> Vec<String> {
+        text.to_lowercase().split(|c: char| !c.is_alphanumeric()).map(str::to_owned).collect()
+    };
+    let known = words(title);
+    words(file.trim_end_matches(".json")).iter().all(|word| word.is_empty() || known.contains(word))
 }
 
 /// Room for the longest entry and its key, points.
@@ -192,7 +206,7 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
             let (done, steps) = (session.document.done(), session.document.steps().len());
             let step =
                 |verb: &str, at: Option<usize>| match at.and_then(|at| session.document.steps().nth(at)) {
-                    Some(name) => format!("{verb}: {name}"),
+                    Some(name) => format!("{verb} “{name}”"),
                     None => verb.to_owned(),
                 };
             let undo = done.checked_sub(1);

@@ -281,15 +281,15 @@ fn keys_menu_and_list_take_steps_back_and_forth() {
     assert_eq!(objects(&bench), (2, 1.0));
     bench.click("Edit");
     bench.settle();
-    assert!(bench.find("Undo: Exposure Ctrl+Z").is_some());
-    bench.click("Undo: Exposure Ctrl+Z");
+    assert!(bench.find("Undo “Exposure” Ctrl+Z").is_some());
+    bench.click("Undo “Exposure” Ctrl+Z");
     bench.settle();
     assert_eq!(objects(&bench), (2, 0.0));
     bench.click("Edit");
     bench.settle();
     assert!(
-        bench.find("Undo: Add Cube 1 Ctrl+Z").is_some()
-            && bench.find("Redo: Exposure Ctrl+Shift+Z").is_some()
+        bench.find("Undo “Add Cube 1” Ctrl+Z").is_some()
+            && bench.find("Redo “Exposure” Ctrl+Shift+Z").is_some()
     );
     bench.click("History… ");
     bench.settle();
@@ -312,27 +312,77 @@ fn a_drag_of_a_knob_is_one_step() {
     let at = slider.expect("there is a slider").rect.left_center() + vec2(20.0, 0.0);
     let exponent = |bench: &Bench| bench.session.document.objects[0].material.0.get("alpha").cloned();
     let before = exponent(&bench);
-    bench.hover(at);
-    bench.frame(vec![Event::PointerButton {
-        pos: at,
-        button: PointerButton::Primary,
-        pressed: true,
-        modifiers: Modifiers::NONE,
-    }]);
-    for k in 1..12 {
-        bench.hover(at + vec2(2.0 * k as f32, 0.0));
-    }
-    bench.frame(vec![Event::PointerButton {
-        pos: at + vec2(24.0, 0.0),
-        button: PointerButton::Primary,
-        pressed: false,
-        modifiers: Modifiers::NONE,
-    }]);
-    bench.settle();
-    assert!(exponent(&bench) != before, "the drag changes it");
-    assert_eq!(bench.session.document.steps().collect::<Vec<_>>(), ["Shininess of Sphere 1"]);
+    let drag = |bench: &mut Bench, from: f32| {
+        let press = |pos, pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        let at = at + vec2(from, 0.0);
+        bench.hover(at);
+        bench.frame(vec![press(at, true)]);
+        for k in 1..12 {
+            bench.hover(at + vec2(2.0 * k as f32, 0.0));
+        }
+        bench.frame(vec![press(at + vec2(24.0, 0.0), false)]);
+        bench.settle();
+    };
+    let steps = |bench: &Bench| bench.session.document.steps().map(str::to_owned).collect::<Vec<_>>();
+    drag(&mut bench, 0.0);
+    let between = exponent(&bench);
+    assert!(between != before, "the drag changes it");
+    assert_eq!(steps(&bench), ["Shininess of Sphere 1"]);
+    // The slider has the focus still.
+    drag(&mut bench, 24.0);
+    assert!(exponent(&bench) != between, "the second drag changes it");
+    assert_eq!(steps(&bench), ["Shininess of Sphere 1"; 2]);
+    bench.key(Key::Z, Modifiers::COMMAND);
+    assert_eq!(exponent(&bench), between);
     bench.key(Key::Z, Modifiers::COMMAND);
     assert_eq!(exponent(&bench), before);
+}
+
+#[test]
+fn undoing_leads_back_to_what_was_saved() {
+    let registry = Registry::builtin();
+    let mut document = Document::new(Scene::default());
+    let size = |document: &mut Document, v| {
+        document.edit(Edit::Object(0, ObjectField::Size(v)), Selection::Room, &registry).expect("legal");
+    };
+    size(&mut document, 3.0);
+    document.mark_saved();
+    size(&mut document, 4.0);
+    document.undo();
+    assert!(!document.differs() && document.objects[0].size == 3.0);
+}
+
+#[test]
+fn a_system_keeps_the_rules_of_room_models_and_display_and_the_selection() {
+    let registry = Registry::builtin();
+    let objects = (0..3).map(|i| Object { position: Vec3::splat(2.0 + i as f32), ..Object::default() });
+    let mut session = Session::new(Scene { objects: objects.collect(), ..Scene::default() });
+    let wrong: [fn(&mut Scene); 3] = [
+        |s| s.reflection_model = "nonsense".to_owned(),
+        |s| s.scene_size.width = 0.1,
+        |s| s.display.exposure = 99.0,
+    ];
+    for wrong in wrong {
+        for part in [Extent::All, Extent::Rest] {
+            let mut scene = session.document.scene().clone();
+            wrong(&mut scene);
+            session.submit(&scene, &[part], &registry).expect_err("a rule is broken");
+        }
+    }
+    assert_eq!(session.document.steps().len(), 0);
+    session.apply(Action::Select(Selection::Object(1)), &registry);
+    let mut scene = session.document.scene().clone();
+    scene.objects.remove(0);
+    session.submit(&scene, &[Extent::All], &registry).expect("legal");
+    assert_eq!(session.selection, Selection::Object(0), "the same object");
+    scene.objects.remove(0);
+    session.submit(&scene, &[Extent::All], &registry).expect("legal");
+    assert_eq!(session.selection, Selection::Room, "it is gone");
 }
 
 #[test]

@@ -277,11 +277,13 @@ fn the_menus_fit_a_window_in_which_everything_is_larger() {
 }
 
 #[test]
-fn the_title_leaves_room_for_the_file() {
-    for (size, scale) in [(1280.0, 100), (1280.0, 150), (1920.0, 100)] {
-        let name = Some("A long look at shapes and lights".to_owned());
-        let mut session = Session::new(Scene { name, ..Scene::default() });
-        session.path = Some("/home/mira/exercise_one.json".into());
+fn the_title_leaves_room_for_the_file_unless_that_repeats_it() {
+    let name = "A long look at shapes and lights";
+    let all = [(1280.0, 100), (1280.0, 150), (1920.0, 100)];
+    let files = ["exercise_one.json", "long_look_at_shapes_and_lights.json"];
+    for (file_name, (size, scale)) in files.into_iter().flat_map(|f| all.map(|s| (f, s))) {
+        let mut session = Session::new(Scene { name: Some(name.to_owned()), ..Scene::default() });
+        session.path = Some(format!("/home/mira/{file_name}").into());
         let mut bench = Bench::new(session);
         bench.size = vec2(size, 0.5625 * size);
         bench.apply(Action::View(ViewChange::Scale(scale)));
@@ -295,9 +297,19 @@ fn the_title_leaves_room_for_the_file() {
             })
             .collect();
         let title: String = shown.iter().map(|(text, _)| text.as_str()).collect();
-        assert!(title.starts_with("A l") && title.contains(" — ex"), "{size}, {scale} %: {title}");
+        assert!(title.starts_with("A l"), "{size}, {scale} %: {title}");
+        assert_eq!(title.contains(" — "), file_name == files[0], "{size}, {scale} %: {title}");
+        assert!(file_name != files[0] || title.contains(" — ex"), "{size}, {scale} %: {title}");
         assert!(shown.iter().all(|(_, place)| place.right() < file.left() - 8.0), "{shown:?}");
     }
+}
+
+#[test]
+fn a_warning_is_read_without_opening_the_list() {
+    let mut bench = bench(100);
+    bench.session.say(Severity::Warning, "scene.json was not opened.");
+    bench.settle();
+    assert!(!bench.session.view.bottom_open && bench.says("scene.json was not opened."));
 }
 
 #[test]

@@ -22,7 +22,7 @@ fn files(folder: &Path, at: &str, to: &mut Files) {
             files(&entry.path(), &format!("{path}/"), to);
         } else if name.ends_with(".rs") && name != "tests.rs" {
             let text = fs::read_to_string(entry.path()).expect("readable");
-            let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+            let code = text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or_default();
             let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
             to.insert(path, lines.collect::<Vec<_>>().join("\n"));
         }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use bevy_egui::egui::{self, Key, Modifiers, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
-    document::Selection,
+    document::{Edit, ObjectField, Selection},
     optics::TermSelection,
     panel::{
         marks::Lens,
@@ -441,6 +441,20 @@ fn lines_of_a_presentation_have_the_same_size_at_every_scale() {
     for heights in &sizes {
         assert!(heights.len() >= 4 && heights.iter().all(|h| (h - sizes[0][0]).abs() <= 1), "{sizes:?}");
     }
+}
+
+#[test]
+fn choices_in_a_presentation_are_those_of_the_scene() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Model(Some("eon".to_owned())))));
+    bench.apply(Action::Select(Selection::Object(0)));
+    assert_eq!(
+        bench.session.edit_model("hapke"),
+        Edit::Object(0, ObjectField::Model(Some("hapke".to_owned())))
+    );
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    assert_eq!(bench.session.edit_model("hapke"), Edit::Model("hapke".to_owned()));
+    assert_eq!(bench.session.edit_shading_model("flat"), Edit::ShadingModel("flat".to_owned()));
 }
 
 #[test]

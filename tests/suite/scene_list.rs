@@ -273,7 +273,7 @@ fn saving_says_where_and_offers_to_keep_the_view() {
     bench.session.saved(path.clone(), &bench.registry);
     bench.settle();
     assert_eq!(bench.session.messages.len(), 1, "the last time counts");
-    assert!(bench.says("The view you turned to is not in the file"));
+    assert!(bench.says("The file keeps the observer’s view"));
     bench.effects.clear();
     bench.click("Set observer to this view");
     assert_eq!(bench.effects, [Effect::ObserverFromView]);

@@ -64,7 +64,7 @@ pub(super) fn observer(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>
             let problem = session.observer_problem();
             if ui
                 .add_enabled(problem.is_none(), Button::new("Set observer to this view"))
-                .on_hover_text("Make the place of the camera that of the observer")
+                .on_hover_text("Move the observer to the camera")
                 .on_disabled_hover_text(problem.unwrap_or_default())
                 .clicked()
             {

@@ -75,7 +75,7 @@ pub enum Action {
     HomeView,
     /// Let the camera look at what is selected.
     FocusSelection,
-    /// Make the place of the camera that of the observer.
+    /// Moves the observer to the camera.
     ObserverFromView,
     /// Move the camera a little.
     Steer(Steer),

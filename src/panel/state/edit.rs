@@ -3,7 +3,7 @@
 use super::{Session, Severity, messages::Step};
 use crate::{
     document::{Edit, Extent, LightField, ObjectField, Selection},
-    panel::follow::follow_registry,
+    panel::follow::{follow_model, follow_registry},
     registry::Registry,
     scene::{Object, Scene},
 };
@@ -22,6 +22,8 @@ impl Session {
             Edit::ShadingModel(_) => Some("shading model"),
             _ => None,
         };
+        let other_model = matches!(edit, Edit::Model(_) | Edit::Object(_, ObjectField::Model(_)));
+        let before = self.document.revision();
         let named =
             matches!(edit, Edit::Light(_, LightField::Name(_)) | Edit::Object(_, ObjectField::Name(_)));
         let done = match edit {
@@ -33,6 +35,10 @@ impl Session {
         }
         if let Some(id) = model {
             self.model_slots.take(&id);
+        }
+        if other_model && self.document.revision() != before {
+            // Models may allow other values of a parameter that they share.
+            follow_model(self, registry);
         }
         if let Some(what) = scene_choice {
             let own = |o: &Object| match what {
@@ -56,9 +62,20 @@ impl Session {
     /// # Errors
     /// The reason for a refusal; the document stays as it is.
     pub fn submit(&mut self, scene: &Scene, parts: &[Extent], registry: &Registry) -> Result<(), String> {
+        let selected = match self.selection {
+            Selection::Light(i) => self.document.light_id(i),
+            Selection::Object(i) => self.document.object_id(i),
+            Selection::Room | Selection::Observer => None,
+        };
+        let before = (self.document.revision(), self.selection);
         self.document.submit(scene, parts, self.selection, registry)?;
-        if !self.exists(self.selection) {
-            self.selection = Selection::Room;
+        if let Some(id) = selected {
+            let light = self.document.light(id).map(Selection::Light);
+            self.selection =
+                light.or(self.document.object(id).map(Selection::Object)).unwrap_or(Selection::Room);
+        }
+        if self.selection != before.1 && self.document.revision() != before.0 {
+            self.document.selected(self.selection);
         }
         Ok(())
     }

@@ -74,7 +74,7 @@ impl Session {
     pub(super) fn note_saved(&mut self, path: &Path) {
         let mut note = Note::new(Severity::Info, format!("Saved to {}.", path.display()));
         if self.facts.camera_left {
-            note.text.push_str(" The view you turned to is not in the file: it has the observer’s.");
+            note.text.push_str(" The file keeps the observer’s view, not the one you turned to.");
             match self.observer_problem() {
                 None => note = note.offering("Set observer to this view", Action::ObserverFromView),
                 Some(why) => note.text.push_str(&format!(" {why}")),

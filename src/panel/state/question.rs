@@ -6,6 +6,7 @@ use super::{Action, Answer, Effect, Offer, Session, Severity};
 use crate::{
     registry::Registry,
     scene::{Scene, load::Stamp},
+    text::listed,
 };
 
 /// A question that must be answered.
@@ -140,7 +141,7 @@ impl Session {
                 let names: Vec<_> = parts.iter().map(|p| p.name.as_str()).collect();
                 self.say(
                     Severity::Warning,
-                    format!("{} was not opened: it lacks {}.", path.display(), names.join(" and ")),
+                    format!("{} was not opened: it lacks {}.", path.display(), listed(&names, "and")),
                 );
                 Vec::new()
             }

@@ -42,10 +42,14 @@ impl Session {
     }
 
     /// The selected object, if it has a reflection model of its own: the choice at the top is then about
-    /// that one, since a choice for the scene would not reach it.
+    /// that one, since a choice for the scene would not reach it. A presentation shows no selection: there the choice is
+    /// the scene's.
     #[must_use]
     pub fn model_override(&self) -> Option<(usize, &str)> {
         let Selection::Object(i) = self.selection else { return None };
+        if self.view.presenting {
+            return None;
+        }
         Some((i, self.document.objects.get(i)?.reflection_model.as_deref()?))
     }
 
@@ -53,6 +57,9 @@ impl Session {
     #[must_use]
     pub fn shading_override(&self) -> Option<(usize, &str)> {
         let Selection::Object(i) = self.selection else { return None };
+        if self.view.presenting {
+            return None;
+        }
         Some((i, self.document.objects.get(i)?.shading_model.as_deref()?))
     }
 
