@@ -62,7 +62,7 @@ fn main() {
         document.edit(Edit::Object(OBJECTS / 2, field), Selection::Room, &registry).expect("legal");
     };
     report("a parameter of one object", |i| {
-        let field = || ObjectField::Material("k_d", Value::Number(i as f32 / ROUNDS as f32));
+        let field = || ObjectField::Material("k_d", Value::Number(0.5 + 0.5 * i as f32 / ROUNDS as f32));
         change(world, &|document| edit(document, field()));
     });
     report("the size of one object", |i| {
@@ -75,7 +75,7 @@ fn main() {
     report("a component of one object", |i| {
         let object = world.resource::<SceneEntities>().objects[17];
         let mut object = world.get_mut::<LitObject>(object).expect("it is an object");
-        object.0.material.set("k_d", Value::Number(i as f32 / ROUNDS as f32));
+        object.0.material.set("k_d", Value::Number(0.5 + 0.5 * i as f32 / ROUNDS as f32));
         world.run_schedule(LabFrame);
     });
     report("anything, by others", |i| {
