@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(struct_layout(&module, "Light"), Some(owned(&LIGHT_LAYOUT)));
         assert_eq!(struct_layout(&module, "Illumination"), Some(owned(&ILLUMINATION_LAYOUT)));
         // The wrong twin: without the padding required by vec3, the layouts differ.
-        let packed = wgsl::parse_str("struct Light { position: vec3<f32>, kind: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, parameters: vec4<f32> }")
+        let packed = wgsl::parse_str("struct Light { position: vec3<f32>, light_type: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, parameters: vec4<f32> }")
             .expect("valid WGSL");
         assert_ne!(struct_layout(&packed, "Light"), Some(owned(&LIGHT_LAYOUT)));
     }
