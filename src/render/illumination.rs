@@ -24,8 +24,14 @@ pub const HEADER_BYTES: usize = 16;
 pub const LIGHT_BYTES: usize = 64;
 
 /// Byte offsets of the fields of `Light` in `lights.wgsl`; a test compares them with the shader's.
-pub const LIGHT_LAYOUT: [(&str, usize); 6] =
-    [("position", 0), ("light_type", 12), ("direction", 16), ("intensity", 28), ("colour", 32), ("parameters", 48)];
+pub const LIGHT_LAYOUT: [(&str, usize); 6] = [
+    ("position", 0),
+    ("light_type", 12),
+    ("direction", 16),
+    ("intensity", 28),
+    ("colour", 32),
+    ("parameters", 48),
+];
 /// Byte offsets of the fields of `Illumination` in `lights.wgsl`.
 pub const ILLUMINATION_LAYOUT: [(&str, usize); 5] =
     [("count", 0), ("terms", 4), ("exposure", 8), ("gamma_naive", 12), ("lights", HEADER_BYTES)];
