@@ -44,6 +44,9 @@
 //! - [`study`]: the differences between models, as numbers and a report.
 //! - [`cli`]: the command line.
 
+/// The version of glam whose vectors the equations take.
+pub use glam;
+
 pub mod text;
 
 pub mod failure;

@@ -42,6 +42,15 @@ impl Encoding {
             Self::Off => v,
         }
     }
+
+    /// The 8-bit colour next to a colour for calculation; the inverse of [`decode`](Self::decode).
+    #[must_use]
+    pub fn encode(self, linear: Vec3) -> [u8; 3] {
+        linear.to_array().map(|v| match self {
+            Self::Srgb => srgb_encode8(v),
+            Self::Off => (255.0 * v.clamp(0.0, 1.0)).round() as u8,
+        })
+    }
 }
 
 /// sRGB-encoded [0, 1] to linear light (IEC 61966-2-1).

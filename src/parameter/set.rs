@@ -10,10 +10,14 @@ pub trait ParameterSet: Sized + Send + Sync + 'static {
 
     /// The values for calculation: colours decoded, choices as indices.
     fn from_values(values: &Values, encoding: Encoding) -> Self;
+
+    /// The values as a scene has them: colours encoded to 8 bits, choices by name.
+    fn to_values(&self, encoding: Encoding) -> Values;
 }
 
-/// Declares the struct of a model: its fields are its parameters, each with its declaration. A block `derived { field:
-/// Type = function }` after it adds fields calculated once from the others.
+/// Declares a struct whose fields are the parameters of a model, a light type or an object type, each with its
+/// declaration. A block `derived { field: Type = function }` after it adds fields calculated once from the others. Its
+/// default has the declared defaults.
 ///
 /// ```
 /// use lights_camera_models::{parameters, parameter::{BASE_COLOUR, K_D, ParameterSet}};
@@ -27,27 +31,37 @@ pub trait ParameterSet: Sized + Send + Sync + 'static {
 ///     }
 /// }
 /// assert_eq!(Matte::PARAMETERS[1].name, "k_d");
+/// assert_eq!(Matte::default().k_d, 0.8);
 /// ```
 #[macro_export]
 macro_rules! parameters {
     (
         $(#[$meta:meta])*
-        pub struct $name:ident { $( $(#[$field_meta:meta])* $field:ident : $kind:ident = $declaration:expr ),* $(,)? }
+        $visible:vis struct $name:ident { $( $(#[$field_meta:meta])* $field:ident : $kind:ident = $declaration:expr ),* $(,)? }
         $( derived {
             $( $(#[$derived_meta:meta])* $derived:ident : $derived_type:ty = $derive:expr ),* $(,)?
         } )?
     ) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct $name {
+        $visible struct $name {
             $( $(#[$field_meta])* pub $field: $crate::parameters!(@type $kind), )*
             $( $( $(#[$derived_meta])* pub $derived: $derived_type, )* )?
+        }
+
+        impl ::core::default::Default for $name {
+            fn default() -> Self {
+                <Self as $crate::parameter::ParameterSet>::from_values(
+                    &::core::default::Default::default(),
+                    ::core::default::Default::default(),
+                )
+            }
         }
 
         impl $crate::parameter::ParameterSet for $name {
             const PARAMETERS: &'static [$crate::parameter::Parameter] = &[$($declaration),*];
 
-            #[allow(unused_variables, unused_mut)]
+            #[allow(unused_variables, unused_mut, clippy::needless_update)]
             fn from_values(
                 values: &$crate::parameter::Values,
                 encoding: $crate::optics::colour::Encoding,
@@ -59,14 +73,67 @@ macro_rules! parameters {
                 $( $( this.$derived = ($derive)(&this); )* )?
                 this
             }
+
+            #[allow(unused_variables, unused_mut)]
+            fn to_values(&self, encoding: $crate::optics::colour::Encoding) -> $crate::parameter::Values {
+                let mut values = $crate::parameter::Values::default();
+                $( values.put(&$declaration, $crate::parameters!(@words $kind self.$field), encoding); )*
+                values
+            }
         }
     };
-    (@type colour) => { glam::Vec3 };
-    (@type triple) => { glam::Vec3 };
+    (@type colour) => { $crate::glam::Vec3 };
+    (@type triple) => { $crate::glam::Vec3 };
     (@type number) => { f32 };
     (@type choice) => { u32 };
     (@get colour $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
     (@get triple $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
     (@get number $values:ident $encoding:ident $declaration:expr) => { $values.number(&$declaration) };
     (@get choice $values:ident $encoding:ident $declaration:expr) => { $values.choice(&$declaration) };
+    (@words colour $value:expr) => { $value.to_array() };
+    (@words triple $value:expr) => { $value.to_array() };
+    (@words number $value:expr) => { [$value; 3] };
+    (@words choice $value:expr) => { [$value as f32; 3] };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        parameter::{BASE_COLOUR, ParameterKind, Value},
+        reflection::Microfacet,
+    };
+
+    parameters! {
+        /// No parameters, and private.
+        struct Nothing {}
+    }
+
+    #[test]
+    fn values_of_a_scene_survive_the_way_through_the_struct() {
+        assert_eq!(Nothing::PARAMETERS.len(), 0);
+        assert_eq!(Nothing::default(), Nothing::from_values(&Values::default(), Encoding::Srgb));
+        for encoding in [Encoding::Srgb, Encoding::Off] {
+            let mut values = Microfacet::default().to_values(encoding);
+            for p in Microfacet::PARAMETERS {
+                if let ParameterKind::Choice { options, .. } = p.kind {
+                    values.set(p.name, Value::Choice(options[options.len() - 1].0.into()));
+                }
+            }
+            for code in 0..=255 {
+                values.set(BASE_COLOUR.name, Value::Colour([code, 255 - code, code / 2]));
+                let there = Microfacet::from_values(&values, encoding);
+                let back = there.to_values(encoding);
+                for p in Microfacet::PARAMETERS {
+                    assert_eq!(back.get(p), values.get(p), "{} {code}", p.name);
+                }
+            }
+        }
+        // The wrong twin: another encoding.
+        let dark = Microfacet::from_values(
+            &Values([(BASE_COLOUR.name.into(), Value::Colour([100; 3]))].into()),
+            Encoding::Srgb,
+        );
+        assert_ne!(dark.to_values(Encoding::Off).get(&BASE_COLOUR), Value::Colour([100; 3]));
+    }
 }

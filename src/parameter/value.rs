@@ -57,6 +57,23 @@ impl Values {
         self.0.insert(name.into(), value);
     }
 
+    /// Sets a parameter from the numbers for calculation: a linear colour is encoded to 8 bits, the index of a choice
+    /// becomes its name. All but colours and triples read the first number.
+    pub fn put(&mut self, parameter: &Parameter, numbers: [f32; 3], encoding: Encoding) {
+        let [first, ..] = numbers;
+        let value = match &parameter.kind {
+            ParameterKind::Number { .. } => Value::Number(first),
+            ParameterKind::Integer { .. } => Value::Integer(first.round() as i64),
+            ParameterKind::Colour { .. } => Value::Colour(encoding.encode(numbers.into())),
+            ParameterKind::Triple { .. } => Value::Triple(numbers),
+            ParameterKind::Choice { options, .. } => match options.get(first as usize) {
+                Some((id, _)) => Value::Choice((*id).into()),
+                None => parameter.default_value(),
+            },
+        };
+        self.set(parameter.name, value);
+    }
+
     /// The parameter as a number for calculation; of three numbers, the first.
     #[must_use]
     pub fn number(&self, parameter: &Parameter) -> f32 {
