@@ -94,7 +94,7 @@ pub(super) fn run(app: &mut App, keeper: &Keeper) -> Result<(), Failure> {
 fn lost(what: &str, settled: &Settled) -> String {
     match settled.sentence() {
         Some(sentence) => format!("{what}; {sentence}"),
-        None => format!("{what}; there were no unsaved changes"),
+        None => format!("{what}; this window had no unsaved changes"),
     }
 }
 

@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Align, Layout, Ui};
 
 use super::part::{direction_knob, header, position_limits, section};
 use crate::{
-    document::{Edit, LightField, Selection, limits},
+    document::{Edit, LightField, Selection},
     light::LightEntry,
     optics::temperature,
     panel::{
@@ -16,7 +16,7 @@ use crate::{
     },
     reflection::{EquationPart, Term, usage},
     registry::Registry,
-    scene::Light,
+    scene::{Light, limits},
 };
 
 pub(super) fn light(

@@ -5,8 +5,8 @@
 use bevy_egui::egui::Ui;
 
 use crate::{
-    document::limits::Limits,
     parameter::{Parameter, ParameterKind, Value},
+    scene::limits::Limits,
 };
 
 mod choice;

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use super::{Effect, Session, Severity, Steer, ViewChange};
 use crate::{
-    document::{Edit, LightField, ObjectField, Selection, limits},
+    document::{Edit, LightField, ObjectField, Selection},
     optics::TermSelection,
     registry::Registry,
-    scene::Display,
+    scene::{Display, limits},
 };
 
 /// An action of a user. Panels return these.

@@ -62,7 +62,7 @@ impl Session {
         self.remember_file(&path);
         self.note_saved(&path);
         self.path = Some(path);
-        self.document.mark_saved();
+        self.document.mark_saved(registry);
         self.disk_saved();
         let mut effects = vec![Effect::SaveSettings];
         if let Some(action) = self.questions.after_save.take() {
