@@ -20,7 +20,7 @@ use lights_camera_models::{
 /// The sphere around an object.
 fn radius(object: &Object, registry: &Registry) -> f32 {
     let shape = registry.shape(&object.object_type).unwrap();
-    let mesh = shape.mesh(*shape.declaration.tessellation.start());
+    let mesh = shape.mesh(&object.shape, *shape.declaration.tessellation.start());
     object.size * mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max)
 }
 
