@@ -311,9 +311,13 @@ fn parameters_of_every_kind_have_knobs() {
         bench.type_into(field, text);
         assert_eq!(shape(&bench).0.get(name), Some(&value));
     }
-    assert!(bench.says("lean") && bench.says("Not used with Flat: only Roof has p"), "the pitch is disabled");
+    assert!(bench.field("lean in hexadecimal").rect.is_positive());
+    let pitch = bench.field("pitch");
+    assert!(pitch.disabled, "the top is flat");
+    bench.hover(pitch.rect.center());
+    assert!(bench.says("Not used with Flat: only Roof has p"));
     bench.apply(Action::Edit(Edit::Object(0, ObjectField::Shape("top", Value::Choice("roof".into())))));
-    assert!(!bench.says("Not used with"));
+    assert!(!bench.field("pitch").disabled);
     bench.type_into("pitch", "0.75");
     assert_eq!(shape(&bench).0.get("pitch"), Some(&Value::Number(0.75)));
     let registry = registry();
