@@ -111,14 +111,11 @@ impl Document {
                         *v,
                         limits::colour_temperature(),
                     ),
-                    LightField::Parameter(id, value) => {
-                        let parameter = declaration.and_then(|d| d.parameters.iter().find(|p| p.name == *id));
-                        match parameter {
-                            Some(p) if p.allows(value) => Ok(()),
-                            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
-                            None => Err(format!("{} has no parameter “{id}”.", name(part))),
-                        }
-                    }
+                    LightField::Parameter(id, value) => match entry.and_then(|e| e.parameter(id)) {
+                        Some(p) if p.allows(value) => Ok(()),
+                        Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+                        None => Err(format!("{} has no parameter “{id}”.", name(part))),
+                    },
                 }
             }
             Edit::Object(i, field) => {

@@ -17,7 +17,7 @@ pub trait ParameterSet: Sized + Send + Sync + 'static {
 
 /// Declares a struct whose fields are the parameters of a model, a light type or an object type, each with its
 /// declaration. A block `derived { field: Type = function }` after it adds fields calculated once from the others. Its
-/// default has the declared defaults.
+/// default has the declared defaults. The struct is also a component of Bevy's.
 ///
 /// ```
 /// use lights_camera_models::{parameters, parameter::{BASE_COLOUR, K_D, ParameterSet}};
@@ -56,6 +56,12 @@ macro_rules! parameters {
                     ::core::default::Default::default(),
                 )
             }
+        }
+
+        impl $crate::bevy::ecs::component::Component for $name {
+            const STORAGE_TYPE: $crate::bevy::ecs::component::StorageType =
+                $crate::bevy::ecs::component::StorageType::Table;
+            type Mutability = $crate::bevy::ecs::component::Mutable;
         }
 
         impl $crate::parameter::ParameterSet for $name {

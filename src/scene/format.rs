@@ -230,7 +230,7 @@ impl<'a> SceneFile<'a> {
 
 impl<'a> LightFile<'a> {
     fn new(light: &'a Light, registry: &Registry) -> Self {
-        let declared = registry.light(&light.light_type).map_or(&[][..], |l| l.declaration.parameters);
+        let declared = registry.light(&light.light_type).map_or(&[][..], |l| l.parameters);
         Self {
             light_type: &light.light_type,
             name: light.name.as_deref(),

@@ -118,8 +118,11 @@ fn lights(list: &mut Json, registry: &Registry) {
     let fields = &mut light["properties"];
     choose(&mut fields["type"], declarations().map(|d| (d.id, d.name, d.summary)));
     place(&mut fields["position"]);
-    for p in declarations().flat_map(|d| d.parameters) {
-        fields[p.name] = parameter(p);
+    let parameters = || registry.lights().iter().flat_map(|l| l.parameters);
+    // Types may declare the same name with other ranges.
+    let shared = |p: &Parameter| parameters().any(|other| other.name == p.name && other != p);
+    for p in parameters() {
+        fields[p.name] = if shared(p) { true.into() } else { parameter(p) };
     }
     let types = registry.lights().iter().map(|l| {
         let (d, has_flux) = (l.declaration, l.has_flux());
@@ -132,9 +135,11 @@ fn lights(list: &mut Json, registry: &Registry) {
                 properties.insert(field.to_owned(), false.into());
             }
         }
-        for other in declarations().flat_map(|o| o.parameters) {
-            if !d.parameters.iter().any(|p| p.name == other.name) {
-                properties.insert(other.name.to_owned(), false.into());
+        for p in parameters() {
+            match l.parameter(p.name) {
+                None => _ = properties.insert(p.name.to_owned(), false.into()),
+                Some(own) if shared(own) => _ = properties.insert(p.name.to_owned(), parameter(own)),
+                Some(_) => {}
             }
         }
         if !has_flux {

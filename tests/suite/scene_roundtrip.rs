@@ -135,7 +135,7 @@ fn light() -> impl Strategy<Value = Light> {
         let brightness = || prop_oneof![number(0.0, 1e3), Just(f32::MAX), Just(f32::MIN_POSITIVE)];
         let flux = prop::option::of(brightness()).prop_map(move |flux| flux.filter(|_| entry.has_flux()));
         let colour = (any::<[u8; 3]>(), prop::option::of(number(1000.0, 40_000.0)));
-        let parameters = values(d.parameters.iter().collect());
+        let parameters = values(entry.parameters.iter().collect());
         (name, position(), direction(), colour, (brightness(), flux, any::<bool>()), parameters).prop_map(
             move |(name, p, direction, (colour, kelvin), (intensity, flux, enabled), parameters)| Light {
                 light_type: d.id.to_owned(),

@@ -53,8 +53,8 @@ pub(super) fn light(
         });
         actions.extend(brightness(ui, light, entry).map(set));
         actions.extend(light_colour(ui, light).map(set));
-        for p in d.parameters {
-            let unused = usage::unused(d.parameters, p, &light.parameters);
+        for p in entry.parameters {
+            let unused = usage::unused(entry.parameters, p, &light.parameters);
             if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), unused.as_deref())
             {
                 actions.push(set(LightField::Parameter(p.name, v)));

@@ -253,7 +253,7 @@ impl Check<'_> {
         }
         for (name, value) in &light.parameters.0 {
             let path = || light_path(index).key(name.clone());
-            match entry.map(|e| e.declaration.parameters.iter().find(|p| p.name == name.as_ref())) {
+            match entry.map(|e| e.parameter(name)) {
                 Some(Some(declared)) => self.rule(parameter(declared, value), || (path(), written(value))),
                 Some(None) => self.about(path(), presence(&light.light_type, name, false)),
                 // The type is unknown, which is already reported.

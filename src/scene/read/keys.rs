@@ -88,7 +88,7 @@ pub(super) const OTHER_WORDS: &[(&str, &str)] = &[
 
 /// The keys of all light types.
 pub(super) fn light_keys(registry: &Registry) -> Vec<&'static str> {
-    let declared = registry.lights().iter().flat_map(|l| l.declaration.parameters).map(|p| p.name);
+    let declared = registry.lights().iter().flat_map(|l| l.parameters).map(|p| p.name);
     let mut keys = LIGHT_KEYS.to_vec();
     for name in declared {
         if !keys.contains(&name) {
