@@ -113,7 +113,10 @@ impl Document {
                     ),
                     LightField::Parameter(id, value) => match entry.and_then(|e| e.parameter(id)) {
                         Some(p) if p.allows(value) => Ok(()),
-                        Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+                        Some(p) => Err(match value {
+                            Value::File(file) => file.problem().unwrap_or_default() + ".",
+                            _ => format!("{} is {value}, but must be {}.", p.label, p.rule()),
+                        }),
                         None => Err(format!("{} has no parameter “{id}”.", name(part))),
                     },
                 }

@@ -13,7 +13,7 @@ use bevy::{
 use super::{
     camera::follow_scene,
     entities::{CurrentScene, SceneEntities, absorb, reconcile},
-    illumination::{IlluminationBuffer, ShownTerms, illumination_bytes, lit},
+    illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{LiveShadersPlugin, exchange},
     material::MaterialApp as _,
     meshes::ShapeMeshes,
@@ -92,7 +92,7 @@ fn upload_lights(
         .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
     for (handle, overrides) in changed.then_some((&shared.handle, &none)).into_iter().chain(changed_stages) {
         let display = overrides.display_of(&scene.0);
-        let lights: Vec<_> = scene.0.shining().map(|l| lit(l, &registry, display.encoding)).collect();
+        let lights: Vec<_> = scene.0.shining().map(|l| Lit::new(l, &registry, display.encoding)).collect();
         let mut bytes = illumination_bytes(&lights, overrides.terms.unwrap_or(terms.0), &display);
         let Some(known) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
         // Materials would not notice a buffer of another size.
