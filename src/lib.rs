@@ -44,6 +44,8 @@
 //! - [`study`]: the differences between models, as numbers and a report.
 //! - [`cli`]: the command line.
 
+/// The version of Bevy whose apps take what is registered.
+pub use bevy;
 /// The version of glam whose vectors the equations take.
 pub use glam;
 

@@ -134,6 +134,7 @@ fn parameter(p: &Parameter) -> Json {
             json["type"] = "choice".into();
             json["choices"] = options.iter().map(|(id, _)| *id).collect::<Vec<_>>().into();
         }
+        ParameterKind::File { .. } => json["type"] = "file".into(),
     }
     json
 }

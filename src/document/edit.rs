@@ -108,9 +108,8 @@ impl LightField {
             Self::Intensity(_) => "Intensity",
             Self::LuminousFlux(_) => "Luminous flux",
             Self::Parameter(id, _) => {
-                let declared =
-                    registry.light(&light.light_type).map_or(&[][..], |entry| entry.declaration.parameters);
-                return declared.iter().find(|p| p.name == *id).map_or(*id, |p| p.label).to_owned();
+                let declared = registry.light(&light.light_type).and_then(|entry| entry.parameter(id));
+                return declared.map_or(*id, |p| p.label).to_owned();
             }
         }
         .to_owned()

@@ -62,7 +62,10 @@ impl Document {
             .find(|p| p.name == id)
         {
             Some(p) if p.allows(value) => Ok(()),
-            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+            Some(p) => Err(match value {
+                Value::File(file) => file.problem().unwrap_or_default() + ".",
+                _ => format!("{} is {value}, but must be {}.", p.label, p.rule()),
+            }),
             None => Err(format!("{} has no parameter “{id}”.", name(part))),
         };
         let direction = |part: Selection, d: Vec3| {
@@ -123,7 +126,7 @@ impl Document {
                         limits::colour_temperature(),
                     ),
                     LightField::Parameter(id, value) => {
-                        of_type(part, declaration.map_or(&[], |d| d.parameters), id, value)
+                        of_type(part, entry.map_or(&[], |e| e.parameters), id, value)
                     }
                 }
             }

@@ -26,8 +26,8 @@ pub use folders::Folders;
 pub(crate) use folders::MODELS;
 
 use crate::{
-    light::{self, LightEntry, LightType, MAX_LIGHT_PARAMETERS},
-    parameter::{BLOCK_BYTES, Parameter, Value, layout},
+    light::{self, LightEntry, LightType},
+    parameter::{BLOCK_BYTES, Parameter, ParameterKind, Value, layout},
     reflection::{self, Family, Measured, ModelEntry, ReflectionModel, usage},
     shader::compose::Sources,
     shading::{self, ShadingEntry, ShadingModel},
@@ -210,6 +210,27 @@ fn put<T>(list: &mut Vec<T>, entry: T, id: impl Fn(&T) -> &'static str) {
     }
 }
 
+/// Parameters that fit: few enough, used under choices that exist, and of the same type as those of that name `before`.
+///
+/// # Panics
+/// If they do not.
+fn fit(what: &str, parameters: &[Parameter], before: impl Fn(&str) -> Option<&'static Parameter>) {
+    let end = layout(parameters).last().map_or(0, |f| f.2 + 12);
+    assert!(end <= BLOCK_BYTES, "{what}: its parameters take {end} bytes, at most {BLOCK_BYTES} fit");
+    for p in parameters {
+        if let Some(problem) = usage::problem(parameters, p) {
+            panic!("{what}: used_when of parameter `{}`: {problem}", p.name);
+        }
+        if let Some(other) = before(p.name) {
+            assert!(
+                std::mem::discriminant(&other.kind) == std::mem::discriminant(&p.kind),
+                "{what}: parameter `{}` has another type than in those before it; parameters are shared by name",
+                p.name
+            );
+        }
+    }
+}
+
 impl Register for Registry {
     /// # Panics
     /// If the parameters take more bytes than a model may have, one shares its name, but not its type, with a
@@ -218,24 +239,8 @@ impl Register for Registry {
     fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self {
         let entry = ModelEntry::of::<M>();
         let id = entry.declaration.id;
-        let end = layout(entry.parameters).last().map_or(0, |f| f.2 + 12);
-        assert!(
-            end <= BLOCK_BYTES,
-            "reflection model `{id}`: its parameters take {end} bytes, at most {BLOCK_BYTES} fit"
-        );
-        for p in entry.parameters {
-            if let Some(problem) = usage::problem(entry.parameters, p) {
-                panic!("reflection model `{id}`: used_when of parameter `{}`: {problem}", p.name);
-            }
-            if let Some(other) = self.material_parameter(p.name) {
-                assert!(
-                    std::mem::discriminant(&other.kind) == std::mem::discriminant(&p.kind),
-                    "reflection model `{id}`: parameter `{}` has another type than in the models before it; \
-                     parameters are shared by name",
-                    p.name
-                );
-            }
-        }
+        let what = format!("reflection model `{id}`");
+        fit(&what, entry.parameters, |name| self.material_parameter(name));
         put(&mut self.models, entry, |m| m.declaration.id);
         self
     }
@@ -246,15 +251,20 @@ impl Register for Registry {
     }
 
     /// # Panics
-    /// If the type declares more than [`MAX_LIGHT_PARAMETERS`] parameters.
+    /// If the parameters take more bytes than a type may have, one shares its name, but not its type, with a parameter
+    /// of another light type, or is used under choices that the type does not have, or the cone is no number.
     fn add_light_type<L: LightType>(&mut self) -> &mut Self {
         let entry = LightEntry::of::<L>();
-        let count = entry.declaration.parameters.len();
-        assert!(
-            count <= MAX_LIGHT_PARAMETERS,
-            "light type `{}`: declares {count} parameters, at most {MAX_LIGHT_PARAMETERS} fit",
-            entry.declaration.id
-        );
+        let id = entry.declaration.id;
+        let others = || self.lights.iter().filter(|other| other.declaration.id != id);
+        fit(&format!("light type `{id}`"), entry.parameters, |name| others().find_map(|l| l.parameter(name)));
+        if let Some(cone) = entry.declaration.cone_parameter {
+            let number = |p: &Parameter| matches!(p.kind, ParameterKind::Number { .. });
+            assert!(
+                entry.parameter(cone).is_some_and(number),
+                "light type `{id}`: the parameter of its cone, `{cone}`, must be one of its numbers"
+            );
+        }
         put(&mut self.lights, entry, |l| l.declaration.id);
         self
     }

@@ -13,7 +13,7 @@ use bevy::{
 use super::{
     camera::follow_scene,
     entities::{CurrentScene, SceneEntities, absorb, reconcile},
-    illumination::{IlluminationBuffer, ShownTerms, illumination_bytes},
+    illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{LiveShadersPlugin, exchange},
     material::MaterialApp as _,
     meshes::ShapeMeshes,
@@ -24,10 +24,7 @@ use super::{
     tables::TablesPlugin,
     view::ViewPlugin,
 };
-use crate::{
-    registry::{Registry, register_builtin},
-    scene::record,
-};
+use crate::registry::{Registry, register_builtin};
 
 /// A scene as entities, lit and shaded: everything but windows, panels and cameras. Needs Bevy's
 /// renderer and PBR plugins.
@@ -93,11 +90,14 @@ fn upload_lights(
         .iter()
         .filter(|(stage, overrides)| changed || stage.is_added() || overrides.is_changed())
         .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
-    for (handle, overrides) in changed.then_some((&shared.0, &none)).into_iter().chain(changed_stages) {
+    for (handle, overrides) in changed.then_some((&shared.handle, &none)).into_iter().chain(changed_stages) {
         let display = overrides.display_of(&scene.0);
-        let records: Vec<_> = scene.0.shining().map(|l| record(l, &registry, display.encoding)).collect();
-        let bytes = illumination_bytes(&records, overrides.terms.unwrap_or(terms.0), &display);
-        if buffers.get(handle).is_some_and(|known| known.data.as_ref() != Some(&bytes))
+        let lights: Vec<_> = scene.0.shining().map(|l| Lit::new(l, &registry, display.encoding)).collect();
+        let mut bytes = illumination_bytes(&lights, overrides.terms.unwrap_or(terms.0), &display);
+        let Some(known) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
+        // Materials would not notice a buffer of another size.
+        bytes.resize(known.len(), 0);
+        if *known != bytes
             && let Some(mut buffer) = buffers.get_mut(handle)
         {
             buffer.data = Some(bytes);

@@ -37,6 +37,7 @@ const TEXTS: [(&str, &str); 12] = texts![
     "superellipsoids.json",
     "gouraud_misses_highlight.json",
     "half_lambert.json",
+    "photometric_lamps.json",
     "portrait.json",
     "lobe_shape.json",
     "fresnel_effect.json",

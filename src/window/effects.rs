@@ -57,7 +57,10 @@ pub(super) fn carry_out(
             Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
-            dialog @ (Effect::PickOpen | Effect::PickSave | Effect::PickShaderFolder) => {
+            dialog @ (Effect::PickOpen
+            | Effect::PickSave
+            | Effect::PickFile(..)
+            | Effect::PickShaderFolder) => {
                 session.wanted_dialog = Some(dialog);
             }
             Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {

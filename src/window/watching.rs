@@ -1,8 +1,9 @@
 //! Changes on disk reach the window, which sleeps meanwhile.
 
 use std::{
+    collections::{BTreeMap, BTreeSet},
     io::{self, Write as _},
-    path::PathBuf,
+    path::{Path, PathBuf},
     time::Duration,
 };
 
@@ -15,6 +16,9 @@ use bevy::{
 use crate::{
     files,
     panel::state::{Effect, LabEffect, Session, Severity},
+    parameter::{NamedFile, Value},
+    render::entities::CurrentScene,
+    scene::Scene,
     watch::Watcher,
 };
 
@@ -87,6 +91,69 @@ pub(super) fn watch_document(
         watch.0.watch_file(path);
         // It may have changed between being read and being watched.
         watch.0.report_later(path, Duration::ZERO);
+    }
+}
+
+/// Watches the files that the lights of the document name.
+pub(super) fn watch_named_files(
+    mut watch: ResMut<FileWatch>,
+    session: Res<Session>,
+    mut watched: Local<BTreeSet<PathBuf>>,
+) {
+    let files = named_files(&session.document);
+    let named: BTreeSet<_> = files.filter_map(|file| file.path().map(Path::to_owned)).collect();
+    if *watched == named {
+        return;
+    }
+    watched.difference(&named).for_each(|path| watch.0.forget(path));
+    for path in named.difference(&watched) {
+        watch.0.watch_file(path);
+        // It may have changed between being read and being watched.
+        watch.0.report_later(path, Duration::ZERO);
+    }
+    *watched = named;
+}
+
+fn named_files(scene: &Scene) -> impl Iterator<Item = &NamedFile> {
+    scene.lights.iter().flat_map(|light| light.parameters.0.values()).filter_map(|value| match value {
+        Value::File(file) => Some(file),
+        _ => None,
+    })
+}
+
+/// When a file changed that a light names, it is read again. If it cannot be used, the last version that could is shown;
+/// that is said after a moment, since many editors write in steps.
+pub(super) fn follow_named_files(
+    mut changed: MessageReader<FilesChanged>,
+    watch: Res<FileWatch>,
+    mut session: ResMut<Session>,
+    mut scene: ResMut<CurrentScene>,
+    mut suspects: Local<BTreeSet<PathBuf>>,
+) {
+    let changed: BTreeSet<_> = changed.read().flat_map(|files| files.0.clone()).collect();
+    let with_path = |file: &NamedFile| Some((file.path()?.to_owned(), file.clone()));
+    if changed.is_empty() {
+        return;
+    }
+    let files: BTreeMap<_, _> = named_files(&session.document).filter_map(with_path).collect();
+    for (path, file) in files.into_iter().filter(|(path, _)| changed.contains(path)) {
+        let news = file.read_again();
+        match file.problem() {
+            Some(problem) if suspects.remove(&path) => {
+                complain(&problem);
+                session.say(Severity::Error, format!("{problem}; the last good version is shown."));
+            }
+            Some(_) if news => {
+                watch.0.report_later(&path, GRACE);
+                suspects.insert(path);
+            }
+            None if news => {
+                suspects.remove(&path);
+                scene.set_changed();
+                session.say(Severity::Info, format!("{} was reloaded: it changed on disk.", path.display()));
+            }
+            _ => {}
+        }
     }
 }
 

@@ -168,7 +168,7 @@ fn lights(registry: &Registry) -> String {
         let mut fields = vec![];
         fields.extend(d.has_position.then(|| code("position")));
         fields.extend(d.has_direction.then(|| code("direction")));
-        fields.extend(d.parameters.iter().map(|p| code(p.name)));
+        fields.extend(l.parameters.iter().map(|p| code(p.name)));
         vec![code(d.id), d.summary.into(), format!("`{}`", d.equation), d.unit.into(), fields.join(", ")]
     });
     table(&["id", "description", "light at a point", "unit", "fields"], rows)

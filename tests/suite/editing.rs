@@ -170,7 +170,7 @@ impl Desk {
             _ => {
                 let entry =
                     self.session.document.lights.get(i).and_then(|l| self.registry.light(&l.light_type));
-                let parameters = entry.map_or(&[][..], |entry| entry.declaration.parameters);
+                let parameters = entry.map_or(&[][..], |entry| entry.parameters);
                 match parameters.len() {
                     0 => LightField::Parameter("none", Value::Number(1.0)),
                     n => {

@@ -444,7 +444,7 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
                     continue;
                 }
                 edit(&mut document, LightField::Type(entry.declaration.id.to_owned()));
-                for p in entry.declaration.parameters {
+                for p in entry.parameters {
                     if let ParameterKind::Number { min, .. } = p.kind {
                         edit(&mut document, LightField::Parameter(p.name, Value::Number(min + 0.5)));
                     }

@@ -38,6 +38,7 @@ mod mistakes;
 mod modules;
 mod overrides;
 mod panels;
+mod photometric;
 mod pictures;
 mod placing;
 mod pointer;

@@ -143,6 +143,9 @@ pub fn parameter(parameter: &Parameter, value: &Value) -> Rule {
                 id,
                 options.iter().map(|(id, name)| (*name, *id)).chain(options.iter().map(|(id, _)| (*id, *id))),
             ),
+            (ParameterKind::File { .. }, Value::File(file)) => {
+                file.problem().map_or_else(String::new, |problem| format!(": {problem}"))
+            }
             _ => String::new(),
         };
         parameter_rule(parameter) + &hint
