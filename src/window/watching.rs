@@ -12,9 +12,11 @@ use bevy::{
     winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
+use super::order::Loading;
 use crate::{
     files,
     panel::state::{Effect, LabEffect, Session, Severity},
+    render::schedule::LabFrame,
     watch::Watcher,
 };
 
@@ -29,13 +31,22 @@ pub struct FileWatch(pub Watcher);
 #[derive(Clone, Debug, PartialEq, Eq, Message)]
 pub struct FilesChanged(pub Vec<PathBuf>);
 
-/// Adds [`FileWatch`] and [`FilesChanged`]; the systems are the window's, since they need an order.
-pub(super) struct WatchingPlugin;
+/// Follows files on disk: [`FileWatch`], and the file of the document.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WatchingPlugin;
 
 impl Plugin for WatchingPlugin {
     fn build(&self, app: &mut App) {
         let wake = waker(app.world());
-        app.add_message::<FilesChanged>().insert_resource(FileWatch(Watcher::new(wake)));
+        app.add_message::<FilesChanged>().insert_resource(FileWatch(Watcher::new(wake))).add_systems(
+            LabFrame,
+            (
+                collect.in_set(Loading::Watch),
+                (watch_document.run_if(resource_changed::<Session>), follow_document)
+                    .chain()
+                    .in_set(Loading::Follow),
+            ),
+        );
     }
 }
 
@@ -51,7 +62,7 @@ pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + use<> {
 }
 
 /// Asks the watcher for changes.
-pub(super) fn collect(
+fn collect(
     watch: Res<FileWatch>,
     mut changed: MessageWriter<FilesChanged>,
     mut session: ResMut<Session>,
@@ -71,11 +82,7 @@ pub(super) fn collect(
 }
 
 /// Watches the file of the document, whichever that is.
-pub(super) fn watch_document(
-    mut watch: ResMut<FileWatch>,
-    session: Res<Session>,
-    mut watched: Local<Option<PathBuf>>,
-) {
+fn watch_document(mut watch: ResMut<FileWatch>, session: Res<Session>, mut watched: Local<Option<PathBuf>>) {
     if *watched == session.path {
         return;
     }
@@ -91,7 +98,7 @@ pub(super) fn watch_document(
 }
 
 /// When the document's file changed, it is looked at.
-pub(super) fn follow_document(
+fn follow_document(
     mut changed: MessageReader<FilesChanged>,
     session: Res<Session>,
     mut effects: MessageWriter<LabEffect>,
