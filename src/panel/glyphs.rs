@@ -34,7 +34,11 @@ pub(super) fn glyph<'a>(ui: &Ui, glyph: &'a str, name: &str) -> Cow<'a, str> {
 
 fn has(ui: &Ui, text: &str) -> bool {
     let font = TextStyle::Body.resolve(ui.style());
-    ui.fonts_mut(|fonts| fonts.has_glyphs(&font, text))
+    // egui's own question takes every character of the font with the box for one that is lacking.
+    ui.fonts_mut(|fonts| {
+        let mut font = fonts.fonts.font(&font.family);
+        text.chars().all(|c| font.characters().contains_key(&c))
+    })
 }
 
 /// Logs a replacement, once.

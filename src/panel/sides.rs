@@ -18,7 +18,9 @@ use super::{
 const GUESTS: f32 = 0.5;
 /// Height of the title of a section, points.
 const TITLE: f32 = 26.0;
-/// The least height of what a section shows, points.
+/// The room below what a section shows, points.
+const END: f32 = 8.0;
+/// The least height of what a section may show, points.
 const LEAST: f32 = 64.0;
 
 /// Shows the panels at a side; `ui` is all of it.
@@ -36,35 +38,49 @@ pub(super) fn side(
     let share = (room / unfolded.max(1) as f32).max(LEAST);
     // From the bottom up, so that the first is the highest.
     for (info, panel) in guests.into_iter().rev() {
-        let strip = egui::Panel::bottom(Id::new(("section", info.id)))
-            .frame(Frame::NONE)
-            .resizable(false)
-            .default_size(TITLE);
-        strip.show(ui, |ui| section(ui, info, panel, share, context));
+        // As high as what it showed last, up to its share.
+        let id = Id::new(("section", info.id));
+        let wanted = ui.data(|data| data.get_temp(id)).unwrap_or(LEAST);
+        let height = if session.view.folds(info.id) { TITLE } else { TITLE + END + wanted.min(share) };
+        let strip = egui::Panel::bottom(id).frame(Frame::NONE).resizable(false).exact_size(height);
+        let shown = strip.show(ui, |ui| section(ui, info, panel, context)).inner;
+        if let Some(shown) = shown.filter(|shown| *shown != wanted) {
+            ui.data_mut(|data| data.insert_temp(id, shown));
+            ui.ctx().request_repaint();
+        }
     }
     for (_, panel) in own {
         panel.show(ui, context);
     }
 }
 
-/// A panel of others: its title, which folds it, and what it shows.
-fn section(ui: &mut Ui, info: PanelInfo, panel: &mut dyn Panel, share: f32, context: &mut PanelContext<'_>) {
+/// A panel of others: its title, which folds it, and what it shows. Returns the height of that.
+fn section(
+    ui: &mut Ui,
+    info: PanelInfo,
+    panel: &mut dyn Panel,
+    context: &mut PanelContext<'_>,
+) -> Option<f32> {
+    ui.spacing_mut().item_spacing.y = 0.0;
     let folded = context.session().view.folds(info.id);
     title(ui, info, folded, context);
     if folded {
-        return;
+        return None;
     }
     // The tree's rows reach from edge to edge; text does not.
     let left = if info.place == Place::Left { 12 } else { 0 };
-    Frame::new().inner_margin(Margin { left, right: 0, top: 0, bottom: 6 }).show(ui, |ui| {
+    let frame = Frame::new().inner_margin(Margin { left, right: 0, top: 0, bottom: END as i8 });
+    let output = frame.show(ui, |ui| {
         // The scroll bar floats over a margin, so that nothing moves when it comes.
         ui.spacing_mut().scroll.floating_allocated_width = 0.0;
-        let scroll = ScrollArea::vertical().id_salt(info.id).max_height(share).auto_shrink([false, true]);
+        let scroll = ScrollArea::vertical().id_salt(info.id).auto_shrink(false).min_scrolled_height(0.0);
         scroll.show(ui, |ui| {
+            ui.reset_style();
             ui.set_max_width(ui.available_width() - 8.0);
             ui.push_id(info.id, |ui| panel.show(ui, context));
-        });
+        })
     });
+    Some(output.inner.content_size.y.ceil())
 }
 
 fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<'_>) {

@@ -22,7 +22,7 @@ use crate::{
         capture::png,
         live::LiveShaders,
         schedule::{LabFrame, LabSystems},
-        view::texture_of,
+        view::{Drawing, texture_of},
     },
 };
 
@@ -75,7 +75,7 @@ fn count(
     mut countdown: ResMut<Countdown>,
     live: Res<LiveShaders>,
     windows: Query<(), With<PrimaryWindow>>,
-    views: Query<&RenderTarget, With<WindowView>>,
+    mut views: Query<(&RenderTarget, &mut Drawing), With<WindowView>>,
     mut commands: Commands,
     mut exit: MessageWriter<AppExit>,
 ) {
@@ -90,9 +90,12 @@ fn count(
         return;
     }
     if countdown.file.is_some() {
-        let alone = views.iter().filter_map(texture_of).next().filter(|_| windows.is_empty());
-        let shot =
-            alone.map_or_else(Screenshot::primary_window, |picture| Screenshot::image(picture.clone()));
+        let mut shot = Screenshot::primary_window();
+        for (target, mut drawing) in views.iter_mut().filter(|_| windows.is_empty()) {
+            // What rests is not on the screenshot.
+            drawing.redraw();
+            shot = texture_of(target).map_or(shot, |picture| Screenshot::image(picture.clone()));
+        }
         commands.spawn(shot).observe(write);
     } else {
         exit.write(AppExit::Success);

@@ -16,7 +16,7 @@ use bevy::{
     window::{PrimaryWindow, Window},
 };
 use bevy_egui::{
-    EguiGlobalSettings, EguiPostUpdateSet, PrimaryEguiContext,
+    EguiGlobalSettings, EguiPostUpdateSet, EguiPrimaryContextPass, PrimaryEguiContext,
     egui::{Pos2, Rect, vec2},
 };
 use bevy_panorbit_camera::{ActiveCameraData, PanOrbitCameraSystemSet};
@@ -48,7 +48,9 @@ impl Plugin for PicturePlugin {
         let spawn = move |commands: Commands, adapter: Option<Res<RenderAdapterInfo>>| {
             spawn_cameras(commands, adapter, alone);
         };
-        app.add_plugins(ShowPlugin)
+        // It is run for the camera of egui, also if nobody shows panels.
+        app.init_schedule(EguiPrimaryContextPass)
+            .add_plugins(ShowPlugin)
             .add_systems(Startup, spawn)
             .configure_sets(
                 PostUpdate,
