@@ -11,10 +11,11 @@ use super::{
     ViewOptions,
     capture::{Countdown, Report},
     ending,
-    plugins::{LabPlugins, RequirementsPlugin},
+    plugins::LabPlugins,
     recovery::Recovery,
+    requirements::{RequirementsPlugin, need_display, need_driver},
 };
-use crate::{failure::Failure, render::capture::gpu::find_adapter};
+use crate::failure::Failure;
 
 /// Opens the window and stays until it is closed. `extend` adds more to the app: panels, systems, plugins.
 ///
@@ -42,25 +43,6 @@ pub fn view(options: ViewOptions, extend: impl FnOnce(&mut App)) -> Result<(), F
         farewell.say();
     }
     failure.map_or(Ok(()), Err)
-}
-
-/// Without a driver Bevy would panic.
-pub(super) fn need_driver() -> Result<(), Failure> {
-    find_adapter().map(drop).map_err(|e| Failure::NoRenderer(e.to_string()))
-}
-
-/// Without a display the windowing library would panic; say what is missing instead.
-pub(super) fn need_display() -> Result<(), Failure> {
-    let set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
-    if cfg!(target_os = "linux") && !set("DISPLAY") && !set("WAYLAND_DISPLAY") && !set("WAYLAND_SOCKET") {
-        return Err(Failure::NoRenderer(
-            "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); \
-             `lcm render` makes pictures without one, and `xvfb-run lcm view` gives the window an invisible display \
-             (Debian and Ubuntu: apt-get install xvfb)"
-                .to_owned(),
-        ));
-    }
-    Ok(())
 }
 
 /// Adds the plugins. The windowing library panics when the display that the environment names does not

@@ -1,9 +1,9 @@
 //! The window as a group of plugins.
 
-use std::{path::PathBuf, process, time::Duration};
+use std::{path::PathBuf, time::Duration};
 
 use bevy::{
-    app::{App, Plugin, PluginGroup, PluginGroupBuilder, ScheduleRunnerPlugin, TerminalCtrlCHandlerPlugin},
+    app::{PluginGroup, PluginGroupBuilder, ScheduleRunnerPlugin, TerminalCtrlCHandlerPlugin},
     asset::AssetPlugin,
     log::{Level, LogPlugin},
     prelude::DefaultPlugins,
@@ -15,22 +15,12 @@ use bevy_egui::EguiPlugin;
 use glam::UVec2;
 
 use super::{
-    ViewOptions,
-    camera::CameraPlugin,
-    capture::CapturePlugin,
-    clipping::ClippingPlugin,
-    document::DocumentPlugin,
-    gizmos::GizmosPlugin,
-    open::{need_display, need_driver},
-    pick::PickingPlugin,
-    picture::PicturePlugin,
-    recovery::RecoveryPlugin,
-    shaders::ShaderFilesPlugin,
-    shell::ShellPlugin,
-    watching::{WatchingPlugin, complain},
+    ViewOptions, camera::CameraPlugin, capture::CapturePlugin, clipping::ClippingPlugin,
+    document::DocumentPlugin, gizmos::GizmosPlugin, pick::PickingPlugin, picture::PicturePlugin,
+    recovery::RecoveryPlugin, requirements::RequirementsPlugin, shaders::ShaderFilesPlugin,
+    shell::ShellPlugin, watching::WatchingPlugin,
 };
 use crate::{
-    failure::Failure,
     panel::PanelPlugin,
     render::{capture::gpu::wgpu_settings, plugin::ScenePlugin},
 };
@@ -188,29 +178,6 @@ fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
         // Signals are heard elsewhere, also while the window sleeps.
         .disable::<TerminalCtrlCHandlerPlugin>();
     if headless { group.disable::<WinitPlugin>() } else { group.set(WinitPlugin { run_on_any_thread: true }) }
-}
-
-/// Says what is missing where there is no display or no driver, and ends the process with the exit status for it,
-/// before others panic.
-#[derive(Clone, Copy, Debug)]
-pub struct RequirementsPlugin {
-    /// True if a display is needed.
-    pub display: bool,
-}
-
-impl Plugin for RequirementsPlugin {
-    fn build(&self, _app: &mut App) {
-        let needs = || -> Result<(), Failure> {
-            if self.display {
-                need_display()?;
-            }
-            need_driver()
-        };
-        if let Err(failure) = needs() {
-            complain(&failure.to_string());
-            process::exit(failure.status().into());
-        }
-    }
 }
 
 fn log_plugin(options: &ViewOptions) -> LogPlugin {

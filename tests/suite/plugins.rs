@@ -368,6 +368,16 @@ fn every_command_knows_what_an_extended_program_registers() {
 }
 
 #[cfg(target_os = "linux")]
+#[test]
+fn a_program_without_a_display_says_so_and_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = program("panel", folder.path()).output().expect("it runs");
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("there is no display") && !said.contains("panicked"), "{said}");
+}
+
+#[cfg(target_os = "linux")]
 mod on_screen {
     use super::*;
 
