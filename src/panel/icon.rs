@@ -27,8 +27,6 @@ pub enum Icon {
     Down,
     /// Less.
     Up,
-    /// More, folded away.
-    Right,
     /// The observer; something that can be seen.
     Eye,
     /// Something that is hidden.
@@ -79,7 +77,6 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
             line(&[(0.14, 0.86), (0.2, 0.64), (0.7, 0.14), (0.86, 0.3), (0.36, 0.8), (0.14, 0.86)]);
         }
         Icon::Down => line(&[(0.2, 0.36), (0.5, 0.66), (0.8, 0.36)]),
-        Icon::Right => line(&[(0.36, 0.2), (0.66, 0.5), (0.36, 0.8)]),
         Icon::Up => line(&[(0.2, 0.64), (0.5, 0.34), (0.8, 0.64)]),
         Icon::Lamp | Icon::LampOff => {
             let bulb: Vec<Pos2> = (0..=16)

@@ -95,13 +95,13 @@ fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<
         let response = ui.interact(rect, Id::new(("title of a section", info.id)), Sense::click());
         response
             .widget_info(|| WidgetInfo::selected(WidgetType::CollapsingHeader, true, !folded, info.title));
-        let colour = if response.hovered() { palette.text } else { palette.weak };
-        let sign = Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(12.0, 12.0));
-        icon::paint(ui.painter(), sign, if folded { Icon::Right } else { Icon::Down }, colour);
+        let sign = Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(8.0, 8.0));
+        let openness = if folded { 0.0 } else { 1.0 };
+        egui::collapsing_header::paint_default_icon(ui, openness, &response.clone().with_new_rect(sign));
         let text = glyphs::legible(ui, info.title, &format!("the panel “{}”", info.id));
         let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-        let galley = theme::elided(ui, &text, font, palette.text, rect.width() - 20.0);
-        let at = rect.left_center() + vec2(20.0, -0.5 * galley.size().y);
+        let galley = theme::elided(ui, &text, font, palette.text, rect.width() - 16.0);
+        let at = rect.left_center() + vec2(16.0, -0.5 * galley.size().y);
         ui.painter().galley(at, galley, palette.text);
         let way = if folded { "Unfold the panel" } else { "Fold the panel" };
         if response.on_hover_text(way).clicked() {
