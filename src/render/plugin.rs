@@ -3,10 +3,7 @@
 use bevy::{
     app::{App, MainScheduleOrder, Plugin, Update},
     asset::Assets,
-    ecs::{
-        prelude::*,
-        schedule::{LogLevel, ScheduleBuildSettings},
-    },
+    ecs::{prelude::*, schedule::LogLevel},
     render::storage::ShaderBuffer,
 };
 
@@ -18,7 +15,7 @@ use super::{
     material::MaterialApp as _,
     meshes::ShapeMeshes,
     overrides::Overrides,
-    schedule::{LabFrame, LabSystems},
+    schedule::{LabFrame, LabSystems, detect},
     stage::{Stage, set_stages},
     swap::swap,
     tables::TablesPlugin,
@@ -41,14 +38,7 @@ impl Plugin for ScenePlugin {
             .init_resource::<ShapeMeshes>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
-            // Two of our systems that touch the same data must say who comes first.
             .init_schedule(LabFrame)
-            .edit_schedule(LabFrame, |schedule| {
-                schedule.set_build_settings(ScheduleBuildSettings {
-                    ambiguity_detection: LogLevel::Error,
-                    ..ScheduleBuildSettings::default()
-                });
-            })
             .configure_sets(
                 LabFrame,
                 (
@@ -72,6 +62,8 @@ impl Plugin for ScenePlugin {
                 ),
             )
             .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin));
+        // Two systems that touch the same data must say who comes first.
+        detect(app, LogLevel::Warn);
     }
 }
 

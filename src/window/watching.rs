@@ -13,11 +13,12 @@ use bevy::{
     winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
+use super::order::Loading;
 use crate::{
     files,
     panel::state::{Effect, LabEffect, Session, Severity},
     parameter::{NamedFile, Value},
-    render::entities::CurrentScene,
+    render::{entities::CurrentScene, schedule::LabFrame},
     scene::Scene,
     watch::Watcher,
 };
@@ -33,13 +34,26 @@ pub struct FileWatch(pub Watcher);
 #[derive(Clone, Debug, PartialEq, Eq, Message)]
 pub struct FilesChanged(pub Vec<PathBuf>);
 
-/// Adds [`FileWatch`] and [`FilesChanged`]; the systems are the window's, since they need an order.
-pub(super) struct WatchingPlugin;
+/// Follows files on disk: [`FileWatch`], and the file of the document.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WatchingPlugin;
 
 impl Plugin for WatchingPlugin {
     fn build(&self, app: &mut App) {
         let wake = waker(app.world());
-        app.add_message::<FilesChanged>().insert_resource(FileWatch(Watcher::new(wake)));
+        app.add_message::<FilesChanged>().insert_resource(FileWatch(Watcher::new(wake))).add_systems(
+            LabFrame,
+            (
+                collect.in_set(Loading::Watch),
+                (
+                    (watch_document, watch_named_files).chain().run_if(resource_changed::<Session>),
+                    follow_document,
+                    follow_named_files,
+                )
+                    .chain()
+                    .in_set(Loading::Follow),
+            ),
+        );
     }
 }
 
@@ -55,7 +69,7 @@ pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + use<> {
 }
 
 /// Asks the watcher for changes.
-pub(super) fn collect(
+fn collect(
     watch: Res<FileWatch>,
     mut changed: MessageWriter<FilesChanged>,
     mut session: ResMut<Session>,
@@ -75,11 +89,7 @@ pub(super) fn collect(
 }
 
 /// Watches the file of the document, whichever that is.
-pub(super) fn watch_document(
-    mut watch: ResMut<FileWatch>,
-    session: Res<Session>,
-    mut watched: Local<Option<PathBuf>>,
-) {
+fn watch_document(mut watch: ResMut<FileWatch>, session: Res<Session>, mut watched: Local<Option<PathBuf>>) {
     if *watched == session.path {
         return;
     }
@@ -95,7 +105,7 @@ pub(super) fn watch_document(
 }
 
 /// Watches the files that the lights of the document name.
-pub(super) fn watch_named_files(
+fn watch_named_files(
     mut watch: ResMut<FileWatch>,
     session: Res<Session>,
     mut watched: Local<BTreeSet<PathBuf>>,
@@ -123,7 +133,7 @@ fn named_files(scene: &Scene) -> impl Iterator<Item = &NamedFile> {
 
 /// When a file changed that a light names, it is read again. If it cannot be used, the last version that could is shown;
 /// that is said after a moment, since many editors write in steps.
-pub(super) fn follow_named_files(
+fn follow_named_files(
     mut changed: MessageReader<FilesChanged>,
     watch: Res<FileWatch>,
     mut session: ResMut<Session>,
@@ -158,7 +168,7 @@ pub(super) fn follow_named_files(
 }
 
 /// When the document's file changed, it is looked at.
-pub(super) fn follow_document(
+fn follow_document(
     mut changed: MessageReader<FilesChanged>,
     session: Res<Session>,
     mut effects: MessageWriter<LabEffect>,
