@@ -36,6 +36,7 @@ mod tests {
     #[test]
     fn both_preludes_can_be_imported() {
         fn known<T: ?Sized>() {}
+        known::<(App, Transform)>();
         known::<(Edit, Selection, Incident, LightRecord, Frame, Terms, PanelContext, Panels, Place, Action)>(
         );
         known::<(Session, Parameter, ParameterKind, Value, Registry, Eye, LightSource, LitObject, LabFrame)>(

@@ -12,7 +12,7 @@ use std::{
 
 use crate::{
     registry::Registry,
-    scene::{Light, Object, Observer, Scene, check, error::Problem},
+    scene::{Object, Observer, Scene, check, error::Problem},
     text::sentence,
 };
 

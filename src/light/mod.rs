@@ -209,7 +209,7 @@ impl LightEntry {
         let mut tables = Vec::new();
         for p in self.parameters {
             tables.extend(values.table(p).map(|table| (at, table)));
-            at += words(&[p.clone()], values, Encoding::default()).len();
+            at += words(std::slice::from_ref(p), values, Encoding::default()).len();
         }
         tables
     }

@@ -128,6 +128,7 @@ impl Parameter {
             ParameterKind::Choice { options, .. } => {
                 options.iter().map(|(id, _)| Value::Choice(Cow::Borrowed(id))).collect()
             }
+            ParameterKind::File { .. } => Vec::new(),
         };
         ends.extend(others.into_iter().filter(|end| *end != self.default_value()));
         ends

@@ -31,7 +31,7 @@ macro_rules! texts {
 }
 
 /// From the simplest to those that measure something.
-const TEXTS: [(&str, &str); 12] = texts![
+const TEXTS: [(&str, &str); 13] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
