@@ -71,13 +71,13 @@ struct State {
     problem: Option<String>,
 }
 
-/// The contents in use, by path and format.
-static CONTENTS: LazyLock<Mutex<HashMap<(PathBuf, &'static str), Weak<Content>>>> =
-    LazyLock::new(Mutex::default);
-
+/// The contents of files on disk that are in use, by path and format.
+type Contents = HashMap<(PathBuf, &'static str), Weak<Content>>;
 /// The contents of shipped files, by name and format.
-static SHIPPED: LazyLock<Mutex<HashMap<(&'static str, &'static str), Arc<Content>>>> =
-    LazyLock::new(Mutex::default);
+type Shipped = HashMap<(&'static str, &'static str), Arc<Content>>;
+
+static CONTENTS: LazyLock<Mutex<Contents>> = LazyLock::new(Mutex::default);
+static SHIPPED: LazyLock<Mutex<Shipped>> = LazyLock::new(Mutex::default);
 
 impl NamedFile {
     /// The file of that name in a folder. If there is none, a shipped file may have that name.
