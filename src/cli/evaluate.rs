@@ -259,7 +259,7 @@ fn parse(parameter: &Parameter, written: &str) -> Option<Value> {
         }
         ParameterKind::Choice { .. } => Some(Value::Choice(written.to_owned().into())),
         ParameterKind::File { format, .. } => {
-            Some(Value::File(NamedFile::open(written, Path::new(""), format)))
+            Some(Value::File(NamedFile::named(written, Path::new(""), format)))
         }
     }
 }

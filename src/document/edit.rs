@@ -240,8 +240,11 @@ impl Document {
                 let name = step(&label, &self.name_of(Selection::Light(i), registry));
                 self.step(name, Extent::Light(i), selection, Some(registry), |document| {
                     let room = document.scene_size;
+                    let renamed = matches!(field, LightField::Name(_));
                     field.put(&mut document.scene.lights[i], registry, room);
-                    document.number_again(Selection::Light(i), registry);
+                    if renamed {
+                        document.number_again(Selection::Light(i), registry);
+                    }
                 });
             }
             Edit::Object(i, field) => {
@@ -254,8 +257,11 @@ impl Document {
                     name += &format!(": {type_name}");
                 }
                 self.step(name, Extent::Object(i), selection, Some(registry), |document| {
+                    let renamed = matches!(field, ObjectField::Name(_));
                     field.put(&mut document.scene.objects[i], registry);
-                    document.number_again(Selection::Object(i), registry);
+                    if renamed {
+                        document.number_again(Selection::Object(i), registry);
+                    }
                 });
             }
         }

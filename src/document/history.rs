@@ -79,6 +79,12 @@ impl<T: Clone + PartialEq> Splice<T> {
         self.old.len() + self.new.len()
     }
 
+    /// True if it gives one part another value, but not another type.
+    fn is_of_one_by(&self, type_of: impl Fn(&T) -> &str) -> bool {
+        matches!((&self.old[..], &self.new[..]), ([old], [new]) if type_of(&old.1) == type_of(&new.1))
+            && self.is_of_one()
+    }
+
     /// True if it gives one part another value.
     fn is_of_one(&self) -> bool {
         matches!((&self.old[..], &self.new[..]), ([old], [new]) if old.0.id == new.0.id)
@@ -165,12 +171,12 @@ impl Patch {
         self.objects.iter().for_each(|splice| splice.put(&mut scene.objects, &mut labels.objects, back));
     }
 
-    /// The part that it changes.
+    /// The part that it changes. Another type of one changes the numbers that a file gives to others.
     fn extent(&self) -> Extent {
         match (&self.rest, &self.lights[..], &self.objects[..]) {
             (Some(_), [], []) => Extent::Rest,
-            (None, [one], []) if one.is_of_one() => Extent::Light(one.at),
-            (None, [], [one]) if one.is_of_one() => Extent::Object(one.at),
+            (None, [one], []) if one.is_of_one_by(|light| &light.light_type) => Extent::Light(one.at),
+            (None, [], [one]) if one.is_of_one_by(|object| &object.object_type) => Extent::Object(one.at),
             _ => Extent::All,
         }
     }

@@ -354,7 +354,7 @@ impl Document {
             }
         };
         if !patch.is_empty() {
-            self.touch(part, moved);
+            self.touch(if moved { Extent::All } else { part }, moved);
         }
         patch
     }

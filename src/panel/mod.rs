@@ -7,12 +7,15 @@
 //! **To add one**: write `panel/x.rs` and add its name to [`register_builtin`]; a panel at the bottom
 //! gets a tab and an entry in the menu by itself. From outside the crate: [`PanelApp::add_panel`].
 
-use std::ops::DerefMut;
+use std::{
+    mem::swap,
+    ops::{Deref, DerefMut},
+};
 
 use bevy::{
     app::{App, Plugin},
     ecs::{
-        change_detection::{DetectChangesMut, Mut},
+        change_detection::DetectChangesMut,
         message::Messages as Queue,
         query::{QueryState, With},
         system::Local,
@@ -318,12 +321,34 @@ impl Plugin for PanelPlugin {
     }
 }
 
+/// The session, and a note if it is changed.
+struct Tracked<'a> {
+    session: &'a mut Session,
+    changed: &'a mut bool,
+}
+
+impl Deref for Tracked<'_> {
+    type Target = Session;
+
+    fn deref(&self) -> &Session {
+        self.session
+    }
+}
+
+impl DerefMut for Tracked<'_> {
+    fn deref_mut(&mut self) -> &mut Session {
+        *self.changed = true;
+        self.session
+    }
+}
+
 /// Shows the panels in the primary egui context, and carries out the commands that they queue. Does nothing while there
 /// is none. Exclusive, so that panels can read the world.
 pub fn show_panels(
     world: &mut World,
     contexts: &mut QueryState<&mut EguiContext, With<PrimaryEguiContext>>,
     mut dialogs: Local<Dialogs>,
+    mut out: Local<(Session, Panels)>,
 ) {
     let Some(mut context) = contexts.iter_mut(world).next() else { return };
     let ctx = context.get_mut().clone();
@@ -333,15 +358,21 @@ pub fn show_panels(
         UiBuilder::new().layer_id(LayerId::background()).max_rect(ctx.viewport_rect()),
     );
     let mut area = world.resource::<PictureArea>().clone();
-    let commands = world.resource_scope(|world, mut panels: Mut<Panels>| {
-        let effects = world.resource_scope(|world, session: Mut<Session>| {
-            world.resource_scope(|world, registry: Mut<Registry>| {
-                show(&mut ui, session, &mut area, &registry, &mut panels, &mut dialogs, world)
-            })
-        });
-        world.resource_mut::<Queue<LabEffect>>().write_batch(effects.into_iter().map(LabEffect));
-        panels.take_queued()
-    });
+    // Taken out, since panels read the world; `resource_scope` would count as a change in every frame.
+    let (session, panels) = &mut *out;
+    swap(world.resource_mut::<Session>().bypass_change_detection(), session);
+    swap(world.resource_mut::<Panels>().bypass_change_detection(), panels);
+    let mut changed = false;
+    let tracked = Tracked { session, changed: &mut changed };
+    let effects =
+        show(&mut ui, tracked, &mut area, world.resource::<Registry>(), panels, &mut dialogs, world);
+    let commands = panels.take_queued();
+    swap(world.resource_mut::<Panels>().bypass_change_detection(), panels);
+    swap(world.resource_mut::<Session>().bypass_change_detection(), session);
+    if changed {
+        world.resource_mut::<Session>().set_changed();
+    }
+    world.resource_mut::<Queue<LabEffect>>().write_batch(effects.into_iter().map(LabEffect));
     world.resource_mut::<PictureArea>().set_if_neq(area);
     for command in commands {
         command(world);

@@ -171,7 +171,7 @@ impl<'a> Stand<'a> {
         // So that it is seen, highlights may clip, and no more than those.
         let clipping = factors[(HIGHLIGHTS * factors.len() as f32) as usize];
         let factor = (SHARE * most).max(least.min(clipping.max(most)));
-        let intensity = f64::from(default) * f64::from(factor).clamp(1e-3, 1e3);
+        let intensity = f64::from(default) * f64::from(factor).clamp(1e-6, 1e3);
         (significant(intensity, 2) as f32, factor > most)
     }
 

@@ -82,7 +82,7 @@ static SHIPPED: LazyLock<Mutex<Shipped>> = LazyLock::new(Mutex::default);
 impl NamedFile {
     /// The file of that name in a folder. If there is none, a shipped file may have that name.
     #[must_use]
-    pub fn open(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
+    pub fn named(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
         let path = folder.join(name);
         let shipped = format.shipped.iter().find(|(shipped, _)| *shipped == name && !path.exists());
         if let Some((name, _)) = shipped {

@@ -96,7 +96,7 @@ fn both_renderers_shine_as_the_file_says_and_follow_it() {
         lamp.colour = [255, 60 * i, 0];
         if i % 2 == 0 {
             let format = registry_file().expect("a file");
-            lamp.parameters.set("file", Value::File(NamedFile::open("fine.ies", folder.path(), format)));
+            lamp.parameters.set("file", Value::File(NamedFile::named("fine.ies", folder.path(), format)));
         }
         many.lights.push(lamp);
     }
@@ -188,7 +188,7 @@ fn an_edit_with_a_file_that_cannot_be_used_is_refused_and_a_good_one_is_taken() 
     let mut document = Document::new(scene);
     let format = registry_file().expect("a file");
     let mut set = |name: &str| {
-        let file = Value::File(NamedFile::open(name, folder.path(), format));
+        let file = Value::File(NamedFile::named(name, folder.path(), format));
         document.edit(Edit::Light(0, LightField::Parameter("file", file)), Selection::Light(0), &registry)
     };
     fs::write(folder.path().join("bad.ies"), "TILT=NONE\n1 1").expect("written");

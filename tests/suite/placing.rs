@@ -162,7 +162,8 @@ fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
                 let clipped =
                     |all: &[f32]| all.iter().filter(|b| **b > 1.0).count() as f32 / all.len() as f32;
                 let more = clipped(&after) - clipped(&before);
-                assert!(more < 0.02, "{what}, {kind} {nth}: {more} of the objects clip");
+                let light = session.document.lights.last();
+                assert!(more < 0.02, "{what}, {kind} {nth}: {more} of the objects clip: {light:?}");
             }
             let after = brightness(&session, &registry);
             let gain = after.iter().zip(&before).map(|(a, b)| a - b).fold(0.0, f32::max);

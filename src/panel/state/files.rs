@@ -89,7 +89,7 @@ impl Session {
         let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
         let below = std::path::absolute(folder).ok().filter(|_| self.path.is_some());
         let written = below.and_then(|folder| path.strip_prefix(folder).ok()).unwrap_or(path);
-        let file = NamedFile::open(&written.to_string_lossy(), folder, format);
+        let file = NamedFile::named(&written.to_string_lossy(), folder, format);
         Some(Edit::Light(light, LightField::Parameter(parameter.name, Value::File(file))))
     }
 

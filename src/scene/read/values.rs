@@ -30,7 +30,7 @@ impl Reader<'_> {
             }
             ParameterKind::File { format, .. } => {
                 let name = self.string(value, &rule)?;
-                Some(Value::File(NamedFile::open(name, self.folder, format)))
+                Some(Value::File(NamedFile::named(name, self.folder, format)))
             }
         }
     }
