@@ -110,10 +110,7 @@ fn guests_beside_the_picture_are_whole_in_view_and_leave_room_for_the_lists() {
             let row = if scale == 100 { row } else { &before };
             let head = bench.find(title).unwrap_or_else(|| panic!("{title} at {scale} %")).rect;
             let row = place(&mut bench, row).unwrap_or_else(|| panic!("{row} at {scale} %"));
-            assert!(
-                row.top() > head.bottom() - 1.0 && row.bottom() < status,
-                "{title}: {head:?}, {row:?}"
-            );
+            assert!(row.top() > head.bottom() - 1.0 && row.bottom() < status, "{title}: {head:?}, {row:?}");
             assert!(title != "Third" || head.top() > last, "in the order in which they were added");
             last = head.top();
         }
