@@ -42,6 +42,7 @@
 //! - [`panel`]: egui panels, as functions of a state that return actions.
 //! - [`window`]: panels, camera and entities in one window.
 //! - [`study`]: the differences between models, as numbers and a report.
+//! - [`testing`]: the tests that models, light types and object types pass, for those of other crates.
 //! - [`cli`]: the command line.
 
 /// The version of glam whose vectors the equations take.
@@ -80,5 +81,7 @@ pub mod panel;
 pub mod window;
 
 pub mod study;
+
+pub mod testing;
 
 pub mod cli;

@@ -14,6 +14,7 @@ use crate::{
 };
 
 mod ambient;
+mod builder;
 mod directional;
 mod point;
 mod spot;
@@ -45,6 +46,7 @@ pub const MAX_LIGHT_PARAMETERS: usize = 4;
 
 /// The name and properties of a light type.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Declaration {
     /// The name in scene files.
     pub id: &'static str,
@@ -128,6 +130,8 @@ pub trait LightType: Component + Default {
 pub struct LightEntry {
     /// Name, properties, shader.
     pub declaration: &'static Declaration,
+    /// Its number in the registry, by which shaders know the type.
+    pub index: u32,
     /// See [`LightType::incident`].
     pub incident: fn(&LightRecord, Vec3) -> Incident,
     /// See [`LightType::solid_angle`].
@@ -144,6 +148,7 @@ impl LightEntry {
     pub fn of<L: LightType>() -> Self {
         Self {
             declaration: const { &L::DECLARATION },
+            index: 0,
             incident: L::incident,
             solid_angle: L::solid_angle,
             mark: |entity| {

@@ -6,6 +6,7 @@ use super::value::Value;
 
 /// The declaration of one parameter.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Parameter {
     /// The name in scene files and on the command line.
     pub name: &'static str,
@@ -79,6 +80,20 @@ pub enum ParameterKind {
         /// Index of the default.
         default: usize,
     },
+}
+
+impl ParameterKind {
+    /// Its word in messages and in the declarations of custom models.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Number { .. } => "number",
+            Self::Integer { .. } => "integer",
+            Self::Colour { .. } => "colour",
+            Self::Triple { .. } => "triple",
+            Self::Choice { .. } => "choice",
+        }
+    }
 }
 
 impl Parameter {

@@ -71,21 +71,39 @@ const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parame
 }
 ";
 
-/// The function that hands a light to its type, by the index of the type in the registry.
+/// The function that hands a light to its type, by the number of the type in the registry. Others give no light.
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
     let mut text = String::from(
         "fn incident(light: Light, p: vec3<f32>) -> Incident {\n    switch light.light_type {\n",
     );
-    for (i, light) in lights.iter().enumerate() {
-        let _ =
-            writeln!(text, "        case {i}u: {{ return incident_{}(light, p); }}", light.declaration.id);
+    for LightEntry { index, declaration, .. } in lights {
+        let _ = writeln!(text, "        case {index}u: {{ return incident_{}(light, p); }}", declaration.id);
     }
     text.push_str("        default: { return Incident(vec3(0.0), 0.0, 0u); }\n    }\n}\n");
     text
 }
 
-/// The complete source for drawing with a model and a shading model under the given light types.
+/// The files that every source for drawing needs beside the vocabulary, and those for other uses.
+pub(crate) const SHARED: [Source; 6] = [ALBEDO, LIGHTS, SHADING, LOOP, WRAPPER, EVALUATE];
+
+/// The source of a light type alone, with a function that calls its own.
+#[must_use]
+pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
+    let mut c = Composer::new(sources);
+    OPTICS.iter().chain([&LIGHTS, &light.declaration.wgsl]).for_each(|s| c.source(s));
+    let id = light.declaration.id;
+    c.push(
+        "(light type)",
+        &format!(
+            "fn incident(light: Light, p: vec3<f32>) -> Incident {{ return incident_{id}(light, p); }}\n"
+        ),
+    );
+    c.composed
+}
+
+/// The complete source for drawing with a model and a shading model under the given light types, those of the scene: a
+/// mistake in another one takes no picture away.
 #[must_use]
 pub fn compose(
     sources: &Sources,
@@ -293,11 +311,31 @@ mod tests {
     }
 
     #[test]
-    fn every_light_type_is_dispatched_by_its_index() {
+    fn every_light_type_is_dispatched_by_its_number_in_the_registry() {
         let registry = Registry::builtin();
-        let text = light_dispatch(registry.lights());
+        let all = light_dispatch(registry.lights());
         for (i, light) in registry.lights().iter().enumerate() {
-            assert!(text.contains(&format!("case {i}u: {{ return incident_{}(", light.declaration.id)));
+            let case = format!("case {i}u: {{ return incident_{}(", light.declaration.id);
+            assert!(all.contains(&case));
+            // Alone as among all.
+            let alone = light_dispatch(&[*light]);
+            assert!(alone.contains(&case) && alone.matches("case ").count() == 1, "{alone}");
         }
+    }
+
+    #[test]
+    fn a_source_holds_the_light_types_that_are_asked_for_and_no_other() {
+        let registry = Registry::builtin();
+        let lights = registry.lights_in(registry.light_set(["spot"]));
+        let composed =
+            compose(&Sources::default(), &registry.models()[0], &registry.shading_models()[0], &lights);
+        let types: Vec<_> = composed.map.files().filter(|path| path.starts_with("light/")).collect();
+        assert_eq!(types, ["light/spot.wgsl"]);
+        let unlit = compose(&Sources::default(), &registry.models()[0], &registry.shading_models()[0], &[]);
+        assert_eq!(
+            crate::shader::whole::validate_drawing(&unlit, true),
+            Ok(()),
+            "a scene whose lights are all unknown"
+        );
     }
 }

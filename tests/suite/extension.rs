@@ -9,9 +9,9 @@ use lights_camera_models::{
         Frame, TermSelection, Terms,
         colour::{BACKGROUND, Encoding},
     },
-    parameter::{BASE_COLOUR, Parameter, ParameterKind},
+    parameter::{BASE_COLOUR, Parameter},
     parameters, reference,
-    reflection::{self, EquationPart, Family, Laws, ReflectionModel, Term},
+    reflection::{self, EquationPart, ReflectionModel, Term},
     registry::{Register, Registry},
     render::capture::gpu::{GpuRenderer, Output},
     scene::{Light, Scene},
@@ -21,15 +21,7 @@ use lights_camera_models::{
 
 use crate::pictures::{close_up, compare};
 
-const BANDS: Parameter = Parameter {
-    name: "bands",
-    symbol: "n",
-    label: "bands",
-    unit: "",
-    help: "How many tones there are.",
-    kind: ParameterKind::Integer { min: 1, max: Some(16), slider_max: 16, default: 4 },
-    used_when: None,
-};
+const BANDS: Parameter = Parameter::integer("bands", 1..=16, 4).symbol("n").help("How many tones there are.");
 
 parameters! {
     /// Cartoon shading: Lambert in a few tones.
@@ -42,24 +34,19 @@ parameters! {
 }
 
 impl ReflectionModel for Toon {
-    const DECLARATION: reflection::Declaration = reflection::Declaration {
-        id: "toon",
-        name: "Toon",
-        family: Family::Custom,
-        author: "a test",
-        source: "a test",
-        summary: "Lambert in a few tones.",
-        equation: &[EquationPart { term: Term::Diffuse, text: "I_d = ceil(n max(0, N·L)) C_b / n" }],
-        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
-        ambient: reflection::Ambient::Formula,
-        anisotropic: false,
-        wgsl: Source {
-            path: "toon.wgsl",
-            text: "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {\n\
-                   return Terms(vec3(0.0), ceil(m.bands * max(dot(frame.n, l), 0.0)) / m.bands * m.base_colour, vec3(0.0)); }\n\
-                   fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> { return m.base_colour; }\n",
-        },
-    };
+    const DECLARATION: reflection::Declaration = reflection::Declaration::new(
+        "toon",
+        "Toon",
+        Source::new(
+            "toon.wgsl",
+            "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {\n\
+             return Terms(vec3(0.0), ceil(m.bands * max(dot(frame.n, l), 0.0)) / m.bands * m.base_colour, vec3(0.0)); }\n\
+             fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> { return m.base_colour; }\n",
+        ),
+    )
+    .summary("Lambert in a few tones.")
+    .equation(&[EquationPart::new(Term::Diffuse, "I_d = ceil(n max(0, N·L)) C_b / n")])
+    .non_negative();
 
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         let tone = (self.bands * frame.n.dot(l).max(0.0)).ceil() / self.bands;
@@ -76,24 +63,17 @@ impl ReflectionModel for Toon {
 struct Skylight;
 
 impl LightType for Skylight {
-    const DECLARATION: light::Declaration = light::Declaration {
-        id: "skylight",
-        name: "Skylight",
-        summary: "Stronger at the top.",
-        glyph: "s",
-        has_position: false,
-        has_direction: false,
-        unit: "lx",
-        default_intensity: 1.0,
-        slider_max: 10.0,
-        parameters: &[],
-        cone_parameter: None,
-        equation: "I(p) = I y / 10",
-        wgsl: Source {
-            path: "skylight.wgsl",
-            text: "fn incident_skylight(light: Light, p: vec3<f32>) -> Incident { return Incident(vec3(0.0, 1.0, 0.0), light.intensity * p.y / 10.0, 0u); }\n",
-        },
-    };
+    const DECLARATION: light::Declaration = light::Declaration::new(
+        "skylight",
+        "Skylight",
+        Source::new(
+            "skylight.wgsl",
+            "fn incident_skylight(light: Light, p: vec3<f32>) -> Incident { return Incident(vec3(0.0, 1.0, 0.0), light.intensity * p.y / 10.0, 0u); }\n",
+        ),
+    )
+    .summary("Stronger at the top.")
+    .glyph("s")
+    .equation("I(p) = I y / 10");
 
     fn incident(light: &LightRecord, p: Vec3) -> Incident {
         Incident::From { l: Vec3::Y, intensity: light.intensity * p.y / 10.0 }
@@ -104,15 +84,8 @@ impl LightType for Skylight {
 struct Tetrahedron;
 
 impl ObjectType for Tetrahedron {
-    const DECLARATION: shape::Declaration = shape::Declaration {
-        id: "tetrahedron",
-        name: "Tetrahedron",
-        summary: "Four triangles.",
-        glyph: "▲",
-        tessellation_help: "always 1",
-        tessellation: 1..=1,
-        default_tessellation: 1,
-    };
+    const DECLARATION: shape::Declaration =
+        shape::Declaration::new("tetrahedron", "Tetrahedron").summary("Four triangles.").glyph("▲");
 
     fn mesh(_: u32) -> PolygonMesh {
         let mut mesh = PolygonMesh {
@@ -171,8 +144,7 @@ fn a_custom_model_light_and_shape_are_drawn_alike_by_both_renderers() {
 
 #[test]
 fn a_parameter_that_means_something_else_elsewhere_is_refused() {
-    const WRONG: Parameter =
-        Parameter { kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 }, ..BASE_COLOUR };
+    const WRONG: Parameter = Parameter::number("base_colour", 0.0..=1.0, 0.5);
     parameters! {
         /// Uses the name of a colour for a number.
         pub struct Clash {
@@ -181,8 +153,7 @@ fn a_parameter_that_means_something_else_elsewhere_is_refused() {
         }
     }
     impl ReflectionModel for Clash {
-        const DECLARATION: reflection::Declaration =
-            reflection::Declaration { id: "clash", ..Toon::DECLARATION };
+        const DECLARATION: reflection::Declaration = Toon::DECLARATION.id("clash");
         fn response(&self, _: Vec3, _: Vec3, _: &Frame) -> Terms {
             Terms::default()
         }

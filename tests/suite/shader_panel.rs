@@ -61,6 +61,7 @@ fn folders() -> ShaderStatus {
         folders: Folders {
             shaders: Some(PathBuf::from("/home/mira/lab/shaders")),
             models: Some(PathBuf::from("/home/mira/lab/models")),
+            ..Folders::default()
         },
         ..ShaderStatus::default()
     }

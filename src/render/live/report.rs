@@ -30,7 +30,16 @@ impl LiveShaders {
             {
                 format!("{} (a grey stand-in)", m.declaration.name)
             }
-            Some(model) => model.declaration.name.to_owned(),
+            Some(model) => {
+                let (name, replaced) = (model.declaration.name, &self.shaders[key].replaced);
+                match replaced.as_slice() {
+                    [] => name.to_owned(),
+                    paths if paths.contains(&model.declaration.wgsl.path) => {
+                        format!("{name} (a grey stand-in)")
+                    }
+                    paths => format!("{name} (without {})", crate::text::listed(paths, "and")),
+                }
+            }
             None => key.0.to_owned(),
         };
         let mut keys: Vec<_> = self.shaders.keys().collect();
