@@ -118,23 +118,22 @@ fn path(registry: &Registry, source: &Source, replaced: Option<&str>) -> Check {
     })
 }
 
-/// Checks a reflection model.
-pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check {
-    let d = entry.declaration;
-    identity(d.id, d.name)?;
-    parameters(entry.parameters, OBJECT_KEYS, "an object")?;
-    let end = layout(entry.parameters).last().map_or(0, |f| f.2 + 12);
+/// Checks that parameters fit, and have the types of those of the same names in others of their sort.
+fn shared(
+    all: &[Parameter],
+    sort: &str,
+    others: impl Iterator<Item = (&'static str, &'static [Parameter])> + Clone,
+) -> Check {
+    let end = layout(all).last().map_or(0, |f| f.2 + 12);
     ensure(end <= BLOCK_BYTES, || format!("its parameters take {end} bytes, at most {BLOCK_BYTES} fit"))?;
-    for p in entry.parameters {
-        let mut others = registry.models().iter().filter(|m| m.declaration.id != d.id);
-        let other = others.find_map(|m| {
-            let other = m.parameter(p.name)?;
-            let differs = std::mem::discriminant(&other.kind) != std::mem::discriminant(&p.kind);
-            differs.then_some((m.declaration.id, other))
-        });
+    for p in all {
+        let differs = |other: &&Parameter| {
+            other.name == p.name && std::mem::discriminant(&other.kind) != std::mem::discriminant(&p.kind)
+        };
+        let other = others.clone().find_map(|(id, all)| Some((id, all.iter().find(differs)?)));
         if let Some((id, other)) = other {
             return Err(format!(
-                "parameter `{}`: is {}, but that of `{id}` is {}; models share parameters by name, so they must have \
+                "parameter `{}`: is {}, but that of `{id}` is {}; {sort} share parameters by name, so they must have \
                  one type: use that, or another name",
                 p.name,
                 p.kind.name(),
@@ -142,6 +141,16 @@ pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check
             ));
         }
     }
+    Ok(())
+}
+
+/// Checks a reflection model.
+pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check {
+    let d = entry.declaration;
+    identity(d.id, d.name)?;
+    parameters(entry.parameters, OBJECT_KEYS, "an object")?;
+    let others = registry.models().iter().filter(|m| m.declaration.id != d.id);
+    shared(entry.parameters, "models", others.map(|m| (m.declaration.id, m.parameters)))?;
     path(registry, &d.wgsl, registry.model(d.id).map(|m| m.declaration.id))
 }
 

@@ -1,5 +1,7 @@
 //! The status of the shaders for people.
 
+use std::path::PathBuf;
+
 use super::{Key, LiveShaders, Registry, Visible};
 use crate::{
     library::status::{ShaderStatus, Trouble},
@@ -12,7 +14,9 @@ impl LiveShaders {
         let mut troubles: Vec<Trouble> = Vec::new();
         let mut add = |problem: &ShaderProblem, stale: Option<String>| {
             let i = troubles.iter().position(|t| t.problem == *problem).unwrap_or_else(|| {
-                let path = registry.folders().file_of(&problem.file);
+                // What another crate compiled in may be on the disk of its author only.
+                let there = |path: &PathBuf| !registry.is_foreign(&problem.file) || path.is_file();
+                let path = registry.folders().file_of(&problem.file).filter(there);
                 troubles.push(Trouble { problem: problem.clone(), path, stale: Vec::new() });
                 troubles.len() - 1
             });
