@@ -438,7 +438,7 @@ impl Register for Registry {
         let entry = ShapeEntry::of::<T>();
         let d = entry.declaration;
         let check = || -> Result<(), Mistake> {
-            check::object_type(&entry)?;
+            check::object_type(self, &entry)?;
             place(self.shape(d.id).is_some(), d.id, admission, PART)?;
             if admission != Admission::BuiltIn {
                 check::meshes(&entry)?;

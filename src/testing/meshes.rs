@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::Outcome;
 use crate::{
+    parameter::{Parameter, Values},
     registry::check::mesh,
     shape::{PolygonMesh, ShapeEntry},
 };
@@ -34,11 +35,9 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Measures a mesh. Of very fine ones places are not compared.
+    /// Measures a mesh.
     #[must_use]
     pub fn of(mesh: &PolygonMesh) -> Self {
-        /// The most vertices whose places are compared.
-        const MOST: usize = 1 << 17;
         let (faces, normals) = (mesh.polygon_normals(), mesh.vertex_normals());
         let (face_tangents, tangents) = (mesh.polygon_tangents(), mesh.vertex_tangents());
         let mut edges = HashMap::new();
@@ -68,23 +67,57 @@ impl Findings {
                 found.lean = found.lean.max(t.dot(*n).abs() / length);
             }
         }
-        if mesh.positions.len() <= MOST {
-            let mut places: HashMap<_, u32> = HashMap::new();
-            for p in &mesh.positions {
-                *places.entry((*p * 1e6).round().as_ivec3().to_array()).or_default() += 1;
-            }
-            found.doubled = places.values().filter(|&&n| n > 1).count();
+        let mut places: HashMap<_, u32> = HashMap::new();
+        for p in &mesh.positions {
+            *places.entry((*p * 1e6).round().as_ivec3().to_array()).or_default() += 1;
         }
+        found.doubled = places.values().filter(|&&n| n > 1).count();
         found
     }
 }
 
-/// Each mesh of an object type: at both ends of its tessellations, and at the default.
-pub fn each(shape: &ShapeEntry) -> impl Iterator<Item = (u32, PolygonMesh)> + '_ {
+/// A mesh, and what it was made from.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The parameters, each of them.
+    pub values: Values,
+    /// The tessellation.
+    pub tessellation: u32,
+    /// The mesh.
+    pub mesh: PolygonMesh,
+}
+
+/// The meshes of an object type at both ends of its tessellations and at the default, each with its parameters at the
+/// ends of their ranges and at their defaults: in all combinations, or one by one where there are too many.
+pub fn cases(shape: &ShapeEntry) -> impl Iterator<Item = Case> + '_ {
     let d = shape.declaration;
-    [*d.tessellation.start(), d.default_tessellation, *d.tessellation.end()]
-        .into_iter()
-        .map(|tessellation| (tessellation, shape.mesh(tessellation)))
+    combinations(shape.parameters).into_iter().flat_map(move |values| {
+        [*d.tessellation.start(), d.default_tessellation, *d.tessellation.end()].map(|tessellation| Case {
+            mesh: shape.mesh(&values, tessellation),
+            values: values.clone(),
+            tessellation,
+        })
+    })
+}
+
+/// Parameters at the ends of their ranges and at their defaults.
+fn combinations(parameters: &[Parameter]) -> Vec<Values> {
+    /// The most combinations.
+    const MOST: usize = 243;
+    let with = |values: &Values, p: &Parameter, value| {
+        let mut values = values.clone();
+        values.set(p.name, value);
+        values
+    };
+    let mut defaults = Values::default();
+    parameters.iter().for_each(|p| defaults.set(p.name, p.default_value()));
+    if parameters.iter().map(|p| p.ends().len()).product::<usize>() > MOST {
+        let ends = parameters.iter().flat_map(|p| p.ends().into_iter().map(move |end| (p, end)));
+        return ends.map(|(p, end)| with(&defaults, p, end)).collect();
+    }
+    parameters.iter().fold(vec![defaults], |all, p| {
+        all.iter().flat_map(|values| p.ends().into_iter().map(|end| with(values, p, end))).collect()
+    })
 }
 
 /// Each mesh passes [`mesh::check`], every polygon and vertex has a normal and every polygon a tangent, vertex normals
@@ -93,8 +126,11 @@ pub fn each(shape: &ShapeEntry) -> impl Iterator<Item = (u32, PolygonMesh)> + '_
 /// # Errors
 /// The first that does not.
 pub fn all(shape: &ShapeEntry) -> Outcome {
-    each(shape).try_for_each(|(tessellation, mesh)| {
-        one(&mesh).map_err(|what| format!("the mesh of tessellation {tessellation}: {what}"))
+    cases(shape).try_for_each(|Case { values, tessellation, mesh }| {
+        one(&mesh).map_err(|what| {
+            let with = if values.0.is_empty() { String::new() } else { format!(" with {:?}", values.0) };
+            format!("the mesh of tessellation {tessellation}{with}: {what}")
+        })
     })
 }
 
@@ -103,8 +139,11 @@ pub fn all(shape: &ShapeEntry) -> Outcome {
 /// # Errors
 /// The first thing that is wrong.
 pub fn one(mesh: &PolygonMesh) -> Outcome {
+    /// The most vertices of a mesh whose places are told apart: those of a finer one may be as close as rounding.
+    const MOST: usize = 10_000;
     mesh::check(mesh)?;
     let Findings { no_normal, folded, doubled, no_tangent, .. } = Findings::of(mesh);
+    let doubled = if mesh.positions.len() > MOST { 0 } else { doubled };
     for (count, what) in [
         (no_normal, "polygons or vertices have no normal: each polygon needs an area, each vertex a polygon"),
         (folded, "polygons face away from the normal at one of their corners: the surface folds over"),

@@ -106,10 +106,12 @@ const SHADING: shading::Declaration =
 /// An object type, but for its declaration and a change of its mesh, a tetrahedron.
 macro_rules! shape {
     ($name:ident, $declaration:expr, $change:expr) => {
-        struct $name;
+        parameters! {
+            struct $name {}
+        }
         impl ObjectType for $name {
             const DECLARATION: shape::Declaration = $declaration;
-            fn mesh(tessellation: u32) -> PolygonMesh {
+            fn mesh(&self, tessellation: u32) -> PolygonMesh {
                 let mut mesh = tetrahedron();
                 let change: fn(&mut PolygonMesh, u32) = $change;
                 change(&mut mesh, tessellation);
@@ -370,4 +372,32 @@ fn the_calls_that_panic_say_the_same() {
     // Wrong WGSL alone leaves the rest of the program usable: it is reported where it is drawn with.
     model!(BadText, MODEL.wgsl(Source::new("paper.wgsl", "fn response() {}")), {});
     assert!(Registry::builtin().add_reflection_model::<BadText>().model("paper").is_some());
+}
+
+#[test]
+fn parameters_of_object_types_are_checked_as_others_and_with_the_mesh_of_each_end() {
+    parameters! {
+        struct Keyed { size: number = Parameter::number("size", 0.1..=1.0, 0.5) }
+    }
+    impl ObjectType for Keyed {
+        const DECLARATION: shape::Declaration = SHAPE;
+        fn mesh(&self, _: u32) -> PolygonMesh {
+            tetrahedron()
+        }
+    }
+    shape_refused::<Keyed>(&["parameter `size`: the name is that of another key of an object"]);
+    parameters! {
+        struct Stretched { stretch: number = Parameter::number("stretch", 1.0..=3.0, 1.0) }
+    }
+    impl ObjectType for Stretched {
+        const DECLARATION: shape::Declaration = SHAPE;
+        fn mesh(&self, _: u32) -> PolygonMesh {
+            let mut mesh = tetrahedron();
+            mesh.positions.iter_mut().for_each(|p| p.x *= self.stretch);
+            mesh
+        }
+    }
+    shape_refused::<Stretched>(&[
+        "the mesh of tessellation 1 with stretch 3: its largest extent is 3, but must be 1",
+    ]);
 }

@@ -181,10 +181,12 @@ fn a_light_with_one_sign_changed_is_noticed() {
 /// A tetrahedron, after a change.
 macro_rules! tetrahedron {
     ($name:ident, $change:expr) => {
-        struct $name;
+        parameters! {
+            struct $name {}
+        }
         impl ObjectType for $name {
             const DECLARATION: shape::Declaration = shape::Declaration::new("tetrahedron", "Tetrahedron");
-            fn mesh(_: u32) -> PolygonMesh {
+            fn mesh(&self, _: u32) -> PolygonMesh {
                 let mut mesh = PolygonMesh {
                     positions: vec![
                         Vec3::new(0.5, 0.5, 0.5),

@@ -88,11 +88,11 @@ pub fn volume(mesh: &PolygonMesh) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{registry::Registry, shape::mesh::Polygon};
+    use crate::{parameter::Values, registry::Registry, shape::mesh::Polygon};
 
     /// The problem of the cube after a change.
     fn said(change: impl FnOnce(&mut PolygonMesh)) -> String {
-        let mut mesh = Registry::builtin().shape("cube").expect("built in").mesh(1);
+        let mut mesh = Registry::builtin().shape("cube").expect("built in").mesh(&Values::default(), 1);
         change(&mut mesh);
         check(&mesh).err().unwrap_or_default()
     }
@@ -136,7 +136,12 @@ mod tests {
         for shape in Registry::builtin().shapes() {
             let d = shape.declaration;
             for tessellation in [*d.tessellation.start(), d.default_tessellation, *d.tessellation.end()] {
-                assert_eq!(check(&shape.mesh(tessellation)), Ok(()), "{} {tessellation}", d.id);
+                assert_eq!(
+                    check(&shape.mesh(&Values::default(), tessellation)),
+                    Ok(()),
+                    "{} {tessellation}",
+                    d.id
+                );
             }
         }
     }

@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use super::{LIGHT_KEYS, MODELS, OBJECT_KEYS, Registry, WINDOW_KEYS, light_set::MAX_LIGHT_TYPES};
 use crate::{
     light::{LightEntry, MAX_LIGHT_PARAMETERS},
-    parameter::{BLOCK_BYTES, Parameter, ParameterKind, layout},
+    parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, layout},
     reflection::{ModelEntry, usage},
     shader::{Source, definitions::allowed_in_wgsl},
     shading::ShadingEntry,
@@ -198,9 +198,12 @@ pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
 }
 
 /// Checks the declaration of an object type.
-pub(super) fn object_type(entry: &ShapeEntry) -> Check {
+pub(super) fn object_type(registry: &Registry, entry: &ShapeEntry) -> Check {
     let d = entry.declaration;
     identity(d.id, d.name)?;
+    parameters(entry.parameters, OBJECT_KEYS, "an object")?;
+    let others = registry.shapes().iter().filter(|s| s.declaration.id != d.id);
+    shared(entry.parameters, "object types", others.map(|s| (s.declaration.id, s.parameters)))?;
     let (least, most) = (*d.tessellation.start(), *d.tessellation.end());
     ensure(1 <= least && least <= most, || {
         format!("its tessellations are {least} to {most}, but must be at least 1, the smaller one first")
@@ -210,13 +213,20 @@ pub(super) fn object_type(entry: &ShapeEntry) -> Check {
     })
 }
 
-/// Checks the meshes of an object type: at both ends of its tessellations, and at the default.
+/// Checks the meshes of an object type: at both ends of its tessellations and at the default, and each parameter at both
+/// ends of its range.
 pub(super) fn meshes(entry: &ShapeEntry) -> Check {
     let d = entry.declaration;
+    let check = |values: &Values, tessellation: u32| {
+        mesh::check(&entry.mesh(values, tessellation)).map_err(|what| {
+            let set: Vec<_> = values.0.iter().map(|(name, value)| format!(" with {name} {value}")).collect();
+            format!("the mesh of tessellation {tessellation}{}: {what}", set.concat())
+        })
+    };
     let mut all = vec![d.default_tessellation, *d.tessellation.start(), *d.tessellation.end()];
     all.dedup();
-    all.into_iter().try_for_each(|tessellation| {
-        mesh::check(&entry.mesh(tessellation))
-            .map_err(|what| format!("the mesh of tessellation {tessellation}: {what}"))
-    })
+    all.into_iter().try_for_each(|tessellation| check(&Values::default(), tessellation))?;
+    let ends = entry.parameters.iter().flat_map(|p| p.ends().into_iter().map(move |end| (p.name, end)));
+    ends.into_iter()
+        .try_for_each(|(name, end)| check(&Values([(name.into(), end)].into()), d.default_tessellation))
 }

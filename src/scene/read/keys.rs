@@ -1,7 +1,7 @@
 //! The keys of scene files.
 
-use crate::registry::Registry;
 pub(in crate::scene) use crate::registry::{LIGHT_KEYS, OBJECT_KEYS};
+use crate::{parameter::Parameter, registry::Registry};
 
 /// The keys of a scene, in the order of messages.
 pub(in crate::scene) const SCENE_KEYS: &[&str] = &[
@@ -52,6 +52,7 @@ pub(super) const OTHER_WORDS: &[(&str, &str)] = &[
     ("temperature", "colour_temperature"),
     ("segments", "tessellation"),
     ("subdivisions", "tessellation"),
+    ("minor_radius", "tube_radius"),
     ("title", "name"),
     ("on", "enabled"),
     ("off", "enabled"),
@@ -64,11 +65,19 @@ pub(super) const OTHER_WORDS: &[(&str, &str)] = &[
 
 /// The keys of all light types.
 pub(super) fn light_keys(registry: &Registry) -> Vec<&'static str> {
-    let declared = registry.lights().iter().flat_map(|l| l.declaration.parameters).map(|p| p.name);
-    let mut keys = LIGHT_KEYS.to_vec();
-    for name in declared {
-        if !keys.contains(&name) {
-            keys.push(name);
+    with(LIGHT_KEYS, registry.lights().iter().flat_map(|l| l.declaration.parameters))
+}
+
+/// The keys of all object types.
+pub(super) fn object_keys(registry: &Registry) -> Vec<&'static str> {
+    with(OBJECT_KEYS, registry.shapes().iter().flat_map(|s| s.parameters))
+}
+
+fn with(common: &[&'static str], declared: impl Iterator<Item = &'static Parameter>) -> Vec<&'static str> {
+    let mut keys = common.to_vec();
+    for p in declared {
+        if !keys.contains(&p.name) {
+            keys.push(p.name);
         }
     }
     keys
