@@ -457,6 +457,18 @@ mod tests {
     use crate::reflection::preset;
 
     #[test]
+    fn a_start_makes_no_meshes_and_parses_no_wgsl_of_what_ships() {
+        const RUNS: u32 = 20;
+        let start = std::time::Instant::now();
+        for _ in 0..RUNS {
+            assert!(!Registry::builtin().has_foreign());
+        }
+        let each = start.elapsed() / RUNS;
+        // Without optimisation; the finest teapot alone takes longer, and so does naga for any model.
+        assert!(each < std::time::Duration::from_millis(10), "{each:?}");
+    }
+
+    #[test]
     fn gold_stays_gold_when_the_model_is_exchanged() {
         let registry = Registry::builtin();
         let gold = preset::by_id("gold").expect("measured");

@@ -75,7 +75,6 @@ pub trait ObjectType: ParameterSet {
 mod tests {
     use glam::Vec3;
 
-    use super::*;
     use crate::{
         parameter::{Value, Values},
         registry::{Registry, check},

@@ -66,7 +66,7 @@ pub fn assert_parity_on_gpu<M: ReflectionModel>() {
     let (model, sources) = (ModelEntry::of::<M>(), Sources::default());
     let both = || {
         parity::on_gpu(&model, &sources)?;
-        parity::at_the_ends_on_gpu(&model, &sources)
+        parity::at_the_ends_on_gpu(&model, &sources, &mut { parity::SEED_OF_ENDS })
     };
     assert(M::DECLARATION.id, both());
 }

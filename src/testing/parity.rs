@@ -21,6 +21,9 @@ pub const TOLERANCE: f32 = 1e-4;
 /// The same where all parameters are at the ends of their ranges, or directions were rotated back and forth.
 const WIDE: f32 = 1e-3;
 
+/// A seed for [`at_the_ends_on_gpu`].
+pub const SEED_OF_ENDS: u64 = 11;
+
 /// All that needs no GPU.
 ///
 /// # Errors
@@ -239,24 +242,24 @@ pub fn on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
 }
 
 /// At the ends of all ranges both languages are finite and agree, for directions straight on, at the horizon and
-/// within it, below, opposite each other, and on one line.
+/// within it, below, opposite each other, and on one line. `seed` chooses the ends.
 ///
 /// # Errors
 /// The first difference, or why the GPU gives no answer.
-pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
-    let mut seed = 11;
+pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64) -> Outcome {
+    let mut directions = SEED_OF_ENDS;
     let mut ends = vec![Vec3::Z, Vec3::NEG_Z, Vec3::X, Vec3::ZERO];
     for lift in [1e-20, 1e-9, 1e-6, 1e-3, -1e-6] {
         ends.extend([Vec3::new(1.0, 0.0, lift), Vec3::new(-1.0, 0.0, lift), Vec3::new(0.0, 1.0, lift)]);
     }
-    ends.extend((0..6).map(|_| direction(&mut seed)));
+    ends.extend((0..6).map(|_| direction(&mut directions)));
     let pairs: Vec<_> = ends.iter().flat_map(|l| ends.iter().map(|v| (*l, *v))).collect();
     let mut sensitive = false;
     // All at the smallest, all at the largest, then each at either.
     for set in 0..10 {
         let mut values = Values::default();
         for p in model.parameters {
-            let high = if set < 2 { set == 1 } else { random(&mut seed) < 0.5 };
+            let high = if set < 2 { set == 1 } else { random(seed) < 0.5 };
             let value = match p.kind {
                 ParameterKind::Number { min, max, .. } => Value::Number(if high { max } else { min }),
                 ParameterKind::Integer { min, max, slider_max, .. } => {
@@ -265,7 +268,7 @@ pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
                 ParameterKind::Colour { .. } => Value::Colour([if high { 255 } else { 0 }; 3]),
                 ParameterKind::Triple { min, max, .. } => Value::Triple([if high { max } else { min }; 3]),
                 ParameterKind::Choice { options, .. } => {
-                    let i = (random(&mut seed) * options.len() as f32) as usize;
+                    let i = (random(seed) * options.len() as f32) as usize;
                     Value::Choice(options[i].0.into())
                 }
             };

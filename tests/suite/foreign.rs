@@ -139,7 +139,7 @@ fn a_broken_light_that_shines_is_reported_and_dark_and_the_others_shine_on() {
     });
     assert!(picture(&mut with, &lit_by_lamp()) == expected, "the other light shines on");
     let problem = with.shader_problem().expect("it is wrong");
-    assert_eq!((problem.file.as_str(), problem.line), ("mine/lamp.wgsl", 3), "{problem}");
+    assert_eq!((problem.file.as_str(), problem.line), ("mine/lamp.wgsl", 2), "{problem}");
     let troubles = status(&mut with).troubles;
     assert_eq!(troubles.len(), 1, "{troubles:?}");
     assert_eq!(troubles[0].stale, ["Lambert (without mine/lamp.wgsl)"]);
@@ -148,6 +148,7 @@ fn a_broken_light_that_shines_is_reported_and_dark_and_the_others_shine_on() {
 #[test]
 fn a_broken_model_is_drawn_as_a_grey_stand_in_and_reported() {
     let mut scene = close_up("sphere", "point");
+    scene.lights[0].colour = [255; 3];
     let mut with = renderer(|app| {
         app.add_reflection_model::<Misnamed>().add_reflection_model::<Red>();
     });
@@ -190,7 +191,7 @@ fn files_in_the_folder_of_another_crate_are_followed() {
     let lit = picture(&mut with, &lit_by_lamp());
     assert!(lit != dark, "it shines");
     // Another mistake leaves the last good version.
-    fs::write(&file, MENDED.replace("0u", "0")).expect("writable");
+    fs::write(&file, MENDED.replace("0u", "0.5")).expect("writable");
     look_at(&mut with, &file);
     let troubles = status(&mut with).troubles;
     assert_eq!(troubles[0].stale, ["Lambert"], "{troubles:?}");

@@ -158,6 +158,7 @@ fn a_scene_that_gets_its_first_light_of_a_type_is_right_in_the_next_frame() {
     let mut all = vec![scene.clone()];
     for entry in registry.lights().iter().filter(|l| l.declaration.id != "point") {
         let mut light = lamp.clone();
+        light.direction = Some(Vec3::new(-0.5, -0.55, -1.0));
         light.set_type(entry, &registry, scene.scene_size);
         light.intensity = 3.0;
         scene.lights.push(light);
