@@ -44,7 +44,12 @@
 //! - [`study`]: the differences between models, as numbers and a report.
 //! - [`testing`]: the tests that models, light types and object types pass, for those of other crates.
 //! - [`cli`]: the command line.
+//! - [`prelude`]: the names that extensions of the program need most.
 
+/// The version of Bevy that the window is made with.
+pub use bevy;
+/// The version of bevy_egui, and in it egui, that panels are drawn with.
+pub use bevy_egui;
 /// The version of glam whose vectors the equations take.
 pub use glam;
 
@@ -85,3 +90,5 @@ pub mod study;
 pub mod testing;
 
 pub mod cli;
+
+pub mod prelude;

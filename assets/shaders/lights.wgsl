@@ -9,30 +9,33 @@ const TERM_AMBIENT: u32 = 1u;
 const TERM_DIFFUSE: u32 = 2u;
 const TERM_SPECULAR: u32 = 3u;
 
-// One light, the twin of `LightRecord` in src/light/mod.rs.
+// What lights of all types have, the twin of `LightRecord` in src/light/mod.rs.
 struct Light {
     position: vec3<f32>,
     light_type: u32,
     direction: vec3<f32>,
     intensity: f32,
     colour: vec3<f32>,
-    parameters: vec4<f32>,
+    // Where its own parameters begin in `Illumination.words`.
+    first_word: u32,
 }
 
-// All lights of the scene, and the display settings.
+// All lights of the scene, the display settings, and behind them as words: the parameters of the lights one after the
+// other, and the numbers of the files that they name.
 struct Illumination {
     count: u32,
     terms: u32,
     exposure: f32,
     gamma_naive: u32,
     lights: array<Light, MAX_LIGHTS>,
+    words: array<u32>,
 }
 
-// The light that arrives at a point from one light: from the direction l, or, if `everywhere` is not
-// zero, equally from all directions.
+// The light that arrives at a point from one light, for red, green and blue: from the direction l, or, if
+// `everywhere` is not zero, equally from all directions.
 struct Incident {
     l: vec3<f32>,
-    intensity: f32,
+    intensity: vec3<f32>,
     everywhere: u32,
 }
 

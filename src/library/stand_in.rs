@@ -7,8 +7,12 @@ use crate::{custom, light::LightEntry, reflection::ModelEntry, shading::ShadingE
 #[must_use]
 pub fn of(model: &ModelEntry, shading: &ShadingEntry, lights: &[LightEntry]) -> Vec<(&'static str, String)> {
     let dark = |light: &LightEntry| {
+        let own = match light.parameters {
+            [] => String::new(),
+            _ => format!("m: {}, ", light.parameter_struct()),
+        };
         format!(
-            "fn incident_{}(light: Light, p: vec3<f32>) -> Incident {{\n    return Incident(vec3(0.0), 0.0, 0u);\n}}\n",
+            "fn incident_{}(light: Light, {own}p: vec3<f32>) -> Incident {{\n    return Incident(vec3(0.0), vec3(0.0), 0u);\n}}\n",
             light.declaration.id
         )
     };

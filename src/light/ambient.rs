@@ -1,12 +1,12 @@
-use bevy::ecs::component::Component;
 use glam::Vec3;
 
 use super::{Declaration, Incident, LightRecord, LightType};
-use crate::shader::wgsl;
+use crate::{parameters, shader::wgsl};
 
-/// **Ambient light**: the same from every direction, `I(p) = I` in lux. Models answer with their `ambient_response`.
-#[derive(Component, Clone, Copy, Debug, Default)]
-pub struct Ambient;
+parameters! {
+    /// **Ambient light**: the same from every direction, `I(p) = I` in lux. Models answer with their `ambient_response`.
+    pub struct Ambient {}
+}
 
 impl LightType for Ambient {
     const DECLARATION: Declaration = Declaration {
@@ -19,13 +19,12 @@ impl LightType for Ambient {
         unit: "lx",
         default_intensity: 1.0,
         slider_max: 10.0,
-        parameters: &[],
         cone_parameter: None,
         equation: "I(p) = I",
         wgsl: wgsl!("light/ambient.wgsl"),
     };
 
-    fn incident(light: &LightRecord, _p: Vec3) -> Incident {
-        Incident::Uniform { intensity: light.intensity }
+    fn incident(&self, light: &LightRecord, _p: Vec3) -> Incident {
+        Incident::Uniform { intensity: Vec3::splat(light.intensity) }
     }
 }

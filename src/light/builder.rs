@@ -26,7 +26,6 @@ impl Declaration {
             unit: "lx",
             default_intensity: 1.0,
             slider_max: 10.0,
-            parameters: &[],
             cone_parameter: None,
             equation: "",
             wgsl,
@@ -67,6 +66,18 @@ impl Declaration {
     #[must_use]
     pub const fn lux(self, default: f32, slider_max: f32) -> Self {
         Self { unit: "lx", default_intensity: default, slider_max, ..self }
+    }
+
+    /// The same with an intensity that is a factor of what it is by itself: the default, and the end of the slider.
+    #[must_use]
+    pub const fn factor(self, default: f32, slider_max: f32) -> Self {
+        Self { unit: "×", default_intensity: default, slider_max, ..self }
+    }
+
+    /// The same with a cone that a gizmo draws: half its angle in degrees is the number of that name.
+    #[must_use]
+    pub const fn cone(self, parameter: &'static str) -> Self {
+        Self { cone_parameter: Some(parameter), ..self }
     }
 
     /// The same with the equation of the light that arrives at a point.

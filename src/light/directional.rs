@@ -1,13 +1,13 @@
-use bevy::ecs::component::Component;
 use glam::Vec3;
 
 use super::{Declaration, Incident, LightRecord, LightType};
-use crate::shader::wgsl;
+use crate::{parameters, shader::wgsl};
 
-/// **Directional light**: infinitely far away, `I(p) = I`, the illuminance in lux on a surface that
-/// faces it.
-#[derive(Component, Clone, Copy, Debug, Default)]
-pub struct Directional;
+parameters! {
+    /// **Directional light**: infinitely far away, `I(p) = I`, the illuminance in lux on a surface that
+    /// faces it.
+    pub struct Directional {}
+}
 
 impl LightType for Directional {
     const DECLARATION: Declaration = Declaration {
@@ -20,13 +20,12 @@ impl LightType for Directional {
         unit: "lx",
         default_intensity: 1.0,
         slider_max: 10.0,
-        parameters: &[],
         cone_parameter: None,
         equation: "I(p) = I",
         wgsl: wgsl!("light/directional.wgsl"),
     };
 
-    fn incident(light: &LightRecord, _p: Vec3) -> Incident {
-        Incident::From { l: -light.direction, intensity: light.intensity }
+    fn incident(&self, light: &LightRecord, _p: Vec3) -> Incident {
+        Incident::From { l: -light.direction, intensity: Vec3::splat(light.intensity) }
     }
 }

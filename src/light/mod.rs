@@ -5,22 +5,26 @@
 
 use std::fmt;
 
-use bevy::ecs::component::Component;
+use bevy::ecs::{component::Component, system::EntityCommands};
 use glam::Vec3;
 
 use crate::{
-    parameter::{Parameter, Values},
+    optics::colour::Encoding,
+    parameter::{Parameter, ParameterSet, Table, Values, words},
     shader::Source,
 };
 
 mod ambient;
 mod builder;
 mod directional;
+pub mod ies;
+mod photometric;
 mod point;
 mod spot;
 
 pub use ambient::Ambient;
 pub use directional::Directional;
+pub use photometric::Photometric;
 pub use point::Point;
 pub use spot::Spot;
 
@@ -34,15 +38,13 @@ pub trait Take {
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Point>();
     to.take::<Spot>();
+    to.take::<Photometric>();
     to.take::<Directional>();
     to.take::<Ambient>();
 }
 
 /// The most lights that a scene may have; the capacity of the light buffer.
 pub const MAX_LIGHTS: usize = 256;
-
-/// The most parameters that a light type may declare beside those common to all lights.
-pub const MAX_LIGHT_PARAMETERS: usize = 4;
 
 /// The name and properties of a light type.
 #[derive(Debug)]
@@ -60,23 +62,24 @@ pub struct Declaration {
     pub has_position: bool,
     /// True if it has a direction.
     pub has_direction: bool,
-    /// The unit of its intensity: `cd` or `lx`. For a type in `cd`, [`LightType::solid_angle`] converts it to lumen.
+    /// The unit of its intensity: `cd` or `lx`, or `×` for a factor of what it is by itself. Where there is a
+    /// [`LightType::solid_angle`], it converts the intensity to lumen.
     pub unit: &'static str,
     /// Its intensity if the scene gives none.
     pub default_intensity: f32,
     /// The upper end of a slider for the intensity.
     pub slider_max: f32,
-    /// Further numbers, at most [`MAX_LIGHT_PARAMETERS`].
-    pub parameters: &'static [Parameter],
-    /// The half angle in degrees of the cone that a gizmo should draw: the index in `parameters`.
-    pub cone_parameter: Option<usize>,
+    /// The name of the parameter that is the half angle in degrees of the cone that a gizmo should draw.
+    pub cone_parameter: Option<&'static str>,
     /// The equation of the light that arrives at a point, as readable mathematics.
     pub equation: &'static str,
-    /// The twin in WGSL: `fn incident_<id>(light: Light, p: vec3<f32>) -> Incident`.
+    /// The twin in WGSL: `fn incident_<id>(light: Light, m: <Id>Parameters, p: vec3<f32>) -> Incident`, where the
+    /// struct has the parameters by name (see [`parameter_struct`](LightEntry::parameter_struct)); a type without
+    /// parameters has no `m`.
     pub wgsl: Source,
 }
 
-/// A light for calculation: decoded colour, unit direction, numbers.
+/// What lights of all types have, for calculation: decoded colour, unit direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightRecord {
     /// Index of the type in the registry.
@@ -89,11 +92,10 @@ pub struct LightRecord {
     pub colour: Vec3,
     /// In the unit of the type.
     pub intensity: f32,
-    /// The declared parameters in order.
-    pub parameters: [f32; MAX_LIGHT_PARAMETERS],
 }
 
-/// The light that arrives at a point from one light.
+/// The light that arrives at a point from one light, for red, green and blue; the light loop multiplies it by the
+/// colour of the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Incident {
     /// From one direction: `l`, the unit vector to the light, and the intensity `I(p)`.
@@ -101,27 +103,40 @@ pub enum Incident {
         /// Unit vector from the point to the light.
         l: Vec3,
         /// `I(p)`.
-        intensity: f32,
+        intensity: Vec3,
     },
     /// Equal from all directions.
     Uniform {
         /// `I(p)`.
-        intensity: f32,
+        intensity: Vec3,
     },
 }
 
-/// A light type. The implementing struct is the marker component of entities of the type.
-pub trait LightType: Component + Default {
+/// A light type. The implementing struct holds its parameters (see [`parameters!`](crate::parameters)), and is a
+/// component of the entities of the type.
+pub trait LightType: ParameterSet + Component {
     /// Name, properties, shader.
     const DECLARATION: Declaration;
 
     /// The light that arrives at `p` (room coordinates).
-    fn incident(light: &LightRecord, p: Vec3) -> Incident;
+    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident;
 
-    /// The integral of its profile over all directions, sr, given the declared parameters in order: luminous flux (lm)
-    /// over intensity (cd), `Φ = I Ω`. `None` for types without flux, such as light from infinitely far away.
-    fn solid_angle(_parameters: &[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64> {
+    /// The integral of its profile over all directions, sr: luminous flux (lm) over intensity (cd), `Φ = I Ω`. `None`
+    /// for types without flux, such as light from infinitely far away.
+    fn solid_angle(&self) -> Option<f64> {
         None
+    }
+}
+
+/// A light type with its parameters set: the object-safe half of [`LightType`].
+pub trait Emitter: Send + Sync {
+    /// See [`LightType::incident`].
+    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident;
+}
+
+impl<L: LightType> Emitter for L {
+    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
+        LightType::incident(self, light, p)
     }
 }
 
@@ -130,16 +145,17 @@ pub trait LightType: Component + Default {
 pub struct LightEntry {
     /// Name, properties, shader.
     pub declaration: &'static Declaration,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
     /// Its number in the registry, by which shaders know the type.
     pub index: u32,
-    /// See [`LightType::incident`].
-    pub incident: fn(&LightRecord, Vec3) -> Incident,
-    /// See [`LightType::solid_angle`].
-    solid_angle: fn(&[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64>,
-    /// Adds the marker component to an entity.
-    pub mark: fn(&mut bevy::ecs::system::EntityCommands),
-    /// Removes the marker component from an entity.
-    pub unmark: fn(&mut bevy::ecs::system::EntityCommands),
+    /// The type with the parameters of one light.
+    pub instantiate: fn(&Values, Encoding) -> Box<dyn Emitter>,
+    solid_angle: fn(&Values) -> Option<f64>,
+    /// Adds the component of the type to an entity.
+    pub mark: fn(&mut EntityCommands, &Values),
+    /// Removes the component of the type from an entity.
+    pub unmark: fn(&mut EntityCommands),
 }
 
 impl LightEntry {
@@ -148,11 +164,12 @@ impl LightEntry {
     pub fn of<L: LightType>() -> Self {
         Self {
             declaration: const { &L::DECLARATION },
+            parameters: L::PARAMETERS,
             index: 0,
-            incident: L::incident,
-            solid_angle: L::solid_angle,
-            mark: |entity| {
-                entity.insert(L::default());
+            instantiate: |values, encoding| Box::new(L::from_values(values, encoding)),
+            solid_angle: |values| L::from_values(values, Encoding::default()).solid_angle(),
+            mark: |entity, values| {
+                entity.insert(L::from_values(values, Encoding::default()));
             },
             unmark: |entity| {
                 entity.remove::<L>();
@@ -163,7 +180,7 @@ impl LightEntry {
     /// Luminous flux over intensity of a light with these parameters, sr; `None` if the type has no flux.
     #[must_use]
     pub fn solid_angle(&self, values: &Values) -> Option<f64> {
-        (self.solid_angle)(&self.numbers(values))
+        (self.solid_angle)(values)
     }
 
     /// True if lights of the type have a luminous flux.
@@ -172,14 +189,52 @@ impl LightEntry {
         self.solid_angle(&Values::default()).is_some()
     }
 
-    /// The declared parameters of a light as numbers, in order.
+    /// The parameter with that name, if the type has it.
     #[must_use]
-    pub fn numbers(&self, values: &Values) -> [f32; MAX_LIGHT_PARAMETERS] {
-        let mut numbers = [0.0; MAX_LIGHT_PARAMETERS];
-        for (number, parameter) in numbers.iter_mut().zip(self.declaration.parameters) {
-            *number = values.number(parameter);
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+
+    /// Half the angle, in degrees, of the cone that a gizmo should draw.
+    #[must_use]
+    pub fn cone_angle(&self, values: &Values) -> Option<f32> {
+        Some(values.number(self.parameter(self.declaration.cone_parameter?)?))
+    }
+
+    /// The parameters of a light as the shader reads them, in order and without padding.
+    #[must_use]
+    pub fn words(&self, values: &Values, encoding: Encoding) -> Vec<u32> {
+        if self.parameters.is_empty() { Vec::new() } else { words(self.parameters, values, encoding) }
+    }
+
+    /// The files of a light, each with the place of its parameter among the [`words`](Self::words).
+    #[must_use]
+    pub fn tables(&self, values: &Values) -> Vec<(usize, Table)> {
+        let mut at = 0;
+        let mut tables = Vec::new();
+        for p in self.parameters {
+            tables.extend(values.table(p).map(|table| (at, table)));
+            at += words(std::slice::from_ref(p), values, Encoding::default()).len();
         }
-        numbers
+        tables
+    }
+
+    /// The number of [`words`](Self::words).
+    #[must_use]
+    pub fn word_count(&self) -> usize {
+        self.words(&Values::default(), Encoding::default()).len()
+    }
+
+    /// The name of the struct of parameters in WGSL: `SpotParameters` for the id `spot`.
+    #[must_use]
+    pub fn parameter_struct(&self) -> String {
+        let mut name = String::new();
+        for word in self.declaration.id.split('_') {
+            let mut letters = word.chars();
+            name.extend(letters.next().map(|c| c.to_ascii_uppercase()));
+            name.push_str(letters.as_str());
+        }
+        name + "Parameters"
     }
 }
 

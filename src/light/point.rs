@@ -1,16 +1,17 @@
-use bevy::ecs::component::Component;
 use glam::Vec3;
 
-use super::{Declaration, Incident, LightRecord, LightType, MAX_LIGHT_PARAMETERS};
+use super::{Declaration, Incident, LightRecord, LightType};
 use crate::{
     optics::radiometry::{SPHERE, inverse_square},
+    parameters,
     shader::wgsl,
 };
 
-/// **Point light**: shines equally in every direction; `I(p) = I / |p − p₀|²` (CA DD7), I in candela. Its luminous flux
-/// is `Φ = 4π I` lumen.
-#[derive(Component, Clone, Copy, Debug, Default)]
-pub struct Point;
+parameters! {
+    /// **Point light**: shines equally in every direction; `I(p) = I / |p − p₀|²` (CA DD7), I in candela. Its luminous flux
+    /// is `Φ = 4π I` lumen.
+    pub struct Point {}
+}
 
 impl LightType for Point {
     const DECLARATION: Declaration = Declaration {
@@ -23,21 +24,20 @@ impl LightType for Point {
         unit: "cd",
         default_intensity: 20.0,
         slider_max: 200.0,
-        parameters: &[],
         cone_parameter: None,
         equation: "I(p) = I / d^2",
         wgsl: wgsl!("light/point.wgsl"),
     };
 
-    fn incident(light: &LightRecord, p: Vec3) -> Incident {
+    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let to_light = light.position - p;
         Incident::From {
             l: to_light.normalize_or_zero(),
-            intensity: light.intensity * inverse_square(to_light),
+            intensity: Vec3::splat(light.intensity * inverse_square(to_light)),
         }
     }
 
-    fn solid_angle(_parameters: &[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64> {
+    fn solid_angle(&self) -> Option<f64> {
         Some(SPHERE)
     }
 }

@@ -1,14 +1,13 @@
-use bevy::ecs::component::Component;
 use glam::Vec3;
 
-use super::{Declaration, Incident, LightRecord, LightType, MAX_LIGHT_PARAMETERS};
+use super::{Declaration, Incident, LightRecord, LightType};
 use crate::{
     optics::radiometry::{cone, cone_solid_angle, inverse_square},
     parameter::{ABOVE_ZERO, Parameter, ParameterKind},
+    parameters,
     shader::wgsl,
 };
 
-/// Half the opening of the cone.
 const CONE_ANGLE: Parameter = Parameter {
     name: "cone_angle",
     symbol: "θ",
@@ -19,7 +18,6 @@ const CONE_ANGLE: Parameter = Parameter {
     used_when: None,
 };
 
-/// The softness of the edge.
 const PENUMBRA: Parameter = Parameter {
     name: "penumbra",
     symbol: "p",
@@ -30,11 +28,17 @@ const PENUMBRA: Parameter = Parameter {
     used_when: None,
 };
 
-/// **Spotlight**: a point light within a cone; `I(p) = I · cone(θ) / |p − p₀|²`
-/// ([`cone`]), I in candela, on the axis. Its luminous flux is `Φ = I ∫ cone dω` lumen
-/// ([`cone_solid_angle`]).
-#[derive(Component, Clone, Copy, Debug, Default)]
-pub struct Spot;
+parameters! {
+    /// **Spotlight**: a point light within a cone; `I(p) = I · cone(θ) / |p − p₀|²`
+    /// ([`cone`]), I in candela, on the axis. Its luminous flux is `Φ = I ∫ cone dω` lumen
+    /// ([`cone_solid_angle`]).
+    pub struct Spot {
+        /// Half the opening of the cone, degrees.
+        cone_angle: number = CONE_ANGLE,
+        /// The fraction of the cone taken by the soft edge.
+        penumbra: number = PENUMBRA,
+    }
+}
 
 impl LightType for Spot {
     const DECLARATION: Declaration = Declaration {
@@ -47,21 +51,19 @@ impl LightType for Spot {
         unit: "cd",
         default_intensity: 20.0,
         slider_max: 200.0,
-        parameters: &[CONE_ANGLE, PENUMBRA],
-        cone_parameter: Some(0),
+        cone_parameter: Some(CONE_ANGLE.name),
         equation: "I(p) = I cone(θ) / d^2",
         wgsl: wgsl!("light/spot.wgsl"),
     };
 
-    fn incident(light: &LightRecord, p: Vec3) -> Incident {
+    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let to_light = light.position - p;
         let l = to_light.normalize_or_zero();
-        let [cone_angle, penumbra, ..] = light.parameters;
-        let profile = cone(light.direction.dot(-l), cone_angle, penumbra);
-        Incident::From { l, intensity: light.intensity * profile * inverse_square(to_light) }
+        let profile = cone(light.direction.dot(-l), self.cone_angle, self.penumbra);
+        Incident::From { l, intensity: Vec3::splat(light.intensity * profile * inverse_square(to_light)) }
     }
 
-    fn solid_angle(&[cone_angle, penumbra, ..]: &[f32; MAX_LIGHT_PARAMETERS]) -> Option<f64> {
-        Some(cone_solid_angle(cone_angle, penumbra))
+    fn solid_angle(&self) -> Option<f64> {
+        Some(cone_solid_angle(self.cone_angle, self.penumbra))
     }
 }

@@ -2,7 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use super::declaration::{Parameter, ParameterKind};
+use super::{
+    declaration::{Parameter, ParameterKind},
+    file::FileFormat,
+};
 
 impl Parameter {
     /// A parameter whose symbol and label are its name, without unit and help.
@@ -58,6 +61,12 @@ impl Parameter {
         default: usize,
     ) -> Self {
         Self::new(name, ParameterKind::Choice { options, default })
+    }
+
+    /// A file of numbers, for light types; the default is the name of a file that is shipped with the format.
+    #[must_use]
+    pub const fn file(name: &'static str, format: &'static FileFormat, default: &'static str) -> Self {
+        Self::new(name, ParameterKind::File { format, default })
     }
 
     /// The same with a symbol for equations.

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::{
-    light::{Incident, LightRecord},
+    light::{Emitter, Incident, LightRecord},
     optics::{Frame, TermSelection},
     reflection::Surface,
     registry::Registry,
@@ -17,7 +17,7 @@ const BRIGHTEST: f32 = 1e30;
 
 /// All lights of a scene, ready for calculation.
 pub(super) struct Lights {
-    lights: Vec<(fn(&LightRecord, Vec3) -> Incident, LightRecord)>,
+    lights: Vec<(Box<dyn Emitter>, LightRecord)>,
     observer: Vec3,
     terms: TermSelection,
 }
@@ -27,8 +27,10 @@ impl Lights {
         let lights = scene
             .shining()
             .filter_map(|light| {
-                let incident = registry.light(&light.light_type)?.incident;
-                Some((incident, record(light, registry, scene.display.encoding)))
+                let encoding = scene.display.encoding;
+                let entry = registry.light(&light.light_type)?;
+                let emitter = (entry.instantiate)(&light.parameters, encoding);
+                Some((emitter, record(light, registry, encoding)))
             })
             .collect();
         Self { lights, observer: scene.observer.position, terms }
@@ -55,11 +57,11 @@ impl Lighting for LightsOn<'_> {
         let frame = Frame::new(normal, tangent);
         let terms = self.lights.terms;
         let mut sum = Vec3::ZERO;
-        for (incident, light) in &self.lights.lights {
-            match incident(light, position) {
+        for (emitter, light) in &self.lights.lights {
+            match emitter.incident(light, position) {
                 Incident::From { l, intensity } => {
                     // Outside a cone there is nothing to calculate.
-                    if intensity != 0.0 {
+                    if intensity != Vec3::ZERO {
                         let response = self.surface.response(l, v, &frame).select(terms);
                         sum += response * intensity * light.colour;
                     }

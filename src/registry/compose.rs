@@ -11,6 +11,7 @@ use std::fmt::Write as _;
 use crate::{
     light::LightEntry,
     optics::albedo::NODES,
+    parameter::Values,
     reflection::{Ambient, Family, ModelEntry},
     shader::{
         Source,
@@ -27,7 +28,7 @@ use crate::{
 /// object is `object_row`. Curves are read in place: a copy would cost every pixel.
 #[must_use]
 pub fn row_struct(model: &ModelEntry) -> String {
-    let mut text = parameter_struct(model.parameters);
+    let mut text = parameter_struct("Parameters", model.parameters);
     if !model.has_curve() {
         text.push_str("struct Row {\n    parameters: Parameters,\n}\n");
         return text;
@@ -71,32 +72,91 @@ const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parame
 }
 ";
 
-/// The function that hands a light to its type, by the number of the type in the registry. Others give no light.
+/// A light type, after the struct of its parameters.
+fn push_light(c: &mut Composer, light: &LightEntry) {
+    if !light.parameters.is_empty() {
+        let text = parameter_struct(&light.parameter_struct(), light.parameters);
+        c.push("(parameters of a light type)", &text);
+    }
+    c.source(&light.declaration.wgsl);
+}
+
+/// The function that hands a light to its type, by the number of the type in the registry, with its own parameters, of
+/// which [`words`](LightEntry::words) are the source. Lights of other types give no light.
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
     let mut text = String::from(
-        "fn incident(light: Light, p: vec3<f32>) -> Incident {\n    switch light.light_type {\n",
+        "fn illumination_number(i: u32) -> f32 {
+    return bitcast<f32>(illumination.words[i]);
+}
+fn light_word(light: Light, i: u32) -> u32 {
+    return illumination.words[light.first_word + i];
+}
+fn light_number(light: Light, i: u32) -> f32 {
+    return illumination_number(light.first_word + i);
+}
+fn incident(light: Light, p: vec3<f32>) -> Incident {
+    switch light.light_type {
+",
     );
-    for LightEntry { index, declaration, .. } in lights {
-        let _ = writeln!(text, "        case {index}u: {{ return incident_{}(light, p); }}", declaration.id);
+    for light in lights {
+        let mut at = 0;
+        let mut next = |function: &str| {
+            at += 1;
+            format!("{function}(light, {}u)", at - 1)
+        };
+        let fields: Vec<_> = light
+            .parameters
+            .iter()
+            .map(|p| match p.wgsl_type() {
+                "u32" => next("light_word"),
+                "vec3<f32>" => format!("vec3({})", [(); 3].map(|()| next("light_number")).join(", ")),
+                _ => next("light_number"),
+            })
+            .collect();
+        let parameters = match fields.as_slice() {
+            [] => String::new(),
+            _ => format!("{}({}), ", light.parameter_struct(), fields.join(", ")),
+        };
+        let (index, id) = (light.index, light.declaration.id);
+        let _ = writeln!(text, "        case {index}u: {{ return incident_{id}(light, {parameters}p); }}");
     }
-    text.push_str("        default: { return Incident(vec3(0.0), 0.0, 0u); }\n    }\n}\n");
+    text.push_str("        default: { return Incident(vec3(0.0), vec3(0.0), 0u); }\n    }\n}\n");
     text
 }
 
 /// The files that every source for drawing needs beside the vocabulary, and those for other uses.
 pub(crate) const SHARED: [Source; 6] = [ALBEDO, LIGHTS, SHADING, LOOP, WRAPPER, EVALUATE];
 
-/// The source of a light type alone, with a function that calls its own.
+/// The table that a light type alone reads the numbers of its files from: one row, see [`compose_light`].
+pub const FILE_TABLE: &str = "file_table";
+
+/// The source of a light type alone, with a function that calls its own. The numbers of its files are not in
+/// `illumination`, but in a table of one row with room for those of its defaults.
 #[must_use]
 pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
     let mut c = Composer::new(sources);
-    OPTICS.iter().chain([&LIGHTS, &light.declaration.wgsl]).for_each(|s| c.source(s));
+    OPTICS.iter().chain([&LIGHTS]).for_each(|s| c.source(s));
+    push_light(&mut c, light);
+    let tables = light.tables(&Values::default());
+    let numbers = tables.iter().map(|(_, table)| table.numbers.len()).sum::<usize>().max(1);
     let id = light.declaration.id;
+    let (taken, given) = match light.parameters {
+        [] => (String::new(), ""),
+        _ => (format!("m: {}, ", light.parameter_struct()), "m, "),
+    };
     c.push(
         "(light type)",
         &format!(
-            "fn incident(light: Light, p: vec3<f32>) -> Incident {{ return incident_{id}(light, p); }}\n"
+            "struct FileRow {{ numbers: array<f32, {numbers}> }}
+@group(0) @binding(0) var<storage, read> {FILE_TABLE}: array<FileRow>;
+fn illumination_number(i: u32) -> f32 {{
+    return {FILE_TABLE}[0].numbers[i];
+}}
+fn incident(light: Light, {taken}p: vec3<f32>) -> Incident {{
+    return incident_{id}(light, {given}p);
+}}
+"
         ),
     );
     c.composed
@@ -114,7 +174,7 @@ pub fn compose(
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&LIGHTS, &SHADING]).for_each(|s| c.source(s));
     push_model(&mut c, model);
-    lights.iter().for_each(|light| c.source(&light.declaration.wgsl));
+    lights.iter().for_each(|light| push_light(&mut c, light));
     c.push("(light types)", &light_dispatch(lights));
     [&LOOP, &shading.declaration.wgsl, &WRAPPER].into_iter().for_each(|s| c.source(s));
     c.composed

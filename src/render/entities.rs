@@ -29,7 +29,7 @@ use std::{iter, ops::Range};
 #[derive(Clone, Debug, Default, PartialEq, Resource)]
 pub struct CurrentScene(pub Scene);
 
-/// A light of the scene. Its type's marker component stands beside it.
+/// A light of the scene. The component of its type stands beside it, with its parameters.
 #[derive(Clone, Component, Debug, PartialEq)]
 #[require(Transform, Visibility)]
 pub struct LightSource(pub Light);
@@ -217,14 +217,14 @@ pub fn reconcile(
             light_transform(light),
             label(light.name.as_ref(), &light.light_type),
         ));
-        if old_type != Some(light.light_type.as_str()) {
-            if let Some(old) = old_type.and_then(|k| registry.light(k)) {
-                (old.unmark)(&mut entity);
-            }
-            match registry.light(&light.light_type) {
-                Some(entry) => (entry.mark)(&mut entity),
-                None => warn!("light {i} has the unknown type `{}` and gives no light", light.light_type),
-            }
+        if old_type != Some(light.light_type.as_str())
+            && let Some(old) = old_type.and_then(|k| registry.light(k))
+        {
+            (old.unmark)(&mut entity);
+        }
+        match registry.light(&light.light_type) {
+            Some(entry) => (entry.mark)(&mut entity, &light.parameters),
+            None => warn!("light {i} has the unknown type `{}` and gives no light", light.light_type),
         }
     }
 
@@ -304,14 +304,14 @@ pub fn absorb(
         };
         if source.0 != *known {
             *transform = light_transform(&source.0);
-            if source.0.light_type != known.light_type {
-                let mut entity = commands.entity(*entity);
-                if let Some(old) = registry.light(&known.light_type) {
-                    (old.unmark)(&mut entity);
-                }
-                if let Some(new) = registry.light(&source.0.light_type) {
-                    (new.mark)(&mut entity);
-                }
+            let mut entity = commands.entity(*entity);
+            if source.0.light_type != known.light_type
+                && let Some(old) = registry.light(&known.light_type)
+            {
+                (old.unmark)(&mut entity);
+            }
+            if let Some(new) = registry.light(&source.0.light_type) {
+                (new.mark)(&mut entity, &source.0.parameters);
             }
         } else if source.0.position.is_some_and(|p| p != transform.translation) {
             source.0.position = Some(transform.translation);

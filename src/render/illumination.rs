@@ -1,6 +1,9 @@
 //! The buffer of lights: one, of fixed capacity, shared by all materials and visible to the vertex
 //! and fragment stages. Changing a light rewrites the buffer and touches no material. A view with
-//! overrides has a buffer of its own.
+//! overrides has a buffer of its own. At its end are the parameters of the lights, one after the other; when they
+//! outgrow it, there is another buffer, and objects get other materials.
+
+use std::sync::Arc;
 
 use bevy::{
     asset::{Assets, Handle, RenderAssetUsages},
@@ -15,13 +18,17 @@ use glam::Vec3;
 use crate::{
     light::{LightRecord, MAX_LIGHTS},
     optics::{TermSelection, colour::Encoding, tone::exposure_factor},
-    scene::Display,
+    parameter::Table,
+    registry::Registry,
+    scene::{Display, Light, record},
 };
 
 /// Bytes before the lights: count, terms, exposure, gamma-naive.
 pub const HEADER_BYTES: usize = 16;
 /// Bytes of one light.
-pub const LIGHT_BYTES: usize = 64;
+pub const LIGHT_BYTES: usize = 48;
+/// Words for the parameters of all lights that a buffer has room for at first: four for each.
+const WORDS: usize = 4 * MAX_LIGHTS;
 
 /// Byte offsets of the fields of `Light` in `lights.wgsl`; a test compares them with the shader's.
 pub const LIGHT_LAYOUT: [(&str, usize); 6] = [
@@ -30,11 +37,17 @@ pub const LIGHT_LAYOUT: [(&str, usize); 6] = [
     ("direction", 16),
     ("intensity", 28),
     ("colour", 32),
-    ("parameters", 48),
+    ("first_word", 44),
 ];
 /// Byte offsets of the fields of `Illumination` in `lights.wgsl`.
-pub const ILLUMINATION_LAYOUT: [(&str, usize); 5] =
-    [("count", 0), ("terms", 4), ("exposure", 8), ("gamma_naive", 12), ("lights", HEADER_BYTES)];
+pub const ILLUMINATION_LAYOUT: [(&str, usize); 6] = [
+    ("count", 0),
+    ("terms", 4),
+    ("exposure", 8),
+    ("gamma_naive", 12),
+    ("lights", HEADER_BYTES),
+    ("words", HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES),
+];
 
 /// The terms of the equation that are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
@@ -42,49 +55,122 @@ pub struct ShownTerms(pub TermSelection);
 
 /// The buffer of all lights of the scene, as views without overrides show them.
 #[derive(Clone, Debug, Resource)]
-pub struct IlluminationBuffer(pub Handle<ShaderBuffer>);
+pub struct IlluminationBuffer {
+    /// The buffer; another one when the parameters of the lights outgrow it.
+    pub handle: Handle<ShaderBuffer>,
+    /// The words for parameters of lights that it has room for, and those of all views.
+    room: usize,
+}
 
 impl IlluminationBuffer {
-    /// A new buffer that has no lights yet.
-    pub(super) fn without_lights(buffers: &mut Assets<ShaderBuffer>) -> Self {
-        let bytes = illumination_bytes(&[], TermSelection::All, &Display::default());
-        Self(buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default())))
+    /// A buffer that has no lights yet, for another view.
+    pub(super) fn another(&self, buffers: &mut Assets<ShaderBuffer>) -> Handle<ShaderBuffer> {
+        without_lights(self.room, buffers)
+    }
+
+    /// Makes room for so many words. True if the buffer is another one than before, as are those of all views then.
+    pub(super) fn hold(&mut self, words: usize, buffers: &mut Assets<ShaderBuffer>) -> bool {
+        if words <= self.room {
+            return false;
+        }
+        self.room = words.next_power_of_two();
+        self.handle = self.another(buffers);
+        true
     }
 }
 
 impl FromWorld for IlluminationBuffer {
     fn from_world(world: &mut World) -> Self {
-        Self::without_lights(&mut world.resource_mut::<Assets<ShaderBuffer>>())
+        let handle = without_lights(WORDS, &mut world.resource_mut::<Assets<ShaderBuffer>>());
+        Self { handle, room: WORDS }
     }
 }
 
-/// The bytes of `Illumination` in `lights.wgsl`. Lights beyond [`MAX_LIGHTS`] are left out; the
-/// checker refuses such scenes.
+fn without_lights(room: usize, buffers: &mut Assets<ShaderBuffer>) -> Handle<ShaderBuffer> {
+    let mut bytes = illumination_bytes(&[], TermSelection::All, &Display::default());
+    bytes.resize(bytes.len() + 4 * room, 0);
+    buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()))
+}
+
+/// A light of the scene, as the shader has it.
+#[derive(Clone, Debug, Default)]
+pub struct Lit {
+    record: LightRecord,
+    /// Its own parameters. A parameter that is a file has the index of the first number of the file.
+    words: Vec<u32>,
+    /// Its files, each with the place of its parameter in `words`.
+    tables: Vec<(usize, Table)>,
+}
+
+impl Lit {
+    /// A light of the scene. A light of an unknown type gives no light.
+    #[must_use]
+    pub fn new(light: &Light, registry: &Registry, encoding: Encoding) -> Self {
+        let record = record(light, registry, encoding);
+        let Some(entry) = registry.light(&light.light_type) else {
+            return Self { record, ..Self::default() };
+        };
+        let (words, tables) = (entry.words(&light.parameters, encoding), entry.tables(&light.parameters));
+        Self { record, words, tables }
+    }
+}
+
+/// The words behind the lights: the parameters of all, and the numbers of each file once; with the first word of each
+/// light.
+fn words(lights: &[Lit]) -> (Vec<u32>, Vec<usize>) {
+    let mut words = Vec::new();
+    let mut firsts = Vec::with_capacity(lights.len());
+    for light in lights {
+        firsts.push(words.len());
+        words.extend(&light.words);
+    }
+    let mut known: Vec<(&Arc<[f32]>, usize)> = Vec::new();
+    for (light, first) in lights.iter().zip(&firsts) {
+        for (place, Table { numbers, .. }) in &light.tables {
+            let at = known.iter().find(|(other, _)| Arc::ptr_eq(other, numbers)).map(|(_, at)| *at);
+            words[first + place] = at.unwrap_or_else(|| {
+                known.push((numbers, words.len()));
+                words.extend(numbers.iter().map(|number| number.to_bits()));
+                known[known.len() - 1].1
+            }) as u32;
+        }
+    }
+    (words, firsts)
+}
+
+/// The number of words behind so many lights.
 #[must_use]
-pub fn illumination_bytes(lights: &[LightRecord], terms: TermSelection, display: &Display) -> Vec<u8> {
-    let count = lights.len().min(MAX_LIGHTS);
+pub fn word_count(lights: &[Lit]) -> usize {
+    words(&lights[..lights.len().min(MAX_LIGHTS)]).0.len()
+}
+
+/// The bytes of `Illumination` in `lights.wgsl`, up to the last word in use. Lights beyond [`MAX_LIGHTS`] are left out;
+/// the checker refuses such scenes.
+#[must_use]
+pub fn illumination_bytes(lights: &[Lit], terms: TermSelection, display: &Display) -> Vec<u8> {
+    let lights = &lights[..lights.len().min(MAX_LIGHTS)];
+    let (words, firsts) = words(lights);
     let mut bytes = vec![0u8; HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES];
     let mut put = |at: usize, value: [u8; 4]| bytes[at..at + 4].copy_from_slice(&value);
-    put(0, (count as u32).to_le_bytes());
+    put(0, (lights.len() as u32).to_le_bytes());
     put(4, terms.code().to_le_bytes());
     put(8, exposure_factor(display.exposure).to_le_bytes());
     put(12, u32::from(display.encoding == Encoding::Off).to_le_bytes());
-    for (i, light) in lights.iter().take(count).enumerate() {
+    for (i, (Lit { record, .. }, first)) in lights.iter().zip(firsts).enumerate() {
         let base = HEADER_BYTES + i * LIGHT_BYTES;
         let mut put3 = |at: usize, v: Vec3| {
             for (k, c) in v.to_array().into_iter().enumerate() {
                 put(base + at + 4 * k, c.to_le_bytes());
             }
         };
-        put3(0, light.position);
-        put3(16, light.direction);
-        put3(32, light.colour);
-        put(base + 12, light.light_type.to_le_bytes());
-        put(base + 28, light.intensity.to_le_bytes());
-        for (k, p) in light.parameters.into_iter().enumerate() {
-            put(base + 48 + 4 * k, p.to_le_bytes());
-        }
+        put3(0, record.position);
+        put3(16, record.direction);
+        put3(32, record.colour);
+        put(base + 12, record.light_type.to_le_bytes());
+        put(base + 28, record.intensity.to_le_bytes());
+        put(base + 44, (first as u32).to_le_bytes());
     }
+    bytes.extend(words.into_iter().flat_map(u32::to_le_bytes));
     bytes
 }
 
@@ -94,9 +180,9 @@ mod tests {
 
     #[test]
     fn more_lights_than_fit_are_left_out() {
-        let lights = vec![LightRecord::default(); MAX_LIGHTS + 5];
+        let lights = vec![Lit { words: vec![7], ..Lit::default() }; MAX_LIGHTS + 5];
         let bytes = illumination_bytes(&lights, TermSelection::All, &Display::default());
         assert_eq!(bytes[..4], (MAX_LIGHTS as u32).to_le_bytes());
-        assert_eq!(bytes.len(), HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES);
+        assert_eq!(bytes.len(), HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES + 4 * MAX_LIGHTS);
     }
 }

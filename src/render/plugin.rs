@@ -3,31 +3,25 @@
 use bevy::{
     app::{App, MainScheduleOrder, Plugin, Update},
     asset::Assets,
-    ecs::{
-        prelude::*,
-        schedule::{LogLevel, ScheduleBuildSettings},
-    },
+    ecs::{prelude::*, schedule::LogLevel},
     render::storage::ShaderBuffer,
 };
 
 use super::{
     camera::follow_scene,
     entities::{CurrentScene, SceneEntities, absorb, reconcile},
-    illumination::{IlluminationBuffer, ShownTerms, illumination_bytes},
+    illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{LiveShadersPlugin, exchange},
     material::MaterialApp as _,
     meshes::ShapeMeshes,
     overrides::Overrides,
-    schedule::{LabFrame, LabSystems},
+    schedule::{LabFrame, LabSystems, detect},
     stage::{Stage, set_stages},
     swap::swap,
     tables::TablesPlugin,
     view::ViewPlugin,
 };
-use crate::{
-    registry::{Registry, register_builtin},
-    scene::record,
-};
+use crate::registry::{Registry, register_builtin};
 
 /// A scene as entities, lit and shaded: everything but windows, panels and cameras. Needs Bevy's
 /// renderer and PBR plugins.
@@ -44,14 +38,7 @@ impl Plugin for ScenePlugin {
             .init_resource::<ShapeMeshes>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
-            // Two of our systems that touch the same data must say who comes first.
             .init_schedule(LabFrame)
-            .edit_schedule(LabFrame, |schedule| {
-                schedule.set_build_settings(ScheduleBuildSettings {
-                    ambiguity_detection: LogLevel::Error,
-                    ..ScheduleBuildSettings::default()
-                });
-            })
             .configure_sets(
                 LabFrame,
                 (
@@ -75,6 +62,8 @@ impl Plugin for ScenePlugin {
                 ),
             )
             .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin));
+        // Two systems that touch the same data must say who comes first.
+        detect(app, LogLevel::Warn);
     }
 }
 
@@ -93,11 +82,14 @@ fn upload_lights(
         .iter()
         .filter(|(stage, overrides)| changed || stage.is_added() || overrides.is_changed())
         .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
-    for (handle, overrides) in changed.then_some((&shared.0, &none)).into_iter().chain(changed_stages) {
+    for (handle, overrides) in changed.then_some((&shared.handle, &none)).into_iter().chain(changed_stages) {
         let display = overrides.display_of(&scene.0);
-        let records: Vec<_> = scene.0.shining().map(|l| record(l, &registry, display.encoding)).collect();
-        let bytes = illumination_bytes(&records, overrides.terms.unwrap_or(terms.0), &display);
-        if buffers.get(handle).is_some_and(|known| known.data.as_ref() != Some(&bytes))
+        let lights: Vec<_> = scene.0.shining().map(|l| Lit::new(l, &registry, display.encoding)).collect();
+        let mut bytes = illumination_bytes(&lights, overrides.terms.unwrap_or(terms.0), &display);
+        let Some(known) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
+        // Materials would not notice a buffer of another size.
+        bytes.resize(known.len(), 0);
+        if *known != bytes
             && let Some(mut buffer) = buffers.get_mut(handle)
         {
             buffer.data = Some(bytes);

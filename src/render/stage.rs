@@ -50,6 +50,7 @@ pub(super) fn set_stages(
     new: Query<Entity, (With<Overrides>, Without<Stage>)>,
     done: Query<Entity, (With<Stage>, Without<Overrides>)>,
     stages: Query<&Stage>,
+    shared: Res<IlluminationBuffer>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
     mut commands: Commands,
 ) {
@@ -66,7 +67,7 @@ pub(super) fn set_stages(
         layers.push(layer);
         let stage = Stage {
             layer,
-            illumination: IlluminationBuffer::without_lights(&mut buffers).0,
+            illumination: shared.another(&mut buffers),
             copies: EntityHashMap::default(),
             list: None,
         };

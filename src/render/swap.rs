@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::{
     drawn::Drawn,
     entities::{CurrentScene, LitObject, SceneEntities},
-    illumination::IlluminationBuffer,
+    illumination::{IlluminationBuffer, Lit, word_count},
     live::LiveShaders,
     material::{Attachments, MaterialInputs},
     meshes::{ShapeMeshes, forget_unused_meshes},
@@ -23,6 +23,7 @@ use super::{
     tables::{ParameterTables, Row},
 };
 use crate::{
+    light::MAX_LIGHTS,
     optics::colour::Encoding,
     reflection::ModelEntry,
     registry::{LightSet, Registry},
@@ -79,18 +80,19 @@ pub fn swap(
     views: &mut QueryState<Entity, (With<Stage>, With<Overrides>)>,
 ) {
     let objects = world.resource::<SceneEntities>().objects.len().min(MAX_OBJECTS);
-    let all = world.resource_mut::<ParameterTables>().bypass_change_detection().hold(objects);
+    let mut all = world.resource_mut::<ParameterTables>().bypass_change_detection().hold(objects);
+    let views: Vec<_> = views.iter(world).collect();
     let models_changed = world.is_resource_changed::<Registry>();
     let mut different = models_changed;
     if models_changed || world.is_resource_changed::<CurrentScene>() || last.is_none() {
         let now = common(&world.resource::<CurrentScene>().0, world.resource::<Registry>());
         different |= last.as_ref() != Some(&now);
         *last = Some(now);
+        all |= hold_lights(world, &views);
     }
     let Some(common) = &*last else { return };
     let changed: Vec<_> = changed.iter(world).collect();
     let mut pending = Vec::new();
-    let views: Vec<_> = views.iter(world).collect();
     for view in iter::once(None).chain(views.into_iter().map(Some)) {
         let anew = view.is_some_and(|view| {
             copies(world, view);
@@ -134,6 +136,31 @@ pub fn swap(
     world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
         tables.bypass_change_detection().upload(world.resource::<Assets<ShaderBuffer>>());
     });
+}
+
+/// Makes room for the parameters of all lights. True if the buffers are others than before.
+fn hold_lights(world: &mut World, views: &[Entity]) -> bool {
+    let registry = world.resource::<Registry>();
+    let shining = world.resource::<CurrentScene>().0.shining().take(MAX_LIGHTS);
+    let lights: Vec<_> = shining.map(|light| Lit::new(light, registry, Encoding::default())).collect();
+    let words = word_count(&lights);
+    world.resource_scope(|world, mut shared: Mut<IlluminationBuffer>| {
+        let shared = shared.bypass_change_detection();
+        let mut old = vec![shared.handle.id()];
+        if !shared.hold(words, &mut world.resource_mut::<Assets<ShaderBuffer>>()) {
+            return false;
+        }
+        for view in views {
+            let another = shared.another(&mut world.resource_mut::<Assets<ShaderBuffer>>());
+            if let Some(mut stage) = world.get_mut::<Stage>(*view) {
+                old.push(std::mem::replace(&mut stage.illumination, another).id());
+            }
+        }
+        for attachment in world.resource::<Attachments>().all() {
+            old.iter().for_each(|buffer| (attachment.forget)(world, *buffer));
+        }
+        true
+    })
 }
 
 fn common(scene: &Scene, registry: &Registry) -> Common {
@@ -230,9 +257,10 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     let parameters = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
         tables.set(view, model, row, bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
     });
-    let illumination = view
-        .and_then(|view| world.get::<Stage>(view))
-        .map_or_else(|| world.resource::<IlluminationBuffer>().0.clone(), |stage| stage.illumination.clone());
+    let illumination = view.and_then(|view| world.get::<Stage>(view)).map_or_else(
+        || world.resource::<IlluminationBuffer>().handle.clone(),
+        |stage| stage.illumination.clone(),
+    );
     let inputs = MaterialInputs { parameters, illumination, shader, faces };
     let attachments = world.resource::<Attachments>();
     let old = world

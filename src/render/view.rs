@@ -218,7 +218,7 @@ impl Changes<'_, '_> {
             let (AssetEvent::Added { id } | AssetEvent::Modified { id }) = event else { continue };
             let lit =
                 |(view, stage): (Entity, &Stage)| (stage.illumination.id() == *id).then_some(Some(view));
-            let shared = || (self.shared.0.id() == *id).then_some(None);
+            let shared = || (self.shared.handle.id() == *id).then_some(None);
             match self.tables.view_of(*id).or_else(shared).or_else(|| self.stages.iter().find_map(lit)) {
                 Some(view) => _ = some.insert(view),
                 None => all = true,

@@ -26,6 +26,7 @@ pub mod error;
 pub mod examples;
 mod format;
 mod layout;
+pub mod limits;
 pub mod load;
 pub mod observer;
 mod read;
@@ -239,7 +240,7 @@ impl Light {
         self.position = new.has_position.then(|| self.position.unwrap_or(centre));
         self.direction = new.has_direction.then(|| self.direction.unwrap_or(Vec3::NEG_Y));
         let mut parameters = Values::default();
-        for p in new.parameters {
+        for p in to.parameters {
             if let Some(value) = self.parameters.0.get(p.name).filter(|v| p.allows(v)) {
                 parameters.set(p.name, value.clone());
             }
@@ -344,7 +345,7 @@ impl Scene {
     }
 }
 
-/// A light of the scene for calculation. A light of an unknown type gives no light.
+/// A light of the scene for calculation, but for its own parameters. A light of an unknown type gives no light.
 #[must_use]
 pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRecord {
     let Some(entry) = registry.light(&light.light_type) else {
@@ -356,7 +357,6 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
         direction: light.direction.unwrap_or(Vec3::ZERO).normalize_or_zero(),
         colour: light.colour_under(encoding),
         intensity: light.intensity_as(entry),
-        parameters: entry.numbers(&light.parameters),
     }
 }
 
@@ -366,7 +366,8 @@ pub fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
     scene.shining().any(|light| {
         registry.light(&light.light_type).is_some_and(|entry| {
             let record = record(light, registry, scene.display.encoding);
-            matches!((entry.incident)(&record, Vec3::ZERO), Incident::Uniform { .. })
+            let emitter = (entry.instantiate)(&light.parameters, scene.display.encoding);
+            matches!(emitter.incident(&record, Vec3::ZERO), Incident::Uniform { .. })
         })
     })
 }
@@ -409,7 +410,7 @@ mod tests {
         for from in registry.lights() {
             for to in registry.lights() {
                 s.lights[0].set_type(from, &registry, s.scene_size);
-                for p in from.declaration.parameters {
+                for p in from.parameters {
                     s.lights[0].parameters.set(p.name, p.default_value());
                 }
                 s.lights[0].set_type(to, &registry, s.scene_size);

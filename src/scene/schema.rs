@@ -118,8 +118,11 @@ fn lights(list: &mut Json, registry: &Registry) {
     let fields = &mut light["properties"];
     choose(&mut fields["type"], declarations().map(|d| (d.id, d.name, d.summary)));
     place(&mut fields["position"]);
-    for p in declarations().flat_map(|d| d.parameters) {
-        fields[p.name] = parameter(p);
+    let parameters = || registry.lights().iter().flat_map(|l| l.parameters);
+    // Types may declare the same name with other ranges.
+    let shared = |p: &Parameter| parameters().any(|other| other.name == p.name && other != p);
+    for p in parameters() {
+        fields[p.name] = if shared(p) { true.into() } else { parameter(p) };
     }
     let types = registry.lights().iter().map(|l| {
         let (d, has_flux) = (l.declaration, l.has_flux());
@@ -132,16 +135,18 @@ fn lights(list: &mut Json, registry: &Registry) {
                 properties.insert(field.to_owned(), false.into());
             }
         }
-        for other in declarations().flat_map(|o| o.parameters) {
-            if !d.parameters.iter().any(|p| p.name == other.name) {
-                properties.insert(other.name.to_owned(), false.into());
+        for p in parameters() {
+            match l.parameter(p.name) {
+                None => _ = properties.insert(p.name.to_owned(), false.into()),
+                Some(own) if shared(own) => _ = properties.insert(p.name.to_owned(), parameter(own)),
+                Some(_) => {}
             }
         }
         if !has_flux {
             properties.insert("luminous_flux".to_owned(), false.into());
         }
         let intensity = json!({
-            "description": format!("Intensity, {}.", if d.unit == "cd" { "candela (cd)" } else { "lux (lx)" }),
+            "description": format!("Intensity, {}.", unit(d.unit)),
             "default": number(d.default_intensity),
         });
         properties.insert("intensity".to_owned(), intensity);
@@ -219,6 +224,16 @@ fn objects(list: &mut Json, registry: &Registry) {
     }]);
 }
 
+/// A unit of intensity, in words.
+fn unit(unit: &str) -> &str {
+    match unit {
+        "cd" => "candela (cd)",
+        "lx" => "lux (lx)",
+        "×" => "a factor: 1 is the lamp as it is",
+        other => other,
+    }
+}
+
 /// A declared parameter.
 fn parameter(p: &Parameter) -> Json {
     let unit = if p.unit.is_empty() { String::new() } else { format!(", {}", p.unit) };
@@ -251,6 +266,7 @@ fn parameter(p: &Parameter) -> Json {
             choose(&mut field, options.iter().map(|(id, name)| (*id, *name, "")));
             field
         }
+        ParameterKind::File { .. } => json!({ "type": "string" }),
     };
     field["title"] = format!("{} ({}{unit})", p.label, p.symbol).into();
     field["description"] = p.help.into();

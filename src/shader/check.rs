@@ -149,7 +149,10 @@ mod tests {
     use super::*;
     use crate::{
         parameter::{layout, stride},
-        registry::{Registry, compose::compose_evaluation},
+        registry::{
+            Registry,
+            compose::{compose, compose_evaluation},
+        },
         render::illumination::{ILLUMINATION_LAYOUT, LIGHT_LAYOUT},
         shader::compose::{LIGHTS, OPTICS, Sources},
     };
@@ -180,9 +183,25 @@ mod tests {
         assert_eq!(struct_layout(&module, "Light"), Some(owned(&LIGHT_LAYOUT)));
         assert_eq!(struct_layout(&module, "Illumination"), Some(owned(&ILLUMINATION_LAYOUT)));
         // The wrong twin: without the padding required by vec3, the layouts differ.
-        let packed = wgsl::parse_str("struct Light { position: vec3<f32>, light_type: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, parameters: vec4<f32> }")
+        let packed = wgsl::parse_str("struct Light { position: vec3<f32>, light_type: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, first_word: u32 }")
             .expect("valid WGSL");
         assert_ne!(struct_layout(&packed, "Light"), Some(owned(&LIGHT_LAYOUT)));
+    }
+
+    #[test]
+    fn the_shader_reads_as_many_words_as_a_light_has() {
+        let registry = Registry::builtin();
+        let (model, shading) = (&registry.models()[0], &registry.shading_models()[0]);
+        let composed = compose(&Sources::default(), model, shading, registry.lights());
+        for light in registry.lights() {
+            let id = light.declaration.id;
+            let call = format!("{{ return incident_{id}(");
+            let line = composed.text.lines().find(|line| line.contains(&call)).expect("it is dispatched");
+            for word in 0..=light.word_count() {
+                let read = line.contains(&format!("(light, {word}u)"));
+                assert_eq!(read, word < light.word_count(), "{id}: word {word} in {line}");
+            }
+        }
     }
 
     #[test]

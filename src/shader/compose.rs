@@ -288,11 +288,10 @@ fn beside(from: &str, name: &str) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join("/"))
 }
 
-/// The WGSL struct `Parameters` of a model. A model without parameters gets an unused field, since WGSL has no empty
-/// structs.
+/// The WGSL struct of parameters. Without parameters it gets an unused field, since WGSL has no empty structs.
 #[must_use]
-pub fn parameter_struct(parameters: &[parameter::Parameter]) -> String {
-    let mut text = String::from("struct Parameters {\n");
+pub fn parameter_struct(name: &str, parameters: &[parameter::Parameter]) -> String {
+    let mut text = format!("struct {name} {{\n");
     for (name, kind, _) in parameter::layout(parameters) {
         let _ = writeln!(text, "    {name}: {kind},");
     }

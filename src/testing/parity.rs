@@ -271,6 +271,7 @@ pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64)
                     let i = (random(seed) * options.len() as f32) as usize;
                     Value::Choice(options[i].0.into())
                 }
+                ParameterKind::File { .. } => p.default_value(),
             };
             values.set(p.name, value);
         }

@@ -44,6 +44,7 @@ pub(super) fn random_value(p: &Parameter, seed: &mut u64) -> Value {
         ParameterKind::Choice { options, .. } => {
             Value::Choice(options[(r * options.len() as f32) as usize].0.into())
         }
+        ParameterKind::File { .. } => p.default_value(),
     }
 }
 

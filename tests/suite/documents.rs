@@ -108,10 +108,42 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
         ("docs/custom-models.md", vec![("limits", limits())]),
         (
             "docs/extending.md",
-            vec![("toon.wgsl", example("toon.wgsl", "wgsl")), ("toon.rs", example("toon.rs", "rust"))],
+            vec![
+                ("toon.wgsl", example("toon.wgsl", "wgsl")),
+                ("toon.rs", example("toon.rs", "rust")),
+                ("panel.rs", example("panel.rs", "rust")),
+                ("parts", parts()),
+                ("sets", sets()),
+            ],
         ),
+        ("README.md", vec![("window.rs", example("window.rs", "rust"))]),
+        ("docs/README.md", vec![("window.rs", example("window.rs", "rust"))]),
         ("docs/architecture.md", vec![("modules", modules())]),
     ]
+}
+
+/// The parts of the window, from the documentation of the group.
+fn parts() -> String {
+    let text = fs::read_to_string(root().join("src/window/plugins.rs")).expect("there");
+    let plain = |line: &str| line.replace("[`", "`").replace("`]", "`");
+    text.lines()
+        .filter_map(|line| line.strip_prefix("/// |"))
+        .map(|line| format!("|{}\n", plain(line)))
+        .collect()
+}
+
+/// The sets that systems can be ordered by, from their documentation.
+fn sets() -> String {
+    let text = fs::read_to_string(root().join("src/render/schedule.rs")).expect("there");
+    let body =
+        text.split("pub enum LabSystems {").nth(1).and_then(|t| t.split("\n}").next()).expect("an enum");
+    let lines: Vec<_> = body.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    let rows = lines.chunks(2).map(|pair| {
+        let [help, name] = pair else { panic!("each set has one sentence: {pair:?}") };
+        let help = help.strip_prefix("/// ").unwrap_or_else(|| panic!("{name} has one sentence: {help}"));
+        vec![code(&format!("LabSystems::{}", name.trim_end_matches(','))), help.to_owned()]
+    });
+    table(&["set", "work"], rows)
 }
 
 fn models(registry: &Registry) -> String {
@@ -168,7 +200,7 @@ fn lights(registry: &Registry) -> String {
         let mut fields = vec![];
         fields.extend(d.has_position.then(|| code("position")));
         fields.extend(d.has_direction.then(|| code("direction")));
-        fields.extend(d.parameters.iter().map(|p| code(p.name)));
+        fields.extend(l.parameters.iter().map(|p| code(p.name)));
         vec![code(d.id), d.summary.into(), format!("`{}`", d.equation), d.unit.into(), fields.join(", ")]
     });
     table(&["id", "description", "light at a point", "unit", "fields"], rows)

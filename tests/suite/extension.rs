@@ -1,7 +1,6 @@
 //! A model, a light type and an object type from outside the crate, registered through the public calls, work
 //! everywhere.
 
-use bevy::ecs::component::Component;
 use glam::Vec3;
 use lights_camera_models::{
     document::{Edit, ObjectField, Selection},
@@ -19,8 +18,7 @@ use lights_camera_models::{
     scene::{
         Light, Scene, check,
         load::{self, Defaults},
-        save,
-        schema::schema,
+        save, schema,
     },
     shader::Source,
     shape::{self, ObjectType, PolygonMesh, mesh::Polygon},
@@ -70,25 +68,49 @@ impl ReflectionModel for Toon {
     }
 }
 
-/// A light that is stronger at the top of the room.
-#[derive(Component, Default)]
-struct Skylight;
+const CEILING: Parameter =
+    Parameter::number("ceiling", 1.0..=100.0, 10.0).symbol("h").unit("m").help("The height of full light.");
+const ZENITH: Parameter = Parameter::colour("zenith", [90, 160, 255]).help("The colour from above.");
+const HAZE: Parameter =
+    Parameter::triple("haze", 0.0..=1.0, [0.2, 0.1, 0.05]).help("The light at the floor.");
+const PROFILE: Parameter =
+    Parameter::choice("profile", &[("smooth", "Smooth"), ("steps", "In steps")], 0).help("How it grows.");
+const STEPS: Parameter =
+    Parameter::integer("steps", 1..=16, 3).help("How many steps.").used_when("profile", &["steps"]);
+
+parameters! {
+    /// A light that is stronger at the top of the room, with a parameter of every type.
+    struct Skylight {
+        ceiling: number = CEILING,
+        zenith: colour = ZENITH,
+        haze: triple = HAZE,
+        profile: choice = PROFILE,
+        steps: number = STEPS,
+    }
+}
 
 impl LightType for Skylight {
     const DECLARATION: light::Declaration = light::Declaration::new(
-        "skylight",
+        "sky_light",
         "Skylight",
         Source::new(
             "skylight.wgsl",
-            "fn incident_skylight(light: Light, p: vec3<f32>) -> Incident { return Incident(vec3(0.0, 1.0, 0.0), light.intensity * p.y / 10.0, 0u); }\n",
+            "fn incident_sky_light(light: Light, m: SkyLightParameters, p: vec3<f32>) -> Incident {
+                 var share = p.y / m.ceiling;
+                 if m.profile == 1u { share = ceil(share * m.steps) / m.steps; }
+                 let colour = share * m.zenith + m.haze;
+                 return Incident(vec3(0.0, 1.0, 0.0), light.intensity * colour, 0u);
+             }\n",
         ),
     )
     .summary("Stronger at the top.")
     .glyph("s")
-    .equation("I(p) = I y / 10");
+    .equation("I(p) = I y / h");
 
-    fn incident(light: &LightRecord, p: Vec3) -> Incident {
-        Incident::From { l: Vec3::Y, intensity: light.intensity * p.y / 10.0 }
+    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
+        let share = p.y / self.ceiling;
+        let share = if self.profile == 1 { (share * self.steps).ceil() / self.steps } else { share };
+        Incident::From { l: Vec3::Y, intensity: light.intensity * (share * self.zenith + self.haze) }
     }
 }
 
@@ -163,7 +185,7 @@ fn scene() -> Scene {
     scene.reflection_model = "toon".to_owned();
     scene.shading_model = "flat".to_owned();
     scene.lights.push(Light {
-        light_type: "skylight".to_owned(),
+        light_type: "sky_light".to_owned(),
         position: None,
         intensity: 0.5,
         ..Light::default()
@@ -177,8 +199,111 @@ fn registry() -> Registry {
     registry
 }
 
+fn renderer() -> GpuRenderer {
+    GpuRenderer::extended(64, 64, 1, Output::Linear, register).expect("software Vulkan is installed")
+}
+
+fn gpu(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<Vec3> {
+    renderer.set_scene(scene.clone());
+    renderer.settle().expect("the GPU draws");
+    renderer.read_linear().expect("the picture can be read")
+}
+
+/// True if the CPU renderer draws a scene as the GPU did.
+fn alike(gpu: &[Vec3], scene: &Scene) -> bool {
+    let settings = reference::Settings { width: 64, height: 64, samples: 1, terms: TermSelection::All };
+    let cpu = reference::render(scene, &registry(), &settings);
+    let d = compare(gpu, &cpu, Encoding::Srgb.decode(BACKGROUND), 1e-3);
+    assert!(d.covered > 200, "{d:?}");
+    d.wrong == 0 && d.edges * 20 <= d.covered
+}
+
 #[test]
 fn a_custom_model_light_and_shape_are_drawn_alike_by_both_renderers() {
+    let mut renderer = renderer();
+    assert!(alike(&gpu(&mut renderer, &scene()), &scene()));
+}
+
+#[test]
+fn every_type_of_parameter_of_a_light_reaches_both_renderers() {
+    let mut renderer = renderer();
+    let mut scene = scene();
+    let values = [
+        ("ceiling", Value::Number(7.0)),
+        ("zenith", Value::Colour([250, 40, 120])),
+        ("haze", Value::Triple([0.05, 0.6, 0.3])),
+        ("profile", Value::Choice("steps".into())),
+        ("steps", Value::Integer(9)),
+    ];
+    let mut shown = gpu(&mut renderer, &scene);
+    for (name, value) in values {
+        scene.lights[1].parameters.set(name, value);
+        // The wrong twin: the picture before the change.
+        assert!(!alike(&shown, &scene), "a change of {name} goes unnoticed");
+        shown = gpu(&mut renderer, &scene);
+        assert!(alike(&shown, &scene), "{name}");
+    }
+    // The type is a component with its parameters.
+    let world = renderer.app().world_mut();
+    let lights: Vec<_> = world.query::<&Skylight>().iter(world).copied().collect();
+    let zenith = Encoding::Srgb.decode([250, 40, 120]);
+    assert_eq!(
+        lights,
+        [Skylight { ceiling: 7.0, zenith, haze: Vec3::new(0.05, 0.6, 0.3), profile: 1, steps: 9.0 }]
+    );
+}
+
+#[test]
+fn lights_whose_parameters_outgrow_the_buffer_are_drawn() {
+    let mut renderer = renderer();
+    let mut scene = scene();
+    assert!(alike(&gpu(&mut renderer, &scene), &scene));
+    let other = scene.clone();
+    for i in 0..250_u8 {
+        let mut light = Light { intensity: 0.01, ..scene.lights[1].clone() };
+        light.parameters.set("zenith", Value::Colour([i, 255 - i, i / 2]));
+        scene.lights.push(light);
+    }
+    let shown = gpu(&mut renderer, &scene);
+    assert!(alike(&shown, &scene));
+    // The wrong twin: another colour of the last one alone.
+    let mut wrong = scene.clone();
+    wrong.lights[251].parameters.set("zenith", Value::Colour([255; 3]));
+    wrong.lights[251].intensity = 0.05;
+    assert!(!alike(&shown, &wrong));
+    assert!(alike(&gpu(&mut renderer, &other), &other), "and fewer again");
+}
+
+#[test]
+fn parameters_of_a_light_are_read_checked_written_and_in_the_schema() {
+    let registry = registry();
+    let mut scene = scene();
+    scene.lights[1].parameters.set("zenith", Value::Colour([1, 2, 3]));
+    scene.lights[1].parameters.set("haze", Value::Triple([0.5; 3]));
+    scene.lights[1].parameters.set("steps", Value::Integer(2));
+    scene.lights[1].parameters.set("profile", Value::Choice("steps".into()));
+    let text = save::to_json(&scene, None, &registry);
+    let read = |text: &str| load::from_text(text, "scene.json", &registry, Defaults::Refuse);
+    assert_eq!(read(&text).map(|loaded| loaded.scene.lights).ok(), Some(scene.lights));
+    for (right, wrong, message) in [
+        ("\"zenith\": [1, 2, 3]", "\"zenith\": [1, 2, 300]", "zenith"),
+        ("\"haze\": [0.5, 0.5, 0.5]", "\"haze\": [0.5, 0.5, 1.5]", "between 0 and 1"),
+        ("\"steps\": 2", "\"steps\": 2.5", "a whole number between 1 and 16"),
+        ("\"profile\": \"steps\"", "\"profile\": \"step\"", "did you mean \"steps\"?"),
+        ("\"steps\": 2", "\"cone_angle\": 2", "is given, but a sky_light light has no cone_angle"),
+    ] {
+        assert!(text.contains(right), "{right} in {text}");
+        let Err(problem) = read(&text.replace(right, wrong)) else { panic!("{wrong} is legal") };
+        assert!(problem.to_string().contains(message), "{problem}");
+    }
+    let schema = schema::text(&registry);
+    for name in ["ceiling", "zenith", "haze", "profile", "steps"] {
+        assert!(schema.contains(&format!("\"{name}\": {{")), "{name}");
+    }
+}
+
+#[test]
+fn every_type_of_parameter_of_a_shape_reaches_both_renderers() {
     let registry = registry();
     let mut renderer =
         GpuRenderer::extended(64, 64, 1, Output::Linear, register).expect("software Vulkan is installed");
@@ -219,7 +344,7 @@ fn file(parameters: Json) -> String {
 #[test]
 fn parameters_of_every_kind_stand_in_files_of_scenes() {
     let registry = registry();
-    let schema = jsonschema::draft202012::new(&schema(&registry)).expect("a valid schema");
+    let schema = jsonschema::draft202012::new(&schema::schema(&registry)).expect("a valid schema");
     let read = |text: &str| load::from_text(text, "scene.json", &registry, Defaults::Refuse);
     let valid = |text: &str| schema.is_valid(&serde_json::from_str(text).expect("JSON"));
     let all =

@@ -3,7 +3,7 @@
 
 use std::{fs, thread, time::Duration};
 
-use bevy::{app::App, ecs::component::Component, prelude::Mut};
+use bevy::{app::App, prelude::Mut};
 use glam::Vec3;
 use lights_camera_models::{
     library::{problem::GRACE, status::ShaderStatus},
@@ -24,9 +24,10 @@ use crate::pictures::close_up;
 
 const SIZE: u32 = 48;
 
-/// A lamp whose WGSL lacks a semicolon in line 2.
-#[derive(Component, Default)]
-struct Lamp;
+parameters! {
+    /// A lamp whose WGSL lacks a semicolon in line 2.
+    struct Lamp {}
+}
 
 impl LightType for Lamp {
     const DECLARATION: light::Declaration = light::Declaration::new(
@@ -34,17 +35,17 @@ impl LightType for Lamp {
         "Lamp",
         Source::new(
             "mine/lamp.wgsl",
-            "fn incident_lamp(light: Light, p: vec3<f32>) -> Incident {\n    let up = vec3(0.0, 1.0, 0.0)\n    return Incident(up, light.intensity, 0u);\n}\n",
+            "fn incident_lamp(light: Light, p: vec3<f32>) -> Incident {\n    let up = vec3(0.0, 1.0, 0.0)\n    return Incident(up, vec3(light.intensity), 0u);\n}\n",
         ),
     );
 
-    fn incident(light: &LightRecord, _: Vec3) -> Incident {
-        Incident::From { l: Vec3::Y, intensity: light.intensity }
+    fn incident(&self, light: &LightRecord, _: Vec3) -> Incident {
+        Incident::From { l: Vec3::Y, intensity: Vec3::splat(light.intensity) }
     }
 }
 
 /// The text without the mistake.
-const MENDED: &str = "fn incident_lamp(light: Light, p: vec3<f32>) -> Incident {\n    return Incident(vec3(0.0, 1.0, 0.0), light.intensity, 0u);\n}\n";
+const MENDED: &str = "fn incident_lamp(light: Light, p: vec3<f32>) -> Incident {\n    return Incident(vec3(0.0, 1.0, 0.0), vec3(light.intensity), 0u);\n}\n";
 
 /// A model whose WGSL has another name for its function.
 macro_rules! model {

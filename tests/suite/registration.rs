@@ -1,12 +1,11 @@
 //! Mistakes in what other crates register: each is named with its type, its place and what would be right, before
 //! anything is drawn.
 
-use bevy::ecs::component::Component;
 use glam::Vec3;
 use lights_camera_models::{
-    light::{self, Incident, LightRecord, LightType},
+    light::{self, Incident, LightRecord, LightType, ies},
     optics::{Frame, Terms},
-    parameter::{BASE_COLOUR, Parameter},
+    parameter::{BASE_COLOUR, Parameter, Values},
     parameters, reflection,
     reflection::ReflectionModel,
     registry::{Register, RegistrationError, Registry},
@@ -48,15 +47,20 @@ macro_rules! model {
     };
 }
 
-/// A light type, but for its declaration.
+/// A light type, but for its declaration and its parameters.
 macro_rules! light {
     ($name:ident, $declaration:expr) => {
-        #[derive(Component, Default)]
-        struct $name;
+        light!($name, $declaration, {});
+    };
+    ($name:ident, $declaration:expr, { $($field:ident: $kind:ident = $parameter:expr),* }) => {
+        parameters! {
+            /// Light from above.
+            struct $name { $( $field: $kind = $parameter ),* }
+        }
         impl LightType for $name {
             const DECLARATION: light::Declaration = $declaration;
-            fn incident(light: &LightRecord, _: Vec3) -> Incident {
-                Incident::From { l: Vec3::Y, intensity: light.intensity }
+            fn incident(&self, light: &LightRecord, _: Vec3) -> Incident {
+                Incident::From { l: Vec3::Y, intensity: Vec3::splat(light.intensity) }
             }
         }
     };
@@ -70,7 +74,7 @@ macro_rules! lamp {
             concat!(
                 "fn incident_",
                 $id,
-                "(light: Light, p: vec3<f32>) -> Incident {\n    return Incident(vec3(0.0, 1.0, 0.0), light.intensity, 0u);\n}\n"
+                "(light: Light, p: vec3<f32>) -> Incident {\n    return Incident(vec3(0.0, 1.0, 0.0), vec3(light.intensity), 0u);\n}\n"
             ),
         )
     };
@@ -260,6 +264,72 @@ fn parameters_have_names_ranges_and_defaults_that_work() {
         bands: number = Parameter::number("bands", 0.0..=1.0, 0.5).used_when("sort", &["a"])
     });
     model_refused::<When>(&["parameter `bands`: used_when: it must name a parameter of this model"]);
+}
+
+/// The text of a light with parameters: those that a light of that id may have.
+const DIMMED: Source = Source::new(
+    "lamp.wgsl",
+    "fn incident_lamp(light: Light, m: LampParameters, p: vec3<f32>) -> Incident {
+    return Incident(vec3(0.0, 1.0, 0.0), vec3(m.dimmed * light.intensity), 0u);
+}
+",
+);
+const DIMMED_BY: Parameter = Parameter::number("dimmed", 0.0..=1.0, 0.5);
+
+#[test]
+fn parameters_of_light_types_fit_and_their_cone_is_a_number() {
+    const fn triple(name: &'static str) -> Parameter {
+        Parameter::triple(name, 0.0..=1.0, [0.5; 3])
+    }
+    light!(Wide, LAMP, {
+        aa: triple = triple("aa"), bb: triple = triple("bb"), cc: triple = triple("cc"), dd: triple = triple("dd"),
+        ee: triple = triple("ee"), ff: triple = triple("ff"), gg: triple = triple("gg"), hh: triple = triple("hh"),
+        ii: triple = triple("ii"), jj: triple = triple("jj"), kk: triple = triple("kk"), ll: triple = triple("ll"),
+        mm: triple = triple("mm"), nn: triple = triple("nn"), oo: triple = triple("oo"), pp: triple = triple("pp"),
+        qq: triple = triple("qq")
+    });
+    light_refused::<Wide>(&["its parameters take 268 bytes, at most 256 fit"]);
+    light!(Coloured, LAMP.cone("zenith"), { zenith: colour = Parameter::colour("zenith", [0; 3]) });
+    light_refused::<Coloured>(&["its cone is parameter `zenith`, but must be one of its numbers"]);
+    light!(Coneless, LAMP.cone("cone_angle"));
+    light_refused::<Coneless>(&["its cone is parameter `cone_angle`, but must be one of its numbers"]);
+    light!(OtherCone, LAMP, { cone_angle: colour = Parameter::colour("cone_angle", [0; 3]) });
+    light_refused::<OtherCone>(&[
+        "parameter `cone_angle`: is colour, but that of `spot` is number; light types share parameters by name",
+    ]);
+    light!(KeyOfLight, LAMP, { intensity: number = Parameter::number("intensity", 0.0..=1.0, 0.5) });
+    light_refused::<KeyOfLight>(&["parameter `intensity`: the name is that of another key of a light"]);
+    light!(Without, LAMP, { dimmed: number = DIMMED_BY });
+    light_refused::<Without>(&[
+        "incident_lamp must be fn incident_lamp(light: Light, m: LampParameters, p: vec3<f32>)",
+    ]);
+    light!(Right, light::Declaration::new("lamp", "Lamp", DIMMED).factor(1.0, 5.0).cone("dimmed"), {
+        dimmed: number = DIMMED_BY
+    });
+    let mut registry = Registry::builtin();
+    registry.try_add_light_type::<Right>().expect("right");
+    let entry = registry.light("lamp").expect("registered");
+    assert_eq!((entry.declaration.unit, entry.cone_angle(&Values::default())), ("×", Some(0.5)));
+}
+
+#[test]
+fn files_are_for_light_types_and_their_defaults_are_shipped() {
+    const WEB: Parameter = Parameter::file("web", &ies::FORMAT, "wall_washer.ies");
+    light!(Lost, LAMP, { web: file = Parameter::file("web", &ies::FORMAT, "lost.ies") });
+    light_refused::<Lost>(&[
+        "parameter `web`: its default is the file \"lost.ies\", but must be one that its format ships",
+    ]);
+    model!(OfModel, MODEL, { web: file = WEB });
+    model_refused::<OfModel>(&["parameter `web`: is a file, which light types alone may have"]);
+    const READING: Source = Source::new(
+        "lamp.wgsl",
+        "fn incident_lamp(light: Light, m: LampParameters, p: vec3<f32>) -> Incident {
+    return Incident(vec3(0.0, 1.0, 0.0), vec3(illumination_number(m.web) * light.intensity), 0u);
+}
+",
+    );
+    light!(Reading, light::Declaration::new("lamp", "Lamp", READING), { web: file = WEB });
+    assert!(Registry::builtin().try_add_light_type::<Reading>().is_ok());
 }
 
 #[test]

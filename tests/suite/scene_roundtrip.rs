@@ -52,9 +52,13 @@ fn parameters_of_other_models_are_kept() {
 #[test]
 fn shipped_scenes_are_valid_complete_and_survive_writing() {
     for path in shipped_scenes() {
-        let loaded = load::file(&path, &Registry::builtin(), Defaults::Refuse);
+        let registry = Registry::builtin();
+        let loaded = load::file(&path, &registry, Defaults::Refuse);
         let scene = loaded.unwrap_or_else(|e| panic!("{e}")).scene;
-        assert_eq!(read(&written(&scene)), scene, "{}", path.display());
+        // In the same folder, where the files are that it names.
+        let again =
+            load::from_text(&written(&scene), &path.display().to_string(), &registry, Defaults::Refuse);
+        assert_eq!(again.unwrap_or_else(|e| panic!("{e}")).scene, scene, "{}", path.display());
         let text = fs::read_to_string(&path).expect("readable");
         assert!(text.contains("\"$schema\": \"./scene.schema.json\""), "{}", path.display());
     }
@@ -109,6 +113,7 @@ fn parameter(p: &'static Parameter) -> BoxedStrategy<Value> {
         ParameterKind::Choice { options, .. } => {
             prop::sample::select(options).prop_map(|(id, _)| Value::Choice(id.into())).boxed()
         }
+        ParameterKind::File { .. } => Just(p.default_value()).boxed(),
     }
 }
 
@@ -135,7 +140,7 @@ fn light() -> impl Strategy<Value = Light> {
         let brightness = || prop_oneof![number(0.0, 1e3), Just(f32::MAX), Just(f32::MIN_POSITIVE)];
         let flux = prop::option::of(brightness()).prop_map(move |flux| flux.filter(|_| entry.has_flux()));
         let colour = (any::<[u8; 3]>(), prop::option::of(number(1000.0, 40_000.0)));
-        let parameters = values(d.parameters.iter().collect());
+        let parameters = values(entry.parameters.iter().collect());
         (name, position(), direction(), colour, (brightness(), flux, any::<bool>()), parameters).prop_map(
             move |(name, p, direction, (colour, kelvin), (intensity, flux, enabled), parameters)| Light {
                 light_type: d.id.to_owned(),

@@ -1,6 +1,5 @@
 //! The public tests for models, light types and object types: what is right passes, and a wrong twin of each fails.
 
-use bevy::ecs::component::Component;
 use glam::Vec3;
 use lights_camera_models::{
     light::{self, Incident, LightRecord, LightType},
@@ -102,18 +101,19 @@ fn a_model_that_is_black_in_one_language_fails() {
 /// A lamp with that part of the light in Rust, and all in WGSL, and with that solid angle.
 macro_rules! downlight {
     ($name:ident, $intensity:expr, $solid_angle:expr) => {
-        #[derive(Component, Default)]
-        struct $name;
+        parameters! {
+            struct $name {}
+        }
         impl LightType for $name {
             const DECLARATION: light::Declaration = DOWNLIGHT;
-            fn incident(light: &LightRecord, p: Vec3) -> Incident {
+            fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
                 let to_light = light.position - p;
                 let share: fn(f32) -> f32 = $intensity;
                 let l = to_light.normalize_or_zero();
                 let falloff = light.intensity / to_light.length_squared().max(1e-12);
-                Incident::From { l, intensity: share(l.y.max(0.0) * falloff) }
+                Incident::From { l, intensity: Vec3::splat(share(l.y.max(0.0) * falloff)) }
             }
-            fn solid_angle(_: &[f32; light::MAX_LIGHT_PARAMETERS]) -> Option<f64> {
+            fn solid_angle(&self) -> Option<f64> {
                 Some($solid_angle)
             }
         }
@@ -128,7 +128,7 @@ const DOWNLIGHT: light::Declaration = light::Declaration::new(
         "fn incident_downlight(light: Light, p: vec3<f32>) -> Incident {
     let to_light = light.position - p;
     let l = unit_or_zero(to_light);
-    return Incident(l, max(l.y, 0.0) * light.intensity / max(dot(to_light, to_light), 1e-12), 0u);
+    return Incident(l, vec3(max(l.y, 0.0) * light.intensity / max(dot(to_light, to_light), 1e-12)), 0u);
 }
 ",
     ),
@@ -165,6 +165,7 @@ fn a_light_with_one_sign_changed_is_noticed() {
     for (id, from, to) in [
         ("point", "light.position - p", "p - light.position"),
         ("spot", "light.direction, -l", "light.direction, l"),
+        ("photometric", "cross(zero, axis)", "cross(axis, zero)"),
         ("directional", "-light.direction", "light.direction"),
         ("ambient", "1u", "0u"),
     ] {

@@ -136,10 +136,10 @@ fn lamp(
     let reach = ink.lens.metres(position, points).min(0.12 * scene.scene_size.corner().max_element());
     if let Some(direction) = direction {
         let turn = Quat::from_rotation_arc(Vec3::Z, direction);
-        match entry.declaration.cone_parameter {
+        match entry.cone_angle(&light.parameters) {
             _ if size == Size::Dot => ink.path(&[position, position + direction * (0.5 * reach)], colour),
-            Some(index) => {
-                let angle = entry.numbers(&light.parameters)[index].to_radians();
+            Some(angle) => {
+                let angle = angle.to_radians();
                 // The rim on a sphere around the light: also a half angle of 90° has one.
                 let rim = position + direction * (reach * angle.cos());
                 let radius = reach * angle.sin();

@@ -7,7 +7,7 @@ use std::collections::HashSet;
 
 use super::{LIGHT_KEYS, MODELS, OBJECT_KEYS, Registry, WINDOW_KEYS, light_set::MAX_LIGHT_TYPES};
 use crate::{
-    light::{LightEntry, MAX_LIGHT_PARAMETERS},
+    light::LightEntry,
     parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, layout},
     reflection::{ModelEntry, usage},
     shader::{Source, definitions::allowed_in_wgsl},
@@ -19,7 +19,9 @@ use crate::{
 type Check = Result<(), String>;
 
 /// The units of light types.
-const UNITS: [&str; 2] = ["cd", "lx"];
+const UNITS: [&str; 3] = ["cd", "lx", "×"];
+/// A light of a scene file, in messages.
+const LIGHT: &str = "a light";
 /// The names of the literals of JSON.
 const JSON_WORDS: [&str; 3] = ["true", "false", "null"];
 
@@ -58,6 +60,9 @@ pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str) -> Ch
         ensure(known.insert(p.name), || of("is declared twice; names must differ".to_owned()))?;
         ensure(!reserved.contains(&p.name), || {
             of(format!("the name is that of another key of {part} in scene files; choose another"))
+        })?;
+        ensure(part == LIGHT || !matches!(p.kind, ParameterKind::File { .. }), || {
+            of("is a file, which light types alone may have".to_owned())
         })?;
         kind(p).map_err(of)?;
         if let Some(problem) = usage::problem(all, p) {
@@ -98,6 +103,11 @@ fn kind(p: &Parameter) -> Check {
             })?;
         }
         ParameterKind::Colour { .. } => {}
+        ParameterKind::File { format, default } => {
+            ensure(format.shipped.iter().any(|(name, _)| name == default), || {
+                format!("its default is the file \"{default}\", but must be one that its format ships")
+            })?;
+        }
     }
     let default = p.default_value();
     ensure(p.allows(&default), || format!("its default is {default}, but must be {}", p.rule()))
@@ -177,18 +187,22 @@ pub(super) fn shading_model(registry: &Registry, entry: &ShadingEntry) -> Check 
 pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
     let d = entry.declaration;
     identity(d.id, d.name)?;
-    parameters(d.parameters, LIGHT_KEYS, "a light")?;
-    let count = d.parameters.len();
-    ensure(count <= MAX_LIGHT_PARAMETERS, || {
-        format!("it declares {count} parameters, at most {MAX_LIGHT_PARAMETERS} fit")
-    })?;
+    parameters(entry.parameters, LIGHT_KEYS, LIGHT)?;
+    let others = registry.lights().iter().filter(|l| l.declaration.id != d.id);
+    shared(entry.parameters, "light types", others.map(|l| (l.declaration.id, l.parameters)))?;
     ensure(UNITS.contains(&d.unit), || {
-        format!("its unit is \"{}\", but must be cd or lx, for lights with a position and without", d.unit)
+        format!(
+            "its unit is \"{}\", but must be cd or lx, for lights with a position and without, or × for a factor",
+            d.unit
+        )
     })?;
     positive("its default intensity", d.default_intensity)?;
     positive("the end of the slider for its intensity", d.slider_max)?;
-    if let Some(i) = d.cone_parameter {
-        ensure(i < count, || format!("its cone is parameter {i}, but it declares {count}, counted from 0"))?;
+    if let Some(cone) = d.cone_parameter {
+        let number = |p: &Parameter| matches!(p.kind, ParameterKind::Number { .. });
+        ensure(entry.parameter(cone).is_some_and(number), || {
+            format!("its cone is parameter `{cone}`, but must be one of its numbers")
+        })?;
     }
     let known = registry.light(d.id).is_some();
     ensure(known || registry.lights().len() < MAX_LIGHT_TYPES, || {

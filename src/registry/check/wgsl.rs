@@ -88,7 +88,12 @@ fn of_model(model: &ModelEntry) -> Vec<Function> {
 
 /// The function of a light type.
 fn of_light(light: &LightEntry) -> Function {
-    function(&format!("incident_{}", light.declaration.id), "(light: Light, p: vec3<f32>) -> Incident")
+    let own = match light.parameters {
+        [] => String::new(),
+        _ => format!("m: {}, ", light.parameter_struct()),
+    };
+    let signature = format!("(light: Light, {own}p: vec3<f32>) -> Incident");
+    function(&format!("incident_{}", light.declaration.id), &signature)
 }
 
 /// The functions of a shading model.
@@ -261,7 +266,7 @@ mod tests {
                 "incident_spot",
                 "incident_sport",
                 &[
-                    "the function incident_spot is missing; it is fn incident_spot(light: Light, p: vec3<f32>) -> Incident",
+                    "the function incident_spot is missing; it is fn incident_spot(light: Light, m: SpotParameters, p: vec3<f32>) -> Incident",
                     "did you name it incident_sport?",
                 ],
             ),
@@ -269,8 +274,10 @@ mod tests {
                 "light/spot.wgsl",
                 "p: vec3<f32>)",
                 "p: vec3<f32>, q: f32)",
-                &["incident_spot must be fn incident_spot(light: Light"],
+                &["incident_spot must be fn incident_spot(light: Light, m: SpotParameters, p"],
             ),
+            ("light/spot.wgsl", "m: SpotParameters, ", "", &["spot.wgsl:"]),
+            ("light/spot.wgsl", "m.penumbra", "m.penumbre", &["spot.wgsl:5:", "did you mean penumbra?"]),
             ("light/spot.wgsl", "unit_or_zero", "unit_or_one", &["spot.wgsl:4:"]),
             (
                 "shading/phong.wgsl",

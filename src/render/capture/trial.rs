@@ -299,7 +299,7 @@ impl Actor {
         let entity = entity.id();
         let empty = ShaderBuffer::new(&[0; ROW], RenderAssetUsages::default());
         let parameters = world.resource_mut::<Assets<ShaderBuffer>>().add(empty);
-        let illumination = world.resource::<IlluminationBuffer>().0.clone();
+        let illumination = world.resource::<IlluminationBuffer>().handle.clone();
         let inputs =
             MaterialInputs { parameters: parameters.clone(), illumination, shader: shader.clone(), faces };
         // That of models from files.

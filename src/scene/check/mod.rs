@@ -253,7 +253,7 @@ impl Check<'_> {
         }
         for (name, value) in &light.parameters.0 {
             let path = || light_path(index).key(name.clone());
-            match entry.map(|e| e.declaration.parameters.iter().find(|p| p.name == name.as_ref())) {
+            match entry.map(|e| e.parameter(name)) {
                 Some(Some(declared)) => self.rule(parameter(declared, value), || (path(), written(value))),
                 Some(None) => self.about(path(), presence(&light.light_type, name, false)),
                 // The type is unknown, which is already reported.
@@ -347,6 +347,7 @@ fn written(value: &Value) -> String {
         Value::Colour([r, g, b]) => format!("[{r}, {g}, {b}]"),
         Value::Triple([r, g, b]) => format!("[{r}, {g}, {b}]"),
         Value::Choice(v) => quoted(v),
+        Value::File(v) => quoted(v.name()),
     }
 }
 
@@ -484,8 +485,8 @@ mod tests {
                 "lights[0].direction is missing; a spot light needs one",
                 "lights[1].position is given, but an ambient light has no position",
                 "lights[1].cone_angle is given, but an ambient light has no cone_angle",
-                "lights[2].type is \"spott\", but the light type must be \"point\", \"spot\", \"directional\" or \
-                 \"ambient\"; did you mean \"spot\"?",
+                "lights[2].type is \"spott\", but the light type must be \"point\", \"spot\", \
+                 \"photometric\", \"directional\" or \"ambient\"; did you mean \"spot\"?",
             ]
         );
     }

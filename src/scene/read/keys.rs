@@ -65,7 +65,7 @@ pub(super) const OTHER_WORDS: &[(&str, &str)] = &[
 
 /// The keys of all light types.
 pub(super) fn light_keys(registry: &Registry) -> Vec<&'static str> {
-    with(LIGHT_KEYS, registry.lights().iter().flat_map(|l| l.declaration.parameters))
+    with(LIGHT_KEYS, registry.lights().iter().flat_map(|l| l.parameters))
 }
 
 /// The keys of all object types.

@@ -109,8 +109,8 @@ impl Reader<'_> {
             }
         }
         for (key, value) in fields.iter() {
-            let own = entry.and_then(|e| e.declaration.parameters.iter().find(|p| p.name == key));
-            let of_any = || self.registry.lights().iter().flat_map(|l| l.declaration.parameters);
+            let own = entry.and_then(|e| e.parameter(key));
+            let of_any = || self.registry.lights().iter().flat_map(|l| l.parameters);
             if let Some(parameter) = own.or_else(|| of_any().find(|p| p.name == key))
                 && let Some(value) = self.parameter(value, parameter)
             {

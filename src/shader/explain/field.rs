@@ -20,15 +20,20 @@ pub(super) fn unknown(scan: &Scan, i: usize, field: &str) -> String {
     let spelling = field.replace("color", "colour");
     let meant = MEANT.iter().filter(|(_, name)| names.contains(name)).copied();
     let near = nearest(&spelling, names.iter().map(|name| (*name, *name)).chain(meant));
-    match (of == "Parameters", near) {
-        (true, Some(name)) => format!("no parameter {field}; did you mean {name}?"),
-        (true, None) if names == ["unused"] => format!("no parameter {field}; the model declares none"),
-        (true, None) => format!("no parameter {field}; the model declares {}", listed(&names, "and")),
-        (false, Some(name)) => format!("{of} has no field {field}; did you mean {name}?"),
-        (false, None) if field.contains("dot") => {
+    let declares = match of.strip_suffix("Parameters") {
+        Some("") => Some("the model declares"),
+        Some(_) => Some("the light type declares"),
+        None => None,
+    };
+    match (declares, near) {
+        (Some(_), Some(name)) => format!("no parameter {field}; did you mean {name}?"),
+        (Some(who), None) if names == ["unused"] => format!("no parameter {field}; {who} none"),
+        (Some(who), None) => format!("no parameter {field}; {who} {}", listed(&names, "and")),
+        (None, Some(name)) => format!("{of} has no field {field}; did you mean {name}?"),
+        (None, None) if field.contains("dot") => {
             format!("{of} has no field {field}; a cosine is a dot product such as `dot(frame.n, l)`")
         }
-        (false, None) => format!("{of} has no field {field}; it has {}", listed(&names, "and")),
+        (None, None) => format!("{of} has no field {field}; it has {}", listed(&names, "and")),
     }
 }
 
@@ -52,6 +57,10 @@ mod tests {
         ] {
             assert!(said(&format!("{head}\n{line}")).starts_with(expected), "{line}");
         }
+        let head = "struct SpotParameters { cone_angle: f32, penumbra: f32, }\nfn f(m: SpotParameters) {\n";
+        assert_eq!(said(&format!("{head}m.cone_angel")), "no parameter cone_angel; did you mean cone_angle?");
+        let expected = "no parameter velvet; the light type declares cone_angle and penumbra";
+        assert_eq!(said(&format!("{head}m.velvet")), expected);
         let head = "struct Frame { n: vec3<f32>, // up: out\n t: vec3<f32>, b: vec3<f32> }\nfn f(frame: vec3<f32>) {}\nfn g(frame: Frame) {\n";
         for (line, expected) in [
             ("frame.normal", "Frame has no field normal; did you mean n?"),
