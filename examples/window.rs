@@ -7,10 +7,10 @@ use lights_camera_models::{bevy::prelude::*, prelude::*};
 
 #[path = "panel.rs"]
 #[allow(dead_code)]
-mod panel;
+pub mod panel;
 #[path = "toon.rs"]
 #[allow(dead_code)]
-mod toon;
+pub mod toon;
 
 pub fn main() -> AppExit {
     App::new()

@@ -23,12 +23,9 @@ use serde_json::Value as Json;
 
 use crate::{
     golden::{SAME_RENDERER, read_png, updating},
+    plugins::window::toon as example,
     support::root,
 };
-
-#[path = "../../examples/toon.rs"]
-#[allow(dead_code)]
-mod example;
 
 #[test]
 fn gouraud_shading_loses_the_highlight_as_the_tour_says() {

@@ -9,6 +9,7 @@ use lights_camera_models::{
         settings::Settings,
         state::{Action, Effect, Session, ViewChange},
     },
+    parameters,
     registry::{Register as _, Registry},
     shape::{self, ObjectType, PolygonMesh},
 };
@@ -210,8 +211,10 @@ fn the_built_in_glyphs_are_shown_as_they_are() {
     }
 }
 
-/// A shape whose name and glyph no font has.
-struct Prism;
+parameters! {
+    /// A shape whose name and glyph no font has.
+    struct Prism {}
+}
 
 impl ObjectType for Prism {
     const DECLARATION: shape::Declaration = shape::Declaration {
@@ -224,7 +227,7 @@ impl ObjectType for Prism {
         default_tessellation: 1,
     };
 
-    fn mesh(_: u32) -> PolygonMesh {
+    fn mesh(&self, _: u32) -> PolygonMesh {
         PolygonMesh { positions: Vec::new(), polygons: Vec::new() }
     }
 }

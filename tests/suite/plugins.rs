@@ -35,15 +35,11 @@ use lights_camera_models::{
 
 use crate::screen::{Picture, Screen, alone};
 
-#[path = "../../examples/panel.rs"]
-#[allow(dead_code)]
-mod panel;
-#[path = "../../examples/toon.rs"]
-#[allow(dead_code)]
-mod toon;
 #[path = "../../examples/window.rs"]
 #[allow(dead_code)]
-mod window;
+pub mod window;
+
+use window::{panel, toon};
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/shapes_and_lights.json");
 
