@@ -319,8 +319,16 @@ fn files_are_for_light_types_and_their_defaults_are_shipped() {
     light_refused::<Lost>(&[
         "parameter `web`: its default is the file \"lost.ies\", but must be one that its format ships",
     ]);
-    model!(OfModel, MODEL, { web: file = WEB });
-    model_refused::<OfModel>(&["parameter `web`: is a file, which light types alone may have"]);
+    parameters! {
+        struct OfShape { web: file = WEB }
+    }
+    impl ObjectType for OfShape {
+        const DECLARATION: shape::Declaration = SHAPE;
+        fn mesh(&self, _: u32) -> PolygonMesh {
+            tetrahedron()
+        }
+    }
+    shape_refused::<OfShape>(&["parameter `web`: is a file, which light types alone may have"]);
     const READING: Source = Source::new(
         "lamp.wgsl",
         "fn incident_lamp(light: Light, m: LampParameters, p: vec3<f32>) -> Incident {
