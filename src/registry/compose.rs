@@ -16,8 +16,8 @@ use crate::{
     shader::{
         Source,
         compose::{
-            ALBEDO, Composed, Composer, EVALUATE, LIGHTS, LOOP, OPTICS, SHADING, Sources, WRAPPER,
-            parameter_struct,
+            ALBEDO, Composed, Composer, EVALUATE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, SHADING, Sources,
+            WRAPPER, parameter_struct,
         },
     },
     shading::ShadingEntry,
@@ -146,7 +146,7 @@ pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
         _ => (format!("m: {}, ", light.parameter_struct()), "m, "),
     };
     c.push(
-        "(light type)",
+        LIGHT_ALONE,
         &format!(
             "struct FileRow {{ numbers: array<f32, {numbers}> }}
 @group(0) @binding(0) var<storage, read> {FILE_TABLE}: array<FileRow>;
