@@ -12,6 +12,7 @@ use bevy::{
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::Vec3;
 use lights_camera_models::{
+    parameter::Values,
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
@@ -118,7 +119,7 @@ fn standard_material() -> GpuRenderer {
     renderer.set_scene(empty);
     let registry = Registry::builtin();
     let sphere = registry.shape("sphere").expect("built in");
-    let mesh = shared_mesh(&sphere.mesh(TESSELLATION));
+    let mesh = shared_mesh(&sphere.mesh(&Values::default(), TESSELLATION));
     let world = renderer.app().world_mut();
     let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
     let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {

@@ -80,6 +80,8 @@ pub enum ObjectField {
     Model(Option<String>),
     /// The override of the shading model; `None` for the scene's.
     ShadingModel(Option<String>),
+    /// A parameter of the type.
+    Shape(&'static str, Value),
     /// A parameter of the material.
     Material(&'static str, Value),
     /// Several parameters of the material at once: a measured material.
@@ -140,7 +142,7 @@ impl LightField {
 
 impl ObjectField {
     /// Its name within that of a step.
-    fn label(&self, registry: &Registry) -> String {
+    fn label(&self, object: &Object, registry: &Registry) -> String {
         match self {
             Self::Name(_) => "Name",
             Self::Visible(true) => "Show",
@@ -152,27 +154,28 @@ impl ObjectField {
             Self::Tessellation(_) => "Tessellation",
             Self::Model(_) => "Reflection model",
             Self::ShadingModel(_) => "Shading model",
+            Self::Shape(id, _) => {
+                let declared = registry.shape(&object.object_type).map_or(&[][..], |shape| shape.parameters);
+                declared.iter().find(|p| p.name == *id).map_or(*id, |p| p.label)
+            }
             Self::Material(id, _) => registry.material_parameter(id).map_or(*id, |p| p.label),
             Self::Preset(_) => "Measured material",
         }
         .to_owned()
     }
 
-    fn put(self, o: &mut Object) {
+    fn put(self, o: &mut Object, registry: &Registry) {
         match self {
             Self::Name(name) => o.name = named(&name),
             Self::Visible(on) => o.visible = on,
-            Self::Type(id) => {
-                // Each type counts something else.
-                o.tessellation = None;
-                o.object_type = id;
-            }
+            Self::Type(id) => registry.shape(&id).into_iter().for_each(|entry| o.set_type(entry)),
             Self::Position(p) => o.position = p,
             Self::Size(v) => o.size = v,
             Self::Rotation(r) => o.rotation = r,
             Self::Tessellation(n) => o.tessellation = n,
             Self::Model(id) => o.reflection_model = id,
             Self::ShadingModel(id) => o.shading_model = id,
+            Self::Shape(name, value) => o.shape.set(name, value),
             Self::Material(name, value) => o.material.set(name, value),
             Self::Preset(all) => all.into_iter().for_each(|(name, value)| o.material.set(name, value)),
         }
@@ -241,15 +244,17 @@ impl Document {
             }
             // The others keep their numbers.
             Edit::Object(i, field @ (ObjectField::Name(_) | ObjectField::Type(_))) => {
-                let name = step(&field.label(registry), &self.name_of(Selection::Object(i), registry));
+                let label = field.label(&self.scene.objects[i], registry);
+                let name = step(&label, &self.name_of(Selection::Object(i), registry));
                 self.change_parts(name, selection, registry, |document, names| {
-                    field.put(&mut document.scene.objects[i]);
+                    field.put(&mut document.scene.objects[i], registry);
                     names.objects[i] = None;
                 });
             }
             Edit::Object(i, field) => {
-                let name = step(&field.label(registry), &self.name_of(Selection::Object(i), registry));
-                self.change(name, Extent::Object(i), selection, |s| field.put(&mut s.objects[i]));
+                let label = field.label(&self.scene.objects[i], registry);
+                let name = step(&label, &self.name_of(Selection::Object(i), registry));
+                self.change(name, Extent::Object(i), selection, |s| field.put(&mut s.objects[i], registry));
             }
         }
         Ok(())

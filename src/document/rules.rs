@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{Document, Edit, LightField, ObjectField, Selection, limits};
 use crate::{
-    parameter::Value,
+    parameter::{Parameter, Value},
     registry::Registry,
     scene::{Object, Scene, check},
 };
@@ -53,6 +53,14 @@ impl Document {
                 Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
                 None => Err(format!("No model has a parameter “{id}”.")),
             }
+        };
+        let of_type = |part: Selection, declared: &[Parameter], id: &str, value: &Value| match declared
+            .iter()
+            .find(|p| p.name == id)
+        {
+            Some(p) if p.allows(value) => Ok(()),
+            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+            None => Err(format!("{} has no parameter “{id}”.", name(part))),
         };
         let direction = |part: Selection, d: Vec3| {
             if check::direction(d).is_ok() {
@@ -111,11 +119,9 @@ impl Document {
                         *v,
                         limits::colour_temperature(),
                     ),
-                    LightField::Parameter(id, value) => match entry.and_then(|e| e.parameter(id)) {
-                        Some(p) if p.allows(value) => Ok(()),
-                        Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
-                        None => Err(format!("{} has no parameter “{id}”.", name(part))),
-                    },
+                    LightField::Parameter(id, value) => {
+                        of_type(part, entry.map_or(&[], |e| e.parameters), id, value)
+                    }
                 }
             }
             Edit::Object(i, field) => {
@@ -143,6 +149,10 @@ impl Document {
                     },
                     ObjectField::Model(id) => id.as_deref().map_or(Ok(()), model),
                     ObjectField::ShadingModel(id) => id.as_deref().map_or(Ok(()), shading),
+                    ObjectField::Shape(id, value) => {
+                        let shape = registry.shape(&object.object_type);
+                        of_type(part, shape.map_or(&[], |s| s.parameters), id, value)
+                    }
                     ObjectField::Material(id, value) => material(object, id, value),
                     ObjectField::Preset(all) => {
                         all.iter().try_for_each(|(id, value)| material(object, id, value))

@@ -1,8 +1,6 @@
 //! The place of what is added to a scene: free, and in view of the camera; and the intensity of a new light, which
 //! shows something and does not blow the picture out.
 
-use std::collections::HashMap;
-
 use glam::{Quat, Vec3};
 
 use super::clipping;
@@ -13,6 +11,7 @@ use crate::{
         colour::{srgb_decode, srgb_encode},
         tone::exposure_factor,
     },
+    parameter::Values,
     reference,
     registry::Registry,
     scene::{DEFAULT_SIZE, Light, Object, Observer, Scene, observer::WIDE},
@@ -41,27 +40,18 @@ pub(super) struct Stand<'a> {
     turn: Quat,
     /// The spheres around the objects.
     taken: Vec<(Vec3, f32)>,
-    /// Radius of the sphere around an object of size 1, by type.
-    radii: HashMap<&'static str, f32>,
 }
 
 impl<'a> Stand<'a> {
     pub(super) fn new(scene: &'a Scene, registry: &'a Registry, eye: Vec3, turn: Quat) -> Self {
-        let radii: HashMap<_, _> = (registry.shapes().iter())
-            .map(|shape| {
-                let mesh = shape.mesh(*shape.declaration.tessellation.start());
-                (shape.declaration.id, mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max))
-            })
-            .collect();
-        let radius = |o: &Object| radii.get(o.object_type.as_str()).map_or(0.0, |r| r * o.size);
-        let taken = scene.objects.iter().map(|o| (o.position, radius(o))).collect();
-        Self { scene, registry, eye, turn, taken, radii }
+        let taken = scene.objects.iter().map(|o| (o.position, radius(o, registry))).collect();
+        Self { scene, registry, eye, turn, taken }
     }
 
     /// Position and size of a new object.
     pub(super) fn object(&self, id: &str) -> (Vec3, f32) {
         let size = DEFAULT_SIZE.min(0.5 * self.scene.scene_size.corner().min_element());
-        let unit = self.radii.get(id).copied().unwrap_or(0.5);
+        let unit = self.registry.shape(id).map_or(0.5, |shape| shape.bounds(&Values::default()).radius);
         let wanted = self.middle();
         // Where there is no room for it, it is smaller.
         let smaller = [4.0, 8.0, 16.0].map(|divisor| (divisor, true));
@@ -85,7 +75,7 @@ impl<'a> Stand<'a> {
 
     /// The place of a copy of an object.
     pub(super) fn copy(&self, of: &Object) -> Vec3 {
-        let radius = self.radii.get(of.object_type.as_str()).map_or(0.0, |r| r * of.size);
+        let radius = radius(of, self.registry);
         let free = |p: Vec3| self.free(p, radius);
         let step = 0.55 * of.size;
         self.search(of.position, step, |p| free(p) && self.sees(p, radius) && self.is_beside_all(p, radius))
@@ -304,6 +294,12 @@ impl<'a> Stand<'a> {
             .find(|p| !taken(*p))
             .unwrap_or_else(|| inside(start + 0.01 * step))
     }
+}
+
+/// Radius of the sphere around an object.
+fn radius(object: &Object, registry: &Registry) -> f32 {
+    let shape = registry.shape(&object.object_type);
+    shape.map_or(0.0, |shape| shape.bounds(&object.shape).radius * object.size)
 }
 
 /// Rounded to steps of so many in a metre.

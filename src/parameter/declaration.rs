@@ -101,6 +101,27 @@ impl Parameter {
         }
     }
 
+    /// Its default and the ends of its range, each once; all choices of a choice. For tests of what uses it.
+    #[must_use]
+    pub fn ends(&self) -> Vec<Value> {
+        let mut ends = vec![self.default_value()];
+        let others = match &self.kind {
+            ParameterKind::Number { min, max, .. } => vec![Value::Number(*min), Value::Number(*max)],
+            ParameterKind::Integer { min, max, slider_max, .. } => {
+                vec![Value::Integer(*min), Value::Integer(max.unwrap_or(*slider_max))]
+            }
+            ParameterKind::Colour { .. } => vec![Value::Colour([0; 3]), Value::Colour([255; 3])],
+            ParameterKind::Triple { min, max, .. } => {
+                vec![Value::Triple([*min; 3]), Value::Triple([*max; 3])]
+            }
+            ParameterKind::Choice { options, .. } => {
+                options.iter().map(|(id, _)| Value::Choice(Cow::Borrowed(id))).collect()
+            }
+        };
+        ends.extend(others.into_iter().filter(|end| *end != self.default_value()));
+        ends
+    }
+
     /// The legal values, as the end of a sentence: "must be between 0.5 and 1".
     #[must_use]
     pub fn rule(&self) -> String {

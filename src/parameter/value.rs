@@ -57,6 +57,15 @@ impl Values {
         self.0.insert(name.into(), value);
     }
 
+    /// Those values that are legal for one of some parameters.
+    #[must_use]
+    pub fn legal(&self, parameters: &[Parameter]) -> Self {
+        let legal = |p: &Parameter| {
+            self.0.get_key_value(p.name).filter(|(_, v)| p.allows(v)).map(|(k, v)| (k.clone(), v.clone()))
+        };
+        Self(parameters.iter().filter_map(legal).collect())
+    }
+
     /// Sets a parameter from the numbers for calculation: a linear colour is encoded to 8 bits, the index of a choice
     /// becomes its name. All but colours and triples read the first number.
     pub fn put(&mut self, parameter: &Parameter, numbers: [f32; 3], encoding: Encoding) {

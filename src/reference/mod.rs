@@ -19,11 +19,7 @@
 //! normal, tangent and centre of its [`Corner`] are then the vertex's. A shading model of [`Stage::Polygon`] runs once
 //! per polygon, at its centre.
 
-use std::{
-    collections::HashMap,
-    sync::{Arc, OnceLock},
-    time::Instant,
-};
+use std::{sync::Arc, time::Instant};
 
 use glam::{EulerRot, Mat3, Mat4, Vec3, Vec4};
 use rayon::prelude::*;
@@ -34,17 +30,18 @@ use crate::{
     registry::Registry,
     scene::{Display, Object, Scene, observer::clip_from_room},
     shading::{Corner, Lighting, ShadingEntry, Stage, Varying},
-    shape::PolygonMesh,
 };
 
 mod display;
 mod lighting;
+mod meshes;
 mod raster;
 
 pub use crate::optics::colour::BACKGROUND;
 use display::DisplayTransform;
 pub use display::encode8;
 use lighting::Lights;
+use meshes::{Meshes, Prepared};
 use raster::{Placed, Screen, TILE, Tile, Triangle, set_up};
 
 /// The settings of a picture, apart from the scene.
@@ -131,39 +128,10 @@ pub fn render_rgb8_until(
     (Instant::now() < end).then(|| pixels.into_flattened())
 }
 
-/// A mesh with its normals, shared by all objects of its type and tessellation.
-struct Prepared {
-    mesh: PolygonMesh,
-    polygon_normals: Vec<Vec3>,
-    polygon_centres: Vec<Vec3>,
-    vertex_normals: Vec<Vec3>,
-    /// The tangents of polygons and vertices; only anisotropic models need them.
-    tangents: OnceLock<[Vec<Vec3>; 2]>,
-    /// Largest distance of a vertex from the origin.
-    radius: f32,
-}
-
-impl Prepared {
-    fn new(mesh: PolygonMesh) -> Self {
-        Self {
-            polygon_normals: mesh.polygon_normals(),
-            polygon_centres: mesh.polygon_centres(),
-            vertex_normals: mesh.vertex_normals(),
-            tangents: OnceLock::new(),
-            radius: mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max),
-            mesh,
-        }
-    }
-
-    fn tangents(&self) -> &[Vec<Vec3>; 2] {
-        self.tangents.get_or_init(|| [self.mesh.polygon_tangents(), self.mesh.vertex_tangents()])
-    }
-}
-
 /// An object with everything needed to draw it.
 struct Draw<'a> {
     object: &'a Object,
-    shape: &'a Prepared,
+    shape: Arc<Prepared>,
     shading: &'a ShadingEntry,
     surface: Arc<dyn Surface>,
     /// True if the model needs tangents.
@@ -208,37 +176,35 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     }
     let screen = Screen::new(width, height, S);
     let lights = Lights::new(scene, registry, settings.terms);
-    let shapes = prepare(scene, registry);
+    let mut meshes = Meshes::new(registry);
     let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
     let frustum = raster::frustum(&clip_from_room);
 
-    let seen: Vec<_> = scene
-        .shown()
-        .filter_map(|object| {
-            let shape = shapes.get(&key(object, registry)?)?;
-            let radius = shape.radius * object.size;
-            let hidden = frustum.iter().any(|plane| plane.dot(object.position.extend(1.0)) < -radius);
-            (!hidden).then_some((object, shape))
-        })
-        .collect();
-
     let mut tiles: Vec<Option<Tile<S>>> = (0..screen.tiles()).map(|_| None).collect();
-    let mut rest = &seen[..];
+    let shown: Vec<_> = scene.shown().collect();
+    let mut rest = &shown[..];
     while !rest.is_empty() && !late() {
-        let mut polygons = 0;
-        let within = rest
-            .iter()
-            .take_while(|(_, shape)| {
-                polygons += shape.mesh.polygons.len();
-                polygons <= POLYGONS_PER_BATCH
-            })
-            .count();
-        let (batch, later) = rest.split_at(within.max(1));
-        rest = later;
+        let (mut batch, mut polygons) = (Vec::new(), 0);
+        while let [object, later @ ..] = rest
+            && !late()
+        {
+            if let Some(shape) = meshes.first(rest) {
+                let radius = shape.radius * object.size;
+                let hidden = frustum.iter().any(|plane| plane.dot(object.position.extend(1.0)) < -radius);
+                if !hidden {
+                    polygons += shape.mesh.polygons.len();
+                    if polygons > POLYGONS_PER_BATCH && !batch.is_empty() {
+                        break;
+                    }
+                    batch.push((*object, shape));
+                }
+            }
+            rest = later;
+        }
 
         let draws: Vec<Draw> = batch
-            .par_iter()
-            .filter_map(|&(object, shape)| {
+            .into_par_iter()
+            .filter_map(|(object, shape)| {
                 let model = registry.model(scene.model_of(object)).filter(|_| !late())?;
                 Some(Draw {
                     object,
@@ -293,23 +259,6 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
 /// The first pixel of a tile.
 fn origin(tile: usize, screen: &Screen) -> [usize; 2] {
     [(tile % screen.tiles_across()) * TILE, (tile / screen.tiles_across()) * TILE]
-}
-
-/// The key of an object's mesh.
-fn key(object: &Object, registry: &Registry) -> Option<(&'static str, u32)> {
-    let entry = registry.shape(&object.object_type)?;
-    Some((entry.declaration.id, entry.tessellation(object.tessellation)))
-}
-
-/// The meshes of a scene, each once.
-fn prepare(scene: &Scene, registry: &Registry) -> HashMap<(&'static str, u32), Prepared> {
-    let mut wanted: Vec<_> = scene.shown().filter_map(|object| key(object, registry)).collect();
-    wanted.sort_unstable();
-    wanted.dedup();
-    wanted
-        .into_par_iter()
-        .filter_map(|key| Some((key, Prepared::new(registry.shape(key.0)?.mesh(key.1)))))
-        .collect()
 }
 
 /// The rotation of an object: about x first, then y, then z of the room, degrees.

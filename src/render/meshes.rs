@@ -1,4 +1,4 @@
-//! Meshes for the renderer, shared by all objects of one type and tessellation.
+//! Meshes for the renderer, shared by all objects of one type with equal parameters and tessellations.
 
 use std::collections::{HashMap, HashSet};
 
@@ -8,21 +8,24 @@ use bevy::{
     mesh::{Indices, Mesh, PrimitiveTopology},
 };
 
+use rayon::prelude::*;
+
 use super::{
     entities::LitObject,
     material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
 };
 use crate::{
     registry::Registry,
-    shape::{PolygonMesh, ShapeEntry},
+    scene::Object,
+    shape::{MeshKey, PolygonMesh},
 };
 
-/// The meshes by object type and tessellation: with shared vertices for shading models that interpolate, with
+/// The meshes by object type, parameters and tessellation: with shared vertices for shading models that interpolate, with
 /// the vertices of each polygon apart for shading models that calculate per polygon. Both are made together, so
 /// that changing the shading model finds its mesh ready.
 #[derive(Default, Resource)]
 pub struct ShapeMeshes {
-    known: HashMap<(&'static str, u32), MeshPair>,
+    known: HashMap<MeshKey, MeshPair>,
     /// True if meshes were added since unused ones were last dropped.
     grown: bool,
 }
@@ -34,20 +37,38 @@ pub(super) struct MeshPair {
 }
 
 impl ShapeMeshes {
-    /// The meshes of an object type that is cut so finely.
-    pub(super) fn get(
+    /// Makes the meshes of objects that are not yet known.
+    pub(super) fn make<'a>(
         &mut self,
-        shape: &ShapeEntry,
-        tessellation: u32,
+        objects: impl Iterator<Item = &'a Object>,
+        registry: &Registry,
         assets: &mut Assets<Mesh>,
-    ) -> MeshPair {
-        let grown = &mut self.grown;
-        let make = || {
-            *grown = true;
-            let mesh = shape.mesh(tessellation);
-            MeshPair { shared: assets.add(shared_mesh(&mesh)), faces: assets.add(face_mesh(&mesh)) }
-        };
-        self.known.entry((shape.declaration.id, tessellation)).or_insert_with(make).clone()
+    ) {
+        let mut missing = HashMap::new();
+        for object in objects {
+            if let Some(shape) = registry.shape(&object.object_type) {
+                let key = shape.key(&object.shape, object.tessellation);
+                if !self.known.contains_key(&key) {
+                    missing.entry(key).or_insert((shape, object));
+                }
+            }
+        }
+        let made: Vec<_> = missing
+            .into_par_iter()
+            .map(|(key, (shape, object))| {
+                let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
+                (key, shared_mesh(&mesh), face_mesh(&mesh))
+            })
+            .collect();
+        self.grown |= !made.is_empty();
+        for (key, shared, faces) in made {
+            self.known.insert(key, MeshPair { shared: assets.add(shared), faces: assets.add(faces) });
+        }
+    }
+
+    /// The meshes of an object, if they were made.
+    pub(super) fn get(&self, key: &MeshKey) -> Option<MeshPair> {
+        self.known.get(key).cloned()
     }
 }
 
@@ -104,7 +125,7 @@ fn arrays(vectors: &[glam::Vec3]) -> Vec<[f32; 3]> {
     vectors.iter().map(|v| v.to_array()).collect()
 }
 
-/// Drops meshes that no object uses: a slider over the tessellation makes hundreds.
+/// Drops meshes that no object uses: a slider over a parameter makes hundreds.
 pub(super) fn forget_unused_meshes(world: &mut World, registry: &Registry) {
     /// The most that stay for a change back.
     const SPARE: usize = 16;
@@ -116,7 +137,7 @@ pub(super) fn forget_unused_meshes(world: &mut World, registry: &Registry) {
         .iter(world)
         .filter_map(|object| {
             let shape = registry.shape(&object.0.object_type)?;
-            Some((shape.declaration.id, shape.tessellation(object.0.tessellation)))
+            Some(shape.key(&object.0.shape, object.0.tessellation))
         })
         .collect();
     let mut meshes = world.resource_mut::<ShapeMeshes>();

@@ -122,6 +122,10 @@ pub fn swap(
             Some(model.row(&shown.material, now.encoding, now.everywhere))
         })
         .collect();
+    world.resource_scope(|world, mut meshes: Mut<ShapeMeshes>| {
+        let objects = pending.iter().map(|p| &p.shown);
+        meshes.make(objects, &registry, &mut world.resource_mut::<Assets<Mesh>>());
+    });
     for (pending, bytes) in pending.into_iter().zip(rows) {
         if let Some(bytes) = bytes {
             draw(world, &registry, pending, &bytes);
@@ -236,10 +240,8 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     ) else {
         return;
     };
-    let tessellation = shape.tessellation(shown.tessellation);
-    let pair = world.resource_scope(|world, mut meshes: Mut<ShapeMeshes>| {
-        meshes.get(shape, tessellation, &mut world.resource_mut::<Assets<Mesh>>())
-    });
+    let key = shape.key(&shown.shape, shown.tessellation);
+    let Some(pair) = world.resource::<ShapeMeshes>().get(&key) else { return };
     let shader = world
         .resource_scope(|world, mut shaders: Mut<LiveShaders>| shaders.get(world, model, shading, registry));
     let Some(shader) = shader else {

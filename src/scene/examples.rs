@@ -31,9 +31,10 @@ macro_rules! texts {
 }
 
 /// From the simplest to those that measure something.
-const TEXTS: [(&str, &str); 11] = texts![
+const TEXTS: [(&str, &str); 12] = texts![
     "default.json",
     "shapes_and_lights.json",
+    "superellipsoids.json",
     "gouraud_misses_highlight.json",
     "half_lambert.json",
     "portrait.json",

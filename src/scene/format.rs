@@ -142,6 +142,9 @@ struct ObjectFile<'a> {
     /// Tessellation: how finely the shape is divided into polygons.
     #[serde(skip_serializing_if = "Option::is_none")]
     tessellation: Option<u32>,
+    #[serde(flatten)]
+    #[schemars(skip)]
+    shape: Ordered<'a>,
     /// Override of the scene's reflection model.
     #[serde(skip_serializing_if = "Option::is_none")]
     reflection_model: Option<&'a str>,
@@ -222,7 +225,7 @@ impl<'a> SceneFile<'a> {
             shading_model: &scene.shading_model,
             lights: scene.lights.iter().map(|l| LightFile::new(l, registry)).collect(),
             observer: ObserverFile::new(&scene.observer),
-            objects: scene.objects.iter().map(|o| ObjectFile::new(o, &declared)).collect(),
+            objects: scene.objects.iter().map(|o| ObjectFile::new(o, &declared, registry)).collect(),
             display: (scene.display != Display::default()).then(|| DisplayFile::new(&scene.display)),
         }
     }
@@ -257,7 +260,8 @@ impl ObserverFile {
 }
 
 impl<'a> ObjectFile<'a> {
-    fn new(object: &'a Object, declared: &[&'static Parameter]) -> Self {
+    fn new(object: &'a Object, declared: &[&'static Parameter], registry: &Registry) -> Self {
+        let of_type = registry.shape(&object.object_type).map_or(&[][..], |shape| shape.parameters);
         Self {
             object_type: &object.object_type,
             name: object.name.as_deref(),
@@ -266,6 +270,7 @@ impl<'a> ObjectFile<'a> {
             size: Some(object.size),
             rotation: (object.rotation != glam::Vec3::ZERO).then(|| object.rotation.into()),
             tessellation: object.tessellation,
+            shape: Ordered::new(&object.shape, of_type.iter()),
             reflection_model: object.reflection_model.as_deref(),
             shading_model: object.shading_model.as_deref(),
             material: Ordered::new(&object.material, declared.iter().copied()),

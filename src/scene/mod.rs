@@ -13,6 +13,7 @@ use crate::{
     },
     parameter::Values,
     registry::Registry,
+    shape::ShapeEntry,
 };
 use std::collections::BTreeSet;
 
@@ -144,6 +145,8 @@ pub struct Observer {
 pub struct Object {
     /// Id of the object type.
     pub object_type: String,
+    /// Parameters declared by the type; absent ones have their defaults.
+    pub shape: Values,
     /// The user's name for it.
     pub name: Option<String>,
     /// False while hidden.
@@ -246,6 +249,16 @@ impl Light {
     }
 }
 
+impl Object {
+    /// Changes its type. Of the parameters, those of both types are kept; not so the tessellation: each type counts
+    /// something else.
+    pub fn set_type(&mut self, to: &ShapeEntry) {
+        self.shape = self.shape.legal(to.parameters);
+        self.tessellation = None;
+        to.declaration.id.clone_into(&mut self.object_type);
+    }
+}
+
 impl Default for Observer {
     /// In the middle of the front of the default room, looking at its centre.
     fn default() -> Self {
@@ -262,6 +275,7 @@ impl Default for Object {
     fn default() -> Self {
         Self {
             object_type: "sphere".to_owned(),
+            shape: Values::default(),
             name: None,
             visible: true,
             position: Vec3::splat(5.0),
@@ -361,6 +375,27 @@ mod tests {
     fn unknown_light_types_give_no_light_and_no_panic() {
         let light = Light { light_type: "laser".to_owned(), ..Light::default() };
         assert_eq!(record(&light, &Registry::builtin(), Encoding::Srgb).light_type, u32::MAX);
+    }
+
+    #[test]
+    fn changing_the_type_of_an_object_keeps_the_scene_valid() {
+        let registry = Registry::builtin();
+        let mut s = Scene::default();
+        for from in registry.shapes() {
+            for to in registry.shapes() {
+                let object = &mut s.objects[0];
+                object.set_type(from);
+                object.tessellation = Some(*from.declaration.tessellation.end());
+                for p in from.parameters {
+                    object.shape.set(p.name, p.default_value());
+                }
+                let before = object.shape.clone();
+                object.set_type(to);
+                let same = from.declaration.id == to.declaration.id;
+                assert!(!same || s.objects[0].shape == before);
+                assert_eq!(check::scene(&s, &registry), []);
+            }
+        }
     }
 
     #[test]

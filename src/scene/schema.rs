@@ -169,7 +169,17 @@ fn objects(list: &mut Json, registry: &Registry) {
     list["maxItems"] = MAX_OBJECTS.into();
     let object = &mut list["items"];
     let declarations = || registry.shapes().iter().map(|s| s.declaration);
+    let of_types = || registry.shapes().iter().flat_map(|s| s.parameters);
     let fields = &mut object["properties"];
+    for p in of_types() {
+        let (known, field) = (&mut fields[p.name], parameter(p));
+        match known {
+            Json::Null => *known = field,
+            same if *same == field => {}
+            // Each type says more.
+            other => *other = json!({ "description": p.help }),
+        }
+    }
     choose(&mut fields["type"], declarations().map(|d| (d.id, d.name, d.summary)));
     place(&mut fields["position"]);
     let mut parameters = Map::new();
@@ -189,15 +199,22 @@ fn objects(list: &mut Json, registry: &Registry) {
     }
     fields["material"]["properties"] = parameters.into();
     fields["material"]["additionalProperties"] = false.into();
-    let types = declarations().map(|d| {
+    let types = registry.shapes().iter().map(|s| {
+        let d = s.declaration;
+        let tessellation = json!({
+            "minimum": d.tessellation.start(),
+            "maximum": d.tessellation.end(),
+            "default": d.default_tessellation,
+            "description": d.tessellation_help,
+        });
+        let mut properties = Map::from_iter([("tessellation".to_owned(), tessellation)]);
+        for p in of_types() {
+            let own = s.parameters.iter().find(|own| own.name == p.name);
+            properties.insert(p.name.to_owned(), own.map_or(false.into(), parameter));
+        }
         json!({
             "if": { "properties": { "type": { "const": d.id } }, "required": ["type"] },
-            "then": { "properties": { "tessellation": {
-                "minimum": d.tessellation.start(),
-                "maximum": d.tessellation.end(),
-                "default": d.default_tessellation,
-                "description": d.tessellation_help,
-            } } },
+            "then": { "properties": properties },
         })
     });
     object["allOf"] = types.collect::<Vec<_>>().into();

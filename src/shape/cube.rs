@@ -3,14 +3,16 @@ use std::collections::HashMap;
 use glam::{UVec3, Vec3};
 
 use super::{Declaration, ObjectType, PolygonMesh, mesh::Polygon};
+use crate::parameters;
 
-/// **Cube** of edge 1, each face cut into n × n squares.
-///
-/// Vertices on edges and corners belong to two and three faces at once, so their normals (CA DD9) point between the faces:
-/// Gouraud and Phong shading round off the outermost row of squares. The faces are brushed horizontally, top and bottom
-/// along x.
-#[derive(Clone, Copy, Debug)]
-pub struct Cube;
+parameters! {
+    /// **Cube** of edge 1, each face cut into n × n squares.
+    ///
+    /// Vertices on edges and corners belong to two and three faces at once, so their normals (CA DD9) point between the faces:
+    /// Gouraud and Phong shading round off the outermost row of squares. The faces are brushed horizontally, top and bottom
+    /// along x.
+    pub struct Cube {}
+}
 
 impl ObjectType for Cube {
     const DECLARATION: Declaration = Declaration {
@@ -23,7 +25,7 @@ impl ObjectType for Cube {
         default_tessellation: 16,
     };
 
-    fn mesh(tessellation: u32) -> PolygonMesh {
+    fn mesh(&self, tessellation: u32) -> PolygonMesh {
         let n = tessellation.max(1);
         let mut mesh = PolygonMesh::default();
         // Vertices are identified by their place on a lattice, so neighbouring faces share them.
@@ -67,7 +69,7 @@ mod tests {
     #[test]
     fn faces_share_the_vertices_of_their_edges() {
         for n in [1, 2, 5] {
-            let mesh = Cube::mesh(n);
+            let mesh = Cube {}.mesh(n);
             assert_eq!(mesh.positions.len() as u32, 6 * n * n + 2);
             assert_eq!(mesh.polygons.len() as u32, 6 * n * n);
         }
@@ -75,7 +77,7 @@ mod tests {
 
     #[test]
     fn corners_look_along_the_diagonal_and_the_middle_of_a_face_along_its_axis() {
-        let mesh = Cube::mesh(4);
+        let mesh = Cube {}.mesh(4);
         let normals = mesh.vertex_normals();
         let at = |p: Vec3| {
             mesh.positions.iter().position(|q| *q == p).map(|i| normals[i]).expect("there is a vertex")
@@ -87,7 +89,7 @@ mod tests {
 
     #[test]
     fn each_face_is_brushed_in_one_direction_up_to_its_edges() {
-        let mesh = Cube::mesh(4);
+        let mesh = Cube {}.mesh(4);
         let vertices = mesh.vertex_tangents();
         for (i, n) in mesh.polygon_normals().into_iter().enumerate() {
             let expected = if n.x.abs() > 0.5 { Vec3::Y.cross(n) } else { Vec3::X };

@@ -3,13 +3,15 @@ use std::f32::consts::{PI, TAU};
 use glam::Vec3;
 
 use super::{Declaration, ObjectType, PolygonMesh};
+use crate::parameters;
 
-/// **Sphere**, cut along parallels and meridians; its poles lie on the y axis.
-///
-/// All vertices lie on the sphere of diameter 1, so the polygons cut the corners: the finer the tessellation, the
-/// closer the vertex normals (CA DD9) come to the position divided by the radius. It is brushed along the parallels.
-#[derive(Clone, Copy, Debug)]
-pub struct Sphere;
+parameters! {
+    /// **Sphere**, cut along parallels and meridians; its poles lie on the y axis.
+    ///
+    /// All vertices lie on the sphere of diameter 1, so the polygons cut the corners: the finer the tessellation, the
+    /// closer the vertex normals (CA DD9) come to the position divided by the radius. It is brushed along the parallels.
+    pub struct Sphere {}
+}
 
 impl ObjectType for Sphere {
     const DECLARATION: Declaration = Declaration {
@@ -22,7 +24,7 @@ impl ObjectType for Sphere {
         default_tessellation: 32,
     };
 
-    fn mesh(tessellation: u32) -> PolygonMesh {
+    fn mesh(&self, tessellation: u32) -> PolygonMesh {
         let bands = tessellation.max(2) as usize;
         let segments = 2 * bands;
         let mut rows = vec![vec![Vec3::Y * 0.5]];
@@ -51,14 +53,14 @@ mod tests {
 
     /// The largest angle in radians between a vertex normal and the sphere's own.
     fn worst(tessellation: u32) -> f32 {
-        let mesh = Sphere::mesh(tessellation);
+        let mesh = Sphere {}.mesh(tessellation);
         let normals = mesh.vertex_normals();
         mesh.positions.iter().zip(normals).map(|(p, n)| (p.normalize() - n).length()).fold(0.0, f32::max)
     }
 
     #[test]
     fn vertex_and_polygon_counts_are_those_of_parallels_and_meridians() {
-        let mesh = Sphere::mesh(8);
+        let mesh = Sphere {}.mesh(8);
         assert_eq!(mesh.positions.len(), 7 * 16 + 2);
         assert_eq!(mesh.polygons.len(), 8 * 16);
         assert_eq!(mesh.polygons.iter().filter(|p| p.corners().len() == 3).count(), 2 * 16);
@@ -73,7 +75,7 @@ mod tests {
 
     #[test]
     fn it_is_brushed_along_the_parallels() {
-        let mesh = Sphere::mesh(16);
+        let mesh = Sphere {}.mesh(16);
         let mut seen = 0;
         for (p, t) in mesh.positions.iter().zip(mesh.vertex_tangents()).filter(|(_, t)| *t != Vec3::ZERO) {
             assert!((t - Vec3::Y.cross(*p).normalize()).length() < 1e-4, "{p} {t}");

@@ -1,19 +1,21 @@
 use glam::{Vec2, Vec3};
 
 use super::{Declaration, ObjectType, PolygonMesh};
+use crate::parameters;
 
-/// **Teapot**: the teapot of M. Newell (1975), *The Utilization of Procedure Models in Digital Image Synthesis*,
-/// University of Utah; lower by the factor 1/1.3 than the pot on his table, as usual since J. Blinn, and with the
-/// bottom that the original lacked.
-///
-/// All 32 bicubic Bézier patches with Newell's numbers: rim 4, body 8, lid 8, bottom 4, handle 4,
-/// spout 4. y is up and the spout points along +x. It is tessellated from the patches; within each
-/// part (body with rim and bottom, lid, handle, spout) neighbouring patches share their vertices. The
-/// parts interpenetrate as Newell made them, so the mesh has six open edges: the lid's, the rim's, and
-/// both ends of handle and spout. Each part is brushed around itself: body and lid around their axis,
-/// handle and spout around the tube.
-#[derive(Clone, Copy, Debug)]
-pub struct Teapot;
+parameters! {
+    /// **Teapot**: the teapot of M. Newell (1975), *The Utilization of Procedure Models in Digital Image Synthesis*,
+    /// University of Utah; lower by the factor 1/1.3 than the pot on his table, as usual since J. Blinn, and with the
+    /// bottom that the original lacked.
+    ///
+    /// All 32 bicubic Bézier patches with Newell's numbers: rim 4, body 8, lid 8, bottom 4, handle 4,
+    /// spout 4. y is up and the spout points along +x. It is tessellated from the patches; within each
+    /// part (body with rim and bottom, lid, handle, spout) neighbouring patches share their vertices. The
+    /// parts interpenetrate as Newell made them, so the mesh has six open edges: the lid's, the rim's, and
+    /// both ends of handle and spout. Each part is brushed around itself: body and lid around their axis,
+    /// handle and spout around the tube.
+    pub struct Teapot {}
+}
 
 /// One row of four control points of a quarter turn, in the pot's own units (z up): with radius r,
 /// handle length q and height h they are (r, 0, h), (r, −q, h), (q, −r, h), (0, −r, h).
@@ -161,7 +163,7 @@ impl ObjectType for Teapot {
         default_tessellation: 10,
     };
 
-    fn mesh(tessellation: u32) -> PolygonMesh {
+    fn mesh(&self, tessellation: u32) -> PolygonMesh {
         let steps = tessellation.max(2) as usize;
         let mut mesh = PolygonMesh::default();
         mesh.append_loops(&turned(&BODY, steps), false);
@@ -180,7 +182,7 @@ mod tests {
     #[test]
     fn counts_are_those_of_32_patches_welded_along_their_edges() {
         let n = 8;
-        let mesh = Teapot::mesh(n);
+        let mesh = Teapot {}.mesh(n);
         let n = n as usize;
         assert_eq!(mesh.polygons.len(), 32 * n * n);
         let (body, lid) = (4 * n * (4 * n) + 1, 4 * n * (2 * n) + 1);
@@ -192,7 +194,7 @@ mod tests {
 
     #[test]
     fn the_spout_points_along_x_and_the_lid_is_on_top() {
-        let mesh = Teapot::mesh(8);
+        let mesh = Teapot {}.mesh(8);
         let right = mesh.positions.iter().max_by(|a, b| a.x.total_cmp(&b.x)).expect("has vertices");
         let left = mesh.positions.iter().min_by(|a, b| a.x.total_cmp(&b.x)).expect("has vertices");
         let top = mesh.positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).expect("has vertices");
@@ -203,7 +205,7 @@ mod tests {
 
     #[test]
     fn walls_look_outward() {
-        let mesh = Teapot::mesh(8);
+        let mesh = Teapot {}.mesh(8);
         let normals = mesh.polygon_normals();
         let centres = mesh.polygon_centres();
         let n = 8;
@@ -239,7 +241,7 @@ mod tests {
     #[test]
     fn body_handle_and_spout_are_brushed_around_themselves() {
         let n = 8;
-        let mesh = Teapot::mesh(n);
+        let mesh = Teapot {}.mesh(n);
         let n = n as usize;
         let (tangents, centres) = (mesh.polygon_tangents(), mesh.polygon_centres());
         // The pole of the bottom, the last vertex of the body: the axis goes through it.

@@ -179,9 +179,10 @@ fn shapes(registry: &Registry) -> String {
         let d = s.declaration;
         let (from, to) = (d.tessellation.start(), d.tessellation.end());
         let tessellation = format!("{from}–{to}, default {}", d.default_tessellation);
-        vec![code(d.id), d.summary.into(), tessellation, d.tessellation_help.into()]
+        let parameters: Vec<_> = s.parameters.iter().map(|p| code(p.name)).collect();
+        vec![code(d.id), d.summary.into(), parameters.join(", "), tessellation, d.tessellation_help.into()]
     });
-    table(&["id", "description", "tessellation", "meaning"], rows)
+    table(&["id", "description", "parameters", "tessellation", "meaning"], rows)
 }
 
 fn gallery(registry: &Registry) -> String {

@@ -182,7 +182,7 @@ impl Desk {
     }
 
     fn object_field(&mut self) -> ObjectField {
-        match self.below(11) {
+        match self.below(12) {
             0 => ObjectField::Name(self.name()),
             1 => ObjectField::Visible(self.below(2) == 0),
             2 => ObjectField::Type(self.shape()),
@@ -196,7 +196,14 @@ impl Desk {
                 Some((id, value)) => ObjectField::Material(id, value),
                 None => ObjectField::Material("none", Value::Number(0.0)),
             },
-            _ => ObjectField::Preset(self.parameters()),
+            10 => ObjectField::Preset(self.parameters()),
+            // Of this type or of another.
+            _ => {
+                let shapes = self.registry.shapes().iter();
+                let parameters: Vec<_> = shapes.flat_map(|s| s.parameters).map(|p| p.name).collect();
+                let id = parameters[self.below(parameters.len())];
+                ObjectField::Shape(id, Value::Number(self.number(-0.5, 3.5)))
+            }
         }
     }
 

@@ -92,6 +92,32 @@ fn every_model_mode_light_and_shape_gives_the_same_picture() {
 }
 
 #[test]
+fn every_parameter_of_a_shape_gives_the_same_picture_from_end_to_end() {
+    let mut renderer = renderer();
+    let mut pictures: Vec<Vec<Vec3>> = Vec::new();
+    for shape in Registry::builtin().shapes() {
+        for p in shape.parameters {
+            for end in p.ends() {
+                let mut scene = close_up(shape.declaration.id, "point");
+                (scene.reflection_model, scene.shading_model) = ("phong".to_owned(), "phong".to_owned());
+                scene.objects[0].shape.set(p.name, end.clone());
+                let shown = gpu(&mut renderer, &scene, TermSelection::All);
+                let d = compare(&shown, &cpu(&scene, TermSelection::All), background(), 1e-3);
+                let case = format!("{}.{} = {end}: {d:?}", shape.declaration.id, p.name);
+                assert!(
+                    d.covered > 150 && d.wrong * 1000 <= d.covered && d.edges * 50 <= d.covered,
+                    "{case}"
+                );
+                // The defaults of several parameters are one picture.
+                assert!(end == p.default_value() || !pictures.contains(&shown), "{case}: nothing changed");
+                pictures.push(shown);
+            }
+        }
+    }
+    assert!(pictures.len() >= 9);
+}
+
+#[test]
 fn the_comparison_notices_a_wrong_twin() {
     let mut renderer = renderer();
     let mut scene = close_up("sphere", "point");

@@ -39,6 +39,7 @@ fn changes() -> Vec<Action> {
         object(ObjectField::Name("ball".to_owned())),
         object(ObjectField::Visible(false)),
         object(ObjectField::Type("torus".to_owned())),
+        object(ObjectField::Shape("tube_radius", Value::Number(0.1))),
         object(ObjectField::Position(Vec3::new(4.0, 4.0, 4.0))),
         object(ObjectField::Size(1.25)),
         object(ObjectField::Rotation(Vec3::new(10.0, 20.0, 30.0))),

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use lights_camera_models::{
     optics::colour::BACKGROUND,
-    parameter::Value,
+    parameter::{Value, Values},
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
@@ -173,6 +173,21 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
     world.get_mut::<LitObject>(object).expect("the object is an entity").0.object_type = "cube".to_owned();
     let cube = frame(&mut renderer);
     assert!(moved != cube, "the shape shows");
+
+    // So does a parameter of its shape, which gets meshes of its own.
+    let world = renderer.app().world_mut();
+    let mut lit = world.get_mut::<LitObject>(object).expect("the object is an entity");
+    lit.0.object_type = "torus".to_owned();
+    lit.0.shape.set("tube_radius", Value::Number(0.05));
+    let thin = frame(&mut renderer);
+    let world = renderer.app().world_mut();
+    let mut lit = world.get_mut::<LitObject>(object).expect("the object is an entity");
+    lit.0.shape.set("tube_radius", Value::Number(0.24));
+    assert!(thin != frame(&mut renderer), "the parameter shows");
+    let world = renderer.app().world_mut();
+    let mut lit = world.get_mut::<LitObject>(object).expect("the object is an entity");
+    (lit.0.object_type, lit.0.shape) = ("cube".to_owned(), Values::default());
+    assert!(cube == frame(&mut renderer));
 
     // The position of a part is in its component and in its transform: either can be changed, and the other follows.
     let world = renderer.app().world_mut();

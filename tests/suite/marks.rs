@@ -10,6 +10,7 @@ use lights_camera_models::{
         state::{Action, Clipping, Session, ThemeChoice, ViewChange},
         theme,
     },
+    parameter::Value,
     registry::Registry,
     scene::{Light, Scene, examples::EXAMPLES, rotation::rotation},
 };
@@ -314,16 +315,27 @@ fn a_light_outside_the_view_has_its_arrow_and_nothing_else() {
 
 #[test]
 fn the_frame_of_what_is_selected_is_tight() {
-    for (kind, turn) in [("teapot", [0.0, 0.0, 0.0]), ("teapot", [30.0, 40.0, 10.0]), ("sphere", [0.0; 3])] {
+    for (kind, turn, parameter) in [
+        ("teapot", [0.0, 0.0, 0.0], None),
+        ("teapot", [30.0, 40.0, 10.0], None),
+        ("sphere", [0.0; 3], None),
+        ("torus", [80.0, 0.0, 0.0], Some(("tube_radius", 0.02))),
+        ("torus", [80.0, 0.0, 0.0], Some(("tube_radius", 0.24))),
+        ("superellipsoid", [45.0, 30.0, 0.0], Some(("vertical_exponent", 0.1))),
+        ("superellipsoid", [45.0, 30.0, 0.0], Some(("vertical_exponent", 3.0))),
+    ] {
         let mut scene = Scene::default();
         scene.objects[0].object_type = kind.to_owned();
         scene.objects[0].rotation = Vec3::from_array(turn);
+        if let Some((name, value)) = parameter {
+            scene.objects[0].shape.set(name, Value::Number(value));
+        }
         let mut bench = bench(scene);
         bench.apply(Action::Select(Selection::Object(0)));
         let lens = Lens::of(&bench.session, bench.area.rect);
         let object = bench.session.document.objects[0].clone();
         let shape = bench.registry.shape(kind).unwrap();
-        let mesh = shape.mesh(shape.declaration.default_tessellation);
+        let mesh = shape.mesh(&object.shape, shape.declaration.default_tessellation);
         let turn = rotation(object.rotation);
         let seen =
             mesh.positions.iter().map(|p| lens.project(object.position + turn * (object.size * *p)).unwrap());

@@ -19,6 +19,7 @@ use lights_camera_models::{
         colour::{BACKGROUND, srgb_decode},
     },
     panel::state::{Action, MAX_MESSAGES, Session as Window, Severity},
+    parameter::Value,
     reference,
     registry::Registry,
     render::{
@@ -210,7 +211,7 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
             let l = numbers.below(window.document.lights.len());
             let number = numbers.below(60);
             let object = |field| Action::Edit(Edit::Object(i, field));
-            let action = match numbers.below(12) {
+            let action = match numbers.below(14) {
                 0 => Action::AddObject(shape),
                 1 => Action::Duplicate(Selection::Object(i)),
                 2 | 3 => Action::Remove(Selection::Object(i)),
@@ -221,6 +222,10 @@ fn hundreds_of_random_actions_leave_no_more_behind_than_the_last_scene_needs() {
                 8 => object(ObjectField::Size(0.1 + number as f32 / 20.0)),
                 9 => object(ObjectField::Model(Some(model))),
                 10 => object(ObjectField::ShadingModel(Some(shading))),
+                11 => object(ObjectField::Shape("tube_radius", Value::Number(0.02 + number as f32 / 300.0))),
+                12 => {
+                    object(ObjectField::Shape("vertical_exponent", Value::Number(0.1 + number as f32 / 30.0)))
+                }
                 _ => object(ObjectField::Tessellation(Some(3 + number as u32))),
             };
             window.apply(action, &registry);

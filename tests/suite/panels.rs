@@ -835,6 +835,7 @@ fn illegal_edits_are_refused_with_the_reason() {
         Edit::Display(Display { exposure: 17.0, ..Display::default() }),
         Edit::Object(0, ObjectField::Position(glam::Vec3::splat(20.0))),
         Edit::Object(0, ObjectField::Material("k_d", Value::Number(0.1))),
+        Edit::Object(0, ObjectField::Shape("tube_radius", Value::Number(0.1))),
         Edit::Object(7, ObjectField::Size(1.0)),
     ] {
         let messages = bench.session.messages.len();
@@ -854,6 +855,42 @@ fn another_type_of_light_has_what_the_type_needs() {
         assert_eq!(now.direction.is_some(), light.declaration.has_direction);
         assert_eq!(now.intensity, light.declaration.default_intensity);
     }
+}
+
+#[test]
+fn a_parameter_of_a_shape_has_its_knob_its_step_and_its_place_in_the_file() {
+    let mut bench = Bench::new(Session::default());
+    bench.apply(Action::Select(Selection::Object(0)));
+    let object = |b: &Bench| b.session.document.objects[0].clone();
+    let tube = |b: &Bench| object(b).shape.0.get("tube_radius").cloned();
+    assert!(!bench.says("tube radius"), "a sphere has none");
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Type("torus".to_owned()))));
+    assert_eq!(tube(&bench), None, "the default is not written down");
+    bench.type_into("tube radius", "0.2");
+    assert_eq!(tube(&bench), Some(Value::Number(0.2)));
+    assert_eq!(bench.session.document.steps().last(), Some("Tube radius of Torus 1"));
+    let text = crate::support::written(&bench.session.document);
+    assert!(text.contains("\"tube_radius\": 0.2"), "{text}");
+    assert_eq!(crate::support::read(&text), *bench.session.document);
+    // What is illegal is refused.
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Shape("tube_radius", Value::Number(0.5)))));
+    assert_eq!(tube(&bench), Some(Value::Number(0.2)));
+    assert!(bench.says("tube radius is 0.5, but must be between 0.02 and 0.24."));
+    bench.apply(Action::Undo);
+    assert_eq!(tube(&bench), None);
+    bench.apply(Action::Redo);
+    // As with lights, another type keeps only what is its own.
+    bench.apply(Action::Edit(Edit::Object(0, ObjectField::Type("superellipsoid".to_owned()))));
+    assert_eq!(tube(&bench), None);
+    for label in ["vertical exponent", "horizontal exponent"] {
+        bench.type_into(label, "1.25");
+    }
+    let exponents = |b: &Bench| object(b).shape.0.values().cloned().collect::<Vec<_>>();
+    assert_eq!(exponents(&bench), [Value::Number(1.25), Value::Number(1.25)]);
+    for _ in 0..3 {
+        bench.apply(Action::Undo);
+    }
+    assert_eq!(tube(&bench), Some(Value::Number(0.2)), "undoing brings it back");
 }
 
 #[test]

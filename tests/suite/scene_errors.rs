@@ -268,6 +268,32 @@ fn every_constraint_has_its_message() {
             json!({}),
             "objects[0].shading_model is {}, but the shading model must be",
         ),
+        // Parameters of the object type.
+        (
+            "/objects/2/tube_radius",
+            json!(0.3),
+            "objects[2].tube_radius is 0.3, but the tube radius must be between 0.02 and 0.24",
+        ),
+        (
+            "/objects/2/tube_radius",
+            json!("0.1"),
+            "objects[2].tube_radius is \"0.1\", but it must be a number, without quotes: the tube radius must be between",
+        ),
+        (
+            "/objects/0/tube_radius",
+            json!(0.1),
+            "objects[0].tube_radius is given, but a sphere has no tube_radius",
+        ),
+        (
+            "/objects/2/vertical_exponent",
+            json!(1),
+            "objects[2].vertical_exponent is given, but a torus has no vertical_exponent",
+        ),
+        (
+            "/objects/3/horizontal_exponent",
+            json!(0),
+            "objects[3].horizontal_exponent is 0, but the horizontal exponent must be between 0.1 and 3",
+        ),
         // Material.
         ("/objects/0/material", json!([]), "objects[0].material is [], but a material must be an object"),
         (
@@ -381,6 +407,12 @@ fn unknown_keys_name_the_nearest_known_one_or_where_they_belong() {
         ("/lights/1/coneAngle", "did you mean \"cone_angle\"?"),
         ("/observer/fov", "did you mean \"field_of_view\"?"),
         ("/objects/0/positon", "did you mean \"position\"?"),
+        (
+            "/objects/2/tubeRadius",
+            "objects[2].tubeRadius is not a key of an object; did you mean \"tube_radius\"?",
+        ),
+        ("/objects/2/minor_radius", "did you mean \"tube_radius\"?"),
+        ("/objects/3/vertical_exponant", "did you mean \"vertical_exponent\"?"),
         ("/objects/0/k_d", "objects[0].k_d is not a key of an object; it is a material parameter"),
         ("/objects/0/material/shininess", "did you mean \"alpha\"?"),
         ("/objects/0/material/kd", "did you mean \"k_d\"?"),

@@ -67,7 +67,9 @@ pub fn full_scene() -> Value {
               "tessellation": 20, "reflection_model": "blinn_phong", "shading_model": "flat",
               "material": { "base_colour": [200, 100, 50], "specular_colour": [255, 255, 255], "k_a": 0.1,
                             "k_d": 0.8, "k_s": 0.5, "alpha": 32, "wrap_exponent": 1.5 } },
-            { "type": "cube", "position": [8, 5, 5] }
+            { "type": "cube", "position": [8, 5, 5] },
+            { "type": "torus", "position": [8, 8, 5], "tube_radius": 0.1 },
+            { "type": "superellipsoid", "position": [5, 8, 5], "vertical_exponent": 0.3, "horizontal_exponent": 1.5 }
         ],
         "display": { "tone_mapping": "aces", "exposure": -1.5, "encoding": "srgb" }
     })

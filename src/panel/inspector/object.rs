@@ -119,6 +119,7 @@ impl Shown<'_> {
         if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
             fields.push(ObjectField::Type(types[k].id.to_owned()));
         }
+        self.shape(ui, fields);
         let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
         let size_limits = limits::object_size(session.document.scene_size);
         let default = f64::from(crate::scene::DEFAULT_SIZE);
@@ -168,6 +169,19 @@ impl Shown<'_> {
             ) {
                 fields
                     .push(ObjectField::Tessellation(Some(v as u32).filter(|n| *n != d.default_tessellation)));
+            }
+        }
+    }
+
+    /// The knobs of the parameters of the object type.
+    fn shape(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
+        let Self { registry, object, .. } = *self;
+        let Some(shape) = registry.shape(&object.object_type) else { return };
+        for p in shape.parameters {
+            let unused = usage::unused(shape.parameters, p, &object.shape);
+            let salt = format!("shape {}", p.name);
+            if let Some(v) = knob::parameter_knob(ui, &salt, p, &object.shape.get(p), unused.as_deref()) {
+                fields.push(ObjectField::Shape(p.name, v));
             }
         }
     }

@@ -15,6 +15,7 @@ use crate::{
     light::LightEntry,
     registry::Registry,
     scene::{Light, Object, Observer, Scene, observer::rotation as look_along, rotation::rotation},
+    shape::MeshKey,
 };
 use edge::Outside;
 use ink::Ink;
@@ -204,13 +205,14 @@ fn observer(ink: &mut Ink, observer: &Observer, selected: bool) {
 /// A frame around the selected object as the camera sees it: its corners, so that nothing of the object is covered.
 fn frame(ui: &Ui, ink: &mut Ink, object: &Object, registry: &Registry) {
     let Some(shape) = registry.shape(&object.object_type) else { return };
-    let id = Id::new(("mesh of what is selected", shape.declaration.id, object.tessellation));
-    let known = ui.data(|d| d.get_temp::<Arc<[Vec3]>>(id));
-    let mesh = known.unwrap_or_else(|| {
-        // Finer ones have the same outline.
-        let count = shape.tessellation(object.tessellation).min(shape.declaration.default_tessellation);
-        let mesh: Arc<[Vec3]> = shape.mesh(count).positions.into();
-        ui.data_mut(|d| d.insert_temp(id, mesh.clone()));
+    // Finer ones have the same outline.
+    let count = shape.tessellation(object.tessellation).min(shape.declaration.default_tessellation);
+    // Only the last one is kept: a drag of a knob makes hundreds.
+    let (id, key) = (Id::new("mesh of what is selected"), shape.key(&object.shape, Some(count)));
+    let known = ui.data(|d| d.get_temp::<(MeshKey, Arc<[Vec3]>)>(id)).filter(|(known, _)| *known == key);
+    let mesh = known.map(|(_, mesh)| mesh).unwrap_or_else(|| {
+        let mesh: Arc<[Vec3]> = shape.mesh(&object.shape, count).positions.into();
+        ui.data_mut(|d| d.insert_temp(id, (key, mesh.clone())));
         mesh
     });
     let (lens, turn) = (ink.lens, rotation(object.rotation));

@@ -1,7 +1,5 @@
 //! The places of the marks of lights: beside the objects, and not under what is written over the picture.
 
-use std::collections::HashMap;
-
 use bevy_egui::egui::{Pos2, Rect, Vec2};
 use glam::Vec3;
 
@@ -57,16 +55,9 @@ pub fn places(scene: &Scene, registry: &Registry, lens: &Lens, overlays: &[Rect]
 
 /// The rectangles of the picture in which the objects are.
 fn outlines(scene: &Scene, registry: &Registry, lens: &Lens) -> Vec<Rect> {
-    let boxes: HashMap<_, _> = (registry.shapes().iter())
-        .map(|shape| {
-            let mesh = shape.mesh(*shape.declaration.tessellation.start());
-            let extent = mesh.positions.iter().fold(Vec3::ZERO, |extent, p| extent.max(p.abs()));
-            (shape.declaration.id, extent)
-        })
-        .collect();
     let outline = |object: &Object| {
         let turn = rotation(object.rotation);
-        let half = object.size * *boxes.get(object.object_type.as_str())?;
+        let half = object.size * registry.shape(&object.object_type)?.bounds(&object.shape).half;
         let corner = |k: u32| {
             let sign = |bit: u32| if k & bit == 0 { -1.0 } else { 1.0 };
             lens.project(object.position + turn * (half * Vec3::new(sign(1), sign(2), sign(4))))

@@ -29,6 +29,7 @@ use bevy::{
 
 use super::gpu::{GpuError, GpuRenderer, Output};
 use crate::{
+    parameter::Values,
     registry::Registry,
     render::{
         illumination::IlluminationBuffer,
@@ -282,8 +283,10 @@ fn scene() -> Scene {
 
 impl Actor {
     fn new(world: &mut World, faces: bool) -> Self {
-        let mesh =
-            world.resource::<Registry>().shape("sphere").map(|shape| shape.mesh(shape.tessellation(None)));
+        let mesh = world
+            .resource::<Registry>()
+            .shape("sphere")
+            .map(|shape| shape.mesh(&Values::default(), shape.tessellation(None)));
         let mesh = mesh.map(|mesh| if faces { face_mesh(&mesh) } else { shared_mesh(&mesh) });
         let mesh = mesh.map(|mesh| world.resource_mut::<Assets<Mesh>>().add(mesh));
         let shader = world.resource_mut::<Assets<Shader>>().reserve_handle();

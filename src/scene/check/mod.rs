@@ -283,6 +283,18 @@ impl Check<'_> {
         if let (Some(shape), Some(count)) = (registry.shape(&object.object_type), object.tessellation) {
             self.rule(tessellation(shape, count), || (path("tessellation"), count));
         }
+        if let Some(shape) = registry.shape(&object.object_type) {
+            for (name, value) in &object.shape.0 {
+                let path = || object_path(index).key(name.clone());
+                match shape.parameters.iter().find(|p| p.name == name.as_ref()) {
+                    Some(declared) => self.rule(parameter(declared, value), || (path(), written(value))),
+                    None => {
+                        let what = with_article(&object.object_type);
+                        self.about(path(), format!("is given, but {what} has no {name}"));
+                    }
+                }
+            }
+        }
         if let Some(id) = &object.reflection_model {
             self.rule(reflection_model(registry, id), || (path("reflection_model"), quoted(id)));
         }
@@ -313,12 +325,18 @@ impl Check<'_> {
 
 /// Reports a missing field that a light's type needs, or a field that the type does not have.
 fn presence(type_id: &str, field: &str, needed: bool) -> String {
-    let article = if type_id.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    let light = with_article(type_id);
     if needed {
-        format!("is missing; {article} {type_id} light needs one")
+        format!("is missing; {light} light needs one")
     } else {
-        format!("is given, but {article} {type_id} light has no {field}")
+        format!("is given, but {light} light has no {field}")
     }
+}
+
+/// "a sphere", "an icosahedron".
+fn with_article(id: &str) -> String {
+    let article = if id.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {id}")
 }
 
 /// A parameter as in scene files.

@@ -136,7 +136,7 @@ pub fn exposure(ev: f32) -> Rule {
     })
 }
 
-/// The value of a declared parameter of a model or a light.
+/// The value of a declared parameter of a model, a light or an object type.
 pub fn parameter(parameter: &Parameter, value: &Value) -> Rule {
     must(parameter.allows(value), || {
         let hint = match (&parameter.kind, value) {

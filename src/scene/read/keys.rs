@@ -1,6 +1,6 @@
 //! The keys of scene files.
 
-use crate::registry::Registry;
+use crate::{parameter::Parameter, registry::Registry};
 
 /// The keys of a scene, in the order of messages.
 pub(in crate::scene) const SCENE_KEYS: &[&str] = &[
@@ -34,7 +34,7 @@ pub(in crate::scene) const LIGHT_ALTERNATIVES: [[&str; 2]; 2] =
     [["intensity", "luminous_flux"], ["colour", "colour_temperature"]];
 /// The keys of `observer`.
 pub(in crate::scene) const OBSERVER_KEYS: &[&str] = &["position", "direction", "field_of_view"];
-/// The keys of an object.
+/// The keys that objects of every type may have.
 pub(in crate::scene) const OBJECT_KEYS: &[&str] = &[
     "type",
     "name",
@@ -76,6 +76,7 @@ pub(super) const OTHER_WORDS: &[(&str, &str)] = &[
     ("temperature", "colour_temperature"),
     ("segments", "tessellation"),
     ("subdivisions", "tessellation"),
+    ("minor_radius", "tube_radius"),
     ("title", "name"),
     ("on", "enabled"),
     ("off", "enabled"),
@@ -88,11 +89,19 @@ pub(super) const OTHER_WORDS: &[(&str, &str)] = &[
 
 /// The keys of all light types.
 pub(super) fn light_keys(registry: &Registry) -> Vec<&'static str> {
-    let declared = registry.lights().iter().flat_map(|l| l.parameters).map(|p| p.name);
-    let mut keys = LIGHT_KEYS.to_vec();
-    for name in declared {
-        if !keys.contains(&name) {
-            keys.push(name);
+    with(LIGHT_KEYS, registry.lights().iter().flat_map(|l| l.parameters))
+}
+
+/// The keys of all object types.
+pub(super) fn object_keys(registry: &Registry) -> Vec<&'static str> {
+    with(OBJECT_KEYS, registry.shapes().iter().flat_map(|s| s.parameters))
+}
+
+fn with(common: &[&'static str], declared: impl Iterator<Item = &'static Parameter>) -> Vec<&'static str> {
+    let mut keys = common.to_vec();
+    for p in declared {
+        if !keys.contains(&p.name) {
+            keys.push(p.name);
         }
     }
     keys

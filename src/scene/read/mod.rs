@@ -92,6 +92,7 @@ struct Reader<'a> {
     unlisted: usize,
     suggestions: usize,
     light_keys: Vec<&'static str>,
+    object_keys: Vec<&'static str>,
     material_keys: Vec<&'static str>,
     lines: Lines<'a>,
 }
@@ -107,6 +108,7 @@ impl<'a> Reader<'a> {
             unlisted: 0,
             suggestions: 0,
             light_keys: keys::light_keys(registry),
+            object_keys: keys::object_keys(registry),
             material_keys: registry.material_parameters().map(|p| p.name).collect(),
             lines: Lines::new(text),
         }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{
     Reader,
-    keys::{DISPLAY_KEYS, LIGHT_ALTERNATIVES, OBJECT_KEYS, OBSERVER_KEYS, SCENE_KEYS, SIZE_KEYS},
+    keys::{DISPLAY_KEYS, LIGHT_ALTERNATIVES, OBSERVER_KEYS, SCENE_KEYS, SIZE_KEYS},
     values::{COLOUR_RULE, rule_of},
 };
 use crate::{
@@ -139,7 +139,10 @@ impl Reader<'_> {
 
     fn object(&mut self, value: Cursor) -> Object {
         let mut object = Object { position: Vec3::NAN, ..Object::default() };
-        let Some(fields) = self.fields(value, OBJECT_KEYS, "an object") else { return object };
+        let keys = std::mem::take(&mut self.object_keys);
+        let fields = self.fields(value, &keys, "an object");
+        self.object_keys = keys;
+        let Some(fields) = fields else { return object };
         match fields.get("type") {
             None => self.lacking(&fields, "type", &self.id_rule("object type")),
             Some(value) => object.object_type = self.id(value, "object type").unwrap_or(object.object_type),
@@ -167,6 +170,15 @@ impl Reader<'_> {
         (object.reflection_model, object.shading_model) = (id("reflection_model"), id("shading_model"));
         if let Some(value) = fields.get("material") {
             object.material = self.material(value);
+        }
+        let own = self.registry.shape(&object.object_type).map_or(&[][..], |shape| shape.parameters);
+        let of_any = || self.registry.shapes().iter().flat_map(|shape| shape.parameters);
+        let declared = |key| own.iter().chain(of_any()).find(|p| p.name == key);
+        let given: Vec<_> = fields.iter().filter_map(|(key, value)| Some((declared(key)?, value))).collect();
+        for (parameter, value) in given {
+            if let Some(value) = self.parameter(value, parameter) {
+                object.shape.set(parameter.name, value);
+            }
         }
         object
     }

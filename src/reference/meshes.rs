@@ -1,0 +1,145 @@
+//! The meshes of a scene, each once while it is needed.
+
+use std::{
+    collections::HashMap,
+    sync::{Arc, OnceLock},
+};
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::{
+    registry::Registry,
+    scene::Object,
+    shape::{MeshKey, PolygonMesh, ShapeEntry},
+};
+
+/// Polygons of meshes held at a time, about 100 bytes each: bounds the memory for scenes in which every object has
+/// parameters of its own.
+const POLYGONS_HELD: usize = 1 << 20;
+/// Meshes made at a time.
+const AT_ONCE: usize = 16;
+/// Objects among which those are looked for.
+const AHEAD: usize = 1024;
+
+/// A mesh with its normals, shared by all objects with equal keys.
+pub(super) struct Prepared {
+    pub(super) mesh: PolygonMesh,
+    pub(super) polygon_normals: Vec<Vec3>,
+    pub(super) polygon_centres: Vec<Vec3>,
+    pub(super) vertex_normals: Vec<Vec3>,
+    /// The tangents of polygons and vertices; only anisotropic models need them.
+    tangents: OnceLock<[Vec<Vec3>; 2]>,
+    /// Largest distance of a vertex from the origin.
+    pub(super) radius: f32,
+}
+
+impl Prepared {
+    fn new(mesh: PolygonMesh) -> Self {
+        Self {
+            polygon_normals: mesh.polygon_normals(),
+            polygon_centres: mesh.polygon_centres(),
+            vertex_normals: mesh.vertex_normals(),
+            tangents: OnceLock::new(),
+            radius: mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max),
+            mesh,
+        }
+    }
+
+    pub(super) fn tangents(&self) -> &[Vec<Vec3>; 2] {
+        self.tangents.get_or_init(|| [self.mesh.polygon_tangents(), self.mesh.vertex_tangents()])
+    }
+}
+
+/// The meshes of the objects that are being drawn.
+pub(super) struct Meshes<'a> {
+    registry: &'a Registry,
+    known: HashMap<MeshKey, Arc<Prepared>>,
+    /// Polygons of all of them.
+    polygons: usize,
+}
+
+impl<'a> Meshes<'a> {
+    pub(super) fn new(registry: &'a Registry) -> Self {
+        Self { registry, known: HashMap::new(), polygons: 0 }
+    }
+
+    /// The mesh of the first of some objects that are drawn one after the other; `None` if its type is unknown.
+    pub(super) fn first(&mut self, objects: &[&Object]) -> Option<Arc<Prepared>> {
+        let (_, key) = self.entry(objects.first()?)?;
+        if !self.known.contains_key(&key) {
+            self.make(objects);
+        }
+        self.known.get(&key).cloned()
+    }
+
+    fn entry(&self, object: &Object) -> Option<(&'a ShapeEntry, MeshKey)> {
+        let entry = self.registry.shape(&object.object_type)?;
+        Some((entry, entry.key(&object.shape, object.tessellation)))
+    }
+
+    /// Makes missing meshes of the first objects, in parallel.
+    fn make(&mut self, objects: &[&Object]) {
+        if self.polygons > POLYGONS_HELD {
+            // Those that are still needed are held by who needs them.
+            self.known.clear();
+            self.polygons = 0;
+        }
+        let mut missing = HashMap::new();
+        for object in objects.iter().take(AHEAD) {
+            if let Some((entry, key)) = self.entry(object).filter(|(_, key)| !self.known.contains_key(key)) {
+                missing.entry(key).or_insert((entry, *object));
+            }
+            if missing.len() == AT_ONCE {
+                break;
+            }
+        }
+        let made: Vec<_> = missing
+            .into_par_iter()
+            .map(|(key, (entry, object))| {
+                let mesh = entry.mesh(&object.shape, entry.tessellation(object.tessellation));
+                (key, Arc::new(Prepared::new(mesh)))
+            })
+            .collect();
+        self.polygons += made.iter().map(|(_, prepared)| prepared.mesh.polygons.len()).sum::<usize>();
+        self.known.extend(made);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::Value;
+
+    #[test]
+    fn each_mesh_is_made_once_and_few_are_held() {
+        let registry = Registry::builtin();
+        let object = |tube: f32, count: u32| {
+            let mut object =
+                Object { object_type: "torus".to_owned(), tessellation: Some(count), ..Object::default() };
+            object.shape.set("tube_radius", Value::Number(tube));
+            object
+        };
+        let alike = [object(0.1, 8), object(0.1, 8), object(0.2, 8), object(0.1, 9)];
+        let alike: Vec<_> = alike.iter().collect();
+        let mut meshes = Meshes::new(&registry);
+        let first: Vec<_> = (0..4).filter_map(|i| meshes.first(&alike[i..])).collect();
+        assert!(Arc::ptr_eq(&first[0], &first[1]));
+        assert!(!Arc::ptr_eq(&first[0], &first[2]) && !Arc::ptr_eq(&first[0], &first[3]));
+        assert_eq!(meshes.polygons, 2 * 8 * 16 + 9 * 18);
+
+        let different: Vec<_> = (0..200).map(|i| object(0.02 + 0.001 * i as f32, 64)).collect();
+        let different: Vec<_> = different.iter().collect();
+        let mut most = 0;
+        for i in 0..different.len() {
+            let mesh = meshes.first(&different[i..]).expect("known");
+            let thickness = mesh.mesh.positions.iter().map(|p| p.z).fold(0.0, f32::max);
+            assert!((thickness - (0.02 + 0.001 * i as f32)).abs() < 1e-4, "{i}: {thickness}");
+            most = most.max(meshes.polygons);
+        }
+        let one = 64 * 128;
+        assert!(most > POLYGONS_HELD / 2 && most <= POLYGONS_HELD + AT_ONCE * one, "{most}");
+        let strange = Object { object_type: "dodecahedron".to_owned(), ..Object::default() };
+        assert!(meshes.first(&[&strange]).is_none() && meshes.first(&[]).is_none());
+    }
+}

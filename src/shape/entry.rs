@@ -1,0 +1,147 @@
+//! A registered object type.
+
+use std::{
+    collections::HashMap,
+    fmt,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use glam::Vec3;
+
+use super::{Declaration, ObjectType, PolygonMesh};
+use crate::{
+    optics::colour::Encoding,
+    parameter::{Parameter, Values, words},
+};
+
+/// A tessellation fine enough to tell the space that a shape takes.
+const COARSE: u32 = 8;
+/// The most parameters whose bounds are kept: more than a scene has objects.
+const KEPT: usize = 1 << 14;
+
+/// A registered object type, in the form used by the rest of the program.
+#[derive(Clone)]
+pub struct ShapeEntry {
+    /// Name and tessellation.
+    pub declaration: &'static Declaration,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+    mesh: fn(&Values, u32) -> PolygonMesh,
+    /// Bounds by parameters: many objects are asked for theirs in every frame.
+    bounds: Arc<Mutex<HashMap<Vec<u32>, Bounds>>>,
+}
+
+/// The identity of a mesh: objects with equal keys share one.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct MeshKey {
+    object_type: &'static str,
+    parameters: Vec<u32>,
+    tessellation: u32,
+}
+
+/// The space that an object of size 1 takes around its position.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// Half the extents of the box around it.
+    pub half: Vec3,
+    /// The radius of the sphere around it.
+    pub radius: f32,
+}
+
+impl ShapeEntry {
+    /// The entry of an object type.
+    #[must_use]
+    pub fn of<T: ObjectType>() -> Self {
+        Self {
+            declaration: const { &T::DECLARATION },
+            parameters: T::PARAMETERS,
+            mesh: |values, tessellation| T::from_values(values, Encoding::Srgb).mesh(tessellation),
+            bounds: Arc::default(),
+        }
+    }
+
+    /// The tessellation of an object: the requested one, clamped to the legal range, or the default.
+    #[must_use]
+    pub fn tessellation(&self, wanted: Option<u32>) -> u32 {
+        let range = &self.declaration.tessellation;
+        wanted.unwrap_or(self.declaration.default_tessellation).clamp(*range.start(), *range.end())
+    }
+
+    /// The mesh for parameters and a tessellation, which is clamped to the legal range. Parameters that are absent or
+    /// illegal have their defaults.
+    #[must_use]
+    pub fn mesh(&self, parameters: &Values, tessellation: u32) -> PolygonMesh {
+        (self.mesh)(parameters, self.tessellation(Some(tessellation)))
+    }
+
+    /// The identity of the mesh of an object with these parameters and this tessellation.
+    #[must_use]
+    pub fn key(&self, parameters: &Values, tessellation: Option<u32>) -> MeshKey {
+        MeshKey {
+            object_type: self.declaration.id,
+            parameters: self.words(parameters),
+            tessellation: self.tessellation(tessellation),
+        }
+    }
+
+    /// The space that an object with these parameters takes.
+    #[must_use]
+    pub fn bounds(&self, parameters: &Values) -> Bounds {
+        let mut known = self.bounds.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.len() >= KEPT {
+            known.clear();
+        }
+        *known.entry(self.words(parameters)).or_insert_with(|| {
+            let around = |bounds: Bounds, p: Vec3| Bounds {
+                half: bounds.half.max(p.abs()),
+                radius: bounds.radius.max(p.length()),
+            };
+            self.mesh(parameters, COARSE).positions.into_iter().fold(Bounds::default(), around)
+        })
+    }
+
+    /// The parameters as the type gets them, bit by bit.
+    fn words(&self, parameters: &Values) -> Vec<u32> {
+        match self.parameters {
+            [] => Vec::new(),
+            declared => words(declared, parameters, Encoding::Srgb),
+        }
+    }
+}
+
+impl fmt::Debug for ShapeEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("ShapeEntry").field(&self.declaration.id).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{parameter::Value, shape::Torus};
+
+    #[test]
+    fn objects_share_a_mesh_if_they_look_alike() {
+        let torus = ShapeEntry::of::<Torus>();
+        let tube = |radius| Values([("tube_radius".into(), Value::Number(radius))].into());
+        let key = |values: &Values, n| torus.key(values, n);
+        let default = Values::default();
+        assert_eq!(key(&default, None), key(&tube(0.15), Some(32)));
+        assert_ne!(key(&default, None), key(&tube(0.16), None));
+        assert_ne!(key(&default, None), key(&default, Some(33)));
+        // Illegal values and those of other types count for nothing.
+        assert_eq!(key(&default, None), key(&tube(7.0), Some(32)));
+        let other = Values([("cone_angle".into(), Value::Number(3.0))].into());
+        assert_eq!(key(&default, None), key(&other, None));
+    }
+
+    #[test]
+    fn bounds_follow_the_parameters() {
+        let torus = ShapeEntry::of::<Torus>();
+        for radius in [0.05, 0.2, 0.05] {
+            let bounds = torus.bounds(&Values([("tube_radius".into(), Value::Number(radius))].into()));
+            assert!((bounds.half - Vec3::new(0.5, 0.5, radius)).abs().max_element() < 1e-6, "{bounds:?}");
+            assert!((bounds.radius - 0.5).abs() < 1e-6, "{bounds:?}");
+        }
+    }
+}
