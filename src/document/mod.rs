@@ -30,6 +30,8 @@ use index::{Index, Visits};
 
 /// The gesture of all that systems change.
 const SYSTEMS: u64 = u64::MAX;
+/// The name of the step.
+const BY_SYSTEM: &str = "Change by a system";
 /// The most changes that [`Document::changes_since`] looks back.
 const RECENT: usize = 64;
 
@@ -373,21 +375,82 @@ impl Document {
         selection: Selection,
         registry: &Registry,
     ) -> Result<(), String> {
-        if let Some(problem) = self.problem_in(scene, parts, registry) {
-            return Err(sentence(&format!("A change of a component was refused: {problem}")));
-        }
-        const NAME: &str = "Change by a system";
-        let gesture = std::mem::replace(&mut self.gesture, SYSTEMS);
-        if parts.contains(&Extent::All) {
-            self.replace(NAME, selection, scene.clone());
-        } else {
+        self.adopt(scene, parts, registry, |document| {
+            if parts.contains(&Extent::All) {
+                document.replace(BY_SYSTEM, selection, scene.clone());
+                return;
+            }
             let mut all = Patch::default();
             for part in parts {
                 // A part that is changed twice is one of one place.
-                let _ = all.join(self.patch(*part, |document| part.copy(scene, &mut document.scene)));
+                let _ = all.join(document.patch(*part, |document| part.copy(scene, &mut document.scene)));
             }
-            self.history.record(NAME.to_owned(), self.gesture, all, selection);
+            document.history.record(BY_SYSTEM.to_owned(), document.gesture, all, selection);
+        })
+    }
+
+    /// Adopts a scene in which systems removed these lights and objects, by their places before, added others at the
+    /// ends of the lists, or gave some another type; as [`submit`](Self::submit) does. The others keep their names.
+    ///
+    /// # Errors
+    /// Why it is refused; the scene stays as it is.
+    pub fn submit_lists(
+        &mut self,
+        scene: &Scene,
+        removed: &[Extent],
+        selection: Selection,
+        registry: &Registry,
+    ) -> Result<(), String> {
+        self.adopt(scene, &[Extent::All], registry, |document| {
+            document.change_parts(BY_SYSTEM.to_owned(), selection, registry, |document, names| {
+                let place = |part: &Extent| match *part {
+                    Extent::Light(i) => [Some(i), None],
+                    Extent::Object(i) => [None, Some(i)],
+                    Extent::Rest | Extent::All => [None, None],
+                };
+                let stay = |list: usize, count: usize| {
+                    let mut stays = vec![true; count];
+                    for i in removed.iter().filter_map(|part| place(part)[list]).filter(|i| *i < count) {
+                        stays[i] = false;
+                    }
+                    (0..count).filter(move |i| stays[*i])
+                };
+                let Self { scene: old, ids, .. } = document;
+                let (lights, objects): (Vec<_>, Vec<_>) =
+                    (stay(0, old.lights.len()).collect(), stay(1, old.objects.len()).collect());
+                ids.lights = lights.iter().map(|i| ids.lights[*i]).collect();
+                ids.objects = objects.iter().map(|i| ids.objects[*i]).collect();
+                // One of another type has another number.
+                names.lights = (lights.iter().zip(&scene.lights))
+                    .map(|(i, new)| {
+                        names.lights[*i].take().filter(|_| old.lights[*i].light_type == new.light_type)
+                    })
+                    .collect();
+                names.objects = (objects.iter().zip(&scene.objects))
+                    .map(|(i, new)| {
+                        names.objects[*i].take().filter(|_| old.objects[*i].object_type == new.object_type)
+                    })
+                    .collect();
+                names.lights.resize(scene.lights.len(), None);
+                names.objects.resize(scene.objects.len(), None);
+                document.scene = scene.clone();
+            });
+        })
+    }
+
+    /// Makes a change of systems, if the rules of scenes allow it.
+    fn adopt(
+        &mut self,
+        scene: &Scene,
+        parts: &[Extent],
+        registry: &Registry,
+        change: impl FnOnce(&mut Self),
+    ) -> Result<(), String> {
+        if let Some(problem) = self.problem_in(scene, parts, registry) {
+            return Err(sentence(&format!("A change of a component was refused: {problem}")));
         }
+        let gesture = std::mem::replace(&mut self.gesture, SYSTEMS);
+        change(self);
         self.gesture = gesture;
         Ok(())
     }
@@ -402,13 +465,14 @@ impl Document {
             // Room and models have a say in everything.
             return check::scene(scene, registry).into_iter().next();
         }
-        let problems = |part: &Extent| match *part {
+        let mut check = check::Parts::of(scene, registry);
+        let mut problems = |part: &Extent| match *part {
             Extent::Rest if scene.observer == self.observer => Vec::new(),
-            Extent::Rest => check::observer(scene, registry),
+            Extent::Rest => check.observer(),
             Extent::Light(i) if scene.lights.get(i) == self.lights.get(i) => Vec::new(),
-            Extent::Light(i) => check::light(scene, i, registry),
+            Extent::Light(i) => check.light(i),
             Extent::Object(i) if scene.objects.get(i) == self.objects.get(i) => Vec::new(),
-            Extent::Object(i) => check::object(scene, i, registry),
+            Extent::Object(i) => check.object(i),
             Extent::All => Vec::new(),
         };
         if !parts.contains(&Extent::All) {

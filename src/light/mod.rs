@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use bevy::ecs::{component::Component, system::EntityCommands};
+use bevy::ecs::component::Component;
 use glam::Vec3;
 
 use crate::{
@@ -143,10 +143,6 @@ pub struct LightEntry {
     /// The type with the parameters of one light.
     pub instantiate: fn(&Values, Encoding) -> Box<dyn Emitter>,
     solid_angle: fn(&Values) -> Option<f64>,
-    /// Adds the component of the type to an entity.
-    pub mark: fn(&mut EntityCommands, &Values),
-    /// Removes the component of the type from an entity.
-    pub unmark: fn(&mut EntityCommands),
 }
 
 impl LightEntry {
@@ -158,12 +154,6 @@ impl LightEntry {
             parameters: L::PARAMETERS,
             instantiate: |values, encoding| Box::new(L::from_values(values, encoding)),
             solid_angle: |values| L::from_values(values, Encoding::default()).solid_angle(),
-            mark: |entity, values| {
-                entity.insert(L::from_values(values, Encoding::default()));
-            },
-            unmark: |entity| {
-                entity.remove::<L>();
-            },
         }
     }
 

@@ -11,17 +11,21 @@ use bevy::{
 };
 
 use super::{
+    absorb::absorb,
     camera::follow_scene,
-    entities::{CurrentScene, SceneEntities, absorb, reconcile},
+    entities::{CurrentScene, SceneEntities, reconcile},
     illumination::{IlluminationBuffer, ShownTerms, illumination_bytes, lit},
     live::{LiveShadersPlugin, exchange},
     material::MaterialApp as _,
     meshes::ShapeMeshes,
     overrides::Overrides,
+    parts::{self, Touched},
     schedule::{LabFrame, LabSystems},
+    shown::{Shown, show_lights},
     stage::{Stage, set_stages},
     swap::swap,
     tables::TablesPlugin,
+    typed::{PartTypes, Watches},
     view::ViewPlugin,
 };
 use crate::registry::{Registry, register_builtin};
@@ -38,6 +42,16 @@ impl Plugin for ScenePlugin {
         app.world_mut().resource_mut::<MainScheduleOrder>().insert_after(Update, LabFrame);
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()
+            .init_resource::<Touched>()
+            .init_resource::<PartTypes>()
+            .init_resource::<Watches>()
+            .init_resource::<Shown>()
+            .register_type::<parts::SceneLight>()
+            .register_type::<parts::SceneObject>()
+            .register_type::<parts::Surface>()
+            .register_type::<parts::Tessellation>()
+            .register_type::<parts::SceneObserver>()
+            .register_type::<parts::Animated>()
             .init_resource::<ShapeMeshes>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
@@ -67,6 +81,7 @@ impl Plugin for ScenePlugin {
                     reconcile.in_set(LabSystems::Spawn).run_if(resource_changed::<CurrentScene>),
                     set_stages.in_set(LabSystems::Spawn),
                     absorb.in_set(LabSystems::Edit),
+                    show_lights.in_set(LabSystems::Swap).before(exchange),
                     swap.in_set(LabSystems::Swap).after(exchange),
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
@@ -78,13 +93,14 @@ impl Plugin for ScenePlugin {
 /// Writes lights and display settings into the buffers of the views when any of them changed.
 fn upload_lights(
     scene: Res<CurrentScene>,
+    shown: Res<Shown>,
     terms: Res<ShownTerms>,
     registry: Res<Registry>,
     shared: Res<IlluminationBuffer>,
     stages: Query<(Ref<Stage>, Ref<Overrides>)>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
 ) {
-    let changed = scene.is_changed() || terms.is_changed();
+    let changed = scene.is_changed() || shown.is_changed() || terms.is_changed();
     let none = Overrides::default();
     let changed_stages = stages
         .iter()
@@ -92,7 +108,7 @@ fn upload_lights(
         .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
     for (handle, overrides) in changed.then_some((&shared.handle, &none)).into_iter().chain(changed_stages) {
         let display = overrides.display_of(&scene.0);
-        let lights: Vec<_> = scene.0.shining().map(|l| lit(l, &registry, display.encoding)).collect();
+        let lights: Vec<_> = shown.shining().map(|l| lit(l, &registry, display.encoding)).collect();
         let mut bytes = illumination_bytes(&lights, overrides.terms.unwrap_or(terms.0), &display);
         let Some(known) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
         // Materials would not notice a buffer of another size.

@@ -1,8 +1,9 @@
-//! Registering in an app: the registry learns of it, and the renderer gets a material for each reflection model.
+//! Registering in an app: the registry learns of it, and the renderer gets a material for each reflection model,
+//! and a component for each type.
 
 use bevy::app::App;
 
-use super::material::MaterialApp as _;
+use super::{material::MaterialApp as _, typed};
 use crate::{
     light::LightType,
     reflection::ReflectionModel,
@@ -28,12 +29,14 @@ impl Register for App {
     fn add_light_type<L: LightType>(&mut self) -> &mut Self {
         self.init_resource::<Registry>();
         self.world_mut().resource_mut::<Registry>().add_light_type::<L>();
+        typed::add_light_type::<L>(self.world_mut());
         self
     }
 
     fn add_object_type<T: ObjectType>(&mut self) -> &mut Self {
         self.init_resource::<Registry>();
         self.world_mut().resource_mut::<Registry>().add_object_type::<T>();
+        typed::add_object_type::<T>(self.world_mut());
         self
     }
 }

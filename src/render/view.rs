@@ -8,7 +8,7 @@ use bevy::{
     asset::{AssetEvent, AssetEventSystems, Assets, Handle, RenderAssetUsages},
     camera::{
         Camera, CameraUpdateSystems, ClearColorConfig, Projection, RenderTarget, SubCameraView,
-        primitives::Frustum, visibility::VisibilitySystems,
+        primitives::Frustum, visibility::Visibility, visibility::VisibilitySystems,
     },
     color::Color,
     core_pipeline::tonemapping::Tonemapping,
@@ -31,6 +31,7 @@ use super::{
     entities::CurrentScene,
     illumination::{IlluminationBuffer, ShownTerms},
     overrides::Overrides,
+    parts::Animated,
     stage::{Stage, ViewCopy},
     tables::ParameterTables,
 };
@@ -198,6 +199,7 @@ struct Changes<'w, 's> {
     tables: Res<'w, ParameterTables>,
     stages: Query<'w, 's, (Entity, &'static Stage)>,
     drawn: Query<'w, 's, Option<&'static ViewCopy>, Changed<Drawn>>,
+    animated: Query<'w, 's, (), (With<Animated>, Or<(Changed<Transform>, Changed<Visibility>)>)>,
     shaders: MessageReader<'w, 's, AssetEvent<Shader>>,
     meshes: MessageReader<'w, 's, AssetEvent<Mesh>>,
     buffers: MessageReader<'w, 's, AssetEvent<ShaderBuffer>>,
@@ -210,6 +212,7 @@ impl Changes<'_, '_> {
         let told = [self.shaders.read().count(), self.meshes.read().count()];
         let mut all =
             told.iter().any(|count| *count > 0) || self.scene.is_changed() || self.registry.is_changed();
+        all |= !self.animated.is_empty();
         let mut some: HashSet<_> = self.drawn.iter().map(|s| s.map(|s| s.view)).collect();
         if self.terms.is_changed() {
             some.insert(None);

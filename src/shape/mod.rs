@@ -4,6 +4,8 @@
 
 use std::ops::RangeInclusive;
 
+use bevy::ecs::component::Component;
+
 use crate::parameter::ParameterSet;
 
 mod entry;
@@ -59,7 +61,7 @@ pub struct Declaration {
 
 /// An object type: a struct of parameters, written by [`parameters!`](crate::parameters), that creates a mesh of
 /// polygons whose largest extent is 1, centred on the origin.
-pub trait ObjectType: ParameterSet {
+pub trait ObjectType: ParameterSet + Component {
     /// Name and tessellation.
     const DECLARATION: Declaration;
 

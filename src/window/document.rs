@@ -7,6 +7,7 @@ use crate::{
     registry::Registry,
     render::{
         entities::{CurrentScene, SceneEntities},
+        exchange::Changes,
         illumination::ShownTerms,
     },
 };
@@ -29,13 +30,16 @@ pub(super) fn take_over(
     registry: Res<Registry>,
     mut session: ResMut<Session>,
 ) {
-    let parts = entities.changed_by_others(&session.document, &scene);
-    if parts.is_empty() {
-        return;
+    for refused in entities.refused() {
+        session.say(Severity::Warning, refused.clone());
     }
-    if let Err(why) = session.submit(&scene.0, &parts, &registry) {
+    let Some(changes) = entities.changed_by_others(&session.document, &scene) else { return };
+    let answer = match &changes {
+        Changes::Values(parts) => session.submit(&scene.0, parts, &registry),
+        Changes::Lists(removed) => session.submit_lists(&scene.0, removed, &registry),
+    };
+    entities.settle(&changes, answer.is_ok(), &session.document, &mut scene);
+    if let Err(why) = answer {
         session.say(Severity::Warning, why);
-        scene.0.clone_from(session.document.scene());
     }
-    entities.agree(&session.document, &scene);
 }

@@ -16,7 +16,7 @@ use bevy_panorbit_camera::PanOrbitCameraSystemSet;
 use crate::{
     panel::state::Session,
     render::{
-        entities::absorb,
+        absorb::absorb,
         schedule::{LabFrame, LabSystems},
         show::ShowPlugin,
         view::ViewSystems,

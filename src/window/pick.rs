@@ -19,7 +19,10 @@ use crate::{
         state::{Action, PictureArea, Session},
     },
     registry::Registry,
-    render::entities::{CurrentScene, LitObject, SceneEntities},
+    render::{
+        entities::{CurrentScene, SceneEntities},
+        parts::SceneObject,
+    },
 };
 
 /// Distance from a light's mark within which a click means it, points.
@@ -35,7 +38,7 @@ pub(super) fn pick(
     cameras: Query<(&Camera, &GlobalTransform), With<WindowView>>,
     scene: Res<CurrentScene>,
     entities: Res<SceneEntities>,
-    objects: Query<(), With<LitObject>>,
+    objects: Query<(), With<SceneObject>>,
     registry: Res<Registry>,
     area: Res<PictureArea>,
     mut session: ResMut<Session>,
