@@ -369,7 +369,7 @@ impl Document {
 
     /// Changes the lists of parts, or their types; parts that stay keep their names. `change` does the same to scene,
     /// ids and names; a part without a name there is new.
-    fn change_parts(
+    pub(super) fn change_parts(
         &mut self,
         name: String,
         selection: Selection,

@@ -72,7 +72,7 @@ pub fn absorb(
     if !entities.stands_for(&world.resource::<CurrentScene>().0) {
         // Another scene came in between: the entities follow it first.
         touched.extend(places.into_iter().map(|(entity, _)| entity));
-        world.resource_mut::<Touched>().entities = touched;
+        *world.resource_mut::<Touched>() = Touched { entities: touched, rested };
         return;
     }
     // Without a window, nothing else reads it.
@@ -184,7 +184,7 @@ impl Change<'_> {
                 let (position, rotation, size) = before;
                 self.tried.push((entity, Extent::Object(i), Before::Place(position, rotation, size)));
             }
-            Err(why) => self.refuse(entity, Extent::Object(i), &why),
+            Err(why) => self.refuse_reading(entity, Extent::Object(i), &why),
         }
     }
 
@@ -192,10 +192,19 @@ impl Change<'_> {
     fn try_part(&mut self, entity: Entity) {
         let part = self.entities.part_of(entity);
         let Ok(now) = self.world.get_entity(entity) else {
-            self.lost.extend(part.map(|part| (entity, part)));
+            match part {
+                Some(part) => self.lost.push((entity, part)),
+                None => _ = self.reported.0.remove(&entity),
+            }
             return;
         };
-        if part.is_some() && now.contains::<Animated>() {
+        let marked = match part {
+            Some(Extent::Light(_)) => now.contains::<SceneLight>(),
+            Some(Extent::Object(_)) => now.contains::<SceneObject>(),
+            Some(_) => now.contains::<SceneObserver>(),
+            None => false,
+        };
+        if marked && now.contains::<Animated>() {
             return;
         }
         let (types, registry, room) = (self.types, self.registry, self.scene.scene_size);
@@ -203,7 +212,7 @@ impl Change<'_> {
             Some(part @ Extent::Object(i)) => {
                 self.entities.visits += 1;
                 let Some(known) = self.scene.objects.get_mut(i) else { return };
-                match read_object(now, Some(known), types, registry) {
+                match read_object(now, Some(&*known), types, registry) {
                     Ok(object) if object == *known => None,
                     Ok(object) => {
                         let before = Before::Object(Box::new(std::mem::replace(known, object)));
@@ -215,7 +224,7 @@ impl Change<'_> {
             }
             Some(part @ Extent::Light(i)) => {
                 let Some(known) = self.scene.lights.get_mut(i) else { return };
-                match read_light(now, Some(known), types, registry, room) {
+                match read_light(now, Some(&*known), types, registry, room) {
                     Ok(light) if light == *known => None,
                     Ok(light) => {
                         let before = Before::Light(Box::new(std::mem::replace(known, light)));
@@ -243,7 +252,7 @@ impl Change<'_> {
             }
         };
         if let Some((part, why)) = refused {
-            self.refuse(entity, part, &why);
+            self.refuse_reading(entity, part, &why);
         }
     }
 
@@ -270,7 +279,7 @@ impl Change<'_> {
             }
             for (entity, part, before, problem) in refused {
                 self.restore(part, before);
-                self.refuse(entity, part, &problem.to_string());
+                self.refuse(entity, part, &format!("A change of a component was refused: {problem}"));
             }
         }
     }
@@ -299,9 +308,19 @@ impl Change<'_> {
     }
 
     /// A change of a part is refused, and goes back.
-    fn refuse(&mut self, entity: Entity, part: Extent, why: &str) {
+    fn refuse(&mut self, entity: Entity, part: Extent, text: &str) {
         self.write_back(entity, part);
-        self.report(entity, &format!("A change of a component was refused: {why}"));
+        self.report(entity, text);
+    }
+
+    /// Components of a part that mean no part are refused, and go back.
+    fn refuse_reading(&mut self, entity: Entity, part: Extent, why: &str) {
+        let part_name = match part {
+            Extent::Light(i) => format!("lights[{i}]"),
+            Extent::Object(i) => format!("objects[{i}]"),
+            Extent::Rest | Extent::All => "the observer".to_owned(),
+        };
+        self.refuse(entity, part, &format!("A change of the components of {part_name} was refused: {why}"));
     }
 
     /// Reports something once, whatever the numbers in it.

@@ -251,6 +251,7 @@ pub(super) fn read_object(
     if entity.contains::<SceneLight>() {
         return Err("it is a light and an object, but must be one of them".to_owned());
     }
+    needed::<SceneObject>(&entity)?;
     let mut object = known.cloned().unwrap_or_default();
     let of_type = types.objects.find(&entity, known.map(|known| &*known.object_type), "object")?;
     let retyped = object.object_type != of_type.id;
@@ -259,12 +260,12 @@ pub(super) fn read_object(
     }
     of_type.read(&entity, &mut object.shape);
     read_place(needed(&entity)?, known.is_some(), &mut object)?;
-    let Tessellation(tessellation) = *needed(&entity)?;
+    let Tessellation(tessellation) = *needed::<Tessellation>(&entity)?;
     // Each type counts something else.
     if !retyped || known.is_none_or(|known| known.tessellation != tessellation) {
         object.tessellation = tessellation;
     }
-    let Surface { reflection_model, shading_model, material } = needed(&entity)?;
+    let Surface { reflection_model, shading_model, material } = needed::<Surface>(&entity)?;
     object.reflection_model.clone_from(reflection_model);
     object.shading_model.clone_from(shading_model);
     if object.material != *material {

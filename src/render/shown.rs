@@ -62,29 +62,28 @@ pub(super) fn show_objects(world: &mut World, changed: &[Entity]) {
     }
 }
 
-/// Shows lights and the observer.
+/// Shows lights and the observer. Exclusive, since their types may be any.
 pub(super) fn show_lights(
-    scene: Res<CurrentScene>,
-    entities: Res<SceneEntities>,
-    types: Res<PartTypes>,
-    registry: Res<Registry>,
-    animated: Query<EntityRef, (With<Animated>, Or<(With<SceneLight>, With<SceneObserver>)>)>,
+    world: &mut World,
+    animated: &mut QueryState<(), (With<Animated>, Or<(With<SceneLight>, With<SceneObserver>)>)>,
     mut was_animated: Local<bool>,
-    mut shown: ResMut<Shown>,
 ) {
-    let is_animated = !animated.is_empty();
-    if !scene.is_changed() && !is_animated && !*was_animated {
+    let is_animated = animated.iter(world).next().is_some();
+    if !world.is_resource_changed::<CurrentScene>() && !is_animated && !*was_animated {
         return;
     }
     *was_animated = is_animated;
-    let known = &scene.0;
+    let (known, entities) = (&world.resource::<CurrentScene>().0, world.resource::<SceneEntities>());
+    let (types, registry) = (world.resource::<PartTypes>(), world.resource::<Registry>());
+    let components = |entity: Option<Entity>| {
+        world.get_entity(entity?).ok().filter(|components| components.contains::<Animated>())
+    };
     let lights = known.lights.iter().enumerate().map(|(i, light)| {
-        let entity = entities.lights.get(i).and_then(|entity| animated.get(*entity).ok());
-        let now = entity.map(|e| read_light(e, Some(light), &types, &registry, known.scene_size));
+        let now = components(entities.lights.get(i).copied())
+            .map(|entity| read_light(entity, Some(light), types, registry, known.scene_size));
         now.and_then(Result::ok).unwrap_or_else(|| light.clone())
     });
-    let eye = entities.observer.and_then(|entity| animated.get(entity).ok());
-    let observer = eye.and_then(|entity| read_observer(entity, &known.observer).ok());
-    let now = Shown { lights: lights.collect(), observer: observer.unwrap_or(known.observer) };
-    shown.set_if_neq(now);
+    let eye = components(entities.observer).and_then(|entity| read_observer(entity, &known.observer).ok());
+    let now = Shown { lights: lights.collect(), observer: eye.unwrap_or(known.observer) };
+    world.resource_mut::<Shown>().set_if_neq(now);
 }

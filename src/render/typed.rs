@@ -154,10 +154,12 @@ impl Watches {
 
 fn watch<T: Component>(world: &mut World) {
     let mut changed: Option<QueryState<Entity, Changed<T>>> = None;
-    world.get_resource_or_init::<Watches>().0.push(Box::new(move |world, found| {
-        let changed = changed.get_or_insert_with(|| world.query_filtered());
-        found.extend(changed.iter(world));
-    }));
+    world.get_resource_or_init::<Watches>().0.push(Box::new(
+        move |world: &mut World, found: &mut Vec<Entity>| {
+            let changed = changed.get_or_insert_with(|| world.query_filtered());
+            found.extend(changed.iter(world));
+        },
+    ));
     world.add_observer(|gone: On<Remove, T>, mut touched: ResMut<Touched>| {
         touched.entities.push(gone.entity);
     });

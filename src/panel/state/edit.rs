@@ -62,7 +62,7 @@ impl Session {
     /// # Errors
     /// The reason for a refusal; the document stays as it is.
     pub fn submit(&mut self, scene: &Scene, parts: &[Extent], registry: &Registry) -> Result<(), String> {
-        self.adopt(|document, selection| document.submit(scene, parts, selection, registry))
+        self.by_system(|document, selection| document.submit(scene, parts, selection, registry))
     }
 
     /// Adopts a scene in which systems removed, added or retyped parts: see [`Document::submit_lists`].
@@ -75,11 +75,11 @@ impl Session {
         removed: &[Extent],
         registry: &Registry,
     ) -> Result<(), String> {
-        self.adopt(|document, selection| document.submit_lists(scene, removed, selection, registry))
+        self.by_system(|document, selection| document.submit_lists(scene, removed, selection, registry))
     }
 
     /// Makes a change by a system; what is selected stays so.
-    fn adopt(
+    fn by_system(
         &mut self,
         change: impl FnOnce(&mut Document, Selection) -> Result<(), String>,
     ) -> Result<(), String> {

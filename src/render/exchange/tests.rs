@@ -367,7 +367,7 @@ fn document_scene_and_entities_stay_equal_whoever_changes_what() {
         lab.check("the start");
         let mut said = Vec::new();
         for round in 0..60 {
-            let before = lab.entities();
+            let (before, first) = (lab.entities(), said.len());
             for _ in 0..1 + round % 3 {
                 said.push(match below(5) {
                     0 | 1 => {
@@ -376,7 +376,7 @@ fn document_scene_and_entities_stay_equal_whoever_changes_what() {
                     }
                     2 if below(4) == 0 => {
                         lab.0.resource_mut::<CurrentScene>().0.observer.position =
-                            Vec3::splat(1.0 + below(8) as f32);
+                            Vec3::splat(0.75 + 0.5 * below(8) as f32);
                         "the scene that is shown"
                     }
                     _ => act(&mut lab.0, &mut below),
@@ -389,12 +389,15 @@ fn document_scene_and_entities_stay_equal_whoever_changes_what() {
             let strangers: Vec<_> = { strangers }.iter(&lab.0).filter(|e| !known.contains(e)).collect();
             if !strangers.is_empty() {
                 assert!(!lab.said().is_empty(), "seed {seed}: {said:?}");
-                strangers.into_iter().for_each(|entity| drop(lab.0.despawn(entity)));
+                strangers.into_iter().for_each(|entity| _ = lab.0.despawn(entity));
             }
             lab.frame();
             lab.frame();
             lab.check(&format!("seed {seed}: {said:?}"));
-            // A part keeps its entity as long as the entity lives.
+            // A part keeps its entity as long as the entity lives, where the document knows what became of it.
+            if said[first..].contains(&"the scene that is shown") {
+                continue;
+            }
             for (id, entity) in lab.entities() {
                 let Some(old) = before.get(&id) else { continue };
                 assert!(*old == entity || lab.0.get_entity(*old).is_err(), "seed {seed}: {said:?}");
@@ -479,7 +482,7 @@ fn what_is_refused_goes_back_and_is_said_once_until_something_legal_came() {
     assert_eq!(
         said,
         [
-            "A change of a component was refused: its scale is (1, 3, 1), but an object has one size: the scale must be \
+            "A change of the components of objects[0] was refused: its scale is (1, 3, 1), but an object has one size: the scale must be \
           the same in x, y and z."
         ]
     );
@@ -544,7 +547,7 @@ fn what_cannot_become_a_part_is_said_with_the_reason() {
 fn the_last_object_the_last_light_and_the_observer_come_back() {
     let mut lab = Lab::new();
     let all = lab.0.resource::<SceneEntities>().objects.clone();
-    all.into_iter().for_each(|entity| drop(lab.0.despawn(entity)));
+    all.into_iter().for_each(|entity| _ = lab.0.despawn(entity));
     let (light, eye) = (lab.light(0), lab.0.resource::<SceneEntities>().observer.expect("there"));
     lab.0.despawn(light);
     lab.0.despawn(eye);
