@@ -15,11 +15,11 @@ use crate::{
 
 /// The look of an object as it is shown: everything but its place, which is its transform.
 #[derive(Clone, Component, Debug, PartialEq)]
-pub(super) struct ShownObject(pub(super) Object);
+pub struct ShownObject(pub(super) Object);
 
 /// The lights and the observer as they are shown.
 #[derive(Clone, Debug, Default, PartialEq, Resource)]
-pub(super) struct Shown {
+pub struct Shown {
     pub(super) lights: Vec<Light>,
     pub(super) observer: Observer,
 }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use lights_camera_models::{
     optics::colour::BACKGROUND,
-    parameter::{Value, Values},
+    parameter::Value,
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
@@ -179,34 +179,21 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
 
     // So does a parameter of its shape, which gets meshes of its own.
     let world = renderer.app().world_mut();
-    let mut lit = world.get_mut::<LitObject>(object).expect("the object is an entity");
-    lit.0.object_type = "torus".to_owned();
-    lit.0.shape.set("tube_radius", Value::Number(0.05));
+    world.entity_mut(object).remove::<Cube>().insert(Torus { tube_radius: 0.05 });
     let thin = frame(&mut renderer);
     let world = renderer.app().world_mut();
-    let mut lit = world.get_mut::<LitObject>(object).expect("the object is an entity");
-    lit.0.shape.set("tube_radius", Value::Number(0.24));
+    world.get_mut::<Torus>(object).expect("it is a torus").tube_radius = 0.24;
     assert!(thin != frame(&mut renderer), "the parameter shows");
     let world = renderer.app().world_mut();
-    let mut lit = world.get_mut::<LitObject>(object).expect("the object is an entity");
-    (lit.0.object_type, lit.0.shape) = ("cube".to_owned(), Values::default());
+    world.entity_mut(object).remove::<Torus>().insert(Cube {});
     assert!(cube == frame(&mut renderer));
 
-    // The parameters of the surface and those of the type.
+    // So does its surface.
     let world = renderer.app().world_mut();
     let mut surface = world.get_mut::<Surface>(object).expect("objects have a surface");
     surface.material.set("base_colour", Value::Colour([255, 0, 200]));
     let pink = frame(&mut renderer);
     assert!(cube != pink, "the surface shows");
-    let world = renderer.app().world_mut();
-    world.entity_mut(object).remove::<Cube>().insert(Torus { tube_radius: 0.1 });
-    let torus = frame(&mut renderer);
-    let world = renderer.app().world_mut();
-    world.get_mut::<Torus>(object).expect("it is a torus").tube_radius = 0.2;
-    let thick = frame(&mut renderer);
-    assert!(torus != thick, "the parameter of the type shows");
-    let world = renderer.app().world_mut();
-    world.entity_mut(object).remove::<Torus>().insert(Cube {});
     let world = renderer.app().world_mut();
     world.get_mut::<bevy::prelude::Transform>(object).expect("objects have a place").translation =
         Vec3::new(5.5, 4.5, 5.0);
