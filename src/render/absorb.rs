@@ -57,7 +57,9 @@ pub fn absorb(
     let Touched { entities: mut touched, rested } = std::mem::take(&mut *world.resource_mut::<Touched>());
     touched.extend(&rested);
     touched.extend(changed.iter(world));
-    world.resource_scope(|world, mut watches: Mut<Watches>| watches.changed(world, &mut touched));
+    let mut watches = std::mem::take(&mut *world.resource_mut::<Watches>());
+    watches.changed(world, &mut touched);
+    *world.resource_mut::<Watches>() = watches;
     let entities = world.resource::<SceneEntities>();
     let mut places = Vec::new();
     for entity in moved.iter(world) {
@@ -81,51 +83,48 @@ pub fn absorb(
         return;
     }
     places.retain(|(entity, _)| touched.binary_search(entity).is_err());
-    let mut back = Vec::new();
-    world.resource_scope(|world, mut scene: Mut<CurrentScene>| {
-        let before = Some(scene.last_changed());
-        let changed = world.resource_scope(|world, mut entities: Mut<SceneEntities>| {
-            world.resource_scope(|world, types: Mut<PartTypes>| {
-                world.resource_scope(|world, registry: Mut<Registry>| {
-                    let mut change = Change {
-                        world,
-                        scene: &mut scene.bypass_change_detection().0,
-                        entities: &mut entities,
-                        types: &types,
-                        registry: &registry,
-                        reported: &mut reported,
-                        tried: Vec::new(),
-                        lost: Vec::new(),
-                        new: Vec::new(),
-                        back: Vec::new(),
-                    };
-                    change.settle(&rested);
-                    places.into_iter().for_each(|(entity, i)| change.try_place(entity, i));
-                    touched.iter().for_each(|entity| change.try_part(*entity));
-                    change.judge();
-                    change.adopt();
-                    change.add();
-                    change.remove();
-                    back = change.back;
-                });
-            });
-            let Absorbed { parts, relisted, refused, .. } = &entities.absorbed;
-            if entities.shown.is_none() {
-                refused.iter().for_each(|text| warn!("{text}"));
-            }
-            !parts.is_empty() || *relisted
-        });
-        if changed {
-            scene.set_changed();
-            let mut entities = world.resource_mut::<SceneEntities>();
-            let entities = &mut *entities;
-            for known in [&mut entities.seen, &mut entities.agreed] {
-                if *known == before {
-                    *known = Some(scene.last_changed());
-                }
+    // Not by `resource_scope`, after which Bevy takes a resource for changed.
+    let (types, registry) = (world.resource::<PartTypes>().clone(), world.resource::<Registry>().clone());
+    let mut entities = std::mem::take(world.resource_mut::<SceneEntities>().bypass_change_detection());
+    let mut current = world.resource_mut::<CurrentScene>();
+    let before = Some(current.last_changed());
+    let mut scene = std::mem::take(&mut current.bypass_change_detection().0);
+    let mut change = Change {
+        world,
+        scene: &mut scene,
+        entities: &mut entities,
+        types: &types,
+        registry: &registry,
+        reported: &mut reported,
+        tried: Vec::new(),
+        lost: Vec::new(),
+        new: Vec::new(),
+        back: Vec::new(),
+    };
+    change.settle(&rested);
+    places.into_iter().for_each(|(entity, i)| change.try_place(entity, i));
+    touched.iter().for_each(|entity| change.try_part(*entity));
+    change.judge();
+    change.adopt();
+    change.add();
+    change.remove();
+    let back = change.back;
+    let Absorbed { parts, relisted, refused, .. } = &entities.absorbed;
+    if entities.shown.is_none() {
+        refused.iter().for_each(|text| warn!("{text}"));
+    }
+    let changed = !parts.is_empty() || *relisted;
+    let mut current = world.resource_mut::<CurrentScene>();
+    current.bypass_change_detection().0 = scene;
+    if changed {
+        current.set_changed();
+        for known in [&mut entities.seen, &mut entities.agreed] {
+            if *known == before {
+                *known = Some(current.last_changed());
             }
         }
-    });
+    }
+    *world.resource_mut::<SceneEntities>().bypass_change_detection() = entities;
     touched.extend(back);
     show_objects(world, &touched);
 }

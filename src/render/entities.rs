@@ -196,14 +196,15 @@ fn follow<T: Part>(
 /// Makes the entities equal to the scene. Runs when [`CurrentScene`] changed; touches only what
 /// differs, and compares nothing where that is known.
 pub fn reconcile(world: &mut World) {
-    world.init_resource::<PartTypes>();
-    world.resource_scope(|world, types: Mut<PartTypes>| {
-        world.resource_scope(|world, scene: Mut<CurrentScene>| {
-            world.resource_scope(|world, mut entities: Mut<SceneEntities>| {
-                entities.reconcile(world, &scene.0, scene.last_changed(), &types);
-            });
-        });
-    });
+    // Not by `resource_scope`, after which Bevy takes a resource for changed.
+    let types = world.get_resource::<PartTypes>().cloned().unwrap_or_default();
+    let mut entities = std::mem::take(world.resource_mut::<SceneEntities>().bypass_change_detection());
+    let mut current = world.resource_mut::<CurrentScene>();
+    let changed = current.last_changed();
+    let scene = std::mem::take(&mut current.bypass_change_detection().0);
+    entities.reconcile(world, &scene, changed, &types);
+    world.resource_mut::<CurrentScene>().bypass_change_detection().0 = scene;
+    *world.resource_mut::<SceneEntities>().bypass_change_detection() = entities;
 }
 
 impl SceneEntities {

@@ -12,7 +12,9 @@ use bevy::{
 use glam::{Quat, Vec3};
 
 use super::{
-    parts::{LightColour, LightPower, SceneLight, SceneObject, SceneObserver, Surface, Tessellation},
+    parts::{
+        Animated, LightColour, LightPower, SceneLight, SceneObject, SceneObserver, Surface, Tessellation,
+    },
     typed::PartTypes,
 };
 use crate::{
@@ -259,7 +261,11 @@ pub(super) fn read_object(
         object.set_type(entry);
     }
     of_type.read(&entity, &mut object.shape);
-    read_place(needed(&entity)?, known.is_some(), &mut object)?;
+    let place = read_place(needed(&entity)?, known.is_some(), &mut object);
+    // What is animated may be stretched.
+    if !entity.contains::<Animated>() || known.is_none() {
+        place?;
+    }
     let Tessellation(tessellation) = *needed::<Tessellation>(&entity)?;
     // Each type counts something else.
     if !retyped || known.is_none_or(|known| known.tessellation != tessellation) {
