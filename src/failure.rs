@@ -1,6 +1,6 @@
 //! The reason why a command failed, and its exit status.
 
-use std::io;
+use std::{fmt, io};
 
 /// The reason why a command failed.
 #[derive(Debug)]
@@ -15,6 +15,17 @@ pub enum Failure {
     Write(String),
     /// The reader of the output closed it: not an error.
     Closed,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Invalid(what) | Self::Usage(what) | Self::NoRenderer(what) | Self::Write(what) => {
+                f.write_str(what)
+            }
+            Self::Closed => f.write_str("nobody reads the output"),
+        }
+    }
 }
 
 impl From<io::Error> for Failure {

@@ -43,9 +43,12 @@
 //! - [`window`]: panels, camera and entities in one window.
 //! - [`study`]: the differences between models, as numbers and a report.
 //! - [`cli`]: the command line.
+//! - [`prelude`]: the names that extensions of the program need most.
 
-/// The version of Bevy whose apps take what is registered.
+/// The version of Bevy that the window is made with.
 pub use bevy;
+/// The version of bevy_egui, and in it egui, that panels are drawn with.
+pub use bevy_egui;
 /// The version of glam whose vectors the equations take.
 pub use glam;
 
@@ -84,3 +87,5 @@ pub mod window;
 pub mod study;
 
 pub mod cli;
+
+pub mod prelude;

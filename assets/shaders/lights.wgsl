@@ -20,7 +20,8 @@ struct Light {
     first_word: u32,
 }
 
-// All lights of the scene, the display settings, and the parameters of the lights one after the other.
+// All lights of the scene, the display settings, and behind them as words: the parameters of the lights one after the
+// other, and the numbers of the files that they name.
 struct Illumination {
     count: u32,
     terms: u32,

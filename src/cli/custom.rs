@@ -23,14 +23,20 @@ use crate::{
 };
 
 /// `lcm models new NAME`.
-pub(super) fn new(name: &str, options: Options, places: &Places) -> Outcome {
+pub(super) fn new(name: &str, options: Options, places: &Places, known: &Registry) -> Outcome {
     let id = id_of(name)?;
-    write(&id, &custom::template(&id, name.trim()), options, places)
+    write(&id, &custom::template(&id, name.trim()), options, places, known)
 }
 
 /// `lcm models duplicate ID [NAME]`.
-pub(super) fn duplicate(id: &str, name: Option<&str>, options: Options, places: &Places) -> Outcome {
-    let mut workshop = places.open_for_writing(options)?;
+pub(super) fn duplicate(
+    id: &str,
+    name: Option<&str>,
+    options: Options,
+    places: &Places,
+    known: &Registry,
+) -> Outcome {
+    let mut workshop = places.open_for_writing(options, known.clone())?;
     workshop.need(id);
     let registry = &workshop.registry;
     let model = find(registry, id)?;
@@ -41,7 +47,7 @@ pub(super) fn duplicate(id: &str, name: Option<&str>, options: Options, places: 
     let name = name.map_or(copy.as_str(), str::trim);
     let text = custom::duplicate(model, registry.sources(), &copy, name)
         .map_err(|e| Failure::Usage(e.to_string()))?;
-    write(&copy, &text, options, places)
+    write(&copy, &text, options, places, known)
 }
 
 /// The id of a model with a given name.
@@ -50,8 +56,8 @@ fn id_of(name: &str) -> Result<String, Failure> {
 }
 
 /// Writes a new file for a custom model, and suggests the next steps.
-fn write(id: &str, text: &str, options: Options, places: &Places) -> Outcome {
-    if Registry::builtin().model(id).is_some() {
+fn write(id: &str, text: &str, options: Options, places: &Places, known: &Registry) -> Outcome {
+    if known.model(id).is_some() {
         return Err(Failure::Usage(format!("{id} is the id of a built-in model; choose another name")));
     }
     let Some(folder) = places.folders()?.models else {

@@ -2,6 +2,7 @@
 
 use std::{
     io::{self, BufWriter, Write as _},
+    path::Path,
     str::FromStr,
     sync::Arc,
 };
@@ -17,7 +18,7 @@ use super::{
 use crate::{
     failure::Failure,
     optics::{Frame, colour::Encoding, geometry::direction},
-    parameter::{Parameter, ParameterKind, Value, Values},
+    parameter::{NamedFile, Parameter, ParameterKind, Value, Values},
     reflection::{ModelEntry, Surface, brdf, brdf_of},
     registry::Registry,
     render::capture::evaluate::Evaluator,
@@ -257,6 +258,9 @@ fn parse(parameter: &Parameter, written: &str) -> Option<Value> {
             }
         }
         ParameterKind::Choice { .. } => Some(Value::Choice(written.to_owned().into())),
+        ParameterKind::File { format, .. } => {
+            Some(Value::File(NamedFile::open(written, Path::new(""), format)))
+        }
     }
 }
 

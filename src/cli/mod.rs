@@ -5,12 +5,14 @@
 
 use crate::{failure::Failure, files::printable, registry::Registry, scene::load::Defaults};
 use std::{
+    ffi::OsString,
     fmt,
     io::{self, IsTerminal as _, Write},
     path::{Path, PathBuf},
     process::ExitCode,
 };
 
+use bevy::app::App;
 use clap::{Args, Parser, Subcommand, error::ErrorKind};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -154,7 +156,41 @@ type Outcome = Result<(), Failure>;
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    main_with(|_| (), |_| ())
+}
+
+/// Runs the command line of this process with more types than are built in, known to every command, and with more in the
+/// window: panels, systems, plugins.
+///
+/// ```no_run
+/// use lights_camera_models::{bevy::prelude::*, cli, prelude::*};
+/// # use lights_camera_models::reflection::Lambert as Velvet;
+///
+/// fn main() -> std::process::ExitCode {
+///     cli::main_with(
+///         |registry| {
+///             registry.add_reflection_model::<Velvet>();
+///         },
+///         |app| {
+///             app.add_systems(Update, || info!("a frame"));
+///         },
+///     )
+/// }
+/// ```
+#[must_use]
+pub fn main_with(types: impl FnOnce(&mut Registry), window: impl FnOnce(&mut App)) -> ExitCode {
+    run_with(std::env::args_os(), types, window)
+}
+
+/// As [`main_with`], with these arguments, of which the first is the name of the program.
+#[must_use]
+pub fn run_with(
+    arguments: impl IntoIterator<Item = OsString>,
+    types: impl FnOnce(&mut Registry),
+    window: impl FnOnce(&mut App),
+) -> ExitCode {
+    let arguments: Vec<_> = arguments.into_iter().collect();
+    let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
         Err(error) => {
             return match error.kind() {
@@ -163,7 +199,7 @@ pub fn main() -> ExitCode {
                     ended(error.print().and_then(|()| io::stdout().flush()).map_err(Failure::from))
                 }
                 _ => {
-                    misunderstood(&error);
+                    misunderstood(&error, &arguments);
                     ExitCode::from(2)
                 }
             };
@@ -173,7 +209,9 @@ pub fn main() -> ExitCode {
     if cli.may_draw() {
         runtime_folder::provide();
     }
-    ended(run(cli))
+    let mut registry = Registry::builtin();
+    types(&mut registry);
+    ended(run(cli, registry, window))
 }
 
 /// Prints a failure, and returns the exit status.
@@ -190,8 +228,8 @@ fn ended(outcome: Outcome) -> ExitCode {
 }
 
 /// Prints a usage error found by clap, in its colours unless it repeats control characters.
-fn misunderstood(error: &clap::Error) {
-    let odd = std::env::args_os().any(|word| printable(&word.to_string_lossy()) != word.to_string_lossy());
+fn misunderstood(error: &clap::Error, arguments: &[OsString]) {
+    let odd = arguments.iter().any(|word| printable(&word.to_string_lossy()) != word.to_string_lossy());
     if odd {
         complain(error.render().to_string().trim_end());
     } else {
@@ -200,25 +238,28 @@ fn misunderstood(error: &clap::Error) {
     }
 }
 
-fn run(cli: Cli) -> Outcome {
+/// Runs a command with everything that is known but for custom models.
+fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
     let options = cli.options;
     if let Some(stray) = cli.view.given().filter(|_| cli.command.is_some()) {
         return Err(Failure::Usage(format!("{stray} must come after the command")));
     }
     let places = &cli.places;
     match cli.command {
-        None => view::run(cli.view, options, places),
-        Some(Command::View(arguments)) => view::run(arguments, options, places),
-        Some(Command::Render(arguments)) => render::run(&arguments, options, &mut places.open(options)?),
-        Some(Command::Check(arguments)) => check::run(&arguments, options, &mut places.open(options)?),
-        Some(Command::New { file }) => new::run(&file, options, &Registry::builtin()),
-        Some(Command::Models(arguments)) => models::run(arguments, options, places),
-        Some(Command::Assets(command)) => assets::run(&command, options, &Registry::builtin()),
-        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &mut places.open(options)?),
-        Some(Command::Study(arguments)) => study::run(&arguments, options, &Registry::builtin()),
-        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &mut places.open(options)?),
+        None => view::run(cli.view, options, places, known, window),
+        Some(Command::View(arguments)) => view::run(arguments, options, places, known, window),
+        Some(Command::Render(arguments)) => {
+            render::run(&arguments, options, &mut places.open(options, known)?)
+        }
+        Some(Command::Check(arguments)) => check::run(&arguments, options, &mut places.open(options, known)?),
+        Some(Command::New { file }) => new::run(&file, options, &known),
+        Some(Command::Models(arguments)) => models::run(arguments, options, places, known),
+        Some(Command::Assets(command)) => assets::run(&command, options, &known),
+        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &mut places.open(options, known)?),
+        Some(Command::Study(arguments)) => study::run(&arguments, options, &known),
+        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &mut places.open(options, known)?),
         Some(Command::TryShaders) => trial::run(),
-        Some(Command::Schema) => print(&crate::scene::schema::text(places.open(options)?.list())),
+        Some(Command::Schema) => print(&crate::scene::schema::text(places.open(options, known)?.list())),
     }
 }
 

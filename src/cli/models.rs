@@ -47,12 +47,16 @@ enum Command {
     },
 }
 
-pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Outcome {
+pub(super) fn run(arguments: Arguments, options: Options, places: &Places, known: Registry) -> Outcome {
     match arguments.command {
-        Some(Command::New { name }) => custom::new(&name, options, places),
-        Some(Command::Duplicate { id, name }) => custom::duplicate(&id, name.as_deref(), options, places),
-        Some(Command::Check { id, json }) => custom::check(&id, json, options, &mut places.open(options)?),
-        None => list(arguments.json, places.open(options)?.list()),
+        Some(Command::New { name }) => custom::new(&name, options, places, &known),
+        Some(Command::Duplicate { id, name }) => {
+            custom::duplicate(&id, name.as_deref(), options, places, &known)
+        }
+        Some(Command::Check { id, json }) => {
+            custom::check(&id, json, options, &mut places.open(options, known)?)
+        }
+        None => list(arguments.json, places.open(options, known)?.list()),
     }
 }
 
@@ -134,6 +138,7 @@ fn parameter(p: &Parameter) -> Json {
             json["type"] = "choice".into();
             json["choices"] = options.iter().map(|(id, _)| *id).collect::<Vec<_>>().into();
         }
+        ParameterKind::File { .. } => json["type"] = "file".into(),
     }
     json
 }

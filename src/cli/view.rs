@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use bevy::app::App;
 use clap::Args;
 
 use super::{Options, Outcome, outputs, render::Size, scenes::Source, workshop::Places};
@@ -37,8 +38,14 @@ impl Arguments {
     }
 }
 
-pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Outcome {
-    let mut workshop = places.open_for_window(options)?;
+pub(super) fn run(
+    arguments: Arguments,
+    options: Options,
+    places: &Places,
+    known: Registry,
+    window: impl FnOnce(&mut App),
+) -> Outcome {
+    let mut workshop = places.open_for_window(options, known)?;
     let source = Source::of(arguments.scene.as_deref());
     let Arguments { exit_after, capture, size, .. } = arguments;
     if let Some(capture) = &capture {
@@ -65,7 +72,7 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         exit_after,
         capture,
         // The scene decides how much of it is read.
-        registry: Registry::default(),
+        registry: None,
         trial_program: super::trial::program(),
         warnings,
         verbose,
@@ -101,8 +108,8 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places) -> Ou
         }
         Source::Default | Source::Stdin => view.scene = source.open(&mut workshop, options)?,
     }
-    view.registry = workshop.registry;
-    crate::window::view(view)
+    view.registry = Some(workshop.registry);
+    crate::window::view(view, window)
 }
 
 /// `lcm rendr room.json` is a misspelt command, not a scene called rendr.

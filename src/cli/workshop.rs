@@ -164,18 +164,21 @@ impl Places {
             .map_err(|e| Failure::Usage(e.to_string()))
     }
 
-    /// Reads the shaders; one that cannot be read is an error. Custom models are read when they are needed.
-    pub(super) fn open(&self, options: Options) -> Result<Workshop, Failure> {
+    /// Reads the shaders, for a registry that knows all but custom models; one that cannot be read is an error. Custom models are read when they are needed.
+    pub(super) fn open(&self, options: Options, known: Registry) -> Result<Workshop, Failure> {
         if let Some(named) = self.models.as_deref().filter(|m| !m.exists()) {
             return Err(Failure::Usage(format!("there is no folder {} for --models", named.display())));
         }
-        self.open_for_writing(options)
+        self.open_for_writing(options, known)
     }
 
     /// As [`open`](Self::open), for commands that create the folder of custom models.
-    pub(super) fn open_for_writing(&self, options: Options) -> Result<Workshop, Failure> {
+    pub(super) fn open_for_writing(
+        &self,
+        options: Options,
+        mut registry: Registry,
+    ) -> Result<Workshop, Failure> {
         let folders = self.folders()?;
-        let mut registry = Registry::builtin();
         if let Some(models) = &folders.models {
             registry.set_custom_folder(models);
         }
@@ -193,9 +196,12 @@ impl Places {
     /// Reads what a window needs at the start: the declarations of all custom models, since it lists them. Models that
     /// its scene does not use are drawn as stand-ins until they are read, and so are broken ones. No problem keeps the
     /// window from opening.
-    pub(super) fn open_for_window(&self, options: Options) -> Result<Workshop, Failure> {
+    pub(super) fn open_for_window(
+        &self,
+        options: Options,
+        mut registry: Registry,
+    ) -> Result<Workshop, Failure> {
         let folders = self.folders()?;
-        let mut registry = Registry::builtin();
         if let Some(shaders) = &folders.shaders {
             registry.set_shader_folder(shaders);
         }

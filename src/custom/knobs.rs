@@ -414,5 +414,6 @@ pub(super) fn type_name(kind: &ParameterKind) -> &'static str {
         ParameterKind::Colour { .. } => "colour",
         ParameterKind::Triple { .. } => "triple",
         ParameterKind::Choice { .. } => "choice",
+        ParameterKind::File { .. } => "file",
     }
 }

@@ -182,7 +182,7 @@ fn flattened(parameters: &[Parameter], values: &Values, encoding: Encoding) -> V
             ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => {
                 words.extend(values.colour(p, encoding).to_array().map(f32::to_bits));
             }
-            ParameterKind::Choice { .. } => words.push(values.choice(p)),
+            ParameterKind::Choice { .. } | ParameterKind::File { .. } => words.push(values.choice(p)),
         }
     }
     // WGSL has no empty struct: this one has an unused member.

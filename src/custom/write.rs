@@ -252,7 +252,7 @@ fn declare(out: &mut String, p: &Parameter) {
             let max = max.map_or_else(String::new, |max| format!("\"max\": {max}, "));
             format!("\"min\": {min}, {max}\"slider_max\": {slider_max}, ")
         }
-        ParameterKind::Colour { .. } => String::new(),
+        ParameterKind::Colour { .. } | ParameterKind::File { .. } => String::new(),
         ParameterKind::Choice { options, .. } => {
             let options: Vec<_> = options
                 .iter()

@@ -4,7 +4,7 @@ use std::{f64::consts::GOLDEN_RATIO, iter};
 
 use glam::Vec3;
 
-use super::{Document, Extent, Selection, names::Names};
+use super::{Document, Extent, Selection, history::Patch};
 use crate::{
     parameter::Value,
     registry::Registry,
@@ -238,23 +238,25 @@ impl Document {
             Edit::Light(i, field) => {
                 let label = field.label(&self.scene.lights[i], registry);
                 let name = step(&label, &self.name_of(Selection::Light(i), registry));
-                self.change(name, Extent::Light(i), selection, |s| {
-                    field.put(&mut s.lights[i], registry, s.scene_size);
-                });
-            }
-            // The others keep their numbers.
-            Edit::Object(i, field @ (ObjectField::Name(_) | ObjectField::Type(_))) => {
-                let label = field.label(&self.scene.objects[i], registry);
-                let name = step(&label, &self.name_of(Selection::Object(i), registry));
-                self.change_parts(name, selection, registry, |document, names| {
-                    field.put(&mut document.scene.objects[i], registry);
-                    names.objects[i] = None;
+                self.step(name, Extent::Light(i), selection, Some(registry), |document| {
+                    let room = document.scene_size;
+                    field.put(&mut document.scene.lights[i], registry, room);
+                    document.number_again(Selection::Light(i), registry);
                 });
             }
             Edit::Object(i, field) => {
-                let label = field.label(&self.scene.objects[i], registry);
-                let name = step(&label, &self.name_of(Selection::Object(i), registry));
-                self.change(name, Extent::Object(i), selection, |s| field.put(&mut s.objects[i], registry));
+                let mut name = step(
+                    &field.label(&self.scene.objects[i], registry),
+                    &self.name_of(Selection::Object(i), registry),
+                );
+                if let ObjectField::Type(id) = &field {
+                    let type_name = registry.shape(id).map_or(&**id, |entry| entry.declaration.name);
+                    name += &format!(": {type_name}");
+                }
+                self.step(name, Extent::Object(i), selection, Some(registry), |document| {
+                    field.put(&mut document.scene.objects[i], registry);
+                    document.number_again(Selection::Object(i), registry);
+                });
             }
         }
         Ok(())
@@ -275,9 +277,9 @@ impl Document {
     ) -> Result<(), String> {
         let field = LightField::Type(id.to_owned());
         self.check(&Edit::Light(i, field.clone()), registry)?;
-        let name = step("Type", &self.name_of(Selection::Light(i), registry));
-        self.change_parts(name, selection, registry, |document, names| {
-            names.lights[i] = None;
+        let type_name = registry.light(id).map_or(id, |entry| entry.declaration.name);
+        let name = format!("{}: {type_name}", step("Type", &self.name_of(Selection::Light(i), registry)));
+        self.step(name, Extent::Light(i), selection, Some(registry), |document| {
             let room = document.scene.scene_size;
             let light = &mut document.scene.lights[i];
             let has_place = light.position.is_some();
@@ -309,12 +311,13 @@ impl Document {
         selection: Selection,
         registry: &Registry,
     ) {
-        let id = self.next_id();
-        self.insert(verb, Selection::Light(i), selection, registry, |document, names| {
-            document.scene.lights.insert(i, light);
-            document.ids.lights.insert(i, id);
-            names.lights.insert(i, None);
-        });
+        let label = self.next_label();
+        self.labels.lights.insert(i, label);
+        self.scene.lights.insert(i, light.clone());
+        self.number_parts(Some(registry));
+        let patch = Patch::of_lights(i, Vec::new(), vec![(self.labels.lights[i], light)]);
+        let name = format!("{verb} {}", self.name_of(Selection::Light(i), registry));
+        self.came_or_went(patch, name, selection);
     }
 
     /// Inserts an object into the list.
@@ -326,60 +329,36 @@ impl Document {
         selection: Selection,
         registry: &Registry,
     ) {
-        let id = self.next_id();
-        self.insert(verb, Selection::Object(i), selection, registry, |document, names| {
-            document.scene.objects.insert(i, object);
-            document.ids.objects.insert(i, id);
-            names.objects.insert(i, None);
-        });
-    }
-
-    fn insert(
-        &mut self,
-        verb: &str,
-        part: Selection,
-        selection: Selection,
-        registry: &Registry,
-        change: impl FnOnce(&mut Self, &mut Names),
-    ) {
-        self.end_gesture();
-        self.change_parts(String::new(), selection, registry, change);
-        let name = self.name_of(part, registry);
-        self.history.rename_last(format!("{verb} {name}"));
+        let label = self.next_label();
+        self.labels.objects.insert(i, label);
+        self.scene.objects.insert(i, object.clone());
+        self.number_parts(Some(registry));
+        let patch = Patch::of_objects(i, Vec::new(), vec![(self.labels.objects[i], object)]);
+        let name = format!("{verb} {}", self.name_of(Selection::Object(i), registry));
+        self.came_or_went(patch, name, selection);
     }
 
     /// Removes a light or an object.
     pub fn remove(&mut self, part: Selection, registry: &Registry) {
-        self.end_gesture();
-        let name = format!("Delete {}", self.name_of(part, registry));
-        self.change_parts(name, part, registry, |document, names| match part {
-            Selection::Light(i) if i < document.scene.lights.len() => {
-                document.scene.lights.remove(i);
-                document.ids.lights.remove(i);
-                names.lights.remove(i);
+        let name = self.name_of(part, registry);
+        let patch = match part {
+            Selection::Light(i) if i < self.scene.lights.len() => {
+                let gone = (self.labels.lights.remove(i), self.scene.lights.remove(i));
+                Patch::of_lights(i, vec![gone], Vec::new())
             }
-            Selection::Object(i) if i < document.scene.objects.len() => {
-                document.scene.objects.remove(i);
-                document.ids.objects.remove(i);
-                names.objects.remove(i);
+            Selection::Object(i) if i < self.scene.objects.len() => {
+                let gone = (self.labels.objects.remove(i), self.scene.objects.remove(i));
+                Patch::of_objects(i, vec![gone], Vec::new())
             }
-            _ => {}
-        });
+            _ => return,
+        };
+        self.came_or_went(patch, format!("Delete {name}"), part);
     }
 
-    /// Changes the lists of parts, or their types; parts that stay keep their names. `change` does the same to scene,
-    /// ids and names; a part without a name there is new.
-    pub(super) fn change_parts(
-        &mut self,
-        name: String,
-        selection: Selection,
-        registry: &Registry,
-        change: impl FnOnce(&mut Self, &mut Names),
-    ) {
-        let mut names = Names::of(&self.scene, registry);
-        self.step(name, Extent::All, selection, |document| {
-            change(document, &mut names);
-            names.keep(&mut document.scene, registry);
-        });
+    /// A part came or went: a step of its own.
+    fn came_or_went(&mut self, patch: Patch, name: String, selection: Selection) {
+        self.end_gesture();
+        self.touch(Extent::All, true);
+        self.history.record(name, self.gesture, patch, selection);
     }
 }

@@ -12,11 +12,19 @@ const MOST_STEPS: usize = 500;
 /// The most lights and objects in all steps together, so that memory is bounded.
 const MOST_PARTS: usize = 200_000;
 
-/// The lights and objects by id, in the order of the scene.
+/// The identity of a part for life.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Label {
+    pub(super) id: PartId,
+    /// Its number among the parts of its type, by which it is called without a name; 0 until it gets one.
+    pub(super) number: usize,
+}
+
+/// The labels of lights and objects, in the order of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Ids {
-    pub(super) lights: Vec<PartId>,
-    pub(super) objects: Vec<PartId>,
+pub(super) struct Labels {
+    pub(super) lights: Vec<Label>,
+    pub(super) objects: Vec<Label>,
 }
 
 /// The stretches in which two lists of these lengths differ, without their common beginning and end. `same` compares
@@ -35,35 +43,35 @@ pub(crate) fn difference(
 #[derive(Clone, Debug, PartialEq)]
 struct Splice<T> {
     at: usize,
-    old: Vec<(PartId, T)>,
-    new: Vec<(PartId, T)>,
+    old: Vec<(Label, T)>,
+    new: Vec<(Label, T)>,
 }
 
 impl<T: Clone + PartialEq> Splice<T> {
     /// The difference between two versions of a list, without their common beginning and end.
-    fn between(old: (&[T], &[PartId]), new: (&[T], &[PartId])) -> Option<Self> {
+    fn between(old: (&[T], &[Label]), new: (&[T], &[Label])) -> Option<Self> {
         let same = |i: usize, j: usize| old.1[i] == new.1[j] && old.0[i] == new.0[j];
         let [gone, come] = difference([old.0.len(), new.0.len()], same);
         if gone.is_empty() && come.is_empty() {
             return None;
         }
         let at = gone.start;
-        let stretch = |(parts, ids): (&[T], &[PartId]), range: Range<usize>| {
-            range.map(|i| (ids[i], parts[i].clone())).collect::<Vec<_>>()
+        let stretch = |(parts, labels): (&[T], &[Label]), range: Range<usize>| {
+            range.map(|i| (labels[i], parts[i].clone())).collect::<Vec<_>>()
         };
         Some(Self { at, old: stretch(old, gone), new: stretch(new, come) })
     }
 
     /// The difference between two versions of one part.
-    fn of_one(at: usize, id: PartId, old: T, new: T) -> Option<Self> {
-        (old != new).then(|| Self { at, old: vec![(id, old)], new: vec![(id, new)] })
+    fn of_one(at: usize, old: (Label, T), new: (Label, T)) -> Option<Self> {
+        (old != new).then(|| Self { at, old: vec![old], new: vec![new] })
     }
 
-    fn put(&self, parts: &mut Vec<T>, ids: &mut Vec<PartId>, back: bool) {
+    fn put(&self, parts: &mut Vec<T>, labels: &mut Vec<Label>, back: bool) {
         let (gone, come) = if back { (&self.new, &self.old) } else { (&self.old, &self.new) };
         let at = self.at.min(parts.len());
         let to = (at + gone.len()).min(parts.len());
-        ids.splice(at..to, come.iter().map(|(id, _)| *id));
+        labels.splice(at..to, come.iter().map(|(label, _)| *label));
         parts.splice(at..to, come.iter().map(|(_, part)| part.clone()));
     }
 
@@ -73,7 +81,7 @@ impl<T: Clone + PartialEq> Splice<T> {
 
     /// True if it gives one part another value.
     fn is_of_one(&self) -> bool {
-        matches!((&self.old[..], &self.new[..]), ([old], [new]) if old.0 == new.0)
+        matches!((&self.old[..], &self.new[..]), ([old], [new]) if old.0.id == new.0.id)
     }
 }
 
@@ -118,17 +126,27 @@ impl Patch {
     }
 
     /// The difference between two versions of one light.
-    pub(super) fn of_light(at: usize, id: PartId, old: Light, new: Light) -> Self {
-        Self { lights: Splice::of_one(at, id, old, new).into_iter().collect(), ..Self::default() }
+    pub(super) fn of_light(at: usize, old: (Label, Light), new: (Label, Light)) -> Self {
+        Self { lights: Splice::of_one(at, old, new).into_iter().collect(), ..Self::default() }
     }
 
     /// The difference between two versions of one object.
-    pub(super) fn of_object(at: usize, id: PartId, old: Object, new: Object) -> Self {
-        Self { objects: Splice::of_one(at, id, old, new).into_iter().collect(), ..Self::default() }
+    pub(super) fn of_object(at: usize, old: (Label, Object), new: (Label, Object)) -> Self {
+        Self { objects: Splice::of_one(at, old, new).into_iter().collect(), ..Self::default() }
+    }
+
+    /// A light that came or went: before, after.
+    pub(super) fn of_lights(at: usize, old: Vec<(Label, Light)>, new: Vec<(Label, Light)>) -> Self {
+        Self { lights: vec![Splice { at, old, new }], ..Self::default() }
+    }
+
+    /// An object that came or went: before, after.
+    pub(super) fn of_objects(at: usize, old: Vec<(Label, Object)>, new: Vec<(Label, Object)>) -> Self {
+        Self { objects: vec![Splice { at, old, new }], ..Self::default() }
     }
 
     /// The difference between any two versions.
-    pub(super) fn between(old: (&Scene, &Ids), new: (&Scene, &Ids)) -> Self {
+    pub(super) fn between(old: (&Scene, &Labels), new: (&Scene, &Labels)) -> Self {
         let lights = Splice::between((&old.0.lights, &old.1.lights), (&new.0.lights, &new.1.lights));
         let objects = Splice::between((&old.0.objects, &old.1.objects), (&new.0.objects, &new.1.objects));
         let (lights, objects) = (lights.into_iter().collect(), objects.into_iter().collect());
@@ -139,12 +157,12 @@ impl Patch {
         *self == Self::default()
     }
 
-    fn put(&self, scene: &mut Scene, ids: &mut Ids, back: bool) {
+    fn put(&self, scene: &mut Scene, labels: &mut Labels, back: bool) {
         if let Some(versions) = &self.rest {
             copy_rest(&versions[usize::from(!back)], scene);
         }
-        self.lights.iter().for_each(|splice| splice.put(&mut scene.lights, &mut ids.lights, back));
-        self.objects.iter().for_each(|splice| splice.put(&mut scene.objects, &mut ids.objects, back));
+        self.lights.iter().for_each(|splice| splice.put(&mut scene.lights, &mut labels.lights, back));
+        self.objects.iter().for_each(|splice| splice.put(&mut scene.objects, &mut labels.objects, back));
     }
 
     /// The part that it changes.
@@ -251,13 +269,6 @@ impl History {
         }
     }
 
-    /// Names the last step, where the name follows from the change.
-    pub(super) fn rename_last(&mut self, name: String) {
-        if let Some(step) = self.steps.last_mut() {
-            step.name = name;
-        }
-    }
-
     /// The selection after the last step: some steps select what they made.
     pub(super) fn selected(&mut self, selection: Selection) {
         if let Some(step) = self.done.checked_sub(1).and_then(|i| self.steps.get_mut(i)) {
@@ -266,17 +277,25 @@ impl History {
     }
 
     /// Undoes the last step. Returns its name, the selection before it, and the part that it changed.
-    pub(super) fn undo(&mut self, scene: &mut Scene, ids: &mut Ids) -> Option<(String, Selection, Extent)> {
+    pub(super) fn undo(
+        &mut self,
+        scene: &mut Scene,
+        labels: &mut Labels,
+    ) -> Option<(String, Selection, Extent)> {
         let step = self.steps.get(self.done.checked_sub(1)?)?;
-        step.patch.put(scene, ids, true);
+        step.patch.put(scene, labels, true);
         self.done -= 1;
         Some((step.name.clone(), step.before, step.patch.extent()))
     }
 
     /// Redoes the step that was undone last. Returns its name, the selection after it, and the part that it changed.
-    pub(super) fn redo(&mut self, scene: &mut Scene, ids: &mut Ids) -> Option<(String, Selection, Extent)> {
+    pub(super) fn redo(
+        &mut self,
+        scene: &mut Scene,
+        labels: &mut Labels,
+    ) -> Option<(String, Selection, Extent)> {
         let step = self.steps.get(self.done)?;
-        step.patch.put(scene, ids, false);
+        step.patch.put(scene, labels, false);
         self.done += 1;
         Some((step.name.clone(), step.after, step.patch.extent()))
     }

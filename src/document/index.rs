@@ -1,11 +1,14 @@
-//! The way from an id to its part, and from a part to its number among those of its type, without a search.
+//! The way from an id to its part, and from a part to the number that a file gives it, without a search.
 
 use std::{
     collections::HashMap,
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use super::{PartId, history::Ids};
+use super::{
+    PartId,
+    history::{Label, Labels},
+};
 use crate::scene::Scene;
 
 /// Lights and objects by id, and their numbers.
@@ -23,17 +26,17 @@ pub(super) struct List {
 }
 
 impl Index {
-    pub(super) fn of(scene: &Scene, ids: &Ids) -> Self {
+    pub(super) fn of(scene: &Scene, labels: &Labels) -> Self {
         Self {
-            lights: List::of(&ids.lights, scene.lights.iter().map(|l| &*l.light_type)),
-            objects: List::of(&ids.objects, scene.objects.iter().map(|o| &*o.object_type)),
+            lights: List::of(&labels.lights, scene.lights.iter().map(|l| &*l.light_type)),
+            objects: List::of(&labels.objects, scene.objects.iter().map(|o| &*o.object_type)),
         }
     }
 }
 
 impl List {
-    fn of<'a>(ids: &[PartId], types: impl Iterator<Item = &'a str>) -> Self {
-        let places = ids.iter().enumerate().map(|(i, id)| (*id, i)).collect();
+    fn of<'a>(labels: &[Label], types: impl Iterator<Item = &'a str>) -> Self {
+        let places = labels.iter().enumerate().map(|(i, label)| (label.id, i)).collect();
         Self { places, numbers: numbers(types).collect() }
     }
 
@@ -42,14 +45,14 @@ impl List {
         self.places.get(&id).copied()
     }
 
-    /// The number of a part among those of its type, from 1 on.
+    /// The number of a part among those of its type in the order of the list, from 1 on.
     pub(super) fn number(&self, place: usize) -> usize {
         self.numbers.get(place).copied().unwrap_or_default()
     }
 }
 
 /// The number of each part among those of its type, from 1 on.
-pub(super) fn numbers<'a>(types: impl Iterator<Item = &'a str>) -> impl Iterator<Item = usize> {
+fn numbers<'a>(types: impl Iterator<Item = &'a str>) -> impl Iterator<Item = usize> {
     let mut counts: HashMap<&str, usize> = HashMap::new();
     types.map(move |part| {
         let count = counts.entry(part).or_default();

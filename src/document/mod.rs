@@ -10,19 +10,22 @@ use std::{
     },
 };
 
-use crate::scene::{Light, Object, Scene};
+use crate::{
+    registry::Registry,
+    scene::{Object, Scene},
+};
 
 mod edit;
 mod history;
 mod index;
-pub mod limits;
+mod matching;
 pub mod names;
 mod rules;
 mod submit;
 
 pub use edit::{Edit, LightField, ObjectField};
 pub(crate) use history::difference;
-use history::{History, Ids, Patch, rest_of};
+use history::{History, Label, Labels, Patch, rest_of};
 use index::{Index, Visits};
 
 /// The most changes that [`Document::changes_since`] looks back.
@@ -61,6 +64,15 @@ pub enum Extent {
 }
 
 impl Extent {
+    /// Gives this part of a scene a name.
+    fn set_name(self, scene: &mut Scene, name: String) {
+        match self {
+            Self::Light(i) => scene.lights.get_mut(i).into_iter().for_each(|l| l.name = Some(name.clone())),
+            Self::Object(i) => scene.objects.get_mut(i).into_iter().for_each(|o| o.name = Some(name.clone())),
+            Self::Rest | Self::All => {}
+        }
+    }
+
     /// Makes this part of a scene equal to that of another. Lists of other lengths stay as they are.
     pub(crate) fn copy(self, from: &Scene, to: &mut Scene) {
         match self {
@@ -86,7 +98,7 @@ impl Extent {
 #[derive(Clone, Debug)]
 pub struct Document {
     scene: Scene,
-    ids: Ids,
+    labels: Labels,
     /// Unset until it is needed.
     index: OnceLock<Index>,
     visits: Visits,
@@ -94,6 +106,8 @@ pub struct Document {
     next: u64,
     /// The scene as it is in the file.
     saved: Scene,
+    /// The names that only the file has.
+    saved_names: Vec<(Extent, String)>,
     /// True if the two differ; unset until it is needed.
     differs: OnceLock<bool>,
     history: History,
@@ -134,8 +148,9 @@ impl Document {
     pub fn new(scene: Scene) -> Self {
         let mut document = Self {
             saved: scene.clone(),
+            saved_names: Vec::new(),
             scene,
-            ids: Ids::default(),
+            labels: Labels::default(),
             index: OnceLock::new(),
             visits: Visits::default(),
             next: 0,
@@ -145,14 +160,14 @@ impl Document {
             revision: Revision::next(),
             recent: VecDeque::new(),
         };
-        document.ids.lights = (0..document.scene.lights.len()).map(|_| document.next_id()).collect();
-        document.ids.objects = (0..document.scene.objects.len()).map(|_| document.next_id()).collect();
+        document.label_parts(None);
         document
     }
 
-    fn next_id(&mut self) -> PartId {
+    /// The label of a new part.
+    fn next_label(&mut self) -> Label {
         self.next += 1;
-        PartId(self.next)
+        Label { id: PartId(self.next), number: 0 }
     }
 
     /// The scene.
@@ -203,24 +218,37 @@ impl Document {
         self.differs.take();
     }
 
-    /// The scene was written to the file.
-    pub fn mark_saved(&mut self) {
+    /// The scene, as [`named`](Self::named), was written to the file, or read from it.
+    pub fn mark_saved(&mut self, registry: &Registry) {
         // Undoing leads back to what was saved.
         self.end_gesture();
         self.saved = self.scene.clone();
+        self.saved_names = self.written_names(registry);
         self.differs.take();
+    }
+
+    /// True if this is the scene that was saved.
+    #[must_use]
+    pub fn was_saved_as(&self, scene: &Scene) -> bool {
+        if self.saved_names.is_empty() {
+            return self.saved == *scene;
+        }
+        let mut saved = self.saved.clone();
+        self.saved_names.iter().for_each(|(part, name)| part.set_name(&mut saved, name.clone()));
+        saved == *scene
     }
 
     /// The file holds another scene than was known.
     pub fn set_saved(&mut self, scene: Scene) {
         self.saved = scene;
+        self.saved_names.clear();
         self.differs.take();
     }
 
     /// The id of an object, by its index.
     #[must_use]
     pub fn object_id(&self, index: usize) -> Option<PartId> {
-        self.ids.objects.get(index).copied()
+        self.labels.objects.get(index).map(|label| label.id)
     }
 
     /// The index of an object, by its id.
@@ -232,7 +260,7 @@ impl Document {
     /// The id of a light, by its index.
     #[must_use]
     pub fn light_id(&self, index: usize) -> Option<PartId> {
-        self.ids.lights.get(index).copied()
+        self.labels.lights.get(index).map(|label| label.id)
     }
 
     /// The index of a light, by its id.
@@ -245,7 +273,7 @@ impl Document {
         self.visits.add(1);
         self.index.get_or_init(|| {
             self.visits.add(self.scene.lights.len() + self.scene.objects.len());
-            Index::of(&self.scene, &self.ids)
+            Index::of(&self.scene, &self.labels)
         })
     }
 
@@ -264,17 +292,24 @@ impl Document {
         selection: Selection,
         change: impl FnOnce(&mut Scene),
     ) {
-        self.step(name.into(), extent, selection, |document| change(&mut document.scene));
+        self.step(name.into(), extent, selection, None, |document| change(&mut document.scene));
     }
 
     /// Changes a part of the document, as one step.
-    fn step(&mut self, name: String, part: Extent, selection: Selection, change: impl FnOnce(&mut Self)) {
-        let patch = self.patch(part, change);
+    fn step(
+        &mut self,
+        name: String,
+        part: Extent,
+        selection: Selection,
+        registry: Option<&Registry>,
+        change: impl FnOnce(&mut Self),
+    ) {
+        let patch = self.patch(part, registry, change);
         self.history.record(name, self.gesture, patch, selection);
     }
 
     /// Changes a part of the document. Returns the difference.
-    fn patch(&mut self, part: Extent, change: impl FnOnce(&mut Self)) -> Patch {
+    fn patch(&mut self, part: Extent, registry: Option<&Registry>, change: impl FnOnce(&mut Self)) -> Patch {
         let (patch, moved) = match part {
             Extent::Rest => {
                 let old = rest_of(&self.scene);
@@ -282,28 +317,38 @@ impl Document {
                 (Patch::of_rest(old, rest_of(&self.scene)), false)
             }
             Extent::Light(i) => {
-                let Some((old, id)) = self.scene.lights.get(i).cloned().zip(self.light_id(i)) else {
+                let Some(old) = self.labels.lights.get(i).copied().zip(self.scene.lights.get(i).cloned())
+                else {
                     return Patch::default();
                 };
                 change(self);
-                let new = self.scene.lights[i].clone();
-                let retyped = old.light_type != new.light_type;
-                (Patch::of_light(i, id, old, new), retyped)
+                let retyped = old.1.light_type != self.scene.lights[i].light_type;
+                if retyped {
+                    self.labels.lights[i].number = 0;
+                    self.number_parts(registry);
+                }
+                let new = (self.labels.lights[i], self.scene.lights[i].clone());
+                (Patch::of_light(i, old, new), retyped)
             }
             Extent::Object(i) => {
-                let Some((old, id)) = self.scene.objects.get(i).cloned().zip(self.object_id(i)) else {
+                let Some(old) = self.labels.objects.get(i).copied().zip(self.scene.objects.get(i).cloned())
+                else {
                     return Patch::default();
                 };
                 change(self);
-                let new = self.scene.objects[i].clone();
-                let retyped = old.object_type != new.object_type;
-                (Patch::of_object(i, id, old, new), retyped)
+                let retyped = old.1.object_type != self.scene.objects[i].object_type;
+                if retyped {
+                    self.labels.objects[i].number = 0;
+                    self.number_parts(registry);
+                }
+                let new = (self.labels.objects[i], self.scene.objects[i].clone());
+                (Patch::of_object(i, old, new), retyped)
             }
             Extent::All => {
-                let (old, ids) = (self.scene.clone(), self.ids.clone());
+                let (old, labels) = (self.scene.clone(), self.labels.clone());
                 change(self);
-                self.give_ids();
-                (Patch::between((&old, &ids), (&self.scene, &self.ids)), true)
+                self.label_parts(registry);
+                (Patch::between((&old, &labels), (&self.scene, &self.labels)), true)
             }
         };
         if !patch.is_empty() {
@@ -312,84 +357,34 @@ impl Document {
         patch
     }
 
-    /// Every part has an id, whatever a change did to the lists.
-    fn give_ids(&mut self) {
-        self.ids.lights.truncate(self.scene.lights.len());
-        self.ids.objects.truncate(self.scene.objects.len());
-        while self.ids.lights.len() < self.scene.lights.len() {
-            let id = self.next_id();
-            self.ids.lights.push(id);
+    /// Every part has a label, whatever a change did to the lists.
+    fn label_parts(&mut self, registry: Option<&Registry>) {
+        let (lights, objects) = (self.scene.lights.len(), self.scene.objects.len());
+        self.labels.lights.truncate(lights);
+        self.labels.objects.truncate(objects);
+        while self.labels.lights.len() < lights {
+            let label = self.next_label();
+            self.labels.lights.push(label);
         }
-        while self.ids.objects.len() < self.scene.objects.len() {
-            let id = self.next_id();
-            self.ids.objects.push(id);
+        while self.labels.objects.len() < objects {
+            let label = self.next_label();
+            self.labels.objects.push(label);
         }
+        self.number_parts(registry);
     }
 
     /// Changes an object as a consequence of the last step, which undoes it too.
     pub fn go_on(&mut self, object: usize, change: impl FnOnce(&mut Object)) {
         let patch =
-            self.patch(Extent::Object(object), |document| change(&mut document.scene.objects[object]));
+            self.patch(Extent::Object(object), None, |document| change(&mut document.scene.objects[object]));
         self.history.go_on(patch);
     }
 
     /// Changes values without a step, as models that come and go require.
     pub fn amend(&mut self, change: impl FnOnce(&mut Scene)) {
         change(&mut self.scene);
-        self.give_ids();
+        self.label_parts(None);
         self.touch(Extent::All, true);
-    }
-
-    /// Replaces the scene by another version of it, as one step: parts that are equal, or have the same name, or else the
-    /// same place, keep their ids.
-    pub fn replace(&mut self, name: impl Into<String>, selection: Selection, scene: Scene) {
-        let lights =
-            self.matched(&self.scene.lights, &scene.lights, &self.ids.lights, |l: &Light| l.name.as_deref());
-        let objects = self
-            .matched(&self.scene.objects, &scene.objects, &self.ids.objects, |o: &Object| o.name.as_deref());
-        let ids = Ids {
-            lights: lights.into_iter().map(|id| id.unwrap_or_else(|| self.next_id())).collect(),
-            objects: objects.into_iter().map(|id| id.unwrap_or_else(|| self.next_id())).collect(),
-        };
-        self.step(name.into(), Extent::All, selection, |document| {
-            (document.scene, document.ids) = (scene, ids);
-        });
-    }
-
-    /// The ids of the parts of a new list that are parts of the old one.
-    fn matched<T: PartialEq>(
-        &self,
-        old: &[T],
-        new: &[T],
-        ids: &[PartId],
-        name: impl Fn(&T) -> Option<&str>,
-    ) -> Vec<Option<PartId>> {
-        let [gone, middle] = difference([old.len(), new.len()], |i, j| old[i] == new[j]);
-        let mut found = vec![None; new.len()];
-        let mut free: Vec<bool> = vec![false; old.len()];
-        free[gone.clone()].fill(true);
-        (0..gone.start).for_each(|i| found[i] = Some(ids[i]));
-        (middle.end..new.len()).zip(gone.end..old.len()).for_each(|(i, j)| found[i] = Some(ids[j]));
-        // In a file of thousands of new parts, place decides.
-        const MOST: usize = 2000;
-        let few = middle.len() <= MOST && gone.len() <= MOST;
-        let same: [&dyn Fn(&T, &T) -> bool; 2] =
-            [&|a, b| a == b, &|a, b| name(a).is_some() && name(a) == name(b)];
-        for same in same.into_iter().filter(|_| few) {
-            for i in middle.clone() {
-                if found[i].is_none()
-                    && let Some(j) = gone.clone().find(|j| free[*j] && same(&old[*j], &new[i]))
-                {
-                    (found[i], free[j]) = (Some(ids[j]), false);
-                }
-            }
-        }
-        for i in middle {
-            if found[i].is_none() && free.get(i) == Some(&true) {
-                (found[i], free[i]) = (Some(ids[i]), false);
-            }
-        }
-        found
     }
 
     // ── steps ──
@@ -413,7 +408,7 @@ impl Document {
     /// Undoes the last step. Returns its name and the selection before it.
     pub fn undo(&mut self) -> Option<(String, Selection)> {
         self.end_gesture();
-        let (name, selection, part) = self.history.undo(&mut self.scene, &mut self.ids)?;
+        let (name, selection, part) = self.history.undo(&mut self.scene, &mut self.labels)?;
         self.touch(part, part != Extent::Rest);
         Some((name, selection))
     }
@@ -421,7 +416,7 @@ impl Document {
     /// Redoes the step that was undone last. Returns its name and the selection after it.
     pub fn redo(&mut self) -> Option<(String, Selection)> {
         self.end_gesture();
-        let (name, selection, part) = self.history.redo(&mut self.scene, &mut self.ids)?;
+        let (name, selection, part) = self.history.redo(&mut self.scene, &mut self.labels)?;
         self.touch(part, part != Extent::Rest);
         Some((name, selection))
     }

@@ -1,9 +1,9 @@
 //! The names of the parts of a scene. A part without a name is called by its type and number, and keeps that name for
-//! life: it is written down when others come and go.
+//! life: where others came or went, it is written into the file.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
-use super::{Document, Selection, index::numbers};
+use super::{Document, Extent, Selection, history::Label};
 use crate::{registry::Registry, scene::Scene};
 
 impl Document {
@@ -15,20 +15,18 @@ impl Document {
             Selection::Observer => "Observer".to_owned(),
             Selection::Light(i) => {
                 let Some(light) = self.lights.get(i) else { return "light".to_owned() };
-                let number = || self.index().lights.number(i);
-                name(&light.name, light_type(&light.light_type, registry), number)
+                name(&light.name, light_type(&light.light_type, registry), self.labels.lights[i].number)
             }
             Selection::Object(i) => {
                 let Some(object) = self.objects.get(i) else { return "object".to_owned() };
-                let number = || self.index().objects.number(i);
-                name(&object.name, object_type(&object.object_type, registry), number)
+                name(&object.name, object_type(&object.object_type, registry), self.labels.objects[i].number)
             }
         }
     }
 }
 
-fn name(own: &Option<String>, type_name: &str, number: impl FnOnce() -> usize) -> String {
-    own.clone().unwrap_or_else(|| format!("{type_name} {}", number()))
+fn name(own: &Option<String>, type_name: &str, number: usize) -> String {
+    own.clone().unwrap_or_else(|| format!("{type_name} {number}"))
 }
 
 fn light_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
@@ -46,52 +44,108 @@ pub fn free_name(scene: &Scene, name: &str) -> String {
     let names: HashSet<_> = (scene.lights.iter().filter_map(|l| l.name.as_deref()))
         .chain(scene.objects.iter().filter_map(|o| o.name.as_deref()))
         .collect();
-    next(stem, 2, |name| names.contains(name))
+    (2..).map(|n| format!("{stem} {n}")).find(|name| !names.contains(name.as_str())).unwrap_or_default()
 }
 
-fn next(stem: &str, first: usize, taken: impl Fn(&str) -> bool) -> String {
-    (first..).map(|n| format!("{stem} {n}")).find(|name| !taken(name)).unwrap_or_default()
+/// Gives every part without a number the first that is free above all of its type. `type_of` is the type of the part
+/// in a place; `taken` is true if a part has the name of that type and number.
+pub(super) fn number<'a>(
+    labels: &mut [Label],
+    type_of: impl Fn(usize) -> &'a str,
+    taken: impl Fn(&str, usize) -> bool,
+) {
+    if labels.iter().all(|label| label.number != 0) {
+        return;
+    }
+    let mut highest: HashMap<&str, usize> = HashMap::new();
+    for (i, label) in labels.iter().enumerate() {
+        let highest = highest.entry(type_of(i)).or_default();
+        *highest = label.number.max(*highest);
+    }
+    for (i, label) in labels.iter_mut().enumerate().filter(|(_, label)| label.number == 0) {
+        let id = type_of(i);
+        let highest = highest.entry(id).or_default();
+        *highest = (*highest + 1..).find(|n| !taken(id, *n)).unwrap_or_default();
+        label.number = *highest;
+    }
 }
 
-/// The names of all lights and objects; none for one that is to get a new name.
-pub(super) struct Names {
-    pub(super) lights: Vec<Option<String>>,
-    pub(super) objects: Vec<Option<String>>,
+/// True if a part of the scene was given this name.
+fn is_given(scene: &Scene, name: &str) -> bool {
+    scene.lights.iter().any(|l| l.name.as_deref() == Some(name))
+        || scene.objects.iter().any(|o| o.name.as_deref() == Some(name))
 }
 
-impl Names {
-    pub(super) fn of(scene: &Scene, registry: &Registry) -> Self {
-        let lights = scene.lights.iter().map(|l| (&l.name, light_type(&l.light_type, registry)));
-        let objects = scene.objects.iter().map(|o| (&o.name, object_type(&o.object_type, registry)));
-        Self { lights: numbered(lights), objects: numbered(objects) }
+impl Document {
+    /// Every part has a number, whatever a change did to lists and types. With a registry, none gets the name that
+    /// another part was given.
+    pub(super) fn number_parts(&mut self, registry: Option<&Registry>) {
+        let Self { scene, labels, .. } = self;
+        let taken = |id: &str, type_name: fn(&str, &Registry) -> String, n: usize| {
+            registry.is_some_and(|r| is_given(scene, &format!("{} {n}", type_name(id, r))))
+        };
+        let light = |id: &str, n| taken(id, |id, r| light_type(id, r).to_owned(), n);
+        let object = |id: &str, n| taken(id, |id, r| object_type(id, r).to_owned(), n);
+        number(&mut labels.lights, |i| &scene.lights[i].light_type, light);
+        number(&mut labels.objects, |i| &scene.objects[i].object_type, object);
     }
 
-    /// Writes down what would change otherwise, and gives a new part a number that no other has.
-    pub(super) fn keep(self, scene: &mut Scene, registry: &Registry) {
-        let now = Self::of(scene, registry);
-        let known = self.lights.iter().chain(&self.objects).flatten();
-        let mut taken: HashSet<String> = known.cloned().collect();
-        let lights = scene.lights.iter_mut().map(|l| &mut l.name).zip(self.lights).zip(now.lights);
-        let objects = scene.objects.iter_mut().map(|o| &mut o.name).zip(self.objects).zip(now.objects);
-        for ((name, before), now) in lights.chain(objects) {
-            let now = now.unwrap_or_default();
-            match before {
-                _ if name.is_some() => {}
-                Some(before) if before == now => {}
-                Some(before) => *name = Some(before),
-                None if taken.insert(now.clone()) => {}
-                None => {
-                    let (stem, number) = now.rsplit_once(' ').unwrap_or((&now, ""));
-                    let free = next(stem, number.parse().unwrap_or(2), |name| taken.contains(name));
-                    taken.insert(free.clone());
-                    *name = Some(free);
-                }
-            }
+    /// A part that lost its name is not called as another that was given such a name.
+    pub(super) fn number_again(&mut self, part: Selection, registry: &Registry) {
+        let name = match part {
+            Selection::Light(i) => &self.scene.lights[i].name,
+            Selection::Object(i) => &self.scene.objects[i].name,
+            Selection::Room | Selection::Observer => return,
+        };
+        if name.is_some() || !is_given(&self.scene, &self.name_of(part, registry)) {
+            return;
         }
+        match part {
+            Selection::Light(i) => self.labels.lights[i].number = 0,
+            Selection::Object(i) => self.labels.objects[i].number = 0,
+            Selection::Room | Selection::Observer => {}
+        }
+        self.number_parts(Some(registry));
     }
-}
 
-fn numbered<'a>(parts: impl Iterator<Item = (&'a Option<String>, &'a str)> + Clone) -> Vec<Option<String>> {
-    let numbers = numbers(parts.clone().map(|(_, type_name)| type_name));
-    parts.zip(numbers).map(|((own, type_name), number)| Some(name(own, type_name, || number))).collect()
+    /// The name that a part without one needs in a file, since a reader would give it another: parts of the same type have
+    /// gone or come before it.
+    fn written_name(&self, part: Extent, registry: &Registry) -> Option<String> {
+        let (own, number, read, part) = match part {
+            Extent::Light(i) => {
+                let label = self.labels.lights.get(i)?;
+                (&self.lights[i].name, label.number, self.index().lights.number(i), Selection::Light(i))
+            }
+            Extent::Object(i) => {
+                let label = self.labels.objects.get(i)?;
+                (&self.objects[i].name, label.number, self.index().objects.number(i), Selection::Object(i))
+            }
+            Extent::Rest | Extent::All => return None,
+        };
+        (own.is_none() && number != read).then(|| self.name_of(part, registry))
+    }
+
+    /// All names that only the file has.
+    pub(super) fn written_names(&self, registry: &Registry) -> Vec<(Extent, String)> {
+        let lights = (0..self.lights.len()).map(Extent::Light);
+        let parts = lights.chain((0..self.objects.len()).map(Extent::Object));
+        parts.filter_map(|part| Some((part, self.written_name(part, registry)?))).collect()
+    }
+
+    /// Writes the names that only the file has into a copy of the scene.
+    pub fn write_names(&self, part: Extent, copy: &mut Scene, registry: &Registry) {
+        let names = match part {
+            Extent::All => self.written_names(registry),
+            one => self.written_name(one, registry).map(|name| (one, name)).into_iter().collect(),
+        };
+        names.into_iter().for_each(|(part, name)| part.set_name(copy, name));
+    }
+
+    /// The scene as a file has it: parts without a name keep theirs, as far as a reader would give them another.
+    #[must_use]
+    pub fn named(&self, registry: &Registry) -> Scene {
+        let mut named = self.scene.clone();
+        self.write_names(Extent::All, &mut named, registry);
+        named
+    }
 }

@@ -2,18 +2,21 @@
 
 use glam::Vec3;
 
-use super::{Document, Edit, LightField, ObjectField, Selection, limits};
+use super::{Document, Edit, LightField, ObjectField, Selection};
 use crate::{
     parameter::{Parameter, Value},
     registry::Registry,
-    scene::{Object, Scene, check},
+    scene::{
+        Object, Scene, check,
+        limits::{self, Limits},
+    },
 };
 
 impl Document {
     /// The limits of one extent of the room.
     #[must_use]
-    pub fn dimension_limits(&self, axis: usize, registry: &Registry) -> limits::Limits {
-        limits::dimension(&self.scene, axis, |part| self.name_of(part, registry))
+    pub fn dimension_limits(&self, axis: usize, registry: &Registry) -> Limits {
+        dimension(&self.scene, axis, |part| self.name_of(part, registry))
     }
 
     /// Checks an edit against the rules of scenes, with the limits that widgets show.
@@ -24,7 +27,7 @@ impl Document {
         let known = |yes: bool, what: &str, id: &str| {
             if yes { Ok(()) } else { Err(format!("There is no {what} called “{id}”.")) }
         };
-        let legal = |what: String, value: f32, limits: limits::Limits| {
+        let legal = |what: String, value: f32, limits: Limits| {
             if limits.allows(f64::from(value)) {
                 return Ok(());
             }
@@ -59,7 +62,10 @@ impl Document {
             .find(|p| p.name == id)
         {
             Some(p) if p.allows(value) => Ok(()),
-            Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
+            Some(p) => Err(match value {
+                Value::File(file) => file.problem().unwrap_or_default() + ".",
+                _ => format!("{} is {value}, but must be {}.", p.label, p.rule()),
+            }),
             None => Err(format!("{} has no parameter “{id}”.", name(part))),
         };
         let direction = |part: Selection, d: Vec3| {
@@ -175,4 +181,32 @@ fn places(scene: &Scene) -> impl Iterator<Item = (Selection, Vec3)> + '_ {
 /// two lights or two objects may share theirs.
 fn may_not_meet(a: Selection, b: Selection) -> bool {
     std::mem::discriminant(&a) != std::mem::discriminant(&b)
+}
+
+/// An extent of the room, metres: what stands in the room must stay in it. `name` is what the user
+/// calls a part of the scene.
+fn dimension(scene: &Scene, axis: usize, name: impl Fn(Selection) -> String) -> Limits {
+    let at = |p: Vec3| p.to_array()[axis.min(2)];
+    let lights =
+        scene.lights.iter().enumerate().filter_map(|(i, l)| Some((Selection::Light(i), l.position?)));
+    let objects = scene.objects.iter().enumerate().map(|(i, o)| (Selection::Object(i), o.position));
+    let furthest = lights
+        .chain(objects)
+        .chain([(Selection::Observer, scene.observer.position)])
+        .map(|(who, p)| (who, at(p)))
+        .filter(|(_, c)| c.is_finite())
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    let any = limits::dimension();
+    match furthest {
+        Some((who, c)) if c > 0.0 && any.allows(f64::from(c)) => Limits {
+            because: Some(format!(
+                "{} stands at {} = {} m",
+                name(who),
+                ["x", "y", "z"][axis.min(2)],
+                limits::number(f64::from(c))
+            )),
+            ..Limits::between(f64::from(c), any.max).slider(0.0, any.max)
+        },
+        _ => any,
+    }
 }

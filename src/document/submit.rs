@@ -1,6 +1,9 @@
 //! Changes of the scene by systems: checked part by part, and recorded as one step as long as they follow each other.
 
-use super::{Document, Extent, Patch, Selection, history::rest_of};
+use super::{
+    Document, Extent, Patch, Selection,
+    history::{Label, Labels, rest_of},
+};
 use crate::{
     registry::Registry,
     scene::{Observer, Scene, check, error::Problem},
@@ -11,6 +14,7 @@ use crate::{
 const SYSTEMS: u64 = u64::MAX;
 /// The name of the step.
 const BY_SYSTEM: &str = "Change by a system";
+
 impl Document {
     /// Adopts what a system changed in these parts, if the rules of scenes allow it. All such changes that follow each
     /// other are one step: a system may change something in every frame.
@@ -26,13 +30,15 @@ impl Document {
     ) -> Result<(), String> {
         self.adopt(scene, parts, registry, |document| {
             if parts.contains(&Extent::All) {
-                document.replace(BY_SYSTEM, selection, scene.clone());
+                document.replace(BY_SYSTEM, selection, scene.clone(), registry);
                 return;
             }
             let mut all = Patch::default();
             for part in parts {
                 // A part that is changed twice is one of one place.
-                let _ = all.join(document.patch(*part, |document| part.copy(scene, &mut document.scene)));
+                let _ = all.join(
+                    document.patch(*part, Some(registry), |document| part.copy(scene, &mut document.scene)),
+                );
             }
             document.history.record(BY_SYSTEM.to_owned(), document.gesture, all, selection);
         })
@@ -51,38 +57,17 @@ impl Document {
         registry: &Registry,
     ) -> Result<(), String> {
         self.adopt(scene, &[Extent::All], registry, |document| {
-            document.change_parts(BY_SYSTEM.to_owned(), selection, registry, |document, names| {
-                let place = |part: &Extent| match *part {
-                    Extent::Light(i) => [Some(i), None],
-                    Extent::Object(i) => [None, Some(i)],
-                    Extent::Rest | Extent::All => [None, None],
+            document.step(BY_SYSTEM.to_owned(), Extent::All, selection, Some(registry), |document| {
+                let gone = |of: fn(Extent) -> Option<usize>| -> Vec<_> {
+                    removed.iter().filter_map(|part| of(*part)).collect()
                 };
-                let stay = |list: usize, count: usize| {
-                    let mut stays = vec![true; count];
-                    for i in removed.iter().filter_map(|part| place(part)[list]).filter(|i| *i < count) {
-                        stays[i] = false;
-                    }
-                    (0..count).filter(move |i| stays[*i])
-                };
-                let Self { scene: old, ids, .. } = document;
-                let (lights, objects): (Vec<_>, Vec<_>) =
-                    (stay(0, old.lights.len()).collect(), stay(1, old.objects.len()).collect());
-                ids.lights = lights.iter().map(|i| ids.lights[*i]).collect();
-                ids.objects = objects.iter().map(|i| ids.objects[*i]).collect();
-                // One of another type has another number.
-                names.lights = (lights.iter().zip(&scene.lights))
-                    .map(|(i, new)| {
-                        names.lights[*i].take().filter(|_| old.lights[*i].light_type == new.light_type)
-                    })
-                    .collect();
-                names.objects = (objects.iter().zip(&scene.objects))
-                    .map(|(i, new)| {
-                        names.objects[*i].take().filter(|_| old.objects[*i].object_type == new.object_type)
-                    })
-                    .collect();
-                names.lights.resize(scene.lights.len(), None);
-                names.objects.resize(scene.objects.len(), None);
-                document.scene = scene.clone();
+                let lights = kept(&document.labels.lights, &gone(light), |i, j| {
+                    Some(document.scene.lights[i].light_type == scene.lights.get(j)?.light_type)
+                });
+                let objects = kept(&document.labels.objects, &gone(object), |i, j| {
+                    Some(document.scene.objects[i].object_type == scene.objects.get(j)?.object_type)
+                });
+                (document.scene, document.labels) = (scene.clone(), Labels { lights, objects });
             });
         })
     }
@@ -131,4 +116,29 @@ impl Document {
         let objects = (0..scene.objects.len()).map(Extent::Object);
         lights.chain(objects).chain([Extent::Rest]).flat_map(|part| problems(&part)).next()
     }
+}
+
+fn light(part: Extent) -> Option<usize> {
+    if let Extent::Light(i) = part { Some(i) } else { None }
+}
+
+fn object(part: Extent) -> Option<usize> {
+    if let Extent::Object(i) = part { Some(i) } else { None }
+}
+
+/// The labels of the parts that stay. `same_type` compares the type of a part, by its old place, with that in its new
+/// one, if there is one: a part of another type gets another number.
+fn kept(labels: &[Label], gone: &[usize], same_type: impl Fn(usize, usize) -> Option<bool>) -> Vec<Label> {
+    let mut stays = vec![true; labels.len()];
+    for i in gone {
+        stays.get_mut(*i).into_iter().for_each(|stays| *stays = false);
+    }
+    (0..labels.len())
+        .filter(|i| stays[*i])
+        .enumerate()
+        .map_while(|(j, i)| {
+            let number = if same_type(i, j)? { labels[i].number } else { 0 };
+            Some(Label { number, ..labels[i] })
+        })
+        .collect()
 }

@@ -10,17 +10,20 @@ use glam::Vec3;
 
 use crate::{
     optics::colour::Encoding,
-    parameter::{Parameter, ParameterSet, Values, words},
+    parameter::{Parameter, ParameterSet, Table, Values, words},
     shader::Source,
 };
 
 mod ambient;
 mod directional;
+pub mod ies;
+mod photometric;
 mod point;
 mod spot;
 
 pub use ambient::Ambient;
 pub use directional::Directional;
+pub use photometric::Photometric;
 pub use point::Point;
 pub use spot::Spot;
 
@@ -34,6 +37,7 @@ pub trait Take {
 pub fn register_builtin(to: &mut impl Take) {
     to.take::<Point>();
     to.take::<Spot>();
+    to.take::<Photometric>();
     to.take::<Directional>();
     to.take::<Ambient>();
 }
@@ -56,7 +60,8 @@ pub struct Declaration {
     pub has_position: bool,
     /// True if it has a direction.
     pub has_direction: bool,
-    /// The unit of its intensity: `cd` or `lx`. For a type in `cd`, [`LightType::solid_angle`] converts it to lumen.
+    /// The unit of its intensity: `cd` or `lx`, or `×` for a factor of what it is by itself. Where there is a
+    /// [`LightType::solid_angle`], it converts the intensity to lumen.
     pub unit: &'static str,
     /// Its intensity if the scene gives none.
     pub default_intensity: f32,
@@ -185,6 +190,18 @@ impl LightEntry {
     #[must_use]
     pub fn words(&self, values: &Values, encoding: Encoding) -> Vec<u32> {
         if self.parameters.is_empty() { Vec::new() } else { words(self.parameters, values, encoding) }
+    }
+
+    /// The files of a light, each with the place of its parameter among the [`words`](Self::words).
+    #[must_use]
+    pub fn tables(&self, values: &Values) -> Vec<(usize, Table)> {
+        let mut at = 0;
+        let mut tables = Vec::new();
+        for p in self.parameters {
+            tables.extend(values.table(p).map(|table| (at, table)));
+            at += words(std::slice::from_ref(p), values, Encoding::default()).len();
+        }
+        tables
     }
 
     /// The number of [`words`](Self::words).

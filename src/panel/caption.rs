@@ -5,7 +5,7 @@ use std::{collections::BTreeSet, sync::Arc};
 use bevy_egui::egui::{Color32, FontId, Galley, Pos2, Ui, Vec2, pos2, vec2};
 
 use super::{maths, state::Session, theme};
-use crate::document::limits::number;
+use crate::scene::limits::number;
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::{Parameter, ParameterKind, Value},

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
 
 use super::state::{Badge, Clipping, Session, Severity};
-use crate::document::limits;
+use crate::scene::limits;
 
 /// The part of a picture that may clip without a sign: sharp highlights. New lights keep to it.
 pub const TOLERATED: f64 = 0.001;

@@ -13,7 +13,10 @@ use super::{
     state::{Action, Effect, ModelCommand, Session},
     theme::{self, Palette},
 };
-use crate::registry::Registry;
+use crate::{
+    parameter::{FileFormat, Parameter, ParameterKind},
+    registry::Registry,
+};
 
 /// Their share of the window.
 const SHARE: f32 = 0.7;
@@ -30,6 +33,10 @@ pub struct Dialogs {
     open: FileDialog,
     save: FileDialog,
     folder: FileDialog,
+    /// Chooses files for parameters of lights.
+    file: FileDialog,
+    /// The light and the parameter for which a file is chosen.
+    wanted: Option<(usize, &'static Parameter)>,
     /// The field of a dialog that had the focus at the end of the frame before.
     typed_into: Option<Field>,
     /// A key that is heard again in the next frame.
@@ -72,6 +79,8 @@ impl Default for Dialogs {
             open,
             save: dialog("Save the scene as", "save dialog"),
             folder,
+            file: FileDialog::new(),
+            wanted: None,
             typed_into: None,
             again: None,
             blank: 0,
@@ -79,11 +88,28 @@ impl Default for Dialogs {
     }
 }
 
+/// The dialog that chooses a file for a parameter.
+fn file_dialog(format: &FileFormat) -> FileDialog {
+    let extensions: Vec<_> = format.extensions.iter().map(|extension| format!("*.{extension}")).collect();
+    let filter = format!("Files ({})", extensions.join(", "));
+    let mut dialog = FileDialog::new()
+        .title(&format!("Choose {}", format.name))
+        .id("file dialog")
+        .add_file_filter_extensions(&filter, format.extensions.to_vec())
+        .default_file_filter(&filter)
+        .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0));
+    dialog.config_mut().show_new_folder_button = false;
+    dialog.config_mut().keybindings.new_folder.clear();
+    dialog
+}
+
 impl Dialogs {
     /// True if one is open.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        [&self.open, &self.save, &self.folder].into_iter().any(|d| *d.state() == DialogState::Open)
+        [&self.open, &self.save, &self.folder, &self.file]
+            .into_iter()
+            .any(|d| *d.state() == DialogState::Open)
     }
 
     /// Opens the dialog that is asked for; false if it is none.
@@ -95,6 +121,13 @@ impl Dialogs {
                 (&mut self.open, false)
             }
             Effect::PickSave => (&mut self.save, true),
+            Effect::PickFile(light, parameter) => {
+                self.wanted = Some((*light, *parameter));
+                if let ParameterKind::File { format, .. } = parameter.kind {
+                    self.file = file_dialog(format);
+                }
+                (&mut self.file, false)
+            }
             Effect::PickShaderFolder => {
                 self.folder.pick_directory();
                 return true;
@@ -138,7 +171,7 @@ impl Dialogs {
         let screen = ctx.content_rect().size();
         let narrow = screen.x < NARROW;
         let size = if narrow { ALL } else { SHARE } * screen;
-        for dialog in [&mut self.open, &mut self.save, &mut self.folder] {
+        for dialog in [&mut self.open, &mut self.save, &mut self.folder, &mut self.file] {
             let config = dialog.config_mut();
             (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
             // So much that the buttons below the list keep their room.
@@ -166,7 +199,11 @@ impl Dialogs {
             session.questions.not_saved();
         }
         self.folder.update(ctx);
-        for dialog in [&self.open, &self.save, &self.folder] {
+        self.file.update(ctx);
+        if let (Some(path), Some((light, parameter))) = (self.file.take_picked(), self.wanted) {
+            actions.extend(session.file_chosen(light, parameter, &path).map(Action::Edit));
+        }
+        for dialog in [&self.open, &self.save, &self.folder, &self.file] {
             let layer = LayerId::new(Order::Middle, dialog.get_window_id());
             lighten(ctx, layer, &palette);
             // It keeps the pointer to itself, but not the keys.

@@ -35,7 +35,7 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
             }
         },
         Effect::SaveFile { path, overwrite } => {
-            match files.save(&path, &session.document, registry, overwrite) {
+            match files.save(&path, &session.document.named(registry), registry, overwrite) {
                 Saved::Done => session.saved(path, registry),
                 Saved::ChangedOnDisk => {
                     session.questions.ask(Question::ChangedOnDisk { path });

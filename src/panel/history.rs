@@ -2,12 +2,7 @@
 
 use bevy_egui::egui::{self, Align, RichText, ScrollArea, Ui};
 
-use super::{
-    Panel, Place,
-    state::{Action, Session},
-    theme::Palette,
-};
-use crate::registry::Registry;
+use super::{Panel, PanelContext, Place, state::Action, theme::Palette};
 
 /// The id of the tab.
 pub const HISTORY_TAB: &str = "history";
@@ -29,8 +24,8 @@ impl Panel for History {
         Place::Bottom
     }
 
-    fn show(&self, ui: &mut Ui, session: &Session, _registry: &Registry) -> Vec<Action> {
-        let mut actions = Vec::new();
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, actions) = (context.session(), &mut context.actions);
         let palette = Palette::here(ui);
         let done = session.document.done();
         let steps: Vec<_> =
@@ -60,6 +55,5 @@ impl Panel for History {
                 }
             }
         });
-        actions
     }
 }

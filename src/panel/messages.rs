@@ -3,12 +3,11 @@
 use bevy_egui::egui::{self, Align, Layout, RichText, ScrollArea, Sense, Ui, vec2};
 
 use super::{
-    Panel, Place,
+    Panel, PanelContext, Place,
     icon::{self, Icon},
-    state::{Action, MESSAGES_TAB, Session},
+    state::{Action, MESSAGES_TAB},
     theme::Palette,
 };
-use crate::registry::Registry;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -27,13 +26,13 @@ impl Panel for Messages {
         Place::Bottom
     }
 
-    fn show(&self, ui: &mut Ui, session: &Session, _registry: &Registry) -> Vec<Action> {
-        let mut actions = Vec::new();
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, actions) = (context.session(), &mut context.actions);
         let palette = Palette::here(ui);
         if session.messages.is_empty() {
             ui.add_space(8.0);
             ui.weak("No messages. Problems with files, values and shaders appear here and stay until you dismiss them.");
-            return actions;
+            return;
         }
         ui.horizontal(|ui| {
             let all = || {
@@ -80,6 +79,5 @@ impl Panel for Messages {
                 });
             }
         });
-        actions
     }
 }

@@ -1,32 +1,34 @@
 //! The panels around the picture, in egui.
 //!
-//! A panel is a function of the state that returns actions ([`Panel`]); [`show`] lays the panels out,
+//! A panel reads the state of the window and answers with actions ([`Panel`]); [`show`] lays the panels out,
 //! applies their actions to the [`Session`] and returns the effects that need files, entities or the
 //! operating system. None of it needs a window.
 //!
 //! **To add one**: write `panel/x.rs` and add its name to [`register_builtin`]; a panel at the bottom
 //! gets a tab and an entry in the menu by itself. From outside the crate: [`PanelApp::add_panel`].
 
-use std::{ops::DerefMut, sync::Arc};
+use std::ops::DerefMut;
 
 use bevy::{
     app::{App, Plugin},
     ecs::{
-        change_detection::DetectChangesMut,
-        message::MessageWriter,
-        resource::Resource,
-        system::{Local, Res, ResMut},
+        change_detection::{DetectChangesMut, Mut},
+        message::Messages as Queue,
+        query::{QueryState, With},
+        system::Local,
+        world::World,
     },
 };
 use bevy_egui::{
-    EguiContexts, EguiPrimaryContextPass,
-    egui::{self, Button, Frame, Id, LayerId, Margin, Pos2, Rect, Ui, UiBuilder, vec2},
+    EguiContext, EguiPrimaryContextPass, PrimaryEguiContext,
+    egui::{self, Frame, Id, LayerId, Margin, Pos2, Rect, Ui, UiBuilder, vec2},
 };
 
 use crate::registry::Registry;
+pub use context::{Panel, PanelApp, PanelContext, Panels};
 pub use dialogs::Dialogs;
 use focus::Region;
-use state::{Action, Effect, LabEffect, PictureArea, SHADER_TAB, Session, Severity, ViewChange};
+use state::{Effect, LabEffect, PictureArea, Session};
 pub use state::{PanelInfo, Place};
 use theme::Palette;
 use widths::Widths;
@@ -35,12 +37,14 @@ pub mod author;
 pub mod caption;
 pub mod chooser;
 pub mod clipping;
+mod context;
 pub mod dialogs;
 pub mod effects;
 pub mod files;
 mod focus;
 pub mod follow;
 pub mod formula;
+mod glyphs;
 pub mod help;
 pub mod history;
 pub mod icon;
@@ -63,6 +67,7 @@ pub mod reload;
 pub mod segmented;
 pub mod settings;
 pub mod shader;
+mod sides;
 pub mod state;
 pub mod status;
 mod terms;
@@ -75,39 +80,13 @@ mod widths;
 
 /// The built-in panels, in the order in which they are laid out. The one list.
 pub fn register_builtin(to: &mut Panels) {
-    to.add(top::TopBar);
-    to.add(status::StatusLine);
-    to.add(messages::Messages);
-    to.add(shader::Shader);
-    to.add(history::History);
-    to.add(tree::Tree);
-    to.add(inspector::Inspector);
-}
-
-/// A part of the window: a function of the state that returns actions.
-pub trait Panel: Send + Sync + 'static {
-    /// A name that no other panel has.
-    fn id(&self) -> &'static str;
-    /// Its name for people.
-    fn title(&self) -> &'static str;
-    /// Its place.
-    fn place(&self) -> Place;
-    /// A note on its tab beside the title, such as the number of errors.
-    fn note(&self, _session: &Session) -> Option<(Severity, String)> {
-        None
-    }
-    /// Shows it. What the user does comes back as actions.
-    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action>;
-}
-
-/// The panels of the window.
-#[derive(Clone, Default, Resource)]
-pub struct Panels(Vec<Arc<dyn Panel>>);
-
-impl std::fmt::Debug for Panels {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_list().entries(self.0.iter().map(|p| p.id())).finish()
-    }
+    to.add_own(top::TopBar);
+    to.add_own(status::StatusLine);
+    to.add_own(messages::Messages);
+    to.add_own(shader::Shader);
+    to.add_own(history::History);
+    to.add_own(tree::Tree);
+    to.add_own(inspector::Inspector);
 }
 
 impl Panels {
@@ -118,49 +97,19 @@ impl Panels {
         register_builtin(&mut panels);
         panels
     }
-
-    /// Adds a panel; one with the same id is replaced.
-    pub fn add(&mut self, panel: impl Panel) {
-        let panel: Arc<dyn Panel> = Arc::new(panel);
-        match self.0.iter().position(|p| p.id() == panel.id()) {
-            Some(i) => self.0[i] = panel,
-            None => self.0.push(panel),
-        }
-    }
-
-    /// Their entries in menus.
-    pub fn infos(&self) -> impl Iterator<Item = PanelInfo> {
-        self.0.iter().map(|p| PanelInfo { id: p.id(), title: p.title(), place: p.place() })
-    }
-
-    fn at(&self, place: Place) -> impl Iterator<Item = &Arc<dyn Panel>> {
-        self.0.iter().filter(move |p| p.place() == place)
-    }
-}
-
-/// Adding panels to an app.
-pub trait PanelApp {
-    /// Adds a panel to the window.
-    fn add_panel(&mut self, panel: impl Panel) -> &mut Self;
-}
-
-impl PanelApp for App {
-    fn add_panel(&mut self, panel: impl Panel) -> &mut Self {
-        self.world_mut().get_resource_or_insert_with(Panels::builtin).add(panel);
-        self
-    }
 }
 
 /// Shows the window, applies what the user does, and returns the effects. `ui` covers the window. `session` is borrowed
 /// mutably only when something changes, `area` has the place of the picture in the frame before and gets that of this
-/// one.
+/// one. `world` is for panels to read.
 pub fn show(
     ui: &mut Ui,
     mut session: impl DerefMut<Target = Session>,
     area: &mut PictureArea,
     registry: &Registry,
-    panels: &Panels,
+    panels: &mut Panels,
     dialogs: &mut Dialogs,
+    world: &World,
 ) -> Vec<Effect> {
     let ctx = ui.ctx().clone();
     if !theme::apply(&ctx, &session.view) {
@@ -169,7 +118,14 @@ pub fn show(
     let style = ctx.global_style();
     ui.set_style(style);
     if !session.panels.iter().copied().eq(panels.infos()) {
+        let first = session.panels.is_empty();
         session.panels = panels.infos().collect();
+        // The panel of others that was open when the window was closed.
+        if let Some(tab) = session.view.guest_tab.clone().filter(|_| first)
+            && session.panels.iter().any(|panel| panel.id == tab)
+        {
+            session.view.unfold(&tab);
+        }
     }
     author::notice_shaders(&mut session, registry);
     let palette = Palette::of(&session.view);
@@ -177,7 +133,11 @@ pub fn show(
     chooser::closed(&ctx, &session);
     focus::reveal(&ctx);
     focus::forget_regions(&ctx);
-    let mut actions = if dialogs.is_open() { Vec::new() } else { keys::pressed(&ctx, &session, registry) };
+    let mut context = PanelContext::new(&session, registry, world);
+    let actions = &mut context.actions;
+    if !dialogs.is_open() {
+        actions.extend(keys::pressed(&ctx, &session, registry));
+    }
     actions.extend(presentation::left(&ctx, &session, area));
     actions.extend(welcome::left(&ctx, &session, area));
     actions.extend(help::show(&ctx, &session, registry));
@@ -189,18 +149,14 @@ pub fn show(
     if presenting {
         actions.extend(chooser::alone(&ctx, &session, registry));
     }
-    for panel in panels.at(Place::Top).filter(|_| !presenting) {
+    for (info, panel) in panels.at(Place::Top, &session).filter(|_| !presenting) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 4.0));
-        let shown = egui::Panel::top(panel.id())
-            .frame(frame)
-            .show(ui, |ui| actions.extend(panel.show(ui, &session, registry)));
+        let shown = egui::Panel::top(info.id).frame(frame).show(ui, |ui| panel.show(ui, &mut context));
         focus::region(&ctx, Region::Panel(Place::Top), shown.response.rect);
     }
-    for panel in panels.at(Place::Status).filter(|_| !presenting) {
+    for (info, panel) in panels.at(Place::Status, &session).filter(|_| !presenting) {
         let frame = theme::panel_frame(&palette, vec2(8.0, 2.0));
-        let shown = egui::Panel::bottom(panel.id())
-            .frame(frame)
-            .show(ui, |ui| actions.extend(panel.show(ui, &session, registry)));
+        let shown = egui::Panel::bottom(info.id).frame(frame).show(ui, |ui| panel.show(ui, &mut context));
         focus::region(&ctx, Region::Panel(Place::Status), shown.response.rect);
     }
     // Each size of everything has widths of its own. It takes effect a frame after it was chosen.
@@ -208,18 +164,14 @@ pub fn show(
     let widths = Widths::of(&ctx, &session, whole.width());
     let mut sizes = (widths.left.default, widths.right.default, session.view.bottom_height);
     if session.view.bottom_open && !presenting {
-        bottom(ui, &session, registry, panels, &palette, whole, &mut sizes.2, &mut actions);
+        sides::bottom(ui, &session, panels, &palette, whole, &mut sizes.2, &mut context);
     }
     if session.view.left_open && !presenting {
         let panel = egui::Panel::left(Id::new(("left", zoom)))
             .frame(theme::panel_frame(&palette, vec2(0.0, 4.0)))
             .default_size(widths.left.default)
             .size_range(widths.left.range);
-        let response = panel.show(ui, |ui| {
-            for panel in panels.at(Place::Left) {
-                actions.extend(panel.show(ui, &session, registry));
-            }
-        });
+        let response = panel.show(ui, |ui| sides::side(ui, Place::Left, &session, panels, &mut context));
         focus::region(&ctx, Region::Panel(Place::Left), response.response.rect);
         sizes.0 = response.response.rect.width();
     }
@@ -233,14 +185,12 @@ pub fn show(
             }))
             .default_size(widths.right.default)
             .size_range(widths.right.range);
-        let response = panel.show(ui, |ui| {
-            for panel in panels.at(Place::Right) {
-                actions.extend(panel.show(ui, &session, registry));
-            }
-        });
+        let response = panel.show(ui, |ui| sides::side(ui, Place::Right, &session, panels, &mut context));
         focus::region(&ctx, Region::Panel(Place::Right), response.response.rect);
         sizes.1 = response.response.rect.width();
     }
+    let (mut actions, commands) = context.into_parts();
+    panels.queue(commands);
     actions.extend(widths.dragged(&ctx, &session, sizes));
 
     if !presenting {
@@ -307,68 +257,6 @@ fn gesture_goes_on(ctx: &egui::Context) -> bool {
     ctx.input(|input| !input.pointer.any_released() && (typing || input.pointer.any_down()))
 }
 
-/// The least height of the strip with the shaders, points.
-const SHADER_STRIP: f32 = 184.0;
-
-/// The strip at the bottom. Tabs appear when there is more than one panel.
-#[allow(clippy::too_many_arguments)]
-fn bottom(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    panels: &Panels,
-    palette: &Palette,
-    whole: Rect,
-    height: &mut f32,
-    actions: &mut Vec<Action>,
-) {
-    let most = 0.6 * whole.height();
-    // An error with its line of source is seen whole.
-    let shader = session.view.bottom_tab == SHADER_TAB;
-    let least = if shader { SHADER_STRIP } else { 72.0 };
-    let zoom = zoom_percent(ui.ctx());
-    let strip = egui::Panel::bottom(Id::new(("bottom", zoom, shader)))
-        .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
-        .resizable(true)
-        .default_size(height.max(least).min(most))
-        .size_range(least.min(most)..=most);
-    let response = strip.show(ui, |ui| {
-        let tabs: Vec<_> = panels.at(Place::Bottom).collect();
-        let shown = tabs.iter().find(|p| p.id() == session.view.bottom_tab).or(tabs.first());
-        ui.horizontal(|ui| {
-            for panel in &tabs {
-                let on = shown.is_some_and(|s| s.id() == panel.id());
-                let text = theme::strong(ui, panel.title());
-                let text = if on { text } else { text.color(palette.weak) };
-                if tabs.len() == 1 {
-                    ui.label(text);
-                    continue;
-                }
-                let mut button = Button::selectable(on, text);
-                if let Some((severity, note)) = panel.note(session) {
-                    button = button.right_text(theme::strong(ui, note).color(palette.severity(severity)));
-                }
-                if ui.add(button).clicked() {
-                    actions.push(Action::View(ViewChange::BottomTab(panel.id().to_owned())));
-                }
-            }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if icon::button(ui, icon::Icon::Down, "Fold the strip away (F8)").clicked() {
-                    actions.push(Action::View(ViewChange::Bottom(false)));
-                }
-            });
-        });
-        if let Some(panel) = shown {
-            actions.extend(panel.show(ui, session, registry));
-        }
-        ui.take_available_height();
-    });
-    focus::region(ui.ctx(), Region::Panel(Place::Bottom), response.response.rect);
-    if response.response.rect.height() > least + 1.0 {
-        *height = response.response.rect.height();
-    }
-}
-
 /// The areas that keep the pointer from the picture, as they were shown last.
 #[derive(Clone, Debug, Default)]
 struct Cover {
@@ -430,25 +318,32 @@ impl Plugin for PanelPlugin {
     }
 }
 
-/// Shows the panels in the primary egui context. Does nothing while there is none.
+/// Shows the panels in the primary egui context, and carries out the commands that they queue. Does nothing while there
+/// is none. Exclusive, so that panels can read the world.
 pub fn show_panels(
-    mut contexts: EguiContexts,
-    session: ResMut<Session>,
-    mut area: ResMut<PictureArea>,
-    registry: Res<Registry>,
-    panels: Res<Panels>,
+    world: &mut World,
+    contexts: &mut QueryState<&mut EguiContext, With<PrimaryEguiContext>>,
     mut dialogs: Local<Dialogs>,
-    mut effects: MessageWriter<LabEffect>,
 ) {
-    let Ok(ctx) = contexts.ctx_mut() else { return };
-    let ctx = ctx.clone();
+    let Some(mut context) = contexts.iter_mut(world).next() else { return };
+    let ctx = context.get_mut().clone();
     let mut ui = Ui::new(
         ctx.clone(),
         Id::new("lab"),
         UiBuilder::new().layer_id(LayerId::background()).max_rect(ctx.viewport_rect()),
     );
-    let mut now = area.clone();
-    let asked = show(&mut ui, session, &mut now, &registry, &panels, &mut dialogs);
-    effects.write_batch(asked.into_iter().map(LabEffect));
-    area.set_if_neq(now);
+    let mut area = world.resource::<PictureArea>().clone();
+    let commands = world.resource_scope(|world, mut panels: Mut<Panels>| {
+        let effects = world.resource_scope(|world, session: Mut<Session>| {
+            world.resource_scope(|world, registry: Mut<Registry>| {
+                show(&mut ui, session, &mut area, &registry, &mut panels, &mut dialogs, world)
+            })
+        });
+        world.resource_mut::<Queue<LabEffect>>().write_batch(effects.into_iter().map(LabEffect));
+        panels.take_queued()
+    });
+    world.resource_mut::<PictureArea>().set_if_neq(area);
+    for command in commands {
+        command(world);
+    }
 }

@@ -5,7 +5,6 @@ use glam::{Quat, Vec3};
 
 use super::clipping;
 use crate::{
-    document::limits::significant,
     light::LightEntry,
     optics::{
         colour::{srgb_decode, srgb_encode},
@@ -14,6 +13,7 @@ use crate::{
     parameter::Values,
     reference,
     registry::Registry,
+    scene::limits::significant,
     scene::{DEFAULT_SIZE, Light, Object, Observer, Scene, observer::WIDE},
 };
 
@@ -204,12 +204,12 @@ impl<'a> Stand<'a> {
         self.eye + ahead * (middle - self.eye).dot(ahead).max(near)
     }
 
-    /// True if a sphere is in the view, nearly whole.
+    /// True if a sphere is in the view, whole.
     fn sees(&self, p: Vec3, radius: f32) -> bool {
         let seen = self.turn.inverse() * (p - self.eye);
         let [across, up] = self.opening();
         let within = |side: f32, opening: f32| {
-            (opening * -seen.z - side.abs()) / (1.0 + opening * opening).sqrt() >= 0.9 * radius
+            (opening * -seen.z - side.abs()) / (1.0 + opening * opening).sqrt() >= radius
         };
         -seen.z > radius + 0.1 && within(seen.x, across) && within(seen.y, up)
     }

@@ -40,10 +40,12 @@ pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &m
         }
         Looked::Gone => doubt(session, files, path, None, Vec::new()),
         Looked::Changed { version, content } => match content {
-            Opened::Scene(scene) => take(session, files, path, version, (*scene, Vec::new()), discard),
+            Opened::Scene(scene) => {
+                take(session, registry, files, path, version, (*scene, Vec::new()), discard)
+            }
             Opened::Incomplete { scene, parts } if session.may_default(&parts) => {
                 let names = parts.into_iter().map(|p| p.name).collect();
-                take(session, files, path, version, (*scene, names), discard)
+                take(session, registry, files, path, version, (*scene, names), discard)
             }
             Opened::Incomplete { parts, .. } => {
                 let lacks = |p: MissingPart| {
@@ -64,15 +66,17 @@ pub fn look(session: &mut Session, registry: &Registry, discard: bool, files: &m
 /// There is another legal scene in the file, with defaults for the parts that are named.
 fn take(
     session: &mut Session,
+    registry: &Registry,
     files: &mut dyn Files,
     path: PathBuf,
     version: Stamp,
     (scene, defaulted): (Scene, Vec<String>),
     discard: bool,
 ) -> Vec<Effect> {
+    let news = session.document.named(registry) != scene;
     // The file from which a recovered document began is not known.
-    let edited = (session.disk.recovered || session.document.differs()) && session.document != scene;
-    if edited && !discard && (session.disk.recovered || scene != *session.document.saved()) {
+    let edited = (session.disk.recovered || session.document.differs()) && news;
+    if edited && !discard && (session.disk.recovered || !session.document.was_saved_as(&scene)) {
         if session.disk.asked != Some(Some(version)) {
             session.disk_settled();
             session.disk.asked = Some(Some(version));
@@ -86,8 +90,7 @@ fn take(
         // Only the layout of the file is another: what is in it is what the changes began with.
         return Vec::new();
     }
-    let news = session.document != scene;
-    session.reloaded(scene, defaulted);
+    session.reloaded(scene, defaulted, registry);
     if news {
         session.say_of_disk(Severity::Info, format!("{} was reloaded: it changed on disk.", path.display()));
     }
@@ -143,7 +146,7 @@ fn doubt(
 impl Session {
     /// The scene in the document's file becomes the document. Camera and terms stay as they are, and so
     /// does the selection where it still means something.
-    fn reloaded(&mut self, scene: Scene, defaulted: Vec<String>) {
+    fn reloaded(&mut self, scene: Scene, defaulted: Vec<String>, registry: &Registry) {
         let id = match self.selection {
             Selection::Light(i) => self.document.light_id(i),
             Selection::Object(i) => self.document.object_id(i),
@@ -152,10 +155,9 @@ impl Session {
         if self.document.reflection_model != scene.reflection_model {
             self.model_slots.take(&scene.reflection_model);
         }
-        self.document.set_saved(scene.clone());
         let before = self.document.revision();
-        self.document.replace("Reload from disk", self.selection, scene);
-        self.document.end_gesture();
+        self.document.replace("Reload from disk", self.selection, scene, registry);
+        self.document.mark_saved(registry);
         let selection = match self.selection {
             Selection::Light(i) => {
                 let last = self.document.lights.len().checked_sub(1);

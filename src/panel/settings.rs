@@ -32,6 +32,12 @@ pub struct Settings {
     pub right_width: f32,
     /// Height of the strip at the bottom, points.
     pub bottom_height: f32,
+    /// Ids of the panels of others that are hidden.
+    pub hidden_panels: Vec<String>,
+    /// Ids of the panels of others that are folded.
+    pub folded_panels: Vec<String>,
+    /// Id of the panel of others that the strip at the bottom shows.
+    pub guest_tab: Option<String>,
     /// Files opened or saved, latest first.
     pub recent_files: Vec<PathBuf>,
 }
@@ -64,6 +70,9 @@ impl Default for Settings {
             left_width: view.left_width,
             right_width: view.right_width,
             bottom_height: view.bottom_height,
+            hidden_panels: view.hidden_panels,
+            folded_panels: view.folded_panels,
+            guest_tab: view.guest_tab,
             recent_files: Vec::new(),
         }
     }
@@ -148,6 +157,9 @@ impl Session {
             left_width: self.view.left_width,
             right_width: self.view.right_width,
             bottom_height: self.view.bottom_height,
+            hidden_panels: self.view.hidden_panels.clone(),
+            folded_panels: self.view.folded_panels.clone(),
+            guest_tab: self.view.guest_tab.clone(),
             recent_files: self.recent_files.clone(),
         }
     }
@@ -159,6 +171,9 @@ impl Session {
         self.view.left_width = settings.left_width;
         self.view.right_width = settings.right_width;
         self.view.bottom_height = settings.bottom_height;
+        self.view.hidden_panels = settings.hidden_panels;
+        self.view.folded_panels = settings.folded_panels;
+        self.view.guest_tab = settings.guest_tab;
         self.recent_files = settings.recent_files;
         self.recent_files.truncate(RECENT_FILES);
     }

@@ -5,12 +5,12 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    Panel, Place,
+    Panel, PanelContext, Place,
     icon::{self, Icon},
     state::{Action, MESSAGES_TAB, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
-use crate::{registry::Registry, text::plural};
+use crate::text::plural;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -29,8 +29,8 @@ impl Panel for StatusLine {
         Place::Status
     }
 
-    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
-        let mut actions = Vec::new();
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
         let palette = Palette::here(ui);
         ui.horizontal(|ui| {
             ui.set_min_height(20.0);
@@ -57,14 +57,13 @@ impl Panel for StatusLine {
             if button.on_hover_text(says).clicked() {
                 actions.push(Action::View(session.strip_change()));
             }
-            shader_errors(ui, session, &mut actions);
+            shader_errors(ui, session, actions);
             let selected = format!("{} selected · F1 keys", session.name_of(session.selection, registry));
-            latest(ui, session, theme::small_width(ui, &selected), &mut actions);
+            latest(ui, session, theme::small_width(ui, &selected), actions);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.add(egui::Label::new(theme::small(ui, selected)).truncate());
             });
         });
-        actions
     }
 }
 

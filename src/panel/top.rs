@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, Align, Button, Key, Layout, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
-    Panel, Place, chooser,
+    Panel, PanelContext, PanelInfo, Place, chooser, glyphs,
     history::HISTORY_TAB,
     keys::{self, Binding},
     maths, menu, model_override,
@@ -32,15 +32,15 @@ impl Panel for TopBar {
         Place::Top
     }
 
-    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
-        let mut actions = Vec::new();
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
         let table = keys::bindings(session, registry);
         ui.horizontal(|ui| {
             ui.set_min_height(28.0);
             ui.spacing_mut().item_spacing.x = 4.0;
-            document(ui, session, &mut actions);
+            document(ui, session, actions);
             divider(ui);
-            menus(ui, session, registry, &table, &mut actions);
+            menus(ui, session, registry, &table, actions);
             divider(ui);
             // Where there is little room, the captions go first, then the choices of shading fold up.
             let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
@@ -56,11 +56,10 @@ impl Panel for TopBar {
             if captioned {
                 caption(ui, CAPTIONS[1]);
             }
-            shading(ui, session, registry, &names, apart, &mut actions);
+            shading(ui, session, registry, &names, apart, actions);
             model_override::whose(ui, session, registry);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, session));
         });
-        actions
     }
 }
 
@@ -219,7 +218,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
             menu::submenu(ui, "Add a light", |ui| {
                 for light in registry.lights() {
                     let d = light.declaration;
-                    if ui.button(format!("{}  {}", d.glyph, d.name)).on_hover_text(d.summary).clicked() {
+                    let glyph = glyphs::glyph(ui, d.glyph, d.name);
+                    if ui.button(format!("{glyph}  {}", d.name)).on_hover_text(d.summary).clicked() {
                         actions.push(Action::AddLight(d.id.to_owned()));
                         ui.close();
                     }
@@ -228,7 +228,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
             menu::submenu(ui, "Add an object", |ui| {
                 for shape in registry.shapes() {
                     let d = shape.declaration;
-                    if ui.button(format!("{}  {}", d.glyph, d.name)).on_hover_text(d.summary).clicked() {
+                    let glyph = glyphs::glyph(ui, d.glyph, d.name);
+                    if ui.button(format!("{glyph}  {}", d.name)).on_hover_text(d.summary).clicked() {
                         actions.push(Action::AddObject(d.id.to_owned()));
                         ui.close();
                     }
@@ -300,6 +301,14 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                     check(ui, "Properties", v.right_open, "", view(right), actions);
                     let examples = ViewChange::Examples(!v.examples_open);
                     check(ui, "Examples", v.examples_open, "", view(examples), actions);
+                    let beside = |p: &&PanelInfo| p.guest && matches!(p.place, Place::Left | Place::Right);
+                    for panel in session.panels.iter().filter(beside) {
+                        let side = if panel.place == Place::Left { v.left_open } else { v.right_open };
+                        let shown = side && !v.hides(panel.id);
+                        let change = ViewChange::Panel(panel.id.to_owned(), !shown);
+                        let name = title(ui, panel);
+                        check(ui, &name, shown, "", view(change), actions);
+                    }
                     for panel in session.panels.iter().filter(|p| p.place == Place::Bottom) {
                         let shown = v.bottom_open && v.bottom_tab == panel.id;
                         let change = if shown {
@@ -312,7 +321,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                             SHADER_TAB => "F9",
                             _ => "",
                         };
-                        check(ui, panel.title, shown, key, view(change), actions);
+                        let name = title(ui, panel);
+                        check(ui, &name, shown, key, view(change), actions);
                     }
                 });
                 menu::submenu(ui, format!("Size of everything: {} %", v.scale), |ui| {
@@ -347,6 +357,11 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
         let bar = [(Key::F, file), (Key::E, edit), (Key::V, view_menu), (Key::H, help)];
         menu::bar(ui.ctx(), &bar.map(|(key, menu)| (key, menu.response)));
     });
+}
+
+/// The title of a panel in menus.
+fn title(ui: &Ui, panel: &PanelInfo) -> String {
+    glyphs::legible(ui, panel.title, &format!("the panel “{}”", panel.id)).into_owned()
 }
 
 /// One button for each shading model, as one control.

@@ -6,7 +6,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    Panel, Place, focus,
+    Panel, PanelContext, Place, focus, glyphs,
     icon::{self, Icon},
     knob,
     state::{Action, Session},
@@ -43,8 +43,8 @@ impl Panel for Tree {
         Place::Left
     }
 
-    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
-        let mut actions = Vec::new();
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
         let (lights, objects) = (session.document.lights.len(), session.document.objects.len());
         // Rows are addressed by number, so that ten thousand objects cost no more than those on screen.
         let row = |i: usize| match i {
@@ -81,7 +81,7 @@ impl Panel for Tree {
         let output = area.show_rows(ui, height, total, |ui, range| {
             for i in range {
                 match row(i) {
-                    Row::Part(part) => part_row(ui, session, registry, part, height, &mut actions),
+                    Row::Part(part) => part_row(ui, session, registry, part, height, actions),
                     Row::Lights => {
                         heading(ui, "Lights", lights, height, |ui| {
                             for light in registry.lights() {
@@ -92,7 +92,7 @@ impl Panel for Tree {
                                     d.name,
                                     d.summary,
                                     Action::AddLight(d.id.to_owned()),
-                                    &mut actions,
+                                    actions,
                                 );
                             }
                         });
@@ -107,7 +107,7 @@ impl Panel for Tree {
                                     d.name,
                                     d.summary,
                                     Action::AddObject(d.id.to_owned()),
-                                    &mut actions,
+                                    actions,
                                 );
                             }
                         });
@@ -116,7 +116,6 @@ impl Panel for Tree {
             }
         });
         ui.data_mut(|d| d.insert_temp(memory.with("offset"), output.state.offset.y));
-        actions
     }
 }
 
@@ -147,6 +146,7 @@ fn step(ui: &Ui, session: &Session) -> Option<Selection> {
 }
 
 fn add_item(ui: &mut Ui, glyph: &str, name: &str, summary: &str, action: Action, actions: &mut Vec<Action>) {
+    let glyph = glyphs::glyph(ui, glyph, name);
     let response = ui.button(format!("{glyph}  {name}"));
     let response = if summary.is_empty() { response } else { response.on_hover_text(summary) };
     if response.clicked() {
@@ -212,11 +212,11 @@ fn part_row(
     let centre = pos2(x, rect.center().y);
     let square = Rect::from_center_size(centre, vec2(14.0, 14.0));
     let body = TextStyle::Body.resolve(ui.style());
-    let glyph = |glyph: &str| {
+    let glyph = |glyph: &str, name: &str| {
         painter.text(
             centre,
             Align2::CENTER_CENTER,
-            glyph,
+            glyphs::glyph(ui, glyph, name),
             FontId::new(14.0, body.family.clone()),
             palette.text,
         );
@@ -227,12 +227,18 @@ fn part_row(
         Selection::Observer => icon::paint(&painter, square, Icon::Eye, palette.text),
         Selection::Light(i) => {
             let light = &session.document.lights[i];
-            glyph(registry.light(&light.light_type).map_or("?", |e| e.declaration.glyph));
+            let (sign, name) = registry
+                .light(&light.light_type)
+                .map_or(("?", ""), |e| (e.declaration.glyph, e.declaration.name));
+            glyph(sign, name);
             dot = Some(light.rgb8());
         }
         Selection::Object(i) => {
             let object = &session.document.objects[i];
-            glyph(registry.shape(&object.object_type).map_or("?", |e| e.declaration.glyph));
+            let (sign, name) = registry
+                .shape(&object.object_type)
+                .map_or(("?", ""), |e| (e.declaration.glyph, e.declaration.name));
+            glyph(sign, name);
             let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
             dot = Some([colour.x as u8, colour.y as u8, colour.z as u8]);
         }

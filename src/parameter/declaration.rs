@@ -2,7 +2,10 @@
 
 use std::borrow::Cow;
 
-use super::value::Value;
+use super::{
+    file::{FileFormat, NamedFile},
+    value::Value,
+};
 
 /// The declaration of one parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +82,13 @@ pub enum ParameterKind {
         /// Index of the default.
         default: usize,
     },
+    /// A file of numbers, by its name relative to the folder of the scene file. Light types may have such parameters.
+    File {
+        /// The files that are legal.
+        format: &'static FileFormat,
+        /// The name of the shipped file that is the value if the scene gives none.
+        default: &'static str,
+    },
 }
 
 impl Parameter {
@@ -98,6 +108,7 @@ impl Parameter {
             ParameterKind::Colour { default } => Value::Colour(default),
             ParameterKind::Triple { default, .. } => Value::Triple(default),
             ParameterKind::Choice { options, default } => Value::Choice(Cow::Borrowed(options[default].0)),
+            ParameterKind::File { format, default } => Value::File(NamedFile::shipped(default, format)),
         }
     }
 
@@ -117,6 +128,7 @@ impl Parameter {
             ParameterKind::Choice { options, .. } => {
                 options.iter().map(|(id, _)| Value::Choice(Cow::Borrowed(id))).collect()
             }
+            ParameterKind::File { .. } => Vec::new(),
         };
         ends.extend(others.into_iter().filter(|end| *end != self.default_value()));
         ends
@@ -144,6 +156,7 @@ impl Parameter {
                 let names: Vec<_> = options.iter().map(|(id, _)| format!("\"{id}\"")).collect();
                 format!("one of {}", names.join(", "))
             }
+            ParameterKind::File { format, .. } => format!("the name of {}", format.name),
         }
     }
 
@@ -164,6 +177,9 @@ impl Parameter {
             (ParameterKind::Choice { options, .. }, Value::Choice(v)) => {
                 options.iter().any(|(id, _)| *id == v.as_ref())
             }
+            (ParameterKind::File { format, .. }, Value::File(file)) => {
+                file.is_in(format) && file.numbers().is_some()
+            }
             _ => false,
         }
     }
@@ -174,7 +190,7 @@ impl Parameter {
         match self.kind {
             ParameterKind::Number { .. } | ParameterKind::Integer { .. } => "f32",
             ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => "vec3<f32>",
-            ParameterKind::Choice { .. } => "u32",
+            ParameterKind::Choice { .. } | ParameterKind::File { .. } => "u32",
         }
     }
 }

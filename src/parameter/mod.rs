@@ -5,12 +5,14 @@
 //! are declared here once.
 
 mod declaration;
+mod file;
 mod layout;
 mod set;
 mod shared;
 mod value;
 
 pub use declaration::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen};
+pub use file::{FileFormat, FileProblem, NamedFile, Table};
 pub use layout::{BLOCK_BYTES, layout, pack, stride, words};
 pub use set::ParameterSet;
 pub use shared::{

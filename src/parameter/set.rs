@@ -43,11 +43,13 @@ macro_rules! parameters {
         } )?
     ) => {
         $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[derive(Clone, Debug, PartialEq)]
         $visible struct $name {
             $( $(#[$field_meta])* pub $field: $crate::parameters!(@type $kind), )*
             $( $( $(#[$derived_meta])* pub $derived: $derived_type, )* )?
         }
+
+        $crate::parameters!(@copy $name $($kind)*);
 
         impl ::core::default::Default for $name {
             fn default() -> Self {
@@ -83,11 +85,24 @@ macro_rules! parameters {
             #[allow(unused_variables, unused_mut)]
             fn to_values(&self, encoding: $crate::optics::colour::Encoding) -> $crate::parameter::Values {
                 let mut values = $crate::parameter::Values::default();
-                $( values.put(&$declaration, $crate::parameters!(@words $kind self.$field), encoding); )*
+                $( $crate::parameters!(@put $kind values self.$field, $declaration, encoding); )*
                 values
             }
         }
     };
+    // Files have numbers behind a pointer that is counted.
+    (@copy $name:ident) => { impl ::core::marker::Copy for $name {} };
+    (@copy $name:ident file $($kind:ident)*) => {};
+    (@copy $name:ident $first:ident $($kind:ident)*) => { $crate::parameters!(@copy $name $($kind)*); };
+    (@put file $values:ident $value:expr, $declaration:expr, $encoding:ident) => {
+        if let Some(file) = &$value.file {
+            $values.set($declaration.name, $crate::parameter::Value::File(file.clone()));
+        }
+    };
+    (@put $kind:ident $values:ident $value:expr, $declaration:expr, $encoding:ident) => {
+        $values.put(&$declaration, $crate::parameters!(@words $kind $value), $encoding);
+    };
+    (@type file) => { $crate::parameter::Table };
     (@type colour) => { $crate::glam::Vec3 };
     (@type triple) => { $crate::glam::Vec3 };
     (@type number) => { f32 };
@@ -95,6 +110,9 @@ macro_rules! parameters {
     (@get colour $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
     (@get triple $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
     (@get number $values:ident $encoding:ident $declaration:expr) => { $values.number(&$declaration) };
+    (@get file $values:ident $encoding:ident $declaration:expr) => {
+        $values.table(&$declaration).unwrap_or_default()
+    };
     (@get choice $values:ident $encoding:ident $declaration:expr) => { $values.choice(&$declaration) };
     (@words colour $value:expr) => { $value.to_array() };
     (@words triple $value:expr) => { $value.to_array() };

@@ -6,7 +6,10 @@ use bevy::reflect::Reflect;
 use glam::Vec3;
 use serde::Serialize;
 
-use super::declaration::{Parameter, ParameterKind};
+use super::{
+    declaration::{Parameter, ParameterKind},
+    file::{NamedFile, Table},
+};
 use crate::optics::colour::Encoding;
 
 /// The value of a parameter, as in a scene file.
@@ -23,6 +26,8 @@ pub enum Value {
     Triple([f32; 3]),
     /// The name of a choice.
     Choice(Cow<'static, str>),
+    /// A file.
+    File(NamedFile),
 }
 
 impl fmt::Display for Value {
@@ -33,6 +38,7 @@ impl fmt::Display for Value {
             Self::Colour([r, g, b]) => write!(f, "{r},{g},{b}"),
             Self::Triple([r, g, b]) => write!(f, "{r},{g},{b}"),
             Self::Choice(v) => f.write_str(v),
+            Self::File(v) => f.write_str(v.name()),
         }
     }
 }
@@ -80,6 +86,7 @@ impl Values {
                 Some((id, _)) => Value::Choice((*id).into()),
                 None => parameter.default_value(),
             },
+            ParameterKind::File { .. } => parameter.default_value(),
         };
         self.set(parameter.name, value);
     }
@@ -93,6 +100,7 @@ impl Values {
             Value::Colour([r, ..]) => f32::from(r),
             Value::Triple([r, ..]) => r,
             Value::Choice(_) => self.choice(parameter) as f32,
+            Value::File(_) => 0.0,
         }
     }
 
@@ -103,6 +111,15 @@ impl Values {
             Value::Colour(rgb) => encoding.decode(rgb),
             Value::Triple(v) => v.into(),
             _ => Vec3::ZERO,
+        }
+    }
+
+    /// The file and its numbers; none if it is not a file.
+    #[must_use]
+    pub fn table(&self, parameter: &Parameter) -> Option<Table> {
+        match self.get(parameter) {
+            Value::File(file) => file.numbers().map(|numbers| Table { file: Some(file), numbers }),
+            _ => None,
         }
     }
 
@@ -127,6 +144,7 @@ pub fn json(value: &Value) -> serde_json::Value {
         Value::Colour(rgb) => serde_json::json!(rgb),
         Value::Triple(v) => v.iter().map(|c| crate::text::number(*c)).collect(),
         Value::Choice(v) => v.as_ref().into(),
+        Value::File(v) => v.name().into(),
     }
 }
 

@@ -205,7 +205,9 @@ impl Left {
         let file = self.journal.file();
         let name = file.display().to_string();
         let bytes = files::read(&file, MAX_FILE_BYTES).map_err(|e| vec![format!("{name}: {e}")])?;
-        load::from_bytes(&bytes, &name, registry, Defaults::Use)
+        // The files that it names are beside the file of the document, not beside the copy.
+        let folder = self.about.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+        load::in_folder(&bytes, (&name, folder), registry, Defaults::Use)
             .map(|loaded| loaded.scene)
             .map_err(|e| e.to_string().lines().map(str::to_owned).collect())
     }

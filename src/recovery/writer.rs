@@ -39,7 +39,7 @@ struct Unsaved {
     about: About,
     /// The scene. It may break rules: unfinished work is work.
     scene: Scene,
-    /// The document's value that the scene is equal to.
+    /// The document's value that the scene is equal to but for names.
     revision: Revision,
     /// The registry at the time, for the order of parameters.
     registry: Arc<Registry>,
@@ -129,7 +129,10 @@ impl Keeper {
             (Some(kept), Some(parts)) => {
                 // While the thread writes what is kept, this copies all of it, at most once in each writing.
                 let kept = Arc::make_mut(kept);
-                parts.iter().for_each(|part| part.copy(document, &mut kept.scene));
+                for part in parts {
+                    part.copy(document, &mut kept.scene);
+                    document.write_names(part, &mut kept.scene, registry);
+                }
                 (kept.about, kept.revision) = (about, document.revision());
                 kept.registry = registry.clone();
             }
@@ -203,12 +206,8 @@ impl Keeper {
 
 impl Unsaved {
     fn new(document: &Document, about: About, registry: &Arc<Registry>) -> Self {
-        Self {
-            about,
-            scene: document.scene().clone(),
-            revision: document.revision(),
-            registry: registry.clone(),
-        }
+        let scene = document.named(registry);
+        Self { about, scene, revision: document.revision(), registry: registry.clone() }
     }
 }
 
@@ -458,13 +457,15 @@ mod tests {
         let keeper =
             Keeper(Arc::new(Shared { state: Mutex::default(), work: Condvar::new(), done: Condvar::new() }));
         let registry = Arc::new(Registry::builtin());
-        let ball = |i: usize| Object { name: Some(format!("ball {i}")), ..Object::default() };
+        // The second has no name.
+        let name = |i: usize| (i != 1).then(|| format!("ball {i}"));
+        let ball = |i: usize| Object { name: name(i), ..Object::default() };
         let mut document = Document::new(Scene { objects: (0..3).map(ball).collect(), ..Scene::default() });
         let keep = |document: &Document, title: &str| {
             keeper.keep(document, about(title), &registry);
             let state = keeper.0.lock();
             let kept = state.wanted.clone().expect("kept");
-            assert!(*document == kept.scene && kept.about.title == title);
+            assert!(document.named(&registry) == kept.scene && kept.about.title == title);
             (
                 kept.scene.objects.iter().map(|o| o.name.as_deref().map(str::as_ptr)).collect::<Vec<_>>(),
                 state.change,
@@ -493,6 +494,8 @@ mod tests {
         keep(&document, "b");
         document.remove(Selection::Object(0), &registry);
         keep(&document, "b");
+        let name = keeper.0.lock().wanted.as_ref().and_then(|kept| kept.scene.objects[0].name.clone());
+        assert_eq!(name.as_deref(), Some("Sphere 2"), "a copy keeps the names of parts without one");
         document.change("Display", Extent::Rest, Selection::Room, |s| s.display.exposure = 1.0);
         keep(&document, "b");
         // More changes than a document remembers, and another document.

@@ -84,6 +84,7 @@ impl Random {
                 let i = ((within * options.len() as f32) as usize).min(options.len() - 1);
                 Value::Choice(options[i].0.into())
             }
+            ParameterKind::File { .. } => parameter.default_value(),
         }
     }
 
@@ -116,7 +117,7 @@ fn end(parameter: &Parameter, high: bool, random: &mut Random) -> Value {
         }
         ParameterKind::Colour { .. } => Value::Colour([if high { 255 } else { 0 }; 3]),
         ParameterKind::Triple { min, max, .. } => Value::Triple([if high { max } else { min }; 3]),
-        ParameterKind::Choice { .. } => random.value(parameter),
+        ParameterKind::Choice { .. } | ParameterKind::File { .. } => random.value(parameter),
     }
 }
 

@@ -138,6 +138,7 @@ mod tests {
             ParameterKind::Choice { options, .. } => {
                 options.iter().map(|(id, _)| Value::Choice((*id).into())).collect()
             }
+            ParameterKind::File { .. } => Vec::new(),
         };
         candidates.into_iter().filter(|v| v != now && p.allows(v)).collect()
     }
@@ -178,7 +179,7 @@ mod tests {
                 ParameterKind::Integer { min, slider_max, .. } => Value::Integer((min + slider_max) / 4),
                 ParameterKind::Colour { .. } => Value::Colour([180, 90, 60]),
                 ParameterKind::Triple { min, max, .. } => Value::Triple([min + 0.35 * (max - min); 3]),
-                ParameterKind::Choice { .. } => continue,
+                ParameterKind::Choice { .. } | ParameterKind::File { .. } => continue,
             };
             if p.allows(&middle) {
                 values.set(p.name, middle);

@@ -85,11 +85,14 @@ fn push_light(c: &mut Composer, light: &LightEntry) {
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
     let mut text = String::from(
-        "fn light_word(light: Light, i: u32) -> u32 {
+        "fn illumination_number(i: u32) -> f32 {
+    return bitcast<f32>(illumination.words[i]);
+}
+fn light_word(light: Light, i: u32) -> u32 {
     return illumination.words[light.first_word + i];
 }
 fn light_number(light: Light, i: u32) -> f32 {
-    return bitcast<f32>(light_word(light, i));
+    return illumination_number(light.first_word + i);
 }
 fn incident(light: Light, p: vec3<f32>) -> Incident {
     switch light.light_type {

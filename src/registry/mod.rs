@@ -168,6 +168,21 @@ impl Registry {
         &mut self.sources
     }
 
+    /// Adds the types of another registry that are not known here.
+    pub fn add_missing(&mut self, other: &Self) {
+        fn extend<T: Clone>(list: &mut Vec<T>, other: &[T], id: impl Fn(&T) -> &'static str) {
+            for entry in other {
+                if list.iter().all(|known| id(known) != id(entry)) {
+                    list.push(entry.clone());
+                }
+            }
+        }
+        extend(&mut self.models, &other.models, |m| m.declaration.id);
+        extend(&mut self.shadings, &other.shadings, |s| s.declaration.id);
+        extend(&mut self.lights, &other.lights, |l| l.declaration.id);
+        extend(&mut self.shapes, &other.shapes, |s| s.declaration.id);
+    }
+
     /// Every parameter that some model declares, each name once, in order of first declaration.
     pub fn material_parameters(&self) -> impl Iterator<Item = &'static Parameter> + '_ {
         let mut known = HashSet::new();

@@ -92,7 +92,6 @@ impl SceneEntities {
         let parts = matches!(changes, Changes::Values(parts) if !parts.contains(&Extent::All));
         if !parts || !adopted {
             if *document != scene.0 {
-                // Parts that came and went have names now.
                 scene.0.clone_from(document);
             }
             self.new_ids = Some(ids(document));

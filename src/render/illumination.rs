@@ -3,6 +3,8 @@
 //! overrides has a buffer of its own. At its end are the parameters of the lights, one after the other; when they
 //! outgrow it, there is another buffer, and objects get other materials.
 
+use std::sync::Arc;
+
 use bevy::{
     asset::{Assets, Handle, RenderAssetUsages},
     ecs::{
@@ -16,6 +18,7 @@ use glam::Vec3;
 use crate::{
     light::{LightRecord, MAX_LIGHTS},
     optics::{TermSelection, colour::Encoding, tone::exposure_factor},
+    parameter::Table,
     registry::Registry,
     scene::{Display, Light, record},
 };
@@ -89,45 +92,85 @@ fn without_lights(room: usize, buffers: &mut Assets<ShaderBuffer>) -> Handle<Sha
     buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()))
 }
 
-/// A light of the scene and the words of its own parameters. A light of an unknown type gives no light.
+/// A light of the scene, as the shader has it.
+#[derive(Clone, Debug, Default)]
+pub struct Lit {
+    record: LightRecord,
+    /// Its own parameters. A parameter that is a file has the index of the first number of the file.
+    words: Vec<u32>,
+    /// Its files, each with the place of its parameter in `words`.
+    tables: Vec<(usize, Table)>,
+}
+
+impl Lit {
+    /// A light of the scene. A light of an unknown type gives no light.
+    #[must_use]
+    pub fn new(light: &Light, registry: &Registry, encoding: Encoding) -> Self {
+        let record = record(light, registry, encoding);
+        let Some(entry) = registry.light(&light.light_type) else {
+            return Self { record, ..Self::default() };
+        };
+        let (words, tables) = (entry.words(&light.parameters, encoding), entry.tables(&light.parameters));
+        Self { record, words, tables }
+    }
+}
+
+/// The words behind the lights: the parameters of all, and the numbers of each file once; with the first word of each
+/// light.
+fn words(lights: &[Lit]) -> (Vec<u32>, Vec<usize>) {
+    let mut words = Vec::new();
+    let mut firsts = Vec::with_capacity(lights.len());
+    for light in lights {
+        firsts.push(words.len());
+        words.extend(&light.words);
+    }
+    let mut known: Vec<(&Arc<[f32]>, usize)> = Vec::new();
+    for (light, first) in lights.iter().zip(&firsts) {
+        for (place, Table { numbers, .. }) in &light.tables {
+            let at = known.iter().find(|(other, _)| Arc::ptr_eq(other, numbers)).map(|(_, at)| *at);
+            words[first + place] = at.unwrap_or_else(|| {
+                known.push((numbers, words.len()));
+                words.extend(numbers.iter().map(|number| number.to_bits()));
+                known[known.len() - 1].1
+            }) as u32;
+        }
+    }
+    (words, firsts)
+}
+
+/// The number of words behind so many lights.
 #[must_use]
-pub fn lit(light: &Light, registry: &Registry, encoding: Encoding) -> (LightRecord, Vec<u32>) {
-    let words = registry.light(&light.light_type).map(|entry| entry.words(&light.parameters, encoding));
-    (record(light, registry, encoding), words.unwrap_or_default())
+pub fn word_count(lights: &[Lit]) -> usize {
+    words(&lights[..lights.len().min(MAX_LIGHTS)]).0.len()
 }
 
 /// The bytes of `Illumination` in `lights.wgsl`, up to the last word in use. Lights beyond [`MAX_LIGHTS`] are left out;
 /// the checker refuses such scenes.
 #[must_use]
-pub fn illumination_bytes(
-    lights: &[(LightRecord, Vec<u32>)],
-    terms: TermSelection,
-    display: &Display,
-) -> Vec<u8> {
+pub fn illumination_bytes(lights: &[Lit], terms: TermSelection, display: &Display) -> Vec<u8> {
     let lights = &lights[..lights.len().min(MAX_LIGHTS)];
+    let (words, firsts) = words(lights);
     let mut bytes = vec![0u8; HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES];
     let mut put = |at: usize, value: [u8; 4]| bytes[at..at + 4].copy_from_slice(&value);
     put(0, (lights.len() as u32).to_le_bytes());
     put(4, terms.code().to_le_bytes());
     put(8, exposure_factor(display.exposure).to_le_bytes());
     put(12, u32::from(display.encoding == Encoding::Off).to_le_bytes());
-    let mut first_word = 0;
-    for (i, (light, words)) in lights.iter().enumerate() {
+    for (i, (Lit { record, .. }, first)) in lights.iter().zip(firsts).enumerate() {
         let base = HEADER_BYTES + i * LIGHT_BYTES;
         let mut put3 = |at: usize, v: Vec3| {
             for (k, c) in v.to_array().into_iter().enumerate() {
                 put(base + at + 4 * k, c.to_le_bytes());
             }
         };
-        put3(0, light.position);
-        put3(16, light.direction);
-        put3(32, light.colour);
-        put(base + 12, light.light_type.to_le_bytes());
-        put(base + 28, light.intensity.to_le_bytes());
-        put(base + 44, (first_word as u32).to_le_bytes());
-        first_word += words.len();
+        put3(0, record.position);
+        put3(16, record.direction);
+        put3(32, record.colour);
+        put(base + 12, record.light_type.to_le_bytes());
+        put(base + 28, record.intensity.to_le_bytes());
+        put(base + 44, (first as u32).to_le_bytes());
     }
-    bytes.extend(lights.iter().flat_map(|(_, words)| words).flat_map(|word| word.to_le_bytes()));
+    bytes.extend(words.into_iter().flat_map(u32::to_le_bytes));
     bytes
 }
 
@@ -137,7 +180,7 @@ mod tests {
 
     #[test]
     fn more_lights_than_fit_are_left_out() {
-        let lights = vec![(LightRecord::default(), vec![7]); MAX_LIGHTS + 5];
+        let lights = vec![Lit { words: vec![7], ..Lit::default() }; MAX_LIGHTS + 5];
         let bytes = illumination_bytes(&lights, TermSelection::All, &Display::default());
         assert_eq!(bytes[..4], (MAX_LIGHTS as u32).to_le_bytes());
         assert_eq!(bytes.len(), HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES + 4 * MAX_LIGHTS);

@@ -3,10 +3,7 @@
 use bevy::{
     app::{App, MainScheduleOrder, Plugin, Update},
     asset::Assets,
-    ecs::{
-        prelude::*,
-        schedule::{LogLevel, ScheduleBuildSettings},
-    },
+    ecs::{prelude::*, schedule::LogLevel},
     render::storage::ShaderBuffer,
 };
 
@@ -14,13 +11,13 @@ use super::{
     absorb::absorb,
     camera::follow_scene,
     entities::{CurrentScene, SceneEntities, reconcile},
-    illumination::{IlluminationBuffer, ShownTerms, illumination_bytes, lit},
+    illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{LiveShadersPlugin, exchange},
     material::MaterialApp as _,
     meshes::ShapeMeshes,
     overrides::Overrides,
     parts::{self, Touched},
-    schedule::{LabFrame, LabSystems},
+    schedule::{LabFrame, LabSystems, detect},
     shown::{Shown, show_lights},
     stage::{Stage, set_stages},
     swap::swap,
@@ -55,14 +52,7 @@ impl Plugin for ScenePlugin {
             .init_resource::<ShapeMeshes>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
-            // Two of our systems that touch the same data must say who comes first.
             .init_schedule(LabFrame)
-            .edit_schedule(LabFrame, |schedule| {
-                schedule.set_build_settings(ScheduleBuildSettings {
-                    ambiguity_detection: LogLevel::Error,
-                    ..ScheduleBuildSettings::default()
-                });
-            })
             .configure_sets(
                 LabFrame,
                 (
@@ -87,6 +77,8 @@ impl Plugin for ScenePlugin {
                 ),
             )
             .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin));
+        // Two systems that touch the same data must say who comes first.
+        detect(app, LogLevel::Warn);
     }
 }
 
@@ -108,7 +100,7 @@ fn upload_lights(
         .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
     for (handle, overrides) in changed.then_some((&shared.handle, &none)).into_iter().chain(changed_stages) {
         let display = overrides.display_of(&scene.0);
-        let lights: Vec<_> = shown.shining().map(|l| lit(l, &registry, display.encoding)).collect();
+        let lights: Vec<_> = shown.shining().map(|l| Lit::new(l, &registry, display.encoding)).collect();
         let mut bytes = illumination_bytes(&lights, overrides.terms.unwrap_or(terms.0), &display);
         let Some(known) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
         // Materials would not notice a buffer of another size.

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::{
     drawn::Drawn,
     entities::{CurrentScene, SceneEntities},
-    illumination::IlluminationBuffer,
+    illumination::{IlluminationBuffer, Lit, word_count},
     live::LiveShaders,
     material::{Attachments, MaterialInputs},
     meshes::{ShapeMeshes, forget_unused_meshes},
@@ -24,7 +24,7 @@ use super::{
     tables::{ParameterTables, Row},
 };
 use crate::{
-    light::{LightEntry, MAX_LIGHTS},
+    light::MAX_LIGHTS,
     optics::colour::Encoding,
     reflection::ModelEntry,
     registry::Registry,
@@ -144,8 +144,8 @@ pub fn swap(
 fn hold_lights(world: &mut World, views: &[Entity]) -> bool {
     let registry = world.resource::<Registry>();
     let shining = world.resource::<Shown>().shining().take(MAX_LIGHTS);
-    let words =
-        shining.map(|light| registry.light(&light.light_type).map_or(0, LightEntry::word_count)).sum();
+    let lights: Vec<_> = shining.map(|light| Lit::new(light, registry, Encoding::default())).collect();
+    let words = word_count(&lights);
     world.resource_scope(|world, mut shared: Mut<IlluminationBuffer>| {
         let shared = shared.bypass_change_detection();
         let mut old = vec![shared.handle.id()];

@@ -31,12 +31,13 @@ macro_rules! texts {
 }
 
 /// From the simplest to those that measure something.
-const TEXTS: [(&str, &str); 12] = texts![
+const TEXTS: [(&str, &str); 13] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
     "gouraud_misses_highlight.json",
     "half_lambert.json",
+    "photometric_lamps.json",
     "portrait.json",
     "lobe_shape.json",
     "fresnel_effect.json",

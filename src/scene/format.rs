@@ -87,7 +87,7 @@ struct LightFile<'a> {
     #[schemars(range(min = 1000, max = 40000))]
     #[serde(skip_serializing_if = "Option::is_none")]
     colour_temperature: Option<f32>,
-    /// Intensity: candela for lights with a position, lux for the others. Conflicts with `luminous_flux`.
+    /// Intensity: candela for point and spot lights, lux for directional and ambient ones, a factor for photometric lamps. Conflicts with `luminous_flux`.
     #[schemars(range(min = 0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     intensity: Option<f32>,

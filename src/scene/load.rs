@@ -95,7 +95,8 @@ pub struct Loaded {
 /// # Errors
 /// [`LoadError`]; its text names the file as `path` does.
 pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
-    from_bytes(&bytes(path)?, &path.display().to_string(), registry, defaults)
+    let folder = path.parent().unwrap_or(FilePath::new(""));
+    in_folder(&bytes(path)?, (&path.display().to_string(), folder), registry, defaults)
 }
 
 /// Reads the content of a path from the command line: a file, or a stream such as `/dev/stdin`.
@@ -149,13 +150,28 @@ pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
     Ok(bytes)
 }
 
-/// Reads a scene from the content of a file; `name` is its name in messages.
+/// Reads a scene from the content of a file; `name` is its name in messages, and its folder that of the files that the
+/// scene names.
 ///
 /// # Errors
 /// [`LoadError`].
 pub fn from_bytes(
     bytes: &[u8],
     name: &str,
+    registry: &Registry,
+    defaults: Defaults,
+) -> Result<Loaded, LoadError> {
+    let folder = FilePath::new(name).parent().unwrap_or(FilePath::new(""));
+    in_folder(bytes, (name, folder), registry, defaults)
+}
+
+/// The same, with the folder of the files that the scene names.
+///
+/// # Errors
+/// [`LoadError`].
+pub fn in_folder(
+    bytes: &[u8],
+    (name, folder): (&str, &FilePath),
     registry: &Registry,
     defaults: Defaults,
 ) -> Result<Loaded, LoadError> {
@@ -168,7 +184,7 @@ pub fn from_bytes(
         place: Lines::new(text).place(at),
         what,
     })?;
-    let (scene, missing) = read::scene(text, name, registry, defaults)?;
+    let (scene, missing) = read::scene(text, (name, folder), registry, defaults)?;
     if defaults == Defaults::Refuse && !missing.is_empty() {
         return Err(LoadError::Missing { name: name.to_owned(), missing });
     }

@@ -26,6 +26,7 @@ pub mod error;
 pub mod examples;
 mod format;
 mod layout;
+pub mod limits;
 pub mod load;
 pub mod observer;
 mod read;

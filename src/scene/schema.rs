@@ -146,7 +146,7 @@ fn lights(list: &mut Json, registry: &Registry) {
             properties.insert("luminous_flux".to_owned(), false.into());
         }
         let intensity = json!({
-            "description": format!("Intensity, {}.", if d.unit == "cd" { "candela (cd)" } else { "lux (lx)" }),
+            "description": format!("Intensity, {}.", unit(d.unit)),
             "default": number(d.default_intensity),
         });
         properties.insert("intensity".to_owned(), intensity);
@@ -224,6 +224,16 @@ fn objects(list: &mut Json, registry: &Registry) {
     }]);
 }
 
+/// A unit of intensity, in words.
+fn unit(unit: &str) -> &str {
+    match unit {
+        "cd" => "candela (cd)",
+        "lx" => "lux (lx)",
+        "×" => "a factor: 1 is the lamp as it is",
+        other => other,
+    }
+}
+
 /// A declared parameter.
 fn parameter(p: &Parameter) -> Json {
     let unit = if p.unit.is_empty() { String::new() } else { format!(", {}", p.unit) };
@@ -256,6 +266,7 @@ fn parameter(p: &Parameter) -> Json {
             choose(&mut field, options.iter().map(|(id, name)| (*id, *name, "")));
             field
         }
+        ParameterKind::File { .. } => json!({ "type": "string" }),
     };
     field["title"] = format!("{} ({}{unit})", p.label, p.symbol).into();
     field["description"] = p.help.into();

@@ -11,12 +11,12 @@ use bevy::{
     transform::components::Transform,
 };
 use bevy_egui::EguiPostUpdateSet;
-use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraSystemSet};
+use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet};
 use glam::{Quat, Vec3};
 
 use super::{
     WindowView,
-    pointer::{OverPicture, follow_cursor},
+    pointer::{OverPicture, PointerPlugin, follow_cursor},
 };
 use crate::{
     document::{Edit, Selection},
@@ -50,10 +50,16 @@ pub(super) fn orbit() -> PanOrbitCamera {
     }
 }
 
-pub(super) struct CameraPlugin;
+/// Moves the camera of the picture by the pointer: orbit, pan, zoom.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CameraPlugin;
 
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
+        PointerPlugin::add_to(app);
+        if !app.is_plugin_added::<PanOrbitCameraPlugin>() {
+            app.add_plugins(PanOrbitCameraPlugin);
+        }
         app.add_systems(PreUpdate, (gate.after(follow_cursor), keep_at_observer).chain()).add_systems(
             PostUpdate,
             // So that the marks over the picture belong to the same frame.

@@ -2,58 +2,80 @@
 
 use std::{
     path::PathBuf,
-    sync::{Arc, Mutex},
+    sync::{Arc, Mutex, PoisonError},
     time::{Duration, Instant},
 };
 
 use bevy::{
     app::{App, AppExit, Plugin},
+    camera::RenderTarget,
     ecs::prelude::*,
     render::view::screenshot::{Screenshot, ScreenshotCaptured},
+    window::PrimaryWindow,
+    winit::WinitSettings,
 };
 
+use super::{ViewOptions, WindowView, watching::complain};
 use crate::{
     failure::Failure,
     render::{
         capture::png,
         live::LiveShaders,
         schedule::{LabFrame, LabSystems},
+        view::{Drawing, texture_of},
     },
 };
 
 /// The longest that shaders are waited for before frames are counted.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Exits after so many frames; before, writes the window to a file, if one is given.
-pub(super) struct ExitAfter {
-    pub(super) frames: u32,
-    pub(super) file: Option<PathBuf>,
-    pub(super) failure: Arc<Mutex<Option<Failure>>>,
+/// Exits after so many frames, if a number is given. Before, writes the window to a file, if one is given; without a
+/// window, the picture.
+#[derive(Clone, Debug, Default)]
+pub struct CapturePlugin {
+    /// The number of frames.
+    pub frames: Option<u32>,
+    /// The PNG file.
+    pub file: Option<PathBuf>,
 }
+
+impl CapturePlugin {
+    pub(super) fn of(options: &ViewOptions) -> Self {
+        Self { frames: options.exit_after, file: options.capture.clone() }
+    }
+}
+
+impl Plugin for CapturePlugin {
+    fn build(&self, app: &mut App) {
+        let Some(left) = self.frames else { return };
+        app.insert_resource(WinitSettings::continuous())
+            .insert_resource(Countdown {
+                left,
+                file: self.file.clone(),
+                reported: None,
+                since: Instant::now(),
+            })
+            .add_systems(LabFrame, count.in_set(LabSystems::Capture));
+    }
+}
+
+/// The place for the reason why a capture failed.
+pub(super) type Report = Arc<Mutex<Option<Failure>>>;
 
 #[derive(Resource)]
-struct Countdown {
+pub(super) struct Countdown {
     left: u32,
     file: Option<PathBuf>,
-    failure: Arc<Mutex<Option<Failure>>>,
+    /// Whoever runs the window reports the failure; else it is reported here.
+    pub(super) reported: Option<Report>,
     since: Instant,
-}
-
-impl Plugin for ExitAfter {
-    fn build(&self, app: &mut App) {
-        app.insert_resource(Countdown {
-            left: self.frames,
-            file: self.file.clone(),
-            failure: self.failure.clone(),
-            since: Instant::now(),
-        })
-        .add_systems(LabFrame, count.in_set(LabSystems::Capture));
-    }
 }
 
 fn count(
     mut countdown: ResMut<Countdown>,
     live: Res<LiveShaders>,
+    windows: Query<(), With<PrimaryWindow>>,
+    mut views: Query<(&RenderTarget, &mut Drawing), With<WindowView>>,
     mut commands: Commands,
     mut exit: MessageWriter<AppExit>,
 ) {
@@ -68,28 +90,33 @@ fn count(
         return;
     }
     if countdown.file.is_some() {
-        commands.spawn(Screenshot::primary_window()).observe(write);
+        let mut shot = Screenshot::primary_window();
+        for (target, mut drawing) in views.iter_mut().filter(|_| windows.is_empty()) {
+            // What rests is not on the screenshot.
+            drawing.redraw();
+            shot = texture_of(target).map_or(shot, |picture| Screenshot::image(picture.clone()));
+        }
+        commands.spawn(shot).observe(write);
     } else {
         exit.write(AppExit::Success);
     }
 }
 
 fn write(captured: On<ScreenshotCaptured>, countdown: Res<Countdown>, mut exit: MessageWriter<AppExit>) {
-    exit.write(AppExit::Success);
     let Some(file) = &countdown.file else { return };
-    let failed = |what: String| {
-        if let Ok(mut failure) = countdown.failure.lock() {
-            *failure = Some(Failure::Write(format!("{} could not be written: {what}", file.display())));
-        }
+    let written = captured.image.clone().try_into_dynamic().map_err(|e| e.to_string()).and_then(|image| {
+        let image = image.to_rgb8();
+        let facts = [("Software", concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION")))];
+        png::write(file, image.width(), image.height(), image.as_raw(), &facts).map_err(|e| e.to_string())
+    });
+    let Err(what) = written else {
+        exit.write(AppExit::Success);
+        return;
     };
-    match captured.image.clone().try_into_dynamic() {
-        Ok(image) => {
-            let image = image.to_rgb8();
-            let facts = [("Software", concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION")))];
-            if let Err(e) = png::write(file, image.width(), image.height(), image.as_raw(), &facts) {
-                failed(e.to_string());
-            }
-        }
-        Err(e) => failed(e.to_string()),
+    let failure = Failure::Write(format!("{} could not be written: {what}", file.display()));
+    exit.write(AppExit::from_code(failure.status()));
+    match &countdown.reported {
+        Some(report) => *report.lock().unwrap_or_else(PoisonError::into_inner) = Some(failure),
+        None => complain(&failure.to_string()),
     }
 }

@@ -49,7 +49,9 @@ const PATIENCE: u32 = 30;
 /// Invocations of a workgroup in each direction.
 const GROUP: u32 = 8;
 
-pub(super) struct ClippingPlugin;
+/// Counts clipped pixels, for the badge in the picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ClippingPlugin;
 
 impl Plugin for ClippingPlugin {
     fn build(&self, app: &mut App) {
@@ -64,6 +66,7 @@ impl Plugin for ClippingPlugin {
         let buffer = world.resource_mut::<Assets<ShaderBuffer>>().add(buffer);
         let question = Question { number: 0, open: false, limit: 1.0, shader, buffer };
         world.insert_resource(question.clone());
+        world.init_resource::<Settling>();
         app.add_plugins((
             ExtractResourcePlugin::<Question>::default(),
             ExtractComponentPlugin::<WindowView>::default(),

@@ -1,19 +1,170 @@
-//! The document and the scene that is shown follow each other.
+//! The document of the window: its files, its history, and the scene that is shown, which it follows and which follows
+//! it.
 
-use bevy::ecs::prelude::*;
+use std::path::Path;
 
+use bevy::{
+    app::{App, Plugin},
+    ecs::prelude::*,
+};
+
+use super::{
+    ViewOptions,
+    editor::Editors,
+    effects::{Unattended, carry_out},
+    files::DiskFiles,
+    laws::LawChecks,
+    order::Loading,
+    watching::{FilesChanged, complain},
+};
 use crate::{
-    panel::state::{Session, Severity},
+    custom::folder::declare_folder,
+    library::assets::Folders,
+    panel::{
+        effects,
+        files::Files as _,
+        follow::follow_registry,
+        settings::load_settings,
+        state::{Effect, LabEffect, Session, Severity},
+    },
     registry::Registry,
     render::{
+        absorb::absorb,
         entities::{CurrentScene, SceneEntities},
         exchange::Changes,
         illumination::ShownTerms,
+        schedule::{LabFrame, LabSystems},
     },
+    scene::load::{self, Defaults},
 };
 
+/// The document: [`Session`], its files, and its way into the scene and back. What is registered with the app until it
+/// starts is known to the scene.
+#[derive(Clone, Debug, Default)]
+pub struct DocumentPlugin {
+    /// The scene and the circumstances of the start.
+    pub options: ViewOptions,
+    /// True if a user is there, with settings and custom models.
+    pub for_user: bool,
+}
+
+impl Plugin for DocumentPlugin {
+    fn build(&self, app: &mut App) {
+        let options = &self.options;
+        let mut session = Session::new(options.scene.clone());
+        session.path.clone_from(&options.file);
+        session.disk.use_defaults = options.use_defaults;
+        session.view.examples_open = options.examples;
+        if self.for_user {
+            load_settings(&mut session);
+        } else {
+            app.insert_resource(Unattended);
+        }
+        options.warnings.iter().for_each(|warning| session.say(Severity::Warning, warning.as_str()));
+        let steps = (
+            Loading::Watch,
+            Loading::Shaders,
+            Loading::Follow,
+            Loading::Effects,
+            Loading::Recovery,
+            Loading::Pick,
+            Loading::Publish,
+        );
+        app.insert_resource(session)
+            .insert_resource(CurrentScene(options.scene.clone()))
+            .insert_resource(DiskFiles::new(options.file.clone(), options.stamp))
+            .insert_resource(LawChecks::by(options.trial_program.clone()))
+            .init_resource::<Editors>()
+            .add_message::<LabEffect>()
+            .add_message::<FilesChanged>()
+            .configure_sets(LabFrame, steps.chain().in_set(LabSystems::Load))
+            .add_systems(
+                LabFrame,
+                (
+                    follow_parameters
+                        .after(Loading::Shaders)
+                        .before(Loading::Follow)
+                        .in_set(LabSystems::Load),
+                    carry_out.in_set(Loading::Effects),
+                    publish.in_set(Loading::Publish).run_if(resource_changed::<Session>),
+                    take_over.in_set(LabSystems::Edit).after(absorb),
+                ),
+            );
+    }
+
+    fn finish(&self, app: &mut App) {
+        let world = app.world_mut();
+        world.resource_scope(|world, mut session: Mut<Session>| {
+            let mut registry = world.get_resource_or_init::<Registry>();
+            match self.options.registry.clone() {
+                Some(mut known) => {
+                    known.add_missing(&registry);
+                    *registry = known;
+                }
+                None if self.for_user => declare_custom(&mut registry, &mut session),
+                None => {}
+            }
+            session.model_slots.fill(&registry);
+            if let Some(file) = &self.options.open {
+                let registry = registry.clone();
+                let effects = open(
+                    file,
+                    &mut session,
+                    &registry,
+                    &mut world.resource_mut::<DiskFiles>(),
+                    self.for_user,
+                );
+                world.write_message_batch(effects.into_iter().map(LabEffect));
+            }
+        });
+    }
+}
+
+/// Makes the custom models in the user's folder known, by their declarations.
+fn declare_custom(registry: &mut Registry, session: &mut Session) {
+    match Folders::find(None, None) {
+        Ok(folders) => {
+            folders.shaders.iter().for_each(|folder| registry.set_shader_folder(folder));
+            // Their problems are reported when they are looked at.
+            folders.models.iter().for_each(|folder| drop(declare_folder(folder, registry)));
+        }
+        Err(why) => session.say(Severity::Error, why.to_string()),
+    }
+}
+
+/// Opens a file at the start. Without a user there is nobody to ask.
+fn open(
+    file: &Path,
+    session: &mut Session,
+    registry: &Registry,
+    files: &mut DiskFiles,
+    for_user: bool,
+) -> Vec<Effect> {
+    if for_user {
+        return effects::run(session, registry, Effect::OpenFile(file.to_owned()), files);
+    }
+    match load::file(file, registry, Defaults::Use) {
+        Ok(loaded) => {
+            files.expect(file, Some(loaded.stamp));
+            session.opened(file.to_owned(), loaded.scene);
+        }
+        Err(why) => {
+            complain(&why.to_string());
+            session.say(Severity::Error, why.to_string());
+        }
+    }
+    Vec::new()
+}
+
+/// The models are others: what none of them takes leaves the document until one does.
+fn follow_parameters(registry: Res<Registry>, session: ResMut<Session>) {
+    if registry.is_changed() {
+        follow_registry(session, &registry);
+    }
+}
+
 /// The document goes into the scene that is shown.
-pub(super) fn publish(
+fn publish(
     session: Res<Session>,
     scene: ResMut<CurrentScene>,
     mut entities: ResMut<SceneEntities>,
@@ -24,7 +175,7 @@ pub(super) fn publish(
 }
 
 /// Submits changes of the entities to the document; those that it refuses go back.
-pub(super) fn take_over(
+fn take_over(
     mut scene: ResMut<CurrentScene>,
     mut entities: ResMut<SceneEntities>,
     registry: Res<Registry>,

@@ -15,6 +15,10 @@ use crate::{
     registry::Registry,
 };
 
+/// Nobody uses the window: there are no settings to be kept.
+#[derive(Resource)]
+pub(super) struct Unattended;
+
 /// Carries out what the panels asked for.
 pub(super) fn carry_out(
     mut effects: MessageReader<LabEffect>,
@@ -22,12 +26,13 @@ pub(super) fn carry_out(
     registry: Res<Registry>,
     mut files: ResMut<files::DiskFiles>,
     mut camera: camera::CameraControl,
-    watch: Res<watching::FileWatch>,
+    watch: Option<Res<watching::FileWatch>>,
     mut exit: MessageWriter<AppExit>,
     editors: Res<editor::Editors>,
     laws: Res<laws::LawChecks>,
     proxy: Option<Res<EventLoopProxyWrapper>>,
-    mut recovery: ResMut<recovery::Recovery>,
+    mut recovery: Option<ResMut<recovery::Recovery>>,
+    unattended: Option<Res<Unattended>>,
     mut commands: Commands,
 ) {
     for complaint in editors.take() {
@@ -49,15 +54,29 @@ pub(super) fn carry_out(
                 camera.home();
             }
             Effect::Quit => {
-                recovery.farewell.close();
+                if let Some(recovery) = &recovery {
+                    recovery.farewell.close();
+                }
                 exit.write(AppExit::Success);
             }
-            Effect::Recovery(choice) => recovery.answer(choice, &mut session, &mut files, &registry),
-            Effect::LookAgain(path) => watch.0.report_later(&path, watching::GRACE),
+            Effect::Recovery(choice) => {
+                if let Some(recovery) = &mut recovery {
+                    recovery.answer(choice, &mut session, &mut files, &registry);
+                }
+            }
+            Effect::LookAgain(path) => {
+                if let Some(watch) = &watch {
+                    watch.0.report_later(&path, watching::GRACE);
+                }
+            }
+            Effect::SaveSettings if unattended.is_some() => {}
             Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
-            dialog @ (Effect::PickOpen | Effect::PickSave | Effect::PickShaderFolder) => {
+            dialog @ (Effect::PickOpen
+            | Effect::PickSave
+            | Effect::PickFile(..)
+            | Effect::PickShaderFolder) => {
                 session.wanted_dialog = Some(dialog);
             }
             Effect::NewModel { .. } | Effect::DuplicateModel { .. } | Effect::ExportShaders(_) => {

@@ -15,10 +15,7 @@ use std::{
 use bevy::app::{App, AppExit};
 
 use super::watching::complain;
-use crate::{
-    failure::Failure,
-    recovery::{Keeper, Settled},
-};
+use crate::{failure::Failure, recovery::Keeper};
 
 /// Ending waits for the disk no longer than this.
 pub(super) const PATIENCE: Duration = Duration::from_millis(1500);
@@ -33,7 +30,7 @@ struct Alarm(RefCell<Option<Keeper>>);
 impl Drop for Alarm {
     fn drop(&mut self) {
         let Some(keeper) = self.0.take() else { return };
-        complain(&lost("the connection to the display was lost", &keeper.settle(PATIENCE)));
+        complain(&lost("the connection to the display was lost", keeper.settle(PATIENCE).sentence()));
         #[cfg(unix)]
         signal_hook::low_level::exit(Failure::NoRenderer(String::new()).status().into());
     }
@@ -55,8 +52,9 @@ impl Drop for Guard {
     }
 }
 
-/// Runs the window until it is closed.
-pub(super) fn run(app: &mut App, keeper: &Keeper) -> Result<(), Failure> {
+/// Runs the window until it is closed; the keeper keeps what is unsaved, if there is one.
+pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure> {
+    let sentence = || keeper.and_then(|keeper| keeper.settle(PATIENCE).sentence());
     static RUNNING: AtomicBool = AtomicBool::new(false);
     RUNNING.store(true, Ordering::SeqCst);
     let hook = panic::take_hook();
@@ -76,14 +74,13 @@ pub(super) fn run(app: &mut App, keeper: &Keeper) -> Result<(), Failure> {
             } else {
                 "the connection to the display was lost"
             };
-            Err(Failure::NoRenderer(lost(what, &keeper.settle(PATIENCE))))
+            Err(Failure::NoRenderer(lost(what, sentence())))
         }
         Err(_) if !display_answers() => {
-            let settled = keeper.settle(PATIENCE);
-            Err(Failure::NoRenderer(lost("the connection to the display was lost", &settled)))
+            Err(Failure::NoRenderer(lost("the connection to the display was lost", sentence())))
         }
         Err(panic) => {
-            if let Some(sentence) = keeper.settle(PATIENCE).sentence() {
+            if let Some(sentence) = sentence() {
                 complain(&sentence);
             }
             panic::resume_unwind(panic)
@@ -91,10 +88,10 @@ pub(super) fn run(app: &mut App, keeper: &Keeper) -> Result<(), Failure> {
     }
 }
 
-fn lost(what: &str, settled: &Settled) -> String {
-    match settled.sentence() {
+fn lost(what: &str, kept: Option<String>) -> String {
+    match kept {
         Some(sentence) => format!("{what}; {sentence}"),
-        None => format!("{what}; there were no unsaved changes"),
+        None => format!("{what}; this window had no unsaved changes"),
     }
 }
 

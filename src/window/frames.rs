@@ -29,10 +29,14 @@ pub(super) struct FrameClock {
     /// Frames in which the session changed.
     changes: u64,
     /// The program says so when it ends.
-    pub(super) tells: bool,
+    tells: bool,
 }
 
 impl FrameClock {
+    pub(super) fn new(tells: bool) -> Self {
+        Self { tells, ..Self::default() }
+    }
+
     fn summary(&self) -> String {
         let kinds = ["panels alone", "panels and picture"];
         let told = kinds.iter().zip(&self.times).zip(self.count).map(|((kind, times), count)| {

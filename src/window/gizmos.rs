@@ -29,7 +29,9 @@ use crate::{
 #[derive(Default, Reflect, GizmoConfigGroup)]
 struct InRoom;
 
-pub(super) struct GizmosPlugin;
+/// Draws the outline of the room.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GizmosPlugin;
 
 impl Plugin for GizmosPlugin {
     fn build(&self, app: &mut App) {

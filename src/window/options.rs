@@ -8,7 +8,8 @@ use crate::{
 };
 
 /// The choices with which the window starts.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct ViewOptions {
     /// The scene, checked.
     pub scene: Scene,
@@ -16,7 +17,7 @@ pub struct ViewOptions {
     pub file: Option<PathBuf>,
     /// The state of that file when it was read.
     pub stamp: Option<Stamp>,
-    /// A file that the window must open itself, since there is something to ask first.
+    /// A file that the window opens itself, and asks about where there is something to ask.
     pub open: Option<PathBuf>,
     /// True if the window shows the examples: it begins without a scene of the user's.
     pub examples: bool,
@@ -28,8 +29,9 @@ pub struct ViewOptions {
     pub exit_after: Option<u32>,
     /// Write the whole window to this file before it closes.
     pub capture: Option<PathBuf>,
-    /// Everything that is known, custom models included. The shaders of its folder are not read yet.
-    pub registry: Registry,
+    /// Everything that is known, with the declarations of custom models, if they were read already. What is registered
+    /// with the app and missing here is added.
+    pub registry: Option<Registry>,
     /// The program that tries shaders when it is called with
     /// [`COMMAND`](crate::render::trial::process::COMMAND); without it the window itself does.
     pub trial_program: Option<PathBuf>,

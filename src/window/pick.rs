@@ -1,6 +1,7 @@
 //! Clicking into the picture selects what is under the pointer.
 
 use bevy::{
+    app::{App, Plugin},
     camera::Camera,
     ecs::prelude::*,
     input::{ButtonInput, mouse::MouseButton},
@@ -11,7 +12,12 @@ use bevy::{
 };
 use glam::Vec2;
 
-use super::{WindowView, picture::PicturePlace, pointer::OverPicture};
+use super::{
+    WindowView,
+    order::Loading,
+    picture::{PicturePlace, area_of},
+    pointer::{OverPicture, PointerPlugin},
+};
 use crate::{
     document::Selection,
     panel::{
@@ -22,8 +28,20 @@ use crate::{
     render::{
         entities::{CurrentScene, SceneEntities},
         parts::SceneObject,
+        schedule::LabFrame,
     },
 };
+
+/// Selects what is clicked in the picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PickingPlugin;
+
+impl Plugin for PickingPlugin {
+    fn build(&self, app: &mut App) {
+        PointerPlugin::add_to(app);
+        app.add_systems(LabFrame, pick.in_set(Loading::Pick));
+    }
+}
 
 /// Distance from a light's mark within which a click means it, points.
 const LIGHT_REACH: f32 = 12.0;
@@ -31,7 +49,7 @@ const LIGHT_REACH: f32 = 12.0;
 const CLICK_SLACK: f32 = 4.0;
 
 /// Selects the light whose mark, or else the object whose surface, was clicked.
-pub(super) fn pick(
+fn pick(
     buttons: Res<ButtonInput<MouseButton>>,
     over: Res<OverPicture>,
     window: Single<&Window, With<PrimaryWindow>>,
@@ -40,12 +58,13 @@ pub(super) fn pick(
     entities: Res<SceneEntities>,
     objects: Query<(), With<SceneObject>>,
     registry: Res<Registry>,
-    area: Res<PictureArea>,
+    area: Option<Res<PictureArea>>,
     mut session: ResMut<Session>,
     mut ray_cast: MeshRayCast,
     mut pressed_at: Local<Option<Vec2>>,
 ) {
     let pointer = window.cursor_position();
+    let area = area_of(area.as_deref(), &window);
     if buttons.just_pressed(MouseButton::Left) {
         *pressed_at = over.pressed.filter(|_| !area.popup_open);
     }

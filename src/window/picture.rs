@@ -1,6 +1,8 @@
 //! The picture between the panels: its camera, its size and its place.
 
 use bevy::{
+    app::{App, Plugin, PostUpdate, Startup},
+    asset::AssetEventSystems,
     camera::{
         Camera, Camera2d, CameraMainTextureUsages, ClearColorConfig, Hdr, RenderTarget,
         visibility::RenderLayers,
@@ -8,12 +10,16 @@ use bevy::{
     color::Color,
     core_pipeline::tonemapping::Tonemapping,
     ecs::prelude::*,
+    light::cluster::GlobalClusterSettings,
     math::URect,
     render::{render_resource::TextureUsages, renderer::RenderAdapterInfo, view::Msaa},
     window::{PrimaryWindow, Window},
 };
-use bevy_egui::{PrimaryEguiContext, egui::Rect};
-use bevy_panorbit_camera::ActiveCameraData;
+use bevy_egui::{
+    EguiGlobalSettings, EguiPostUpdateSet, EguiPrimaryContextPass, PrimaryEguiContext,
+    egui::{Pos2, Rect, vec2},
+};
+use bevy_panorbit_camera::{ActiveCameraData, PanOrbitCameraSystemSet};
 use glam::{UVec2, Vec2};
 
 use super::{WindowView, camera};
@@ -24,12 +30,58 @@ use crate::{
     },
     render::{
         camera::{PictureCamera, picture_camera},
-        show::Shows,
-        view::{Drawing, View, texture_of},
+        show::{ShowPlugin, Shows},
+        view::{Drawing, View, ViewSystems, texture_of},
     },
 };
 
-pub(super) fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>) {
+/// The view of the scene: fitted into the window between the panels, or alone in a texture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PicturePlugin {
+    /// The size of the picture in pixels where there is no window.
+    pub alone: Option<UVec2>,
+}
+
+impl Plugin for PicturePlugin {
+    fn build(&self, app: &mut App) {
+        let alone = self.alone;
+        let spawn = move |commands: Commands, adapter: Option<Res<RenderAdapterInfo>>| {
+            spawn_cameras(commands, adapter, alone);
+        };
+        // It is run for the camera of egui, also if nobody shows panels.
+        app.init_schedule(EguiPrimaryContextPass)
+            .add_plugins(ShowPlugin)
+            .add_systems(Startup, spawn)
+            .configure_sets(
+                PostUpdate,
+                (
+                    ViewSystems.after(PanOrbitCameraSystemSet),
+                    // New letters are uploaded for the frame that shows them, not for the next.
+                    EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
+                ),
+            )
+            .add_systems(
+                PostUpdate,
+                (
+                    fit_picture.after(EguiPostUpdateSet::EndPass).before(ViewSystems),
+                    show_picture.after(ViewSystems),
+                ),
+            );
+    }
+
+    fn finish(&self, app: &mut App) {
+        // egui gets a camera of its own, above the picture.
+        if let Some(mut settings) = app.world_mut().get_resource_mut::<EguiGlobalSettings>() {
+            settings.auto_create_primary_context = false;
+        }
+        if let Some(mut clusters) = app.world_mut().get_resource_mut::<GlobalClusterSettings>() {
+            // Bevy's own lights are not used, so neither is their clustering.
+            clusters.gpu_clustering = None;
+        }
+    }
+}
+
+fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAdapterInfo>>, alone: Option<UVec2>) {
     let software = adapter.is_some_and(|a| a.device_type == wgpu::DeviceType::Cpu);
     // Four samples double the cost of a frame where the GPU is a program on the CPU.
     let samples = if software { 1 } else { 4 };
@@ -38,9 +90,12 @@ pub(super) fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAd
         .insert((
             PictureCamera { follows_observer: true, fits_width: true },
             WindowView,
-            // The panels say how large.
-            View::for_display(UVec2::ZERO),
+            // In a window, the panels say how large.
+            View::for_display(alone.unwrap_or(UVec2::ZERO)),
         ));
+    if alone.is_some() {
+        return;
+    }
     commands.spawn((
         Camera2d,
         Camera { order: 1, ..Camera::default() },
@@ -54,15 +109,16 @@ pub(super) fn spawn_cameras(mut commands: Commands, adapter: Option<Res<RenderAd
 }
 
 /// The picture has the size of the room that the panels leave, and is shown there.
-pub(super) fn fit_picture(
+fn fit_picture(
     session: Res<Session>,
-    area: Res<PictureArea>,
+    area: Option<Res<PictureArea>>,
     window: Single<&Window, With<PrimaryWindow>>,
     mut views: Query<(Entity, &mut View, &mut Drawing, &mut Camera), With<WindowView>>,
-    mut controls: ResMut<ActiveCameraData>,
+    mut controls: Option<ResMut<ActiveCameraData>>,
     mut room: Local<Option<bool>>,
 ) {
     let Ok((entity, mut view, mut drawing, mut camera)) = views.single_mut() else { return };
+    let area = area_of(area.as_deref(), &window);
     let place = PicturePlace::of(&area, &window);
     if place.size.min_element() == 0 {
         return;
@@ -80,24 +136,34 @@ pub(super) fn fit_picture(
     if room.replace(session.view.show_room) != Some(session.view.show_room) {
         drawing.redraw();
     }
-    controls.set_if_neq(ActiveCameraData {
-        entity: Some(entity),
-        viewport_size: Some(place.size.as_vec2() / window.scale_factor()),
-        window_size: Some(window.size()),
-        manual: true,
-    });
+    if let Some(controls) = &mut controls {
+        controls.set_if_neq(ActiveCameraData {
+            entity: Some(entity),
+            viewport_size: Some(place.size.as_vec2() / window.scale_factor()),
+            window_size: Some(window.size()),
+            manual: true,
+        });
+    }
 }
 
 /// Shows the picture's texture in its place.
-pub(super) fn show_picture(
-    area: Res<PictureArea>,
+fn show_picture(
+    area: Option<Res<PictureArea>>,
     window: Single<&Window, With<PrimaryWindow>>,
     views: Query<&RenderTarget, With<WindowView>>,
     mut shows: Single<&mut Shows, With<PrimaryEguiContext>>,
 ) {
-    let at = PicturePlace::of(&area, &window).at;
+    let at = PicturePlace::of(&area_of(area.as_deref(), &window), &window).at;
     let pictures = views.iter().filter_map(texture_of).map(|texture| (texture.clone(), at)).collect();
     shows.set_if_neq(Shows(pictures));
+}
+
+/// The place that the panels leave; all of the window where there are none.
+pub(super) fn area_of(area: Option<&PictureArea>, window: &Window) -> PictureArea {
+    area.cloned().unwrap_or_else(|| {
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(window.width(), window.height()));
+        PictureArea { rect, frame: rect, has_pointer: true, ..PictureArea::default() }
+    })
 }
 
 /// The place of the picture in the window, pixels.

@@ -21,7 +21,17 @@ use glam::Vec2;
 
 use crate::panel::{is_over_picture, state::PictureArea};
 
+/// Knows whose the pointer is.
 pub(super) struct PointerPlugin;
+
+impl PointerPlugin {
+    /// Adds it, unless it is there.
+    pub(super) fn add_to(app: &mut App) {
+        if !app.is_plugin_added::<Self>() {
+            app.add_plugins(Self);
+        }
+    }
+}
 
 impl Plugin for PointerPlugin {
     fn build(&self, app: &mut App) {
@@ -77,7 +87,10 @@ pub(super) fn follow_cursor(
 ) {
     let context = contexts.iter_mut().next().map(|mut context| context.get_mut().clone());
     let is_over = |place: Option<Vec2>| {
-        let (Some(context), Some(area), Some(place)) = (&context, &area, place) else { return false };
+        let (Some(context), Some(area), Some(place)) = (&context, &area, place) else {
+            // Without panels all of the window is the picture.
+            return area.is_none() && place.is_some();
+        };
         let place = place / area.zoom;
         is_over_picture(context, area.frame, pos2(place.x, place.y))
     };

@@ -3,20 +3,28 @@
 
 use std::{
     collections::VecDeque,
-    path,
+    path::{self, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
+    thread,
     time::{Duration, SystemTime},
 };
 
 use bevy::{
+    app::{App, Last, Plugin, PreUpdate},
     ecs::prelude::*,
     winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
-use super::{ending::PATIENCE, files::DiskFiles, watching::complain};
+use super::{
+    ViewOptions,
+    ending::{Guard, PATIENCE},
+    files::DiskFiles,
+    order::Loading,
+    watching::complain,
+};
 use crate::{
     panel::{
         files::Files as _,
@@ -24,8 +32,46 @@ use crate::{
     },
     recovery::{About, Keeper, Left, Store, ago},
     registry::Registry,
+    render::schedule::LabFrame,
     signals::Interrupt,
 };
+
+/// Keeps copies of unsaved work, asks about those that earlier windows left, and hears Ctrl+C.
+#[derive(Clone, Debug)]
+pub struct RecoveryPlugin {
+    /// The file that the window opens: its copy is asked about first.
+    pub file: Option<PathBuf>,
+    /// True if copies of earlier windows are looked for.
+    pub look: bool,
+    /// True if the user is asked about them; else they are only mentioned.
+    pub ask: bool,
+}
+
+impl RecoveryPlugin {
+    pub(super) fn of(options: &ViewOptions) -> Self {
+        let attended = options.exit_after.is_none();
+        Self {
+            file: options.file.clone().or_else(|| options.open.clone()),
+            look: attended || !options.quiet,
+            ask: attended,
+        }
+    }
+}
+
+impl Plugin for RecoveryPlugin {
+    fn build(&self, app: &mut App) {
+        let store = Store::of_user();
+        let farewell = Farewell::prepare(store.clone(), app.world().get_resource::<EventLoopProxyWrapper>());
+        let mut copies = Recovery::new(farewell);
+        if self.look {
+            copies.look(store.as_ref(), self.file.as_deref(), self.ask);
+        }
+        app.insert_resource(copies)
+            .add_systems(PreUpdate, interrupted)
+            .add_systems(LabFrame, (stayed, offer).chain().in_set(Loading::Recovery))
+            .add_systems(Last, keep);
+    }
+}
 
 /// The part of the window that outlives it.
 #[derive(Clone)]
@@ -38,7 +84,7 @@ pub(super) struct Farewell {
 
 impl Farewell {
     /// Begins to keep copies, and to listen to signals.
-    pub(super) fn prepare(store: Option<Store>, proxy: Option<&EventLoopProxyWrapper>) -> Self {
+    fn prepare(store: Option<Store>, proxy: Option<&EventLoopProxyWrapper>) -> Self {
         let keeper = Keeper::start(store, waker(proxy));
         let last = keeper.clone();
         let last_act = move |signal: &str| {
@@ -79,6 +125,16 @@ pub(super) struct Recovery {
     /// The copy that the question is about.
     asked: Option<Left>,
     registry: Option<Arc<Registry>>,
+    /// While it is here, this says farewell when the window goes.
+    guard: Option<Guard>,
+}
+
+impl Drop for Recovery {
+    fn drop(&mut self) {
+        if self.guard.take().is_some() && !thread::panicking() {
+            self.farewell.say();
+        }
+    }
 }
 
 /// Wakes the window after the work of another thread.
@@ -93,14 +149,20 @@ fn waker(proxy: Option<&EventLoopProxyWrapper>) -> impl Fn() + Send + use<> {
 }
 
 impl Recovery {
+    /// Leaves the farewell to whoever runs the window.
+    pub(super) fn hand_over(&mut self) -> Option<(Farewell, Guard)> {
+        Some((self.farewell.clone(), self.guard.take()?))
+    }
+
     /// Without anything to ask.
-    pub(super) fn new(farewell: Farewell) -> Self {
-        Self { farewell, left: VecDeque::new(), asked: None, registry: None }
+    fn new(farewell: Farewell) -> Self {
+        let guard = Guard::set(&farewell.keeper);
+        Self { farewell, left: VecDeque::new(), asked: None, registry: None, guard: Some(guard) }
     }
 
     /// Looks for what earlier windows left, that of the file on the command line first. `ask` is false where there is
     /// nobody to answer: then it is only said.
-    pub(super) fn look(&mut self, store: Option<&Store>, file: Option<&path::Path>, ask: bool) {
+    fn look(&mut self, store: Option<&Store>, file: Option<&path::Path>, ask: bool) {
         let mut left = store.map(Store::left).unwrap_or_default();
         let file = file.and_then(|file| path::absolute(file).ok());
         left.sort_by_key(|left| file.is_none() || left.about.path != file);
@@ -159,7 +221,7 @@ fn about(session: &Session, files: &DiskFiles) -> About {
 }
 
 /// Ctrl+C in the terminal is Ctrl+Q in the window.
-pub(super) fn interrupted(
+fn interrupted(
     recovery: Res<Recovery>,
     mut session: ResMut<Session>,
     registry: Res<Registry>,
@@ -172,14 +234,14 @@ pub(super) fn interrupted(
 
 /// After Ctrl+C the user may decide to stay. Runs right after the effects are carried out: what closes the window is
 /// none on its way then.
-pub(super) fn stayed(recovery: Res<Recovery>, session: Res<Session>) {
+fn stayed(recovery: Res<Recovery>, session: Res<Session>) {
     if !recovery.farewell.closing.load(Ordering::SeqCst) && !session.questions.is_quitting() {
         recovery.farewell.interrupt.stay();
     }
 }
 
 /// Asks about the next copy, as soon as nothing else is asked.
-pub(super) fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry: Res<Registry>) {
+fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry: Res<Registry>) {
     if recovery.left.is_empty() || session.questions.open.is_some() {
         return;
     }
@@ -204,7 +266,7 @@ pub(super) fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>
 }
 
 /// Hands unsaved changes to the keeper; runs after all that changes the document in a frame.
-pub(super) fn keep(
+fn keep(
     mut recovery: ResMut<Recovery>,
     mut session: ResMut<Session>,
     files: Res<DiskFiles>,

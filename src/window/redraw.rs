@@ -58,7 +58,7 @@ impl Settling {
 /// Asks for another frame while something changes.
 pub(super) fn redraw(
     session: Res<Session>,
-    area: Res<PictureArea>,
+    area: Option<Res<PictureArea>>,
     scene: Res<CurrentScene>,
     terms: Res<ShownTerms>,
     live: Res<LiveShaders>,
@@ -75,7 +75,8 @@ pub(super) fn redraw(
     let camera = cameras.iter().next().copied();
     let moved = std::mem::replace(&mut *seen_from, camera) != camera;
     // An edit of the panels reaches the scene in the next frame.
-    let changed = session.is_changed() || area.is_changed() || scene.is_changed() || terms.is_changed();
+    let area = area.is_some_and(|area| area.is_changed());
+    let changed = session.is_changed() || area || scene.is_changed() || terms.is_changed();
     // Problems are told after a while, and what is not on the picture is tried one in a frame.
     let busy = live.is_busy() && !bench.is_waiting() && !live.is_reading();
     if letters || moved || changed || busy {

@@ -6,27 +6,62 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use bevy::ecs::prelude::*;
+use bevy::{
+    app::{App, Plugin},
+    ecs::prelude::*,
+};
 
-use super::watching::{FileWatch, FilesChanged, complain, complain_in_colour};
+use super::{
+    order::Loading,
+    watching::{FileWatch, FilesChanged, complain, complain_in_colour, waker},
+};
 use crate::{
     custom,
     library::{
         assets::{self, Folders},
         status::Trouble,
     },
-    panel::{
-        follow::follow_registry,
-        state::{Session, Severity},
-    },
+    panel::state::{Session, Severity},
     registry::Registry,
-    render::live::LiveShaders,
+    render::{
+        live::LiveShaders,
+        schedule::{LabFrame, LabSystems},
+        trial::{
+            Bench,
+            process::{Budget, TrialProcess},
+        },
+    },
     shader::report::{annotated, coloured},
 };
 
+/// Reads the shaders and custom models in the registry's folders, follows them, and reports their problems.
+#[derive(Clone, Debug, Default)]
+pub struct ShaderFilesPlugin {
+    /// The program that tries shaders when it is called with
+    /// [`COMMAND`](crate::render::trial::process::COMMAND); without it this one does, between frames.
+    pub trial_program: Option<PathBuf>,
+}
+
+impl Plugin for ShaderFilesPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(LabFrame, (follow.in_set(Loading::Shaders), tell.in_set(LabSystems::Upload)));
+    }
+
+    fn finish(&self, app: &mut App) {
+        let world = app.world_mut();
+        if let Some(program) = &self.trial_program {
+            let process = TrialProcess::new(program.clone(), Budget::default(), waker(world));
+            world.resource_mut::<Bench>().try_in(process);
+        }
+        let wake = waker(world);
+        world.resource_mut::<LiveShaders>().read_apart(wake);
+        open(world);
+    }
+}
+
 /// Reads the shaders of the registry's folders and watches them. Custom models are in the registry already; shaders that
 /// cannot be drawn with are replaced by the built-in ones and reported.
-pub(super) fn open(world: &mut World) {
+fn open(world: &mut World) {
     let mut registry = world.resource_mut::<Registry>();
     let folders = registry.folders().clone();
     let unreadable = match &folders.shaders {
@@ -45,7 +80,7 @@ pub(super) fn open(world: &mut World) {
         .collect();
     world.resource_mut::<LiveShaders>().start();
     look_at(world, &broken);
-    let mut watch = world.resource_mut::<FileWatch>();
+    let Some(mut watch) = world.get_resource_mut::<FileWatch>() else { return };
     for folder in [&folders.shaders, &folders.models].into_iter().flatten() {
         watch.0.watch_folder(folder);
     }
@@ -72,19 +107,12 @@ pub(super) fn move_to(world: &mut World, folder: &Path) {
 }
 
 /// Looks at the files that changed.
-pub(super) fn follow(world: &mut World, mut last: Local<bevy::ecs::message::MessageCursor<FilesChanged>>) {
+fn follow(world: &mut World, mut last: Local<bevy::ecs::message::MessageCursor<FilesChanged>>) {
     let changed: Vec<_> = {
         let messages = world.resource::<Messages<FilesChanged>>();
         last.read(messages).flat_map(|files| files.0.clone()).collect()
     };
     look_at(world, &changed);
-}
-
-/// The models are others: what none of them takes leaves the document until one does.
-pub(super) fn follow_parameters(registry: Res<Registry>, session: ResMut<Session>) {
-    if registry.is_changed() {
-        follow_registry(session, &registry);
-    }
 }
 
 fn look_at(world: &mut World, files: &[PathBuf]) {
@@ -99,7 +127,7 @@ fn look_at(world: &mut World, files: &[PathBuf]) {
 }
 
 /// Tells the panels and standard error of the state of the shaders.
-pub(super) fn tell(live: Res<LiveShaders>, mut session: ResMut<Session>, mut troubled: Local<bool>) {
+fn tell(live: Res<LiveShaders>, mut session: ResMut<Session>, mut troubled: Local<bool>) {
     let status = live.status();
     // A problem may have given way to one that is too young to be told.
     if *troubled && status.troubles.is_empty() && live.is_up_to_date() {

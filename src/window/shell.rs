@@ -1,16 +1,56 @@
-//! The window on the desktop: its title, its size on the screen, its closing.
+//! The window on the desktop: its title, its size on the screen, its closing, its rest.
 
 use bevy::{
+    app::{App, Last, Plugin, PostUpdate, PreUpdate, Startup},
     ecs::prelude::*,
     window::{MonitorSelection, PrimaryWindow, Window, WindowCloseRequested, WindowMode},
 };
 
+use bevy_egui::{EguiPostUpdateSet, EguiPreUpdateSet};
+
+use super::{frames, input, redraw};
 use crate::{
     panel::state::{Action, LabEffect, Session},
     registry::Registry,
 };
 
-pub(super) fn window_title(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
+/// The window on the desktop. It sleeps while nothing changes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ShellPlugin {
+    /// Reports the time per frame when it closes.
+    pub verbose: bool,
+}
+
+impl Plugin for ShellPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(redraw::sleepy())
+            .init_resource::<redraw::Settling>()
+            .insert_resource(frames::FrameClock::new(self.verbose))
+            .add_systems(Startup, frames::adapter_facts)
+            .add_systems(
+                PreUpdate,
+                (
+                    close_requested,
+                    input::mend_input
+                        .after(EguiPreUpdateSet::ProcessInput)
+                        .before(EguiPreUpdateSet::BeginPass),
+                ),
+            )
+            .add_systems(
+                PostUpdate,
+                (
+                    (window_title, fullscreen).run_if(resource_changed::<Session>),
+                    // The last changes by the panels are known by now, and are to be drawn.
+                    redraw::redraw
+                        .after(EguiPostUpdateSet::ProcessOutput)
+                        .before(EguiPostUpdateSet::PostProcessOutput),
+                ),
+            )
+            .add_systems(Last, (frames::measure, input::rescale_pointer));
+    }
+}
+
+fn window_title(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
     let mark = if session.is_dirty() { " •" } else { "" };
     let title = format!("{}{mark} – Lights, Camera, Models!", session.window_title());
     if window.title != title {
@@ -19,7 +59,7 @@ pub(super) fn window_title(session: Res<Session>, mut window: Single<&mut Window
 }
 
 /// The window fills the screen where the state says so.
-pub(super) fn fullscreen(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
+fn fullscreen(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
     let mode = if session.view.fullscreen {
         WindowMode::BorderlessFullscreen(MonitorSelection::Current)
     } else {
@@ -30,7 +70,7 @@ pub(super) fn fullscreen(session: Res<Session>, mut window: Single<&mut Window, 
     }
 }
 
-pub(super) fn close_requested(
+fn close_requested(
     mut requests: MessageReader<WindowCloseRequested>,
     mut session: ResMut<Session>,
     registry: Res<Registry>,

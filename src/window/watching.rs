@@ -1,8 +1,9 @@
 //! Changes on disk reach the window, which sleeps meanwhile.
 
 use std::{
+    collections::{BTreeMap, BTreeSet},
     io::{self, Write as _},
-    path::PathBuf,
+    path::{Path, PathBuf},
     time::Duration,
 };
 
@@ -12,9 +13,13 @@ use bevy::{
     winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
+use super::order::Loading;
 use crate::{
     files,
     panel::state::{Effect, LabEffect, Session, Severity},
+    parameter::{NamedFile, Value},
+    render::{entities::CurrentScene, schedule::LabFrame},
+    scene::Scene,
     watch::Watcher,
 };
 
@@ -29,13 +34,26 @@ pub struct FileWatch(pub Watcher);
 #[derive(Clone, Debug, PartialEq, Eq, Message)]
 pub struct FilesChanged(pub Vec<PathBuf>);
 
-/// Adds [`FileWatch`] and [`FilesChanged`]; the systems are the window's, since they need an order.
-pub(super) struct WatchingPlugin;
+/// Follows files on disk: [`FileWatch`], and the file of the document.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WatchingPlugin;
 
 impl Plugin for WatchingPlugin {
     fn build(&self, app: &mut App) {
         let wake = waker(app.world());
-        app.add_message::<FilesChanged>().insert_resource(FileWatch(Watcher::new(wake)));
+        app.add_message::<FilesChanged>().insert_resource(FileWatch(Watcher::new(wake))).add_systems(
+            LabFrame,
+            (
+                collect.in_set(Loading::Watch),
+                (
+                    (watch_document, watch_named_files).chain().run_if(resource_changed::<Session>),
+                    follow_document,
+                    follow_named_files,
+                )
+                    .chain()
+                    .in_set(Loading::Follow),
+            ),
+        );
     }
 }
 
@@ -51,7 +69,7 @@ pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + use<> {
 }
 
 /// Asks the watcher for changes.
-pub(super) fn collect(
+fn collect(
     watch: Res<FileWatch>,
     mut changed: MessageWriter<FilesChanged>,
     mut session: ResMut<Session>,
@@ -71,11 +89,7 @@ pub(super) fn collect(
 }
 
 /// Watches the file of the document, whichever that is.
-pub(super) fn watch_document(
-    mut watch: ResMut<FileWatch>,
-    session: Res<Session>,
-    mut watched: Local<Option<PathBuf>>,
-) {
+fn watch_document(mut watch: ResMut<FileWatch>, session: Res<Session>, mut watched: Local<Option<PathBuf>>) {
     if *watched == session.path {
         return;
     }
@@ -90,8 +104,71 @@ pub(super) fn watch_document(
     }
 }
 
+/// Watches the files that the lights of the document name.
+fn watch_named_files(
+    mut watch: ResMut<FileWatch>,
+    session: Res<Session>,
+    mut watched: Local<BTreeSet<PathBuf>>,
+) {
+    let files = named_files(&session.document);
+    let named: BTreeSet<_> = files.filter_map(|file| file.path().map(Path::to_owned)).collect();
+    if *watched == named {
+        return;
+    }
+    watched.difference(&named).for_each(|path| watch.0.forget(path));
+    for path in named.difference(&watched) {
+        watch.0.watch_file(path);
+        // It may have changed between being read and being watched.
+        watch.0.report_later(path, Duration::ZERO);
+    }
+    *watched = named;
+}
+
+fn named_files(scene: &Scene) -> impl Iterator<Item = &NamedFile> {
+    scene.lights.iter().flat_map(|light| light.parameters.0.values()).filter_map(|value| match value {
+        Value::File(file) => Some(file),
+        _ => None,
+    })
+}
+
+/// When a file changed that a light names, it is read again. If it cannot be used, the last version that could is shown;
+/// that is said after a moment, since many editors write in steps.
+fn follow_named_files(
+    mut changed: MessageReader<FilesChanged>,
+    watch: Res<FileWatch>,
+    mut session: ResMut<Session>,
+    mut scene: ResMut<CurrentScene>,
+    mut suspects: Local<BTreeSet<PathBuf>>,
+) {
+    let changed: BTreeSet<_> = changed.read().flat_map(|files| files.0.clone()).collect();
+    let with_path = |file: &NamedFile| Some((file.path()?.to_owned(), file.clone()));
+    if changed.is_empty() {
+        return;
+    }
+    let files: BTreeMap<_, _> = named_files(&session.document).filter_map(with_path).collect();
+    for (path, file) in files.into_iter().filter(|(path, _)| changed.contains(path)) {
+        let news = file.read_again();
+        match file.problem() {
+            Some(problem) if suspects.remove(&path) => {
+                complain(&problem);
+                session.say(Severity::Error, format!("{problem}; the last good version is shown."));
+            }
+            Some(_) if news => {
+                watch.0.report_later(&path, GRACE);
+                suspects.insert(path);
+            }
+            None if news => {
+                suspects.remove(&path);
+                scene.set_changed();
+                session.say(Severity::Info, format!("{} was reloaded: it changed on disk.", path.display()));
+            }
+            _ => {}
+        }
+    }
+}
+
 /// When the document's file changed, it is looked at.
-pub(super) fn follow_document(
+fn follow_document(
     mut changed: MessageReader<FilesChanged>,
     session: Res<Session>,
     mut effects: MessageWriter<LabEffect>,

@@ -300,3 +300,35 @@ fn the_keys_stay_in_the_dialog() {
         );
     }
 }
+
+#[test]
+fn a_lamp_gets_the_file_that_is_chosen_and_keeps_its_own_if_that_is_no_good() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let ies = "TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n50 50\n";
+    fs::write(folder.path().join("bright.ies"), ies).expect("written");
+    fs::write(folder.path().join("dull.ies"), ies.replace("50 50", "50")).expect("written");
+    let mut session = Session::default();
+    session.path = Some(folder.path().join("room.json"));
+    let mut bench = Bench::new(session);
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::AddLight("photometric".to_owned()));
+    let choose = |bench: &mut Bench, shown: &str, name: &str| {
+        let knob = format!("photometric file: {shown}");
+        until(bench, "the knob", |b: &mut Bench| b.tree.iter().any(|s| s.label.contains(&knob)));
+        select(bench, &knob);
+        until(bench, "the list", |b: &mut Bench| b.says("bright.ies") && b.says("dull.ies"));
+        assert!(!bench.says("room.json"), "only photometric files are listed");
+        bench.frame(vec![Event::Text(name.to_owned())]);
+        bench.settle();
+        bench.key(Key::Enter, Modifiers::NONE);
+        assert!(!bench.dialogs.is_open());
+        bench.settle();
+        let lamp = bench.session.document.lights.last().expect("added");
+        lamp.parameters.0.get("file").map(|file| file.to_string())
+    };
+    assert_eq!(choose(&mut bench, "wall_washer.ies", "bright").as_deref(), Some("bright.ies"));
+    assert_eq!(choose(&mut bench, "bright.ies", "dull").as_deref(), Some("bright.ies"));
+    let problem = "dull.ies:6: the file ends before candela value 2 of 2";
+    let said = bench.session.messages.iter().any(|message| message.text.contains(problem));
+    assert!(said, "the mistake is told");
+}

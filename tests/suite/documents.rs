@@ -23,12 +23,9 @@ use serde_json::Value as Json;
 
 use crate::{
     golden::{SAME_RENDERER, read_png, updating},
+    plugins::window::toon as example,
     support::root,
 };
-
-#[path = "../../examples/toon.rs"]
-#[allow(dead_code)]
-mod example;
 
 #[test]
 fn gouraud_shading_loses_the_highlight_as_the_tour_says() {
@@ -108,10 +105,42 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
         ("docs/custom-models.md", vec![("limits", limits())]),
         (
             "docs/extending.md",
-            vec![("toon.wgsl", example("toon.wgsl", "wgsl")), ("toon.rs", example("toon.rs", "rust"))],
+            vec![
+                ("toon.wgsl", example("toon.wgsl", "wgsl")),
+                ("toon.rs", example("toon.rs", "rust")),
+                ("panel.rs", example("panel.rs", "rust")),
+                ("parts", parts()),
+                ("sets", sets()),
+            ],
         ),
+        ("README.md", vec![("window.rs", example("window.rs", "rust"))]),
+        ("docs/README.md", vec![("window.rs", example("window.rs", "rust"))]),
         ("docs/architecture.md", vec![("modules", modules())]),
     ]
+}
+
+/// The parts of the window, from the documentation of the group.
+fn parts() -> String {
+    let text = fs::read_to_string(root().join("src/window/plugins.rs")).expect("there");
+    let plain = |line: &str| line.replace("[`", "`").replace("`]", "`");
+    text.lines()
+        .filter_map(|line| line.strip_prefix("/// |"))
+        .map(|line| format!("|{}\n", plain(line)))
+        .collect()
+}
+
+/// The sets that systems can be ordered by, from their documentation.
+fn sets() -> String {
+    let text = fs::read_to_string(root().join("src/render/schedule.rs")).expect("there");
+    let body =
+        text.split("pub enum LabSystems {").nth(1).and_then(|t| t.split("\n}").next()).expect("an enum");
+    let lines: Vec<_> = body.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    let rows = lines.chunks(2).map(|pair| {
+        let [help, name] = pair else { panic!("each set has one sentence: {pair:?}") };
+        let help = help.strip_prefix("/// ").unwrap_or_else(|| panic!("{name} has one sentence: {help}"));
+        vec![code(&format!("LabSystems::{}", name.trim_end_matches(','))), help.to_owned()]
+    });
+    table(&["set", "work"], rows)
 }
 
 fn models(registry: &Registry) -> String {

@@ -1,6 +1,7 @@
 //! An hour at the desk: random edits of every kind, undone and redone, come back exactly.
 
 use std::{
+    collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
     sync::Arc,
@@ -333,7 +334,7 @@ impl Desk {
                     let text = |scene: &Scene| save::to_json(scene, None, &self.registry);
                     assert_eq!(
                         text(&read.scene),
-                        text(&self.session.document),
+                        text(&self.session.document.named(&self.registry)),
                         "what is saved is what is read"
                     );
                 }
@@ -394,9 +395,19 @@ impl Desk {
         }
         let done = self.session.document.done();
         let selection = self.session.selection;
+        let before: Vec<_> = self
+            .unnamed()
+            .into_iter()
+            .map(|((id, part_type), name)| (id, part_type.to_owned(), name))
+            .collect();
         let removed = self.anything();
         let now = self.state();
         self.check("an edit");
+        for (id, part_type, name) in before {
+            // Until it is given one, or another type.
+            let now = self.unnamed().remove(&(id, part_type.as_str()));
+            assert!(now.as_ref().is_none_or(|now| *now == name), "{name} is {now:?}");
+        }
         let steps = self.session.document.done();
         if now == self.states[done] && steps == done {
             return;
@@ -421,6 +432,18 @@ impl Desk {
         }
     }
 
+    /// The names of parts that were given none, by id and type.
+    fn unnamed(&self) -> BTreeMap<(Option<PartId>, &str), String> {
+        let document = &self.session.document;
+        let name = |part| document.name_of(part, &self.registry);
+        let lights = document.lights.iter().enumerate().filter(|(_, light)| light.name.is_none());
+        let lights = lights.map(|(i, l)| ((document.light_id(i), &*l.light_type), name(Selection::Light(i))));
+        let objects = document.objects.iter().enumerate().filter(|(_, object)| object.name.is_none());
+        let objects =
+            objects.map(|(i, o)| ((document.object_id(i), &*o.object_type), name(Selection::Object(i))));
+        lights.chain(objects).collect()
+    }
+
     /// The invariants.
     fn check(&self, after: &str) {
         let document = &self.session.document;
@@ -430,18 +453,15 @@ impl Desk {
         let mut ids: Vec<_> = self.state().lights.into_iter().chain(self.state().objects).collect();
         ids.sort_unstable();
         assert!(ids.iter().all(Option::is_some) && ids.windows(2).all(|pair| pair[0] != pair[1]));
-        for (i, light) in document.lights.iter().enumerate() {
+        for i in 0..document.lights.len() {
             assert_eq!(document.light_id(i).and_then(|id| document.light(id)), Some(i), "after {after}");
-            let same = document.lights[..=i].iter().filter(|l| l.light_type == light.light_type).count();
-            let name = document.name_of(Selection::Light(i), &self.registry);
-            assert!(light.name.is_some() || name.ends_with(&format!(" {same}")), "after {after}: {name}");
         }
-        for (i, object) in document.objects.iter().enumerate() {
+        for i in 0..document.objects.len() {
             assert_eq!(document.object_id(i).and_then(|id| document.object(id)), Some(i), "after {after}");
-            let same = document.objects[..=i].iter().filter(|o| o.object_type == object.object_type).count();
-            let name = document.name_of(Selection::Object(i), &self.registry);
-            assert!(object.name.is_some() || name.ends_with(&format!(" {same}")), "after {after}: {name}");
         }
+        let unnamed = self.unnamed();
+        let names: BTreeSet<_> = unnamed.values().collect();
+        assert_eq!(names.len(), unnamed.len(), "after {after}: {names:?}");
         let exists = match self.session.selection {
             Selection::Light(i) => i < document.lights.len(),
             Selection::Object(i) => i < document.objects.len(),
@@ -457,7 +477,7 @@ impl Desk {
         let Settled::Kept { file, .. } = self.keeper.settle(Duration::from_secs(60)) else {
             panic!("there is a copy");
         };
-        let text = save::to_json(&self.session.document, None, &self.registry);
+        let text = save::to_json(&self.session.document.named(&self.registry), None, &self.registry);
         assert_eq!(fs::read_to_string(file).unwrap(), text);
     }
 

@@ -286,6 +286,7 @@ pub fn random_values(model: &ModelEntry, seed: &mut u64) -> Values {
                 ParameterKind::Choice { options, .. } => {
                     Value::Choice(options[(r * options.len() as f32) as usize].0.into())
                 }
+                ParameterKind::File { .. } => p.default_value(),
             },
         );
     }
@@ -365,6 +366,7 @@ fn at_the_ends_of_all_ranges_both_languages_are_finite_and_agree() {
                         let i = (random(&mut seed) * options.len() as f32) as usize;
                         Value::Choice(options[i].0.into())
                     }
+                    ParameterKind::File { .. } => p.default_value(),
                 };
                 values.set(p.name, value);
             }

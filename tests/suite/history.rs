@@ -154,7 +154,7 @@ fn parts_keep_their_ids_when_others_come_and_go_and_when_they_come_back() {
     scene.objects.swap(0, 4);
     scene.objects.remove(2);
     scene.objects.push(Object { object_type: "cube".to_owned(), ..Object::default() });
-    session.document.replace("Reload from disk", Selection::Room, scene);
+    session.document.replace("Reload from disk", Selection::Room, scene, &registry);
     assert_eq!(ids(&session)[..4], [first[4], first[1], first[3], first[0]]);
     session.apply(Action::Undo, &registry);
     assert_eq!(ids(&session), first);
@@ -205,7 +205,7 @@ fn history_outlives_saving_and_reading_the_file_again_but_not_another_document()
     let mut edited = session.document.scene().clone();
     edited.reflection_model = "phong".to_owned();
     session.document.set_saved(edited.clone());
-    session.document.replace("Reload from disk", session.selection, edited);
+    session.document.replace("Reload from disk", session.selection, edited, &registry);
     session.apply(Action::Undo, &registry);
     assert_eq!(session.document.reflection_model, "lambert");
     session.apply(Action::Undo, &registry);
@@ -345,6 +345,38 @@ fn a_drag_of_a_knob_is_one_step() {
 }
 
 #[test]
+fn names_that_only_the_file_has_are_none_of_the_document() {
+    let registry = Registry::builtin();
+    let ball = |i: u8| Object { position: Vec3::splat(f32::from(i)), ..Object::default() };
+    let mut document = Document::new(Scene { objects: (1..=4).map(ball).collect(), ..Scene::default() });
+    let parts = |document: &Document| -> Vec<_> {
+        let name = |i| document.name_of(Selection::Object(i), &registry);
+        (0..document.objects.len()).map(|i| (document.object_id(i), name(i))).collect()
+    };
+    document.remove(Selection::Object(0), &registry);
+    let before = parts(&document);
+    assert_eq!(before.iter().map(|part| &*part.1).collect::<Vec<_>>(), ["Sphere 2", "Sphere 3", "Sphere 4"]);
+    let file = document.named(&registry);
+    assert_eq!(file.objects[0].name.as_deref(), Some("Sphere 2"));
+    assert!(file != *document.scene() && !document.was_saved_as(&file));
+    document.mark_saved(&registry);
+    assert!(document.was_saved_as(&file) && !document.was_saved_as(document.scene()));
+    // The file is read again, with the parts in another order, one of them changed, and a new one.
+    let mut edited = file.clone();
+    edited.objects[0].size = 0.5;
+    edited.objects.swap(0, 2);
+    edited.objects.push(ball(5));
+    document.replace("Reload from disk", Selection::Room, edited, &registry);
+    let after = parts(&document);
+    assert_eq!(after[..3], [before[2].clone(), before[1].clone(), before[0].clone()]);
+    assert_eq!(after[3].1, "Sphere 5");
+    assert!(document.objects.iter().all(|object| object.name.is_none()));
+    document.undo();
+    assert_eq!(parts(&document), before);
+    assert!(*document.scene() == *document.saved() && !document.differs());
+}
+
+#[test]
 fn undoing_leads_back_to_what_was_saved() {
     let registry = Registry::builtin();
     let mut document = Document::new(Scene::default());
@@ -352,7 +384,7 @@ fn undoing_leads_back_to_what_was_saved() {
         document.edit(Edit::Object(0, ObjectField::Size(v)), Selection::Room, &registry).expect("legal");
     };
     size(&mut document, 3.0);
-    document.mark_saved();
+    document.mark_saved(&registry);
     size(&mut document, 4.0);
     document.undo();
     assert!(!document.differs() && document.objects[0].size == 3.0);

@@ -166,6 +166,8 @@ pub struct Bench {
     pub registry: Registry,
     pub panels: Panels,
     pub dialogs: Dialogs,
+    /// The world that panels read, and that their commands change.
+    pub world: World,
     pub size: egui::Vec2,
     time: f64,
     pub tree: Vec<Seen>,
@@ -206,6 +208,7 @@ impl Bench {
             registry,
             panels: Panels::builtin(),
             dialogs: Dialogs::default(),
+            world: World::new(),
             size: vec2(1280.0, 1600.0),
             time: 0.0,
             tree: Vec::new(),
@@ -235,10 +238,11 @@ impl Bench {
         };
         let mut effects = Vec::new();
         let (session, area, registry) = (&mut self.session, &mut self.area, &self.registry);
-        let (panels, dialogs) = (&self.panels, &mut self.dialogs);
+        let (panels, dialogs, world) = (&mut self.panels, &mut self.dialogs, &self.world);
         let mut output = self.ctx.run_ui(input, |ui| {
-            effects.extend(panel::show(ui, &mut *session, area, registry, panels, dialogs));
+            effects.extend(panel::show(ui, &mut *session, area, registry, panels, dialogs, world));
         });
+        self.panels.take_queued().into_iter().for_each(|command| command(&mut self.world));
         self.effects.extend(effects);
         if let Some(update) = output.platform_output.accesskit_update.take() {
             self.tree = update
@@ -1145,9 +1149,8 @@ fn a_panel_from_outside_gets_a_tab() {
         fn place(&self) -> panel::Place {
             panel::Place::Bottom
         }
-        fn show(&self, ui: &mut egui::Ui, _lab: &Session, _registry: &Registry) -> Vec<Action> {
+        fn show(&mut self, ui: &mut egui::Ui, _context: &mut panel::PanelContext<'_>) {
             ui.label("from outside");
-            Vec::new()
         }
     }
     let mut bench = Bench::new(Session::default());
@@ -1509,11 +1512,11 @@ fn changes(bench: &mut Bench, frames: impl IntoIterator<Item = Vec<Event>>) -> u
             events,
             ..RawInput::default()
         };
-        let (registry, panels) = (&bench.registry, &bench.panels);
-        let (area, dialogs) = (&mut bench.area, &mut bench.dialogs);
+        let (registry, panels, area) = (&bench.registry, &mut bench.panels, &mut bench.area);
+        let (dialogs, others) = (&mut bench.dialogs, &bench.world);
         let mut session = world.resource_mut::<Session>();
         let _ = bench.ctx.run_ui(input, |ui| {
-            assert_eq!(panel::show(ui, session.reborrow(), area, registry, panels, dialogs), []);
+            assert_eq!(panel::show(ui, session.reborrow(), area, registry, panels, dialogs, others), []);
         });
         count += usize::from(world.is_resource_changed::<Session>());
     }

@@ -3,18 +3,27 @@
 use glam::{Vec3, Vec4};
 use lights_camera_models::{
     reference,
+    registry::Registry,
     scene::{Light, Object, Observer, Scene},
 };
 
 /// A scene with one object that fills much of the picture and one light beside the observer.
 pub fn close_up(shape: &str, light: &str) -> Scene {
+    let registry = Registry::builtin();
+    // Types from elsewhere are set up by their tests.
+    let declaration = registry.light(light).map(|entry| entry.declaration);
     let mut scene = Scene {
         lights: vec![Light {
             light_type: light.to_owned(),
-            position: matches!(light, "point" | "spot").then_some(Vec3::new(6.6, 6.9, 8.4)),
-            direction: matches!(light, "directional" | "spot").then_some(Vec3::new(-0.5, -0.55, -1.0)),
+            position: declaration.is_some_and(|d| d.has_position).then_some(Vec3::new(6.6, 6.9, 8.4)),
+            direction: declaration.is_some_and(|d| d.has_direction).then_some(Vec3::new(-0.5, -0.55, -1.0)),
             colour: [255, 240, 200],
-            intensity: if matches!(light, "point" | "spot") { 9.0 } else { 0.8 },
+            intensity: match declaration.map(|d| d.unit) {
+                Some("cd") => 9.0,
+                // Of a lamp of about 1000 cd.
+                Some("×") => 0.009,
+                _ => 0.8,
+            },
             ..Light::default()
         }],
         observer: Observer {

@@ -4,7 +4,7 @@ use std::{collections::BTreeSet, path::PathBuf};
 
 use bevy_egui::egui::{Key, Modifiers, PointerButton, Shape, accesskit::Role};
 use lights_camera_models::{
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, Extent, LightField, ObjectField, Selection},
     optics::TermSelection,
     panel::{
         caption::caption_text,
@@ -184,6 +184,8 @@ fn a_part_keeps_its_name_for_life() {
     assert_eq!(names(&bench), ["Sphere 1", "Sphere 2", "Cube 1", "Sphere 3"]);
     bench.apply(Action::Remove(Selection::Object(0)));
     assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Sphere 3"]);
+    // The others are what they were: nothing is written into them ; the file gets the names.
+    assert!(bench.session.document.objects.iter().all(|object| object.name.is_none()));
     bench.apply(Action::AddObject("sphere".to_owned()));
     assert_eq!(names(&bench), ["Sphere 2", "Cube 1", "Sphere 3", "Sphere 4"]);
     bench.apply(Action::Duplicate(Selection::Object(1)));
@@ -192,9 +194,33 @@ fn a_part_keeps_its_name_for_life() {
     assert_eq!(names(&bench)[1..], ["Cube 1", "Cube 2", "Sphere 3", "Sphere 4"]);
     let all = names(&bench);
     assert_eq!(all.iter().collect::<std::collections::BTreeSet<_>>().len(), all.len(), "{all:?}");
-    // The file has them too.
-    let again = Bench::new(Session::new(read(&written(&bench.session.document))));
-    assert_eq!(names(&again), all);
+    // The file has them too, and of its parts only those that it would call otherwise.
+    let again = |session: &Session, registry: &Registry| {
+        names(&Bench::new(Session::new(read(&written(&session.document.named(registry))))))
+    };
+    assert_eq!(again(&bench.session, &bench.registry), all);
+    assert_ne!(names(&Bench::new(Session::new(read(&written(&bench.session.document))))), all);
+    // A system that changes a type or the list gives no other part another name.
+    let mut scene = bench.session.document.scene().clone();
+    scene.objects[2].object_type = "torus".to_owned();
+    scene.objects.remove(1);
+    bench.session.submit(&scene, &[Extent::All], &bench.registry).expect("legal");
+    let fewer = names(&bench);
+    assert_eq!(fewer[1..], ["Torus 1", "Sphere 3", "Sphere 4"]);
+    assert_eq!(fewer[0], all[0]);
+    assert_eq!(again(&bench.session, &bench.registry), fewer);
+    bench.apply(Action::Undo);
+    assert_eq!(names(&bench), all);
+    // A name that is taken away makes room for no second one of its kind.
+    let name = |text: &str| Action::Edit(Edit::Object(3, ObjectField::Name(text.to_owned())));
+    bench.apply(name("Ball"));
+    bench.apply(Action::Edit(Edit::Object(4, ObjectField::Name("Sphere 3".to_owned()))));
+    bench.apply(name(""));
+    assert_eq!(names(&bench)[3..], ["Sphere 5", "Sphere 3"]);
+    bench.apply(Action::Undo);
+    bench.apply(Action::Undo);
+    bench.apply(Action::Undo);
+    assert_eq!(names(&bench), all);
     // Lights as well.
     bench.apply(Action::AddLight("point".to_owned()));
     bench.apply(Action::AddLight("spot".to_owned()));

@@ -72,14 +72,19 @@ impl Screen {
 
     /// Starts the program, and leaves it running until the result is dropped.
     pub fn start(&self, arguments: &[&str]) -> Running<'_> {
+        self.start_with(|config| lcm(arguments, config))
+    }
+
+    /// Starts a program that is given a folder for its settings, and leaves it running until the result is dropped.
+    pub fn start_with(&self, command: impl FnOnce(&Path) -> Command) -> Running<'_> {
         let folder = tempfile::tempdir().expect("a folder");
         let said = folder.path().join("said");
         let file = fs::File::create(&said).expect("writable");
-        let program = lcm(arguments, folder.path())
+        let program = command(folder.path())
             .env("DISPLAY", &self.display)
             .stderr(file)
             .spawn()
-            .expect("lcm starts");
+            .expect("the program starts");
         Running { screen: self, program, said, _folder: folder }
     }
 
@@ -101,15 +106,19 @@ impl Drop for Screen {
 /// The program, with a folder for its settings and its data, and without any display.
 pub fn lcm(arguments: &[&str], config: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lcm"));
+    alone(&mut command, config).args(arguments);
     command
-        .args(arguments)
+}
+
+/// A program with a folder for its settings and its data, and without any display.
+pub fn alone<'a>(command: &'a mut Command, config: &Path) -> &'a mut Command {
+    command
         .env("LCM_CONFIG_DIR", config)
         .env("LCM_DATA_DIR", config.join("data"))
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("WAYLAND_SOCKET")
         .env_remove("DISPLAY")
-        .stdin(Stdio::null());
-    command
+        .stdin(Stdio::null())
 }
 
 /// A program with a window that is open; killed when dropped.

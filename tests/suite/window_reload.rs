@@ -104,6 +104,32 @@ fn an_open_window_shows_what_is_edited_elsewhere() {
     assert!(!shows(2)(&picture));
 }
 
+#[test]
+fn an_open_window_follows_the_file_of_a_lamp() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, lamp) = (folder.path().join("room.json"), folder.path().join("lamp.ies"));
+    let ies =
+        |candela: u32| format!("TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n{candela} {candela}\n");
+    let point = "\"type\": \"point\", \"position\": [7.5, 8, 9], \"intensity\": 60";
+    let photometric = "\"type\": \"photometric\", \"position\": [7.5, 8, 9], \"direction\": [0, -1, 0], \"file\": \"lamp.ies\"";
+    let text = scene([255, 0, 0]);
+    assert!(text.contains(point));
+    fs::write(&file, text.replace(point, photometric)).expect("writable");
+    fs::write(&lamp, ies(60)).expect("writable");
+    let screen = Screen::new(1280, 720);
+    let mut window = screen.start(&["view", &file.to_string_lossy(), "--size", "1280x720"]);
+    window.until("a red sphere", shows(0));
+    save_in_place(&lamp, &ies(1));
+    window.until("a dark sphere", |picture| !shows(0)(picture));
+    save_by_renaming(&lamp, &ies(60));
+    window.until("a red sphere again", shows(0));
+    assert_eq!(window.said(), "", "an empty file for a moment is no error");
+    save_by_renaming(&lamp, "TILT=NONE\n1 1");
+    let said = until_said(&window, |said| !said.is_empty());
+    assert!(said.contains("lamp.ies:2: the file ends before the multiplier"), "{said}");
+    assert!(shows(0)(&window.rest()), "the last good version stays");
+}
+
 /// A custom model that shows the light on its surface in one colour.
 fn custom_model(colour: &str, more: &str) -> String {
     format!(

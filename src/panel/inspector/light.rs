@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Align, Layout, Ui};
 
 use super::part::{direction_knob, header, position_limits, section};
 use crate::{
-    document::{Edit, LightField, Selection, limits},
+    document::{Edit, LightField, Selection},
     light::LightEntry,
     optics::temperature,
     panel::{
@@ -14,9 +14,10 @@ use crate::{
         state::{Action, Session},
         theme,
     },
+    parameter::Value,
     reflection::{EquationPart, Term, usage},
     registry::Registry,
-    scene::Light,
+    scene::{Light, limits},
 };
 
 pub(super) fn light(
@@ -49,12 +50,23 @@ pub(super) fn light(
         let part = [EquationPart { term: Term::Total, text: d.equation }];
         maths::equation(ui, &part, |symbol| match symbol {
             "I" => Some("the intensity of the light".to_owned()),
-            other => maths::meaning(other).map(str::to_owned),
+            other => {
+                let own = entry.parameters.iter().find(|p| maths::same_symbol(p.symbol, other));
+                own.map(|p| p.label).or_else(|| maths::meaning(other)).map(str::to_owned)
+            }
         });
         actions.extend(brightness(ui, light, entry).map(set));
         actions.extend(light_colour(ui, light).map(set));
         for p in entry.parameters {
             let unused = usage::unused(entry.parameters, p, &light.parameters);
+            if let Value::File(file) = light.parameters.get(p) {
+                let caption =
+                    Caption { symbol: p.symbol, label: p.label, help: p.help, ..Caption::default() };
+                if knob::file_knob(ui, &caption, &file) {
+                    actions.push(Action::FileDialog(i, p));
+                }
+                continue;
+            }
             if let Some(v) = knob::parameter_knob(ui, p.name, p, &light.parameters.get(p), unused.as_deref())
             {
                 actions.push(set(LightField::Parameter(p.name, v)));
@@ -114,10 +126,12 @@ fn brightness(ui: &mut Ui, light: &Light, entry: &LightEntry) -> Option<LightFie
     let flux = light.luminous_flux.map_or_else(|| limits::significant(intensity * solid_angle, 6), f64::from);
     let as_flux = light.luminous_flux.is_some();
     let rounded = |v: f64| limits::number(limits::significant(v, 4));
+    // A factor multiplies lumens, candelas spread over steradians.
+    let (of, unit) = if d.unit == "cd" { ("sr", " cd") } else { ("lm", "") };
     let conversion = if as_flux {
-        format!("I = Φ / ({} sr) = {} cd", rounded(solid_angle), rounded(intensity))
+        format!("I = Φ / ({} {of}) = {}{unit}", rounded(solid_angle), rounded(intensity))
     } else {
-        format!("Φ = I · {} sr = {} lm", rounded(solid_angle), rounded(flux))
+        format!("Φ = I · {} {of} = {} lm", rounded(solid_angle), rounded(flux))
     };
     maths::equation_of(ui, &[(Term::Total, &conversion)], maths::Sizes::default(), |symbol| match symbol {
         "I" => Some("the intensity of the light: what it sends into each direction".to_owned()),
@@ -125,7 +139,7 @@ fn brightness(ui: &mut Ui, light: &Light, entry: &LightEntry) -> Option<LightFie
         _ => None,
     });
     let mut other_unit = None;
-    let units = [["cd", "candela"], ["lm", "lumen"]];
+    let units = [[d.unit, if d.unit == "cd" { "candela" } else { "factor" }], ["lm", "lumen"]];
     let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
     let out = if as_flux {
         let caption =
@@ -214,6 +228,7 @@ fn unit_help(unit: &str) -> &'static str {
     match unit {
         "cd" => "In candela: the light sent into each direction. At 1 m, 1 cd gives an illuminance of 1 lx.",
         "lm" => "In lumen: the light sent out in all directions together, as printed on light bulbs.",
+        "×" => "A factor: 1 is the lamp as it is, 0.5 the lamp dimmed to half.",
         "lx" => "In lux: the light that arrives on a surface that faces it.",
         _ => "How strong the light is.",
     }

@@ -2,11 +2,8 @@
 
 use bevy_egui::egui::{ScrollArea, Ui};
 
-use super::{
-    Panel, Place,
-    state::{Action, Session},
-};
-use crate::{document::Selection, registry::Registry};
+use super::{Panel, PanelContext, Place};
+use crate::document::Selection;
 use {light::light, object::object, observer::observer, room::room};
 
 mod light;
@@ -34,8 +31,8 @@ impl Panel for Inspector {
         Place::Right
     }
 
-    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
-        let mut actions = Vec::new();
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
         // Each part has fields of its own: what is typed about one must not turn up in another.
         ui.push_id(session.selection, |ui| {
             // The scroll bar floats over a margin, so that nothing moves when it comes.
@@ -43,14 +40,13 @@ impl Panel for Inspector {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_max_width(ui.available_width() - 8.0);
                 match session.selection {
-                    Selection::Room => room(ui, session, registry, &mut actions),
-                    Selection::Observer => observer(ui, session, &mut actions),
-                    Selection::Light(i) => light(ui, session, registry, i, &mut actions),
-                    Selection::Object(i) => object(ui, session, registry, i, &mut actions),
+                    Selection::Room => room(ui, session, registry, actions),
+                    Selection::Observer => observer(ui, session, actions),
+                    Selection::Light(i) => light(ui, session, registry, i, actions),
+                    Selection::Object(i) => object(ui, session, registry, i, actions),
                 }
                 ui.add_space(16.0);
             });
         });
-        actions
     }
 }

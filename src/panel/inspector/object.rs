@@ -8,7 +8,7 @@ use super::{
     part::{header, position_limits, section, thrice},
 };
 use crate::{
-    document::{Edit, ObjectField, Selection, limits},
+    document::{Edit, ObjectField, Selection},
     panel::{
         knob::{self, Caption},
         model_override,
@@ -17,7 +17,7 @@ use crate::{
     },
     reflection::{ModelEntry, usage},
     registry::Registry,
-    scene::Object,
+    scene::{Object, limits},
 };
 
 pub(super) fn object(

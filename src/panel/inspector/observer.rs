@@ -4,13 +4,13 @@ use bevy_egui::egui::{Button, RichText, Ui};
 
 use super::part::{direction_knob, position_limits, section};
 use crate::{
-    document::{Edit, limits},
+    document::Edit,
     panel::{
         knob::{self, Caption},
         state::{Action, Session},
         theme,
     },
-    scene::Observer,
+    scene::{Observer, limits},
 };
 
 pub(super) fn observer(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

@@ -4,10 +4,7 @@ use bevy_egui::egui::{self, CollapsingHeader, Key, RichText, TextEdit, Ui, Widge
 use glam::Vec3;
 
 use crate::{
-    document::{
-        Edit, LightField, ObjectField, Selection,
-        limits::{self, Limits},
-    },
+    document::{Edit, LightField, ObjectField, Selection},
     panel::{
         icon::{self, Icon},
         knob::{self, Caption},
@@ -15,7 +12,10 @@ use crate::{
         theme::{self, Palette},
     },
     registry::Registry,
-    scene::SceneSize,
+    scene::{
+        SceneSize,
+        limits::{self, Limits},
+    },
 };
 
 /// A group with a heading; folds.

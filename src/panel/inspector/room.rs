@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Ui};
 
 use super::part::{Text, section, text_field};
 use crate::{
-    document::{Edit, limits},
+    document::Edit,
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
         knob::{self, Caption},
@@ -12,7 +12,7 @@ use crate::{
         theme,
     },
     registry::Registry,
-    scene::{Display, SceneSize},
+    scene::{Display, SceneSize, limits},
     text::plural,
 };
 

@@ -9,8 +9,8 @@ use super::{
     vector::axis_letter,
 };
 use crate::{
-    document::limits::Limits,
     panel::{maths, theme::Palette},
+    scene::limits::Limits,
 };
 
 /// A knob for a whole colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.

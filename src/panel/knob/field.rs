@@ -10,8 +10,8 @@ use bevy_egui::egui::{
 
 use super::slider::{nudge, round_to};
 use crate::{
-    document::limits::{Limits, number},
     panel::theme::Palette,
+    scene::limits::{Limits, number},
 };
 
 /// Text that is being typed into a field.

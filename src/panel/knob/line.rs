@@ -3,11 +3,11 @@
 use bevy_egui::egui::{self, Align, Response, RichText, Sense, TextStyle, Ui, pos2, vec2};
 
 use crate::{
-    document::limits::{Limits, number},
     panel::{
         maths,
         theme::{self, Palette},
     },
+    scene::limits::{Limits, number},
 };
 
 /// The words and symbols of a knob.

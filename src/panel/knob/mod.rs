@@ -5,13 +5,14 @@
 use bevy_egui::egui::Ui;
 
 use crate::{
-    document::limits::Limits,
     parameter::{Parameter, ParameterKind, Value},
+    scene::limits::Limits,
 };
 
 mod choice;
 mod colour;
 mod field;
+mod file;
 mod line;
 mod number;
 mod picker;
@@ -23,6 +24,7 @@ pub(super) use choice::drop_down;
 pub use choice::{choice_knob, choice_with_help, list_knob};
 pub use colour::{colour_knob, colour_sample, parse_hex};
 pub use field::{Field, field, parse};
+pub use file::file_knob;
 pub use line::Caption;
 pub(super) use line::symbol_column;
 pub use number::{number_knob, number_knob_beside, unit_choice};
@@ -50,7 +52,10 @@ pub fn limits_of(parameter: &Parameter) -> Option<Limits> {
             whole: true,
             because: None,
         }),
-        ParameterKind::Colour { .. } | ParameterKind::Triple { .. } | ParameterKind::Choice { .. } => None,
+        ParameterKind::Colour { .. }
+        | ParameterKind::Triple { .. }
+        | ParameterKind::Choice { .. }
+        | ParameterKind::File { .. } => None,
     }
 }
 

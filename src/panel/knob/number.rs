@@ -8,8 +8,8 @@ use super::{
     slider::slider,
 };
 use crate::{
-    document::limits::{Limits, number},
     panel::{maths, menu, theme::Palette},
+    scene::limits::{Limits, number},
 };
 
 /// The unit as a choice: each option is a sign and a word. As wide as a plain unit, so that fields stay in

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::{self, CursorIcon, Key, Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use crate::{document::limits::Limits, panel::theme::Palette};
+use crate::{panel::theme::Palette, scene::limits::Limits};
 
 /// The step of an arrow key: about a hundredth of the range, a round number.
 pub(super) fn nudge(limits: &Limits, value: f64) -> f64 {

@@ -11,11 +11,11 @@ use super::{
     slider::round_to,
 };
 use crate::{
-    document::limits::{Limits, number},
     panel::{
         maths,
         theme::{self, Palette},
     },
+    scene::limits::{Limits, number},
 };
 
 /// The letter before a field; dragging it sideways turns the value.

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, Align, Layout, Rect, ScrollArea, Ui, UiBuilder};
 
 use super::{
-    Panel, Place, author, laws,
+    Panel, PanelContext, Place, author, laws,
     state::{Action, SHADER_TAB, Session, Severity},
     theme::{self, Palette},
 };
@@ -42,8 +42,8 @@ impl Panel for Shader {
         (count > 0).then(|| (Severity::Error, plural(count, "error")))
     }
 
-    fn show(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
-        let mut actions = Vec::new();
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
         let palette = Palette::here(ui);
         let whole = ui.available_rect_before_wrap();
         let gap = 12.0;
@@ -60,15 +60,14 @@ impl Panel for Shader {
         let (mut list, mut text) = columns;
         list.max.x -= gap;
         text.min.x = (text.min.x + gap).min(text.max.x - 64.0);
-        column(ui, list, &mut |ui| files(ui, session, registry, &mut actions));
+        column(ui, list, &mut |ui| files(ui, session, registry, actions));
         column(ui, text, &mut |ui| {
             if session.shaders.troubles.is_empty() {
-                well(ui, session, registry, &mut actions);
+                well(ui, session, registry, actions);
             } else {
-                troubles(ui, session, &mut actions);
+                troubles(ui, session, actions);
             }
         });
-        actions
     }
 }
 

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use super::{Effect, Session, Severity, Steer, ViewChange};
 use crate::{
-    document::{Edit, LightField, ObjectField, Selection, limits},
+    document::{Edit, LightField, ObjectField, Selection},
     optics::TermSelection,
+    parameter::Parameter,
     registry::Registry,
-    scene::Display,
+    scene::{Display, limits},
 };
 
 /// An action of a user. Panels return these.
@@ -29,6 +30,8 @@ pub enum Action {
     SaveAsDialog,
     /// Save to a file.
     SaveAs(PathBuf),
+    /// Choose a file for a parameter of a light, by its index.
+    FileDialog(usize, &'static Parameter),
     /// Forget the list of recent files.
     ClearRecent,
     /// Close the window.
@@ -180,6 +183,7 @@ impl Session {
                 };
             }
             Action::SaveAsDialog => return vec![Effect::PickSave],
+            Action::FileDialog(light, parameter) => return vec![Effect::PickFile(light, parameter)],
             Action::SaveAs(path) => return self.save_as(&path),
             Action::ClearRecent => {
                 self.recent_files.clear();

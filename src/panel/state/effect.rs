@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::ecs::message::Message;
 
-use crate::scene::load::Stamp;
+use crate::{parameter::Parameter, scene::load::Stamp};
 
 /// Work that needs files, entities or the operating system; the app carries it out.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,8 @@ pub enum Effect {
     PickOpen,
     /// Show the dialog that chooses a file to save to.
     PickSave,
+    /// Show the dialog that chooses a file for a parameter of a light, by its index.
+    PickFile(usize, &'static Parameter),
     /// Read a file; see [`effects::run`](crate::panel::effects::run).
     OpenFile(PathBuf),
     /// Write the document; see [`effects::run`](crate::panel::effects::run).

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::{Action, Effect, Note, Session, Severity};
 use crate::{
-    document::{Document, Extent},
+    document::{Document, Edit, Extent, LightField},
     optics::TermSelection,
+    parameter::{NamedFile, Parameter, ParameterKind, Value},
     registry::Registry,
     scene::{Scene, examples::EXAMPLES},
 };
@@ -54,7 +55,42 @@ impl Session {
         // The dialog asked about the file that was typed, and about no other.
         let path = scene_file(typed);
         let overwrite = path == typed;
+        self.keep_files(&path);
         vec![Effect::SaveFile { path, overwrite }]
+    }
+
+    /// The files that lights name relative to the folder of the scene are named from the root on, if the scene goes
+    /// where they would not be found.
+    fn keep_files(&mut self, path: &Path) {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        for i in 0..self.document.lights.len() {
+            let mut light = self.document.lights[i].clone();
+            for value in light.parameters.0.values_mut() {
+                if let Value::File(file) = value {
+                    *file = file.seen_from(folder);
+                }
+            }
+            if light != self.document.lights[i] {
+                let name = "Place of a photometric file";
+                self.document.change(name, Extent::Light(i), self.selection, |scene| scene.lights[i] = light);
+            }
+        }
+    }
+
+    /// The edit that gives a parameter of a light the file that was chosen. Its name is relative to the folder of the
+    /// scene if it is in there.
+    pub(in crate::panel) fn file_chosen(
+        &self,
+        light: usize,
+        parameter: &'static Parameter,
+        path: &Path,
+    ) -> Option<Edit> {
+        let ParameterKind::File { format, .. } = parameter.kind else { return None };
+        let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+        let below = std::path::absolute(folder).ok().filter(|_| self.path.is_some());
+        let written = below.and_then(|folder| path.strip_prefix(folder).ok()).unwrap_or(path);
+        let file = NamedFile::open(&written.to_string_lossy(), folder, format);
+        Some(Edit::Light(light, LightField::Parameter(parameter.name, Value::File(file))))
     }
 
     /// The document has been written. Returns what waited for it.
@@ -62,7 +98,7 @@ impl Session {
         self.remember_file(&path);
         self.note_saved(&path);
         self.path = Some(path);
-        self.document.mark_saved();
+        self.document.mark_saved(registry);
         self.disk_saved();
         let mut effects = vec![Effect::SaveSettings];
         if let Some(action) = self.questions.after_save.take() {

@@ -5,9 +5,9 @@
 pub enum Place {
     /// Across the top.
     Top,
-    /// At the left; several stand one above the other.
+    /// At the left, below the list of the scene, in a section that folds.
     Left,
-    /// At the right; several stand one above the other.
+    /// At the right, below the properties, in a section that folds.
     Right,
     /// In the strip at the bottom; several are tabs.
     Bottom,
@@ -24,4 +24,6 @@ pub struct PanelInfo {
     pub title: &'static str,
     /// See [`Panel::place`](crate::panel::Panel::place).
     pub place: Place,
+    /// True if it is not one of the window's own.
+    pub guest: bool,
 }

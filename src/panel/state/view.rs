@@ -1,6 +1,6 @@
 //! The choice of what is shown, and how.
 
-use super::{Effect, Session};
+use super::{Effect, Place, Session};
 use crate::optics::TermSelection;
 
 /// Id of the panel that shows the messages.
@@ -65,6 +65,12 @@ pub struct View {
     pub right_width: f32,
     /// Height of the strip at the bottom, points.
     pub bottom_height: f32,
+    /// Ids of the panels of others that are hidden.
+    pub hidden_panels: Vec<String>,
+    /// Ids of the panels of others that are folded.
+    pub folded_panels: Vec<String>,
+    /// Id of the panel of others that the strip at the bottom shows, if the user chose one. A window may not know it.
+    pub guest_tab: Option<String>,
     /// True if the list of keys is open.
     pub keys_open: bool,
     /// True if "about" is open.
@@ -93,6 +99,9 @@ impl Default for View {
             left_width: 208.0,
             right_width: 344.0,
             bottom_height: 144.0,
+            hidden_panels: Vec::new(),
+            folded_panels: Vec::new(),
+            guest_tab: None,
             keys_open: false,
             about_open: false,
             chooser_open: false,
@@ -129,6 +138,10 @@ pub enum ViewChange {
     Bottom(bool),
     /// Shows a panel in the strip at the bottom, and unfolds it.
     BottomTab(String),
+    /// Shows or hides a panel of others at a side; unfolds its side too.
+    Panel(String, bool),
+    /// Folds a panel of others at a side, or unfolds it.
+    Fold(String, bool),
     /// See [`View::left_open`].
     Left(bool),
     /// See [`View::right_open`].
@@ -150,11 +163,31 @@ pub enum ViewChange {
     Chooser(bool),
 }
 
+/// Puts an id on a list, or takes it off.
+fn set(list: &mut Vec<String>, id: String, on: bool) {
+    list.retain(|known| *known != id);
+    if on {
+        list.push(id);
+    }
+}
+
 impl View {
     /// Unfolds the strip at the bottom with a panel.
     pub fn unfold(&mut self, tab: &str) {
         self.bottom_open = true;
         tab.clone_into(&mut self.bottom_tab);
+    }
+
+    /// True if a panel of others is hidden.
+    #[must_use]
+    pub fn hides(&self, id: &str) -> bool {
+        self.hidden_panels.iter().any(|hidden| hidden == id)
+    }
+
+    /// True if a panel of others is folded.
+    #[must_use]
+    pub fn folds(&self, id: &str) -> bool {
+        self.folded_panels.iter().any(|folded| folded == id)
     }
 
     fn change(&mut self, change: ViewChange) {
@@ -183,6 +216,8 @@ impl View {
             ViewChange::BottomTab(id) => {
                 self.unfold(&id);
             }
+            ViewChange::Panel(id, shown) => set(&mut self.hidden_panels, id, !shown),
+            ViewChange::Fold(id, folded) => set(&mut self.folded_panels, id, folded),
             ViewChange::Left(open) => self.left_open = open,
             ViewChange::Right(open) => self.right_open = open,
             ViewChange::Sizes { left, right, bottom } => {
@@ -208,6 +243,17 @@ impl Session {
 
     pub(super) fn change_view(&mut self, change: ViewChange) -> Vec<Effect> {
         let before = self.settings();
+        let place = |id: &str| self.panels.iter().find(|p| p.guest && p.id == id).map(|p| p.place);
+        match &change {
+            ViewChange::Panel(id, true) => match place(id) {
+                Some(Place::Left) => self.view.left_open = true,
+                Some(Place::Right) => self.view.right_open = true,
+                _ => {}
+            },
+            ViewChange::BottomTab(id) => self.view.guest_tab = place(id).map(|_| id.clone()),
+            ViewChange::Bottom(false) => self.view.guest_tab = None,
+            _ => {}
+        }
         self.view.change(change);
         if before == self.settings() { Vec::new() } else { vec![Effect::SaveSettings] }
     }

@@ -379,6 +379,7 @@ fn written(value: &Value) -> String {
         Value::Colour([r, g, b]) => format!("[{r}, {g}, {b}]"),
         Value::Triple([r, g, b]) => format!("[{r}, {g}, {b}]"),
         Value::Choice(v) => quoted(v),
+        Value::File(v) => quoted(v.name()),
     }
 }
 
@@ -516,8 +517,8 @@ mod tests {
                 "lights[0].direction is missing; a spot light needs one",
                 "lights[1].position is given, but an ambient light has no position",
                 "lights[1].cone_angle is given, but an ambient light has no cone_angle",
-                "lights[2].type is \"spott\", but the light type must be \"point\", \"spot\", \"directional\" or \
-                 \"ambient\"; did you mean \"spot\"?",
+                "lights[2].type is \"spott\", but the light type must be \"point\", \"spot\", \
+                 \"photometric\", \"directional\" or \"ambient\"; did you mean \"spot\"?",
             ]
         );
     }

@@ -12,7 +12,7 @@ use crate::{
     },
     parameter::{Parameter, ParameterKind, Value},
     registry::Registry,
-    scene::{MAX_DIMENSION, MAX_OBJECTS, SceneSize},
+    scene::{MAX_DIMENSION, MAX_OBJECTS, SceneSize, limits},
     shape::ShapeEntry,
     text::{self, detailed, did_you_mean},
 };
@@ -38,7 +38,7 @@ fn must(kept: bool, rule: impl FnOnce() -> String) -> Rule {
 
 /// One extent of the room, in metres; `axis` is `height`, `width` or `depth`.
 pub fn dimension(axis: &str, metres: f32) -> Rule {
-    must(metres > 0.0 && metres <= MAX_DIMENSION, || {
+    must(limits::dimension().allows(metres.into()), || {
         format!("the {axis} of the room must be greater than 0 and at most {MAX_DIMENSION} m")
     })
 }
@@ -73,7 +73,7 @@ pub fn luminous_flux(value: f32) -> Rule {
 }
 
 fn brightness(what: &str, value: f32) -> Rule {
-    must(value >= 0.0 && value.is_finite(), || {
+    must(limits::brightness().allows(value.into()), || {
         if value == f32::INFINITY {
             format!("{what} must be at most 3.4e38")
         } else {
@@ -84,21 +84,21 @@ fn brightness(what: &str, value: f32) -> Rule {
 
 /// The colour temperature of a light, in kelvin.
 pub fn colour_temperature(kelvin: f32) -> Rule {
-    must((MIN_TEMPERATURE..=MAX_TEMPERATURE).contains(&kelvin), || {
+    must(limits::colour_temperature().allows(kelvin.into()), || {
         format!("a colour temperature must be between {MIN_TEMPERATURE} and {MAX_TEMPERATURE} K")
     })
 }
 
 /// The vertical field of view of the observer, in degrees.
 pub fn field_of_view(degrees: f32) -> Rule {
-    must((MIN_FIELD_OF_VIEW..=MAX_FIELD_OF_VIEW).contains(&degrees), || {
+    must(limits::field_of_view().allows(degrees.into()), || {
         format!("the field of view must be between {MIN_FIELD_OF_VIEW} and {MAX_FIELD_OF_VIEW} degrees")
     })
 }
 
 /// The largest extent of an object, in metres.
 pub fn size(metres: f32) -> Rule {
-    must(metres > 0.0 && metres <= MAX_SIZE, || {
+    must(limits::any_size().allows(metres.into()), || {
         if metres > MAX_SIZE {
             format!("a size must be at most {MAX_SIZE:e} m")
         } else {
@@ -114,8 +114,7 @@ pub fn rotation(degrees: Vec3) -> Rule {
 
 /// The tessellation of an object of a type.
 pub fn tessellation(shape: &ShapeEntry, count: u32) -> Rule {
-    let range = &shape.declaration.tessellation;
-    must(range.contains(&count), || tessellation_rule(shape))
+    must(limits::tessellation(shape.declaration).allows(count.into()), || tessellation_rule(shape))
 }
 
 /// The rule of [`tessellation`].
@@ -131,7 +130,7 @@ pub(crate) fn tessellation_rule(shape: &ShapeEntry) -> String {
 
 /// The exposure of the display, in EV.
 pub fn exposure(ev: f32) -> Rule {
-    must((-MAX_EXPOSURE..=MAX_EXPOSURE).contains(&ev), || {
+    must(limits::exposure().allows(ev.into()), || {
         format!("the exposure must be between -{MAX_EXPOSURE} and {MAX_EXPOSURE} EV")
     })
 }
@@ -144,6 +143,9 @@ pub fn parameter(parameter: &Parameter, value: &Value) -> Rule {
                 id,
                 options.iter().map(|(id, name)| (*name, *id)).chain(options.iter().map(|(id, _)| (*id, *id))),
             ),
+            (ParameterKind::File { .. }, Value::File(file)) => {
+                file.problem().map_or_else(String::new, |problem| format!(": {problem}"))
+            }
             _ => String::new(),
         };
         parameter_rule(parameter) + &hint

@@ -1,7 +1,10 @@
 //! From JSON to a [`Scene`]: types, unknown, missing and repeated keys are found here; ranges and relations are
 //! [`check`]'s. Every problem gets the place of its value.
 
-use std::collections::{BTreeSet, HashSet};
+use std::{
+    collections::{BTreeSet, HashSet},
+    path::Path as FilePath,
+};
 
 use super::{
     Scene, beyond_room, check,
@@ -31,7 +34,7 @@ const MAX_PROBLEMS: usize = 200_000;
 /// Reads a scene from JSON with checked syntax.
 pub(super) fn scene(
     text: &str,
-    name: &str,
+    (name, folder): (&str, &FilePath),
     registry: &Registry,
     defaults: Defaults,
 ) -> Result<(Scene, Vec<Missing>), LoadError> {
@@ -44,7 +47,7 @@ pub(super) fn scene(
         })?
         .ok_or_else(|| LoadError::Empty { name: name.to_owned() })?;
 
-    let mut reader = Reader::new(text, registry);
+    let mut reader = Reader::new(text, folder, registry);
     let scene = reader.scene(Cursor::root(&root));
     reader.check(&scene, &root);
     let Reader { mut problems, missing, unlisted, lines, .. } = reader;
@@ -75,13 +78,15 @@ pub(super) fn scene(
 /// The reflection models that a scene names, from JSON with checked syntax.
 pub(super) fn models_named(text: &str, registry: &Registry) -> BTreeSet<String> {
     let root = json::parse(text, &STRICT).ok().flatten();
-    let scene = root.map(|root| Reader::new(text, registry).scene(Cursor::root(&root)));
+    let scene = root.map(|root| Reader::new(text, FilePath::new(""), registry).scene(Cursor::root(&root)));
     scene.map_or_else(BTreeSet::new, |scene| scene.models().into_iter().map(str::to_owned).collect())
 }
 
 /// The state of reading.
 struct Reader<'a> {
     text: &'a str,
+    /// The folder in which files are that the scene names.
+    folder: &'a FilePath,
     registry: &'a Registry,
     /// Problems, each with its byte.
     problems: Vec<(usize, Problem)>,
@@ -98,9 +103,10 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(text: &'a str, registry: &'a Registry) -> Self {
+    fn new(text: &'a str, folder: &'a FilePath, registry: &'a Registry) -> Self {
         Self {
             text,
+            folder,
             registry,
             problems: Vec::new(),
             reported: HashSet::new(),

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::Reader;
 use crate::{
-    parameter::{Parameter, ParameterKind, Value},
+    parameter::{NamedFile, Parameter, ParameterKind, Value},
     scene::check,
     text::json::{Ast, Cursor, Fields, Reader as _},
 };
@@ -27,6 +27,10 @@ impl Reader<'_> {
                 let id = self.string(value, &rule)?;
                 let known = options.iter().map(|(id, _)| *id).find(|known| *known == id);
                 Some(Value::Choice(known.map_or_else(|| Cow::Owned(id.to_owned()), Cow::Borrowed)))
+            }
+            ParameterKind::File { format, .. } => {
+                let name = self.string(value, &rule)?;
+                Some(Value::File(NamedFile::open(name, self.folder, format)))
             }
         }
     }

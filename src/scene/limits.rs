@@ -1,5 +1,5 @@
-//! The legal values of the fields of a scene, in one place for the widgets, which show the rule while a value
-//! is typed, and for [`Document::edit`](super::Document::edit), which refuses values that break it.
+//! The legal values of the numbers of a scene, in one place: for the [rules](super::check) of files and edits, and for
+//! widgets, which show them while a value is typed.
 
 use crate::{
     light,
@@ -8,7 +8,7 @@ use crate::{
         temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
     },
     parameter::ABOVE_ZERO,
-    scene::{MAX_DIMENSION, Scene, SceneSize, check},
+    scene::{MAX_DIMENSION, SceneSize, check},
     shape,
 };
 
@@ -74,7 +74,8 @@ impl Limits {
     #[must_use]
     pub fn rule(&self) -> String {
         let what = if self.whole { "a whole number " } else { "" };
-        let (min, max) = (number(self.min), number(self.max));
+        let max = if self.max < 1e6 { number(self.max) } else { format!("{:e}", self.max) };
+        let min = number(self.min);
         let range = match (self.is_above_zero(), self.min.is_finite(), self.max.is_finite()) {
             (true, _, true) => format!("{what}greater than 0 and at most {max}"),
             (true, _, false) => format!("{what}greater than 0"),
@@ -123,7 +124,7 @@ pub fn position(size: SceneSize, axis: usize) -> Limits {
     Limits { because: Some(because), ..Limits::above_zero(extent) }
 }
 
-/// A component of a direction.
+/// A component of a direction. Which triples are one is up to [`check::direction`].
 #[must_use]
 pub fn direction() -> Limits {
     Limits::between(f64::NEG_INFINITY, f64::INFINITY).slider(-1.0, 1.0)
@@ -135,10 +136,16 @@ pub fn rotation() -> Limits {
     Limits::between(f64::NEG_INFINITY, f64::INFINITY).slider(-180.0, 180.0)
 }
 
-/// The size of an object, metres.
+/// The size of an object, metres, with a slider for the room.
 #[must_use]
 pub fn object_size(size: SceneSize) -> Limits {
-    Limits::above_zero(f64::from(check::MAX_SIZE)).slider(0.0, f64::from(size.corner().max_element()))
+    any_size().slider(0.0, f64::from(size.corner().max_element()))
+}
+
+/// The size of any object, metres.
+#[must_use]
+pub fn any_size() -> Limits {
+    Limits::above_zero(f64::from(check::MAX_SIZE))
 }
 
 /// The tessellation of an object.
@@ -148,10 +155,16 @@ pub fn tessellation(shape: &shape::Declaration) -> Limits {
     Limits::between(f64::from(*range.start()), f64::from(*range.end())).whole()
 }
 
+/// The intensity or the luminous flux of any light.
+#[must_use]
+pub fn brightness() -> Limits {
+    Limits::between(0.0, f64::INFINITY)
+}
+
 /// The intensity of a light.
 #[must_use]
 pub fn intensity(light: &light::Declaration) -> Limits {
-    Limits::between(0.0, f64::INFINITY).slider(0.0, f64::from(light.slider_max))
+    brightness().slider(0.0, f64::from(light.slider_max))
 }
 
 /// The luminous flux of a light, lumen. The slider reaches as far as that of the intensity does for a
@@ -159,7 +172,7 @@ pub fn intensity(light: &light::Declaration) -> Limits {
 #[must_use]
 pub fn luminous_flux(light: &light::Declaration) -> Limits {
     let end = f64::from(light.slider_max) * SPHERE;
-    Limits::between(0.0, f64::INFINITY).slider(0.0, significant(end, 1))
+    brightness().slider(0.0, significant(end, 1))
 }
 
 /// A number rounded to so many significant digits.
@@ -188,34 +201,10 @@ pub fn exposure() -> Limits {
     Limits::between(-max, max).slider(-8.0, 8.0)
 }
 
-/// An extent of the room, metres: what stands in the room must stay in it. `name` is what the user
-/// calls a part of the scene.
+/// An extent of the room, metres.
 #[must_use]
-pub fn dimension(scene: &Scene, axis: usize, name: impl Fn(super::Selection) -> String) -> Limits {
-    use super::Selection;
-    let at = |p: glam::Vec3| p.to_array()[axis.min(2)];
-    let lights =
-        scene.lights.iter().enumerate().filter_map(|(i, l)| Some((Selection::Light(i), l.position?)));
-    let objects = scene.objects.iter().enumerate().map(|(i, o)| (Selection::Object(i), o.position));
-    let furthest = lights
-        .chain(objects)
-        .chain([(Selection::Observer, scene.observer.position)])
-        .map(|(who, p)| (who, at(p)))
-        .filter(|(_, c)| c.is_finite())
-        .max_by(|a, b| a.1.total_cmp(&b.1));
-    let max = f64::from(MAX_DIMENSION);
-    match furthest {
-        Some((who, c)) if c > 0.0 && c <= MAX_DIMENSION => Limits {
-            because: Some(format!(
-                "{} stands at {} = {} m",
-                name(who),
-                ["x", "y", "z"][axis.min(2)],
-                number(f64::from(c))
-            )),
-            ..Limits::between(f64::from(c), max).slider(0.0, max)
-        },
-        _ => Limits::above_zero(max),
-    }
+pub fn dimension() -> Limits {
+    Limits::above_zero(f64::from(MAX_DIMENSION))
 }
 
 #[cfg(test)]
@@ -243,6 +232,7 @@ mod tests {
     #[test]
     fn rules_are_sentences() {
         assert_eq!(Limits::between(0.5, 1.0).rule(), "between 0.5 and 1");
+        assert_eq!(any_size().rule(), "greater than 0 and at most 1e9");
         assert_eq!(Limits::above_zero(90.0).rule(), "greater than 0 and at most 90");
         assert_eq!(Limits::between(0.0, f64::INFINITY).whole().rule(), "a whole number, 0 or more");
         assert_eq!(Limits::between(0.0, f64::INFINITY).rule(), "at least 0");

@@ -1,0 +1,193 @@
+//! A panel and its connection to the rest of the window.
+
+use bevy::{
+    app::App,
+    ecs::{resource::Resource, world::World},
+};
+use bevy_egui::egui::Ui;
+
+use super::state::{Action, PanelInfo, Place, Session, Severity};
+use crate::{
+    document::{Document, Edit},
+    registry::Registry,
+};
+
+/// A part of the window. It may keep state of its own, reads everything else through the [`PanelContext`], and changes
+/// it by actions and commands, which take effect when all panels have been shown.
+pub trait Panel: Send + Sync + 'static {
+    /// A name that no other panel has.
+    fn id(&self) -> &'static str;
+    /// Its name for people.
+    fn title(&self) -> &'static str;
+    /// Its place.
+    fn place(&self) -> Place;
+    /// A note on its tab beside the title, such as the number of errors.
+    fn note(&self, _session: &Session) -> Option<(Severity, String)> {
+        None
+    }
+    /// Shows it.
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>);
+}
+
+/// A change of the world that waits until all panels have been shown.
+type Command = Box<dyn FnOnce(&mut World) + Send + Sync>;
+
+/// The window as a panel sees it, and the panel's way to change it.
+pub struct PanelContext<'a> {
+    session: &'a Session,
+    registry: &'a Registry,
+    world: &'a World,
+    pub(super) actions: Vec<Action>,
+    queue: Vec<Command>,
+}
+
+impl<'a> PanelContext<'a> {
+    pub(super) fn new(session: &'a Session, registry: &'a Registry, world: &'a World) -> Self {
+        Self { session, registry, world, actions: Vec::new(), queue: Vec::new() }
+    }
+
+    /// The state of the window: what is selected, what is shown, the messages.
+    #[must_use]
+    pub fn session(&self) -> &'a Session {
+        self.session
+    }
+
+    /// The scene, with its history.
+    #[must_use]
+    pub fn document(&self) -> &'a Document {
+        &self.session.document
+    }
+
+    /// Everything that is known by id.
+    #[must_use]
+    pub fn registry(&self) -> &'a Registry {
+        self.registry
+    }
+
+    /// The world of the app, to be read. [`Session`], [`Registry`] and [`Panels`] are not in it while panels are shown:
+    /// the first two are [here](Self::session).
+    ///
+    /// Panels are shown in `PostUpdate`, so systems of `Update` and of [`LabFrame`](crate::render::schedule::LabFrame)
+    /// have run in this frame. [`World::get_resource`] and [`World::try_query`] read without changing anything.
+    #[must_use]
+    pub fn world(&self) -> &'a World {
+        self.world
+    }
+
+    /// Does what a user could do.
+    pub fn act(&mut self, action: Action) {
+        self.actions.push(action);
+    }
+
+    /// Changes the scene, as one step of the history. What breaks a rule of scenes is refused with a message.
+    pub fn edit(&mut self, edit: Edit) {
+        self.act(Action::Edit(edit));
+    }
+
+    /// Adds a message to those at the bottom of the window.
+    pub fn say(&mut self, message: impl Into<String>) {
+        self.act(Action::Say(Severity::Info, message.into()));
+    }
+
+    /// Adds a message about a problem. [`Action::Say`] has errors, too.
+    pub fn warn(&mut self, message: impl Into<String>) {
+        self.act(Action::Say(Severity::Warning, message.into()));
+    }
+
+    /// Changes the world, once all panels have been shown and their actions are carried out.
+    pub fn queue(&mut self, command: impl FnOnce(&mut World) + Send + Sync + 'static) {
+        self.queue.push(Box::new(command));
+    }
+
+    /// The actions and commands of the panels.
+    pub(super) fn into_parts(self) -> (Vec<Action>, Vec<Command>) {
+        (self.actions, self.queue)
+    }
+}
+
+/// The panels of the window.
+#[derive(Default, Resource)]
+pub struct Panels {
+    list: Vec<Listed>,
+    /// What they queued when they were shown last.
+    queue: Vec<Command>,
+}
+
+struct Listed {
+    panel: Box<dyn Panel>,
+    /// It is not one of the window's own.
+    guest: bool,
+}
+
+impl Listed {
+    fn info(&self) -> PanelInfo {
+        let panel = &self.panel;
+        PanelInfo { id: panel.id(), title: panel.title(), place: panel.place(), guest: self.guest }
+    }
+}
+
+impl std::fmt::Debug for Panels {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self.list.iter().map(|p| p.panel.id())).finish()
+    }
+}
+
+impl Panels {
+    /// Adds a panel; one with the same id is replaced, and the new one stands in its place.
+    pub fn add(&mut self, panel: impl Panel) {
+        self.put(Box::new(panel), true);
+    }
+
+    /// Adds a panel of the window itself.
+    pub(super) fn add_own(&mut self, panel: impl Panel) {
+        self.put(Box::new(panel), false);
+    }
+
+    fn put(&mut self, panel: Box<dyn Panel>, guest: bool) {
+        match self.list.iter_mut().find(|p| p.panel.id() == panel.id()) {
+            Some(known) => known.panel = panel,
+            None => self.list.push(Listed { panel, guest }),
+        }
+    }
+
+    /// Their entries in menus.
+    pub fn infos(&self) -> impl Iterator<Item = PanelInfo> {
+        self.list.iter().map(Listed::info)
+    }
+
+    /// The panels at a place that are not hidden, each with its entry.
+    pub(super) fn at(
+        &mut self,
+        place: Place,
+        session: &Session,
+    ) -> impl DoubleEndedIterator<Item = (PanelInfo, &mut dyn Panel)> {
+        self.list
+            .iter_mut()
+            .map(|listed| (listed.info(), &mut *listed.panel))
+            .filter(move |(info, _)| info.place == place && !(info.guest && session.view.hides(info.id)))
+    }
+
+    pub(super) fn queue(&mut self, commands: Vec<Command>) {
+        self.queue.extend(commands);
+    }
+
+    /// The commands that the panels queued when they were shown last. [`show_panels`](super::show_panels) carries them
+    /// out.
+    #[must_use]
+    pub fn take_queued(&mut self) -> Vec<impl FnOnce(&mut World) + use<>> {
+        std::mem::take(&mut self.queue)
+    }
+}
+
+/// Adding panels to an app.
+pub trait PanelApp {
+    /// Adds a panel to the window; one with the same id is replaced.
+    fn add_panel(&mut self, panel: impl Panel) -> &mut Self;
+}
+
+impl PanelApp for App {
+    fn add_panel(&mut self, panel: impl Panel) -> &mut Self {
+        self.world_mut().get_resource_or_insert_with(Panels::builtin).add(panel);
+        self
+    }
+}

@@ -1,0 +1,55 @@
+//! Names and glyphs from elsewhere, as far as the fonts of the window go.
+
+use std::{borrow::Cow, collections::HashSet};
+
+use bevy::log::warn;
+use bevy_egui::egui::{Id, TextStyle, Ui};
+
+/// A text in which every character that the fonts lack is replaced by letters that sound alike. `owner` is whose it is,
+/// for the log.
+pub(super) fn legible<'a>(ui: &Ui, text: &'a str, owner: &str) -> Cow<'a, str> {
+    if has(ui, text) {
+        return Cow::Borrowed(text);
+    }
+    let letter = |c: char| match deunicode::deunicode_char(c).filter(|known| has(ui, known)) {
+        _ if has(ui, c.encode_utf8(&mut [0; 4])) => c.to_string(),
+        Some(known) => known.to_owned(),
+        None => "?".to_owned(),
+    };
+    let shown: String = text.chars().map(letter).collect();
+    report(ui, text, &shown, owner);
+    Cow::Owned(shown)
+}
+
+/// The glyph of a type, or the first letter of its name where the fonts lack it.
+pub(super) fn glyph<'a>(ui: &Ui, glyph: &'a str, name: &str) -> Cow<'a, str> {
+    if has(ui, glyph) {
+        return Cow::Borrowed(glyph);
+    }
+    let name = legible(ui, name, "a type");
+    let shown: String = name.chars().next().unwrap_or('?').to_uppercase().collect();
+    report(ui, glyph, &shown, &format!("“{name}”"));
+    Cow::Owned(shown)
+}
+
+fn has(ui: &Ui, text: &str) -> bool {
+    let font = TextStyle::Body.resolve(ui.style());
+    // egui's own question takes every character of the font with the box for one that is lacking.
+    ui.fonts_mut(|fonts| {
+        let mut font = fonts.fonts.font(&font.family);
+        text.chars().all(|c| font.characters().contains_key(&c))
+    })
+}
+
+/// Logs a replacement, once.
+fn report(ui: &Ui, text: &str, shown: &str, owner: &str) {
+    let known = Id::new("glyphs reported");
+    let new = ui.data_mut(|data| {
+        data.get_temp_mut_or_default::<HashSet<(String, String)>>(known).insert((owner.into(), text.into()))
+    });
+    if new {
+        let lacking: Vec<_> = text.chars().filter(|c| !has(ui, c.encode_utf8(&mut [0; 4]))).collect();
+        let codes: Vec<_> = lacking.iter().map(|c| format!("U+{:04X}", u32::from(*c))).collect();
+        warn!("The fonts have no glyph for {} in “{text}” of {owner}: shown as “{shown}”.", codes.join(", "));
+    }
+}

@@ -1,0 +1,182 @@
+//! The places of panels beside and below the picture. At a side, the window's own panel has the room that those of
+//! others leave; these are sections below it, which fold, and scroll where they are long. At the bottom they are tabs.
+
+use bevy_egui::egui::{
+    self, Button, Frame, Id, Margin, Rect, ScrollArea, Sense, Ui, WidgetInfo, WidgetType, vec2,
+};
+
+use super::{
+    context::{Panel, PanelContext, Panels},
+    focus::{self, Region},
+    glyphs,
+    icon::{self, Icon},
+    state::{Action, PanelInfo, Place, SHADER_TAB, Session, ViewChange},
+    theme::{self, Palette},
+};
+
+/// The part of a side that the sections of others may take together.
+const GUESTS: f32 = 0.5;
+/// Height of the title of a section, points.
+const TITLE: f32 = 26.0;
+/// The room below what a section shows, points.
+const END: f32 = 8.0;
+/// The least height of what a section may show, points.
+const LEAST: f32 = 64.0;
+
+/// Shows the panels at a side; `ui` is all of it.
+pub(super) fn side(
+    ui: &mut Ui,
+    place: Place,
+    session: &Session,
+    panels: &mut Panels,
+    context: &mut PanelContext<'_>,
+) {
+    let (guests, own): (Vec<_>, Vec<_>) = panels.at(place, session).partition(|(info, _)| info.guest);
+    let unfolded = guests.iter().filter(|(info, _)| !session.view.folds(info.id)).count();
+    let titles = guests.len() as f32 * TITLE;
+    let room = (GUESTS * ui.available_height() - titles).max(0.0);
+    let share = (room / unfolded.max(1) as f32).max(LEAST);
+    // From the bottom up, so that the first is the highest.
+    for (info, panel) in guests.into_iter().rev() {
+        // As high as what it showed last, up to its share.
+        let id = Id::new(("section", info.id));
+        let wanted = ui.data(|data| data.get_temp(id)).unwrap_or(LEAST);
+        let height = if session.view.folds(info.id) { TITLE } else { TITLE + END + wanted.min(share) };
+        let strip = egui::Panel::bottom(id).frame(Frame::NONE).resizable(false).exact_size(height);
+        let shown = strip.show(ui, |ui| section(ui, info, panel, context)).inner;
+        if let Some(shown) = shown.filter(|shown| *shown != wanted) {
+            ui.data_mut(|data| data.insert_temp(id, shown));
+            ui.ctx().request_repaint();
+        }
+    }
+    for (_, panel) in own {
+        panel.show(ui, context);
+    }
+}
+
+/// A panel of others: its title, which folds it, and what it shows. Returns the height of that.
+fn section(
+    ui: &mut Ui,
+    info: PanelInfo,
+    panel: &mut dyn Panel,
+    context: &mut PanelContext<'_>,
+) -> Option<f32> {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let folded = context.session().view.folds(info.id);
+    title(ui, info, folded, context);
+    if folded {
+        return None;
+    }
+    // The tree's rows reach from edge to edge; text does not.
+    let left = if info.place == Place::Left { 12 } else { 0 };
+    let frame = Frame::new().inner_margin(Margin { left, right: 0, top: 0, bottom: END as i8 });
+    let output = frame.show(ui, |ui| {
+        // The scroll bar floats over a margin, so that nothing moves when it comes.
+        ui.spacing_mut().scroll.floating_allocated_width = 0.0;
+        let scroll = ScrollArea::vertical().id_salt(info.id).auto_shrink(false).min_scrolled_height(0.0);
+        scroll.show(ui, |ui| {
+            ui.reset_style();
+            ui.set_max_width(ui.available_width() - 8.0);
+            ui.push_id(info.id, |ui| panel.show(ui, context));
+        })
+    });
+    Some(output.inner.content_size.y.ceil())
+}
+
+fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<'_>) {
+    let palette = Palette::here(ui);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.set_min_height(TITLE);
+        let inset = if info.place == Place::Left { 8.0 } else { 0.0 };
+        ui.add_space(inset);
+        let width = ui.available_width() - icon::SIZE - 8.0;
+        let (rect, _) = ui.allocate_exact_size(vec2(width, TITLE), Sense::hover());
+        let response = ui.interact(rect, Id::new(("title of a section", info.id)), Sense::click());
+        response
+            .widget_info(|| WidgetInfo::selected(WidgetType::CollapsingHeader, true, !folded, info.title));
+        let sign = Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(8.0, 8.0));
+        let openness = if folded { 0.0 } else { 1.0 };
+        egui::collapsing_header::paint_default_icon(ui, openness, &response.clone().with_new_rect(sign));
+        let text = glyphs::legible(ui, info.title, &format!("the panel “{}”", info.id));
+        let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+        let galley = theme::elided(ui, &text, font, palette.text, rect.width() - 16.0);
+        let at = rect.left_center() + vec2(16.0, -0.5 * galley.size().y);
+        ui.painter().galley(at, galley, palette.text);
+        let way = if folded { "Unfold the panel" } else { "Fold the panel" };
+        if response.on_hover_text(way).clicked() {
+            context.act(Action::View(ViewChange::Fold(info.id.to_owned(), !folded)));
+        }
+        let tip = format!("Hide “{text}”; View › Panels shows it again");
+        if icon::button(ui, Icon::Cross, &tip).clicked() {
+            context.act(Action::View(ViewChange::Panel(info.id.to_owned(), false)));
+        }
+    });
+}
+
+/// The least height of the strip with the shaders, points.
+const SHADER_STRIP: f32 = 184.0;
+
+/// The strip at the bottom. Tabs appear when there is more than one panel.
+pub(super) fn bottom(
+    ui: &mut Ui,
+    session: &Session,
+    panels: &mut Panels,
+    palette: &Palette,
+    whole: Rect,
+    height: &mut f32,
+    context: &mut PanelContext<'_>,
+) {
+    let most = 0.6 * whole.height();
+    // An error with its line of source is seen whole.
+    let shader = session.view.bottom_tab == SHADER_TAB;
+    let least = if shader { SHADER_STRIP } else { 72.0 };
+    let zoom = super::zoom_percent(ui.ctx());
+    let strip = egui::Panel::bottom(Id::new(("bottom", zoom, shader)))
+        .frame(theme::panel_frame(palette, vec2(12.0, 4.0)))
+        .resizable(true)
+        .default_size(height.max(least).min(most))
+        .size_range(least.min(most)..=most);
+    let response = strip.show(ui, |ui| {
+        let mut tabs: Vec<_> = panels.at(Place::Bottom, session).collect();
+        let shown = tabs.iter().position(|(info, _)| info.id == session.view.bottom_tab).unwrap_or(0);
+        ui.horizontal(|ui| {
+            for (i, (info, panel)) in tabs.iter().enumerate() {
+                let title = glyphs::legible(ui, info.title, &format!("the panel “{}”", info.id));
+                let text = theme::strong(ui, title);
+                let text = if i == shown { text } else { text.color(palette.weak) };
+                if tabs.len() == 1 {
+                    ui.label(text);
+                    continue;
+                }
+                let mut button = Button::selectable(i == shown, text);
+                if let Some((severity, note)) = panel.note(session) {
+                    button = button.right_text(theme::strong(ui, note).color(palette.severity(severity)));
+                }
+                if ui.add(button).clicked() {
+                    context.act(Action::View(ViewChange::BottomTab(info.id.to_owned())));
+                }
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if icon::button(ui, Icon::Down, "Fold the strip away (F8)").clicked() {
+                    context.act(Action::View(ViewChange::Bottom(false)));
+                }
+            });
+        });
+        match tabs.get_mut(shown) {
+            Some((info, panel)) if info.guest => {
+                ScrollArea::vertical().id_salt(info.id).auto_shrink(false).show(ui, |ui| {
+                    ui.set_max_width(ui.available_width() - 8.0);
+                    panel.show(ui, context);
+                });
+            }
+            Some((_, panel)) => panel.show(ui, context),
+            None => {}
+        }
+        ui.take_available_height();
+    });
+    focus::region(ui.ctx(), Region::Panel(Place::Bottom), response.response.rect);
+    if response.response.rect.height() > least + 1.0 {
+        *height = response.response.rect.height();
+    }
+}

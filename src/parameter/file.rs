@@ -1,0 +1,234 @@
+//! Parameters that name a file: its numbers are read once for all that name it, and read again when it changes.
+
+use std::{
+    borrow::Cow,
+    collections::HashMap,
+    fmt,
+    path::{Path, PathBuf},
+    sync::{Arc, LazyLock, Mutex, PoisonError, RwLock, Weak},
+};
+
+use serde::{Serialize, Serializer};
+
+use crate::files;
+
+/// The files that a parameter may name, and how they are read.
+pub struct FileFormat {
+    /// Its name with an article, for messages: "an IES photometric file".
+    pub name: &'static str,
+    /// The extensions of its files, without the dot.
+    pub extensions: &'static [&'static str],
+    /// Larger files are not read.
+    pub max_bytes: u64,
+    /// The numbers of a file, for renderers.
+    pub read: fn(&[u8]) -> Result<Vec<f32>, FileProblem>,
+    /// Files that are part of the program, by name: at least the default.
+    pub shipped: &'static [(&'static str, &'static [u8])],
+}
+
+/// A mistake in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileProblem {
+    /// The line of the mistake, from 1; `None` if it is about the whole file.
+    pub line: Option<usize>,
+    /// The mistake and the remedy.
+    pub message: String,
+}
+
+impl PartialEq for FileFormat {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl fmt::Debug for FileFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("FileFormat").field(&self.name).finish()
+    }
+}
+
+/// A file that a scene names.
+#[derive(Clone)]
+pub struct NamedFile {
+    /// The name as in the scene file, relative to its folder.
+    name: Cow<'static, str>,
+    content: Arc<Content>,
+}
+
+/// The content of a file, which all that name it share.
+struct Content {
+    /// The file; its bytes if it is part of the program.
+    source: Result<PathBuf, &'static [u8]>,
+    format: &'static FileFormat,
+    state: RwLock<State>,
+}
+
+#[derive(Default)]
+struct State {
+    /// The numbers of the last version that was legal.
+    numbers: Option<Arc<[f32]>>,
+    /// The mistake in the present version.
+    problem: Option<String>,
+}
+
+/// The contents of files on disk that are in use, by path and format.
+type Contents = HashMap<(PathBuf, &'static str), Weak<Content>>;
+/// The contents of shipped files, by name and format.
+type Shipped = HashMap<(&'static str, &'static str), Arc<Content>>;
+
+static CONTENTS: LazyLock<Mutex<Contents>> = LazyLock::new(Mutex::default);
+static SHIPPED: LazyLock<Mutex<Shipped>> = LazyLock::new(Mutex::default);
+
+impl NamedFile {
+    /// The file of that name in a folder. If there is none, a shipped file may have that name.
+    #[must_use]
+    pub fn open(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
+        let path = folder.join(name);
+        let shipped = format.shipped.iter().find(|(shipped, _)| *shipped == name && !path.exists());
+        if let Some((name, _)) = shipped {
+            return Self::shipped(name, format);
+        }
+        let path = std::path::absolute(&path).unwrap_or(path);
+        let mut contents = CONTENTS.lock().unwrap_or_else(PoisonError::into_inner);
+        contents.retain(|_, content| content.strong_count() > 0);
+        let known = contents.entry((path.clone(), format.name)).or_default();
+        let content = match known.upgrade() {
+            Some(content) => {
+                // It may have changed since it was read.
+                content.read();
+                content
+            }
+            None => Content::new(Ok(path), format),
+        };
+        *known = Arc::downgrade(&content);
+        drop(contents);
+        Self { name: Cow::Owned(name.to_owned()), content }
+    }
+
+    /// A shipped file.
+    pub(super) fn shipped(name: &'static str, format: &'static FileFormat) -> Self {
+        let bytes =
+            format.shipped.iter().find(|(shipped, _)| *shipped == name).map_or(&[][..], |(_, bytes)| bytes);
+        let mut shipped = SHIPPED.lock().unwrap_or_else(PoisonError::into_inner);
+        let content = shipped.entry((name, format.name)).or_insert_with(|| Content::new(Err(bytes), format));
+        Self { name: Cow::Borrowed(name), content: content.clone() }
+    }
+
+    /// The name as in the scene file.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The file, unless it is part of the program.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        self.content.source.as_deref().ok()
+    }
+
+    /// The same file for a scene in this folder: by the same name where that leads to it, else by its path.
+    #[must_use]
+    pub fn seen_from(&self, folder: &Path) -> Self {
+        let there = std::path::absolute(folder.join(&*self.name)).ok();
+        match self.path() {
+            Some(path) if there.as_deref() != Some(path) => {
+                let name = Cow::Owned(path.to_string_lossy().into_owned());
+                Self { name, content: self.content.clone() }
+            }
+            _ => self.clone(),
+        }
+    }
+
+    /// The numbers of the last version that was legal, if there was one.
+    #[must_use]
+    pub fn numbers(&self) -> Option<Arc<[f32]>> {
+        self.content.state.read().unwrap_or_else(PoisonError::into_inner).numbers.clone()
+    }
+
+    /// The mistake in the present version: file, line, mistake.
+    #[must_use]
+    pub fn problem(&self) -> Option<String> {
+        self.content.state.read().unwrap_or_else(PoisonError::into_inner).problem.clone()
+    }
+
+    /// Reads the file again, for all that name it. True if its numbers or its mistakes are others than before.
+    #[must_use]
+    pub fn read_again(&self) -> bool {
+        self.content.read()
+    }
+
+    /// True if the file is read in this format.
+    #[must_use]
+    pub fn is_in(&self, format: &FileFormat) -> bool {
+        self.content.format == format
+    }
+}
+
+impl Content {
+    fn new(source: Result<PathBuf, &'static [u8]>, format: &'static FileFormat) -> Arc<Self> {
+        let content = Self { source, format, state: RwLock::default() };
+        content.read();
+        Arc::new(content)
+    }
+
+    fn read(&self) -> bool {
+        let read = match &self.source {
+            Err(shipped) => (self.format.read)(shipped).map_err(|problem| problem.message),
+            Ok(path) => files::read(path, self.format.max_bytes)
+                .map_err(|error| format!("{}: {error}", path.display()))
+                .and_then(|bytes| {
+                    (self.format.read)(&bytes).map_err(|FileProblem { line, message }| {
+                        let line = line.map_or(String::new(), |line| format!(":{line}"));
+                        format!("{}{line}: {message}", path.display())
+                    })
+                }),
+        };
+        let mut state = self.state.write().unwrap_or_else(PoisonError::into_inner);
+        match read {
+            Ok(numbers) => {
+                let news = state.problem.take().is_some() || state.numbers.as_deref() != Some(&numbers[..]);
+                state.numbers = Some(numbers.into());
+                news
+            }
+            Err(problem) => {
+                let news = state.problem.as_ref() != Some(&problem);
+                state.problem = Some(problem);
+                news
+            }
+        }
+    }
+}
+
+/// The same name for the same file.
+impl PartialEq for NamedFile {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name && self.content.source == other.content.source
+    }
+}
+
+impl fmt::Debug for NamedFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("NamedFile").field(&self.name).finish()
+    }
+}
+
+impl Serialize for NamedFile {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.name)
+    }
+}
+
+/// A file with its numbers, for calculation.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    /// The file.
+    pub file: Option<NamedFile>,
+    /// Its numbers when the table was taken.
+    pub numbers: Arc<[f32]>,
+}
+
+impl PartialEq for Table {
+    fn eq(&self, other: &Self) -> bool {
+        self.file == other.file && self.numbers == other.numbers
+    }
+}

@@ -1,0 +1,59 @@
+//! The names that extensions of the program need most, to be imported beside those of `bevy::prelude`. The declarations
+//! of models, lights and shapes, which share a name, stay in their modules.
+
+pub use crate::{
+    document::{Edit, Selection},
+    light::{self, Incident, LightRecord, LightType},
+    optics::{Frame, Terms},
+    panel::{
+        Panel, PanelApp, PanelContext, Panels, Place,
+        state::{Action, Session},
+    },
+    parameter::{Parameter, ParameterKind, Value},
+    parameters,
+    reflection::{self, ReflectionModel},
+    registry::{Register, Registry},
+    render::{
+        parts::{
+            Animated, LightColour, LightPower, SceneLight, SceneObject, SceneObserver, Surface, Tessellation,
+        },
+        schedule::{LabFrame, LabSystems},
+    },
+    scene::{Light, Object, Scene},
+    shader::Source,
+    shading::{self, ShadingModel},
+    shape::{self, ObjectType, PolygonMesh},
+    window::LabPlugins,
+};
+
+#[cfg(test)]
+mod tests {
+    #![deny(ambiguous_glob_imports)]
+
+    use bevy::prelude::*;
+
+    use super::super::prelude::*;
+
+    /// Compiles only while no name is Bevy's too.
+    #[test]
+    fn both_preludes_can_be_imported() {
+        fn known<T: ?Sized>() {}
+        known::<(App, Transform)>();
+        known::<(Edit, Selection, Incident, LightRecord, Frame, Terms, PanelContext, Panels, Place, Action)>(
+        );
+        known::<(Session, Parameter, ParameterKind, Value, Registry, LabFrame)>();
+        known::<(
+            Animated,
+            LightColour,
+            LightPower,
+            SceneLight,
+            SceneObject,
+            SceneObserver,
+            Surface,
+            Tessellation,
+        )>();
+        known::<(LabSystems, Light, Object, Scene, Source, PolygonMesh, LabPlugins, dyn Panel)>();
+        fn registers<R: Register, M: ReflectionModel, S: ShadingModel, L: LightType, T: ObjectType>() {}
+        registers::<Registry, reflection::Lambert, shading::Flat, light::Point, shape::Sphere>();
+    }
+}
