@@ -8,6 +8,7 @@ use std::{
     sync::{Arc, LazyLock, Mutex, PoisonError, RwLock, Weak},
 };
 
+use bevy::reflect::Reflect;
 use serde::{Serialize, Serializer};
 
 use crate::files;
@@ -48,7 +49,9 @@ impl fmt::Debug for FileFormat {
 }
 
 /// A file that a scene names.
-#[derive(Clone)]
+#[derive(Clone, Reflect)]
+#[reflect(opaque)]
+#[reflect(Clone, Debug, PartialEq)]
 pub struct NamedFile {
     /// The name as in the scene file, relative to its folder.
     name: Cow<'static, str>,

@@ -372,6 +372,8 @@ impl Change<'_> {
 
     /// Entities become parts.
     fn add(&mut self) {
+        // In the order of spawning; an `Entity` with a greater index is the lesser one.
+        self.new.sort_unstable_by_key(|entity| entity.index_u32());
         for entity in std::mem::take(&mut self.new) {
             match self.admit(entity) {
                 Ok(part) => part.into_iter().for_each(|part| self.come(entity, part)),

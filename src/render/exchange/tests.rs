@@ -434,7 +434,8 @@ fn a_spot_that_is_spawned_is_a_light_of_the_document_and_goes_when_it_is_despawn
     lab.settle();
     assert_eq!(lab.document().lights.len(), 1);
     // What came and went again is no step.
-    assert_eq!((lab.document().steps().len(), lab.document().differs()), (0, false));
+    let document = lab.document();
+    assert_eq!((document.steps().len(), document.differs()), (0, false));
     assert_eq!(lab.said(), [""; 0]);
 }
 
