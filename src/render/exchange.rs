@@ -71,6 +71,9 @@ impl SceneEntities {
         if *document != scene.0 {
             return Some(Changes::Values(vec![Extent::All]));
         }
+        if self.ids.is_none() {
+            self.new_ids = Some(ids(document));
+        }
         self.agree(document, scene);
         None
     }
@@ -93,6 +96,13 @@ impl SceneEntities {
         if !parts || !adopted {
             if *document != scene.0 {
                 scene.0.clone_from(document);
+            } else {
+                // The entities get their ids when they follow the scene.
+                let before = Some(scene.last_changed());
+                scene.set_changed();
+                if self.seen == before {
+                    self.seen = Some(scene.last_changed());
+                }
             }
             self.new_ids = Some(ids(document));
         }
