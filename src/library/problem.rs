@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 /// The age at which a problem is reported: many editors empty a file before they write it.
-pub const GRACE: Duration = Duration::from_millis(150);
+pub const GRACE: Duration = Duration::from_millis(300);
 
 /// A problem, or several at once, and since when.
 #[derive(Clone, Debug)]
