@@ -4,7 +4,11 @@ use std::{f64::consts::GOLDEN_RATIO, iter};
 
 use glam::Vec3;
 
-use super::{Document, Extent, Selection, history::Patch};
+use super::{
+    Document, Extent, Selection,
+    history::Patch,
+    names::{light_type, object_type},
+};
 use crate::{
     parameter::Value,
     registry::Registry,
@@ -155,8 +159,8 @@ impl ObjectField {
             Self::Model(_) => "Reflection model",
             Self::ShadingModel(_) => "Shading model",
             Self::Shape(id, _) => {
-                let declared = registry.shape(&object.object_type).map_or(&[][..], |shape| shape.parameters);
-                declared.iter().find(|p| p.name == *id).map_or(*id, |p| p.label)
+                let declared = registry.shape(&object.object_type).and_then(|shape| shape.parameter(id));
+                declared.map_or(*id, |p| p.label)
             }
             Self::Material(id, _) => registry.material_parameter(id).map_or(*id, |p| p.label),
             Self::Preset(_) => "Measured material",
@@ -253,8 +257,7 @@ impl Document {
                     &self.name_of(Selection::Object(i), registry),
                 );
                 if let ObjectField::Type(id) = &field {
-                    let type_name = registry.shape(id).map_or(&**id, |entry| entry.declaration.name);
-                    name += &format!(": {type_name}");
+                    name += &format!(": {}", object_type(id, registry));
                 }
                 self.step(name, Extent::Object(i), selection, Some(registry), |document| {
                     let renamed = matches!(field, ObjectField::Name(_));
@@ -283,8 +286,8 @@ impl Document {
     ) -> Result<(), String> {
         let field = LightField::Type(id.to_owned());
         self.check(&Edit::Light(i, field.clone()), registry)?;
-        let type_name = registry.light(id).map_or(id, |entry| entry.declaration.name);
-        let name = format!("{}: {type_name}", step("Type", &self.name_of(Selection::Light(i), registry)));
+        let part = self.name_of(Selection::Light(i), registry);
+        let name = format!("{}: {}", step("Type", &part), light_type(id, registry));
         self.step(name, Extent::Light(i), selection, Some(registry), |document| {
             let room = document.scene.scene_size;
             let light = &mut document.scene.lights[i];

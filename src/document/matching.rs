@@ -20,28 +20,22 @@ impl Document {
         registry: &Registry,
     ) {
         let old = self.named(registry);
-        let lights = matched([&self.lights, &old.lights], &scene.lights, |l: &Light| l.name.as_deref());
-        let objects = matched([&self.objects, &old.objects], &scene.objects, |o: &Object| o.name.as_deref());
-        let lights: Vec<_> = (lights.into_iter().zip(&mut scene.lights))
-            .map(|(place, new)| {
-                let i = place?;
-                let (known, label) = (&self.lights[i], self.labels.lights[i]);
-                let retyped = known.light_type != new.light_type;
-                let given = old.lights[i].name.as_ref().filter(|_| known.name.is_none() && !retyped);
-                new.name.take_if(|name| Some(&*name) == given);
-                Some(Label { number: if retyped { 0 } else { label.number }, ..label })
-            })
-            .collect();
-        let objects: Vec<_> = (objects.into_iter().zip(&mut scene.objects))
-            .map(|(place, new)| {
-                let i = place?;
-                let (known, label) = (&self.objects[i], self.labels.objects[i]);
-                let retyped = known.object_type != new.object_type;
-                let given = old.objects[i].name.as_ref().filter(|_| known.name.is_none() && !retyped);
-                new.name.take_if(|name| Some(&*name) == given);
-                Some(Label { number: if retyped { 0 } else { label.number }, ..label })
-            })
-            .collect();
+        let lights = relabelled(
+            [&self.lights, &old.lights],
+            &self.labels.lights,
+            &mut scene.lights,
+            |l: &Light| &l.light_type,
+            |l: &mut Light| &mut l.name,
+            |l: &Light| l.name.as_deref(),
+        );
+        let objects = relabelled(
+            [&self.objects, &old.objects],
+            &self.labels.objects,
+            &mut scene.objects,
+            |o: &Object| &o.object_type,
+            |o: &mut Object| &mut o.name,
+            |o: &Object| o.name.as_deref(),
+        );
         let labels = Labels {
             lights: lights.into_iter().map(|l| l.unwrap_or_else(|| self.next_label())).collect(),
             objects: objects.into_iter().map(|l| l.unwrap_or_else(|| self.next_label())).collect(),
@@ -50,6 +44,28 @@ impl Document {
             (document.scene, document.labels) = (scene, labels);
         });
     }
+}
+
+/// The labels of the parts of a new list that are parts of the old one, which stands there as it is and as a file has it.
+/// A part of another type needs another number; a name that only the file gave is taken from the new part.
+fn relabelled<T: PartialEq>(
+    old: [&[T]; 2],
+    labels: &[Label],
+    new: &mut [T],
+    type_of: impl Fn(&T) -> &str,
+    name_of: impl Fn(&mut T) -> &mut Option<String>,
+    name: impl Fn(&T) -> Option<&str>,
+) -> Vec<Option<Label>> {
+    let places = matched(old, new, &name);
+    let [plain, named] = old;
+    let relabel = |(place, new): (Option<usize>, &mut T)| {
+        let i = place?;
+        let retyped = type_of(&plain[i]) != type_of(new);
+        let given = name(&named[i]).filter(|_| name(&plain[i]).is_none() && !retyped);
+        name_of(new).take_if(|name| Some(name.as_str()) == given);
+        Some(Label { number: if retyped { 0 } else { labels[i].number }, ..labels[i] })
+    };
+    places.into_iter().zip(new).map(relabel).collect()
 }
 
 /// The places in the old list of the parts of a new one: of equal parts, else of those with the same name, else of

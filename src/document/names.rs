@@ -29,11 +29,13 @@ fn name(own: &Option<String>, type_name: &str, number: usize) -> String {
     own.clone().unwrap_or_else(|| format!("{type_name} {number}"))
 }
 
-fn light_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
+/// The name of a light type, else its id.
+pub(super) fn light_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
     registry.light(id).map_or(id, |entry| entry.declaration.name)
 }
 
-fn object_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
+/// The name of an object type, else its id.
+pub(super) fn object_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
     registry.shape(id).map_or(id, |entry| entry.declaration.name)
 }
 
@@ -49,11 +51,7 @@ pub fn free_name(scene: &Scene, name: &str) -> String {
 
 /// Gives every part without a number the first that is free above all of its type. `type_of` is the type of the part
 /// in a place; `taken` is true if a part has the name of that type and number.
-pub(super) fn number<'a>(
-    labels: &mut [Label],
-    type_of: impl Fn(usize) -> &'a str,
-    taken: impl Fn(&str, usize) -> bool,
-) {
+fn number<'a>(labels: &mut [Label], type_of: impl Fn(usize) -> &'a str, taken: impl Fn(&str, usize) -> bool) {
     if labels.iter().all(|label| label.number != 0) {
         return;
     }
@@ -81,11 +79,9 @@ impl Document {
     /// another part was given.
     pub(super) fn number_parts(&mut self, registry: Option<&Registry>) {
         let Self { scene, labels, .. } = self;
-        let taken = |id: &str, type_name: fn(&str, &Registry) -> String, n: usize| {
-            registry.is_some_and(|r| is_given(scene, &format!("{} {n}", type_name(id, r))))
-        };
-        let light = |id: &str, n| taken(id, |id, r| light_type(id, r).to_owned(), n);
-        let object = |id: &str, n| taken(id, |id, r| object_type(id, r).to_owned(), n);
+        let given = |type_name: &str, n: usize| is_given(scene, &format!("{type_name} {n}"));
+        let light = |id: &str, n| registry.is_some_and(|r| given(light_type(id, r), n));
+        let object = |id: &str, n| registry.is_some_and(|r| given(object_type(id, r), n));
         number(&mut labels.lights, |i| &scene.lights[i].light_type, light);
         number(&mut labels.objects, |i| &scene.objects[i].object_type, object);
     }

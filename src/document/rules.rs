@@ -57,9 +57,7 @@ impl Document {
                 None => Err(format!("No model has a parameter “{id}”.")),
             }
         };
-        let of_type = |part: Selection, declared: &[Parameter], id: &str, value: &Value| match declared
-            .iter()
-            .find(|p| p.name == id)
+        let of_type = |part: Selection, declared: Option<&Parameter>, id: &str, value: &Value| match declared
         {
             Some(p) if p.allows(value) => Ok(()),
             Some(p) => Err(match value {
@@ -126,7 +124,7 @@ impl Document {
                         limits::colour_temperature(),
                     ),
                     LightField::Parameter(id, value) => {
-                        of_type(part, entry.map_or(&[], |e| e.parameters), id, value)
+                        of_type(part, entry.and_then(|e| e.parameter(id)), id, value)
                     }
                 }
             }
@@ -157,7 +155,7 @@ impl Document {
                     ObjectField::ShadingModel(id) => id.as_deref().map_or(Ok(()), shading),
                     ObjectField::Shape(id, value) => {
                         let shape = registry.shape(&object.object_type);
-                        of_type(part, shape.map_or(&[], |s| s.parameters), id, value)
+                        of_type(part, shape.and_then(|s| s.parameter(id)), id, value)
                     }
                     ObjectField::Material(id, value) => material(object, id, value),
                     ObjectField::Preset(all) => {

@@ -199,7 +199,7 @@ impl LightEntry {
     /// The parameters of a light as the shader reads them, in order and without padding.
     #[must_use]
     pub fn words(&self, values: &Values, encoding: Encoding) -> Vec<u32> {
-        if self.parameters.is_empty() { Vec::new() } else { words(self.parameters, values, encoding) }
+        words(self.parameters, values, encoding)
     }
 
     /// The files of a light, each with the place of its parameter among the [`words`](Self::words).

@@ -53,14 +53,9 @@ pub fn pack(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Ve
     block
 }
 
-/// The parameters of one object as words without padding, as a
-/// [`Program`](crate::shader::interpret::Program) takes the WGSL struct `Parameters` for an argument.
+/// Parameters as words without padding.
 #[must_use]
 pub fn words(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Vec<u32> {
-    if parameters.is_empty() {
-        // The unused field.
-        return vec![0];
-    }
     let mut words = Vec::new();
     for p in parameters {
         match p.wgsl_type() {

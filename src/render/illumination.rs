@@ -115,33 +115,54 @@ impl Lit {
     }
 }
 
-/// The words behind the lights: the parameters of all, and the numbers of each file once; with the first word of each
-/// light.
-fn words(lights: &[Lit]) -> (Vec<u32>, Vec<usize>) {
-    let mut words = Vec::new();
-    let mut firsts = Vec::with_capacity(lights.len());
-    for light in lights {
-        firsts.push(words.len());
-        words.extend(&light.words);
-    }
-    let mut known: Vec<(&Arc<[f32]>, usize)> = Vec::new();
-    for (light, first) in lights.iter().zip(&firsts) {
-        for (place, Table { numbers, .. }) in &light.tables {
-            let at = known.iter().find(|(other, _)| Arc::ptr_eq(other, numbers)).map(|(_, at)| *at);
-            words[first + place] = at.unwrap_or_else(|| {
-                known.push((numbers, words.len()));
-                words.extend(numbers.iter().map(|number| number.to_bits()));
-                known[known.len() - 1].1
-            }) as u32;
+/// The places of the words behind the lights: the parameters of all, and the numbers of each file once.
+struct Places<'a> {
+    /// The first word of each light.
+    lights: Vec<usize>,
+    /// The first number of each file.
+    files: Vec<(&'a Arc<[f32]>, usize)>,
+    /// The number of all words.
+    count: usize,
+}
+
+impl<'a> Places<'a> {
+    fn of(lights: &'a [Lit]) -> Self {
+        let mut places = Self { lights: Vec::with_capacity(lights.len()), files: Vec::new(), count: 0 };
+        for light in lights {
+            places.lights.push(places.count);
+            places.count += light.words.len();
         }
+        for (_, Table { numbers, .. }) in lights.iter().flat_map(|light| &light.tables) {
+            if places.of_file(numbers).is_none() {
+                places.files.push((numbers, places.count));
+                places.count += numbers.len();
+            }
+        }
+        places
     }
-    (words, firsts)
+
+    fn of_file(&self, numbers: &Arc<[f32]>) -> Option<usize> {
+        self.files.iter().find(|(known, _)| Arc::ptr_eq(known, numbers)).map(|(_, at)| *at)
+    }
+
+    fn words(&self, lights: &[Lit]) -> Vec<u32> {
+        let mut words = Vec::with_capacity(self.count);
+        words.extend(lights.iter().flat_map(|light| &light.words));
+        words
+            .extend(self.files.iter().flat_map(|(numbers, _)| numbers.iter().map(|number| number.to_bits())));
+        for (light, first) in lights.iter().zip(&self.lights) {
+            for (place, Table { numbers, .. }) in &light.tables {
+                words[first + place] = self.of_file(numbers).unwrap_or_default() as u32;
+            }
+        }
+        words
+    }
 }
 
 /// The number of words behind so many lights.
 #[must_use]
 pub fn word_count(lights: &[Lit]) -> usize {
-    words(&lights[..lights.len().min(MAX_LIGHTS)]).0.len()
+    Places::of(&lights[..lights.len().min(MAX_LIGHTS)]).count
 }
 
 /// The bytes of `Illumination` in `lights.wgsl`, up to the last word in use. Lights beyond [`MAX_LIGHTS`] are left out;
@@ -149,14 +170,14 @@ pub fn word_count(lights: &[Lit]) -> usize {
 #[must_use]
 pub fn illumination_bytes(lights: &[Lit], terms: TermSelection, display: &Display) -> Vec<u8> {
     let lights = &lights[..lights.len().min(MAX_LIGHTS)];
-    let (words, firsts) = words(lights);
+    let places = Places::of(lights);
     let mut bytes = vec![0u8; HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES];
     let mut put = |at: usize, value: [u8; 4]| bytes[at..at + 4].copy_from_slice(&value);
     put(0, (lights.len() as u32).to_le_bytes());
     put(4, terms.code().to_le_bytes());
     put(8, exposure_factor(display.exposure).to_le_bytes());
     put(12, u32::from(display.encoding == Encoding::Off).to_le_bytes());
-    for (i, (Lit { record, .. }, first)) in lights.iter().zip(firsts).enumerate() {
+    for (i, (Lit { record, .. }, first)) in lights.iter().zip(&places.lights).enumerate() {
         let base = HEADER_BYTES + i * LIGHT_BYTES;
         let mut put3 = |at: usize, v: Vec3| {
             for (k, c) in v.to_array().into_iter().enumerate() {
@@ -168,9 +189,9 @@ pub fn illumination_bytes(lights: &[Lit], terms: TermSelection, display: &Displa
         put3(32, record.colour);
         put(base + 12, record.light_type.to_le_bytes());
         put(base + 28, record.intensity.to_le_bytes());
-        put(base + 44, (first as u32).to_le_bytes());
+        put(base + 44, (*first as u32).to_le_bytes());
     }
-    bytes.extend(words.into_iter().flat_map(u32::to_le_bytes));
+    bytes.extend(places.words(lights).into_iter().flat_map(u32::to_le_bytes));
     bytes
 }
 

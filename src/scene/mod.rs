@@ -239,13 +239,7 @@ impl Light {
         let centre = Vec3::new(room.width / 2.0, room.height * 0.8, room.depth / 2.0);
         self.position = new.has_position.then(|| self.position.unwrap_or(centre));
         self.direction = new.has_direction.then(|| self.direction.unwrap_or(Vec3::NEG_Y));
-        let mut parameters = Values::default();
-        for p in to.parameters {
-            if let Some(value) = self.parameters.0.get(p.name).filter(|v| p.allows(v)) {
-                parameters.set(p.name, value.clone());
-            }
-        }
-        self.parameters = parameters;
+        self.parameters = self.parameters.legal(to.parameters);
         new.id.clone_into(&mut self.light_type);
     }
 }

@@ -60,6 +60,12 @@ impl ShapeEntry {
         }
     }
 
+    /// The parameter with that name, if the type has it.
+    #[must_use]
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+
     /// The tessellation of an object: the requested one, clamped to the legal range, or the default.
     #[must_use]
     pub fn tessellation(&self, wanted: Option<u32>) -> u32 {
@@ -102,10 +108,7 @@ impl ShapeEntry {
 
     /// The parameters as the type gets them, bit by bit.
     fn words(&self, parameters: &Values) -> Vec<u32> {
-        match self.parameters {
-            [] => Vec::new(),
-            declared => words(declared, parameters, Encoding::Srgb),
-        }
+        words(self.parameters, parameters, Encoding::Srgb)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Polygon meshes (CA AB10, AB11): a list of vertices and a set of polygons over them.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::shading::normals::{
     polygon_centre, polygon_normal, polygon_tangent, vertex_normals, vertex_tangents,
@@ -136,6 +136,20 @@ impl PolygonMesh {
         for (polygon, centre) in self.polygons.iter_mut().zip(centres) {
             polygon.brushed = axis.cross(centre);
         }
+    }
+
+    /// A surface of height 1 from pole to pole of the y axis. `outline` has the distance from the axis and the height of
+    /// each row between them, from above; `parallel` the x and −z of the points around, at distance 1.
+    #[must_use]
+    pub fn between_poles(outline: impl Iterator<Item = Vec2>, parallel: &[Vec2]) -> Self {
+        let mut rows = vec![vec![Vec3::Y * 0.5]];
+        for Vec2 { x: radius, y } in outline {
+            rows.push(parallel.iter().map(|p| Vec3::new(radius * p.x, y, -radius * p.y)).collect());
+        }
+        rows.push(vec![Vec3::Y * -0.5]);
+        let mut mesh = Self::default();
+        mesh.append_loops(&rows, false);
+        mesh
     }
 
     /// Appends a surface made of loops of vertices, one row after the other, with a quadrilateral between each four

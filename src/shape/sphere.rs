@@ -1,6 +1,6 @@
 use std::f32::consts::{PI, TAU};
 
-use glam::Vec3;
+use glam::{Vec2, Vec2Swizzles as _};
 
 use super::{Declaration, ObjectType, PolygonMesh};
 use crate::parameters;
@@ -25,30 +25,19 @@ impl ObjectType for Sphere {
     };
 
     fn mesh(&self, tessellation: u32) -> PolygonMesh {
-        let bands = tessellation.max(2) as usize;
-        let segments = 2 * bands;
-        let mut rows = vec![vec![Vec3::Y * 0.5]];
-        for band in 1..bands {
-            let polar = PI * band as f32 / bands as f32;
-            let (radius, y) = (0.5 * polar.sin(), 0.5 * polar.cos());
-            rows.push(
-                (0..segments)
-                    .map(|segment| {
-                        let (sin, cos) = (TAU * segment as f32 / segments as f32).sin_cos();
-                        Vec3::new(radius * cos, y, -radius * sin)
-                    })
-                    .collect(),
-            );
-        }
-        rows.push(vec![Vec3::Y * -0.5]);
-        let mut mesh = PolygonMesh::default();
-        mesh.append_loops(&rows, false);
-        mesh
+        let bands = tessellation.max(2);
+        let direction = |turn: f32| Vec2::from(turn.sin_cos());
+        let parallel: Vec<_> =
+            (0..2 * bands).map(|i| direction(TAU * i as f32 / (2 * bands) as f32).yx()).collect();
+        let outline = (1..bands).map(|i| 0.5 * direction(PI * i as f32 / bands as f32));
+        PolygonMesh::between_poles(outline, &parallel)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
 
     /// The largest angle in radians between a vertex normal and the sphere's own.

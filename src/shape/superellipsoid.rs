@@ -1,6 +1,6 @@
 use std::f32::consts::{PI, TAU};
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec2Swizzles as _};
 
 use super::{Declaration, ObjectType, PolygonMesh};
 use crate::{
@@ -65,29 +65,21 @@ impl ObjectType for Superellipsoid {
     };
 
     fn mesh(&self, tessellation: u32) -> PolygonMesh {
-        let bands = tessellation.max(2) as usize;
-        let segments = 2 * bands;
-        let parallel: Vec<Vec2> = (0..segments)
-            .map(|segment| {
-                let (sin, cos) = (TAU * segment as f32 / segments as f32).sin_cos();
-                on_superellipse(Vec2::new(cos, sin), self.horizontal_exponent)
-            })
-            .collect();
-        let mut rows = vec![vec![Vec3::Y * 0.5]];
-        for band in 1..bands {
-            let (sin, cos) = (PI * band as f32 / bands as f32).sin_cos();
-            let Vec2 { x: radius, y } = 0.5 * on_superellipse(Vec2::new(sin, cos), self.vertical_exponent);
-            rows.push(parallel.iter().map(|p| Vec3::new(radius * p.x, y, -radius * p.y)).collect());
-        }
-        rows.push(vec![Vec3::Y * -0.5]);
-        let mut mesh = PolygonMesh::default();
-        mesh.append_loops(&rows, false);
-        mesh
+        let bands = tessellation.max(2);
+        let direction = |turn: f32| Vec2::from(turn.sin_cos());
+        let around = |i| direction(TAU * i as f32 / (2 * bands) as f32).yx();
+        let parallel: Vec<_> =
+            (0..2 * bands).map(|i| on_superellipse(around(i), self.horizontal_exponent)).collect();
+        let outline = (1..bands)
+            .map(|i| 0.5 * on_superellipse(direction(PI * i as f32 / bands as f32), self.vertical_exponent));
+        PolygonMesh::between_poles(outline, &parallel)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
     use crate::shape::Sphere;
 

@@ -15,7 +15,6 @@ use std::{
 use bevy::{
     app::{App, Last, Plugin, PreUpdate},
     ecs::prelude::*,
-    winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
 use super::{
@@ -23,7 +22,7 @@ use super::{
     ending::{Guard, PATIENCE},
     files::DiskFiles,
     order::Loading,
-    watching::complain,
+    watching::{complain, waker},
 };
 use crate::{
     panel::{
@@ -61,7 +60,7 @@ impl RecoveryPlugin {
 impl Plugin for RecoveryPlugin {
     fn build(&self, app: &mut App) {
         let store = Store::of_user();
-        let farewell = Farewell::prepare(store.clone(), app.world().get_resource::<EventLoopProxyWrapper>());
+        let farewell = Farewell::prepare(store.clone(), app.world());
         let mut copies = Recovery::new(farewell);
         if self.look {
             copies.look(store.as_ref(), self.file.as_deref(), self.ask);
@@ -84,15 +83,15 @@ pub(super) struct Farewell {
 
 impl Farewell {
     /// Begins to keep copies, and to listen to signals.
-    fn prepare(store: Option<Store>, proxy: Option<&EventLoopProxyWrapper>) -> Self {
-        let keeper = Keeper::start(store, waker(proxy));
+    fn prepare(store: Option<Store>, world: &World) -> Self {
+        let keeper = Keeper::start(store, waker(world));
         let last = keeper.clone();
         let last_act = move |signal: &str| {
             if let Some(sentence) = last.settle(PATIENCE).sentence() {
                 complain(&format!("ended by {signal}; {sentence}"));
             }
         };
-        let interrupt = Interrupt::listen(waker(proxy), last_act).unwrap_or_else(|error| {
+        let interrupt = Interrupt::listen(waker(world), last_act).unwrap_or_else(|error| {
             complain(&format!("signals end the window without a question: {error}"));
             Interrupt::default()
         });
@@ -133,17 +132,6 @@ impl Drop for Recovery {
     fn drop(&mut self) {
         if self.guard.take().is_some() && !thread::panicking() {
             self.farewell.say();
-        }
-    }
-}
-
-/// Wakes the window after the work of another thread.
-fn waker(proxy: Option<&EventLoopProxyWrapper>) -> impl Fn() + Send + use<> {
-    let proxy = proxy.map(|proxy| (**proxy).clone());
-    move || {
-        if let Some(proxy) = &proxy {
-            // An error: the window is closed.
-            let _ = proxy.send_event(WinitUserEvent::WakeUp);
         }
     }
 }

@@ -286,7 +286,7 @@ impl Check<'_> {
         if let Some(shape) = registry.shape(&object.object_type) {
             for (name, value) in &object.shape.0 {
                 let path = || object_path(index).key(name.clone());
-                match shape.parameters.iter().find(|p| p.name == name.as_ref()) {
+                match shape.parameter(name) {
                     Some(declared) => self.rule(parameter(declared, value), || (path(), written(value))),
                     None => {
                         let what = with_article(&object.object_type);
