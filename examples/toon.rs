@@ -11,25 +11,19 @@ use std::{error::Error, path::Path};
 use glam::Vec3;
 use lights_camera_models::{
     optics::{Frame, Terms},
-    parameter::{BASE_COLOUR, Parameter, ParameterKind, Value},
+    parameter::{BASE_COLOUR, Parameter, Value},
     parameters,
     reference::{self, Settings},
-    reflection::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term},
+    reflection::{Declaration, EquationPart, ReflectionModel, Term},
     registry::{Register, Registry},
     render::capture::png,
     scene::{Object, Scene},
     shader::Source,
 };
 
-const TONES: Parameter = Parameter {
-    name: "tones",
-    symbol: "n",
-    label: "tones",
-    unit: "",
-    help: "The number of tones between black and the base colour.",
-    kind: ParameterKind::Integer { min: 1, max: Some(16), slider_max: 8, default: 4 },
-    used_when: None,
-};
+const TONES: Parameter = Parameter::integer("tones", 1..=16, 4)
+    .symbol("n")
+    .help("The number of tones between black and the base colour.");
 
 parameters! {
     /// Lambert in a few tones.
@@ -42,19 +36,12 @@ parameters! {
 }
 
 impl ReflectionModel for Toon {
-    const DECLARATION: Declaration = Declaration {
-        id: "toon",
-        name: "Toon",
-        family: Family::Custom,
-        author: "an example",
-        source: "examples/toon.rs",
-        summary: "Lambert in a few tones, as in a cartoon.",
-        equation: &[EquationPart { term: Term::Diffuse, text: "I_d = ceil(n max(0, N·L)) C_b / n" }],
-        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Formula,
-        anisotropic: false,
-        wgsl: Source { path: "toon.wgsl", text: include_str!("toon.wgsl") },
-    };
+    const DECLARATION: Declaration =
+        Declaration::new("toon", "Toon", Source::new("toon.wgsl", include_str!("toon.wgsl")))
+            .published("an example", "examples/toon.rs")
+            .summary("Lambert in a few tones, as in a cartoon.")
+            .equation(&[EquationPart::new(Term::Diffuse, "I_d = ceil(n max(0, N·L)) C_b / n")])
+            .non_negative();
 
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         let tone = (self.tones * frame.n.dot(l).max(0.0)).ceil() / self.tones;

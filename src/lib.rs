@@ -42,6 +42,7 @@
 //! - [`panel`]: egui panels, as functions of a state that return actions.
 //! - [`window`]: panels, camera and entities in one window.
 //! - [`study`]: the differences between models, as numbers and a report.
+//! - [`testing`]: the tests that models, light types and object types pass, for those of other crates.
 //! - [`cli`]: the command line.
 //! - [`prelude`]: the names that extensions of the program need most.
 
@@ -85,6 +86,8 @@ pub mod panel;
 pub mod window;
 
 pub mod study;
+
+pub mod testing;
 
 pub mod cli;
 

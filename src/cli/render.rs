@@ -294,9 +294,9 @@ impl Painter {
     }
 }
 
-/// Tries the user's shaders in another process, since a driver may not survive them.
+/// Tries the shaders of users and of other crates in another process, since a driver may not survive them.
 fn try_apart(app: &mut App, registry: &Registry) {
-    if registry.sources().edited().next().is_some()
+    if (registry.sources().edited().next().is_some() || registry.has_foreign())
         && let Some(program) = super::trial::program()
         && let Some(mut bench) = app.world_mut().get_resource_mut::<Bench>()
     {

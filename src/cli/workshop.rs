@@ -15,7 +15,8 @@ use crate::{
     reflection::{Family, ModelEntry},
     registry::{
         Registry,
-        compose::{Part, compose, compose_evaluation, files},
+        check::wgsl,
+        compose::{Part, compose, files},
     },
     render::capture::gpu::GpuError,
     scene::{
@@ -23,11 +24,7 @@ use crate::{
         error::LoadError,
         load::{self, Defaults, Loaded},
     },
-    shader::{
-        check::{self, ShaderProblem},
-        report::annotated,
-        whole::validate_drawing,
-    },
+    shader::{check::ShaderProblem, report::annotated, whole::validate_drawing},
     shading::Stage,
 };
 
@@ -190,6 +187,8 @@ impl Places {
                 complain(all_annotated(&problems));
             }
         }
+        assets::read_extensions(&mut registry)
+            .map_err(|problems| Failure::Invalid(all_annotated(&problems)))?;
         Ok(Workshop { registry, options, for_window: false, tried: BTreeSet::new() })
     }
 
@@ -254,14 +253,13 @@ fn on_disk(registry: &Registry, file: &str) -> String {
     registry.path_on_disk(file).map_or_else(|| file.to_owned(), |path| path.display().to_string())
 }
 
-/// Fails if the shader of a model is invalid, as the files on disk have it. Built-in shaders are valid.
+/// Fails if the shader of a model is invalid, as the files on disk have it, or other crates compiled it in. What ships
+/// with the program is valid.
 pub(super) fn valid(registry: &Registry, model: &ModelEntry) -> Outcome {
-    if registry.sources().edited().next().is_none() {
+    if registry.sources().edited().next().is_none() && !registry.is_foreign(model.declaration.wgsl.path) {
         return Ok(());
     }
-    check::validate(&compose_evaluation(registry.sources(), model))
-        .map(drop)
-        .map_err(|problem| invalid(registry, &problem))
+    wgsl::model(registry.sources(), model).map(drop).map_err(|problem| invalid(registry, &problem))
 }
 
 /// The failure for an invalid shader.
@@ -269,20 +267,23 @@ pub(super) fn invalid(registry: &Registry, problem: &ShaderProblem) -> Failure {
     Failure::Invalid(annotated(problem, &on_disk(registry, &problem.file)))
 }
 
-/// Fails if a shader for a scene is invalid, as the files on disk have it.
+/// Fails if a shader for a scene is invalid, as the files on disk have it, or other crates compiled it in.
 pub(super) fn drawable(registry: &Registry, scene: &Scene) -> Outcome {
-    if registry.sources().edited().next().is_none() {
+    if registry.sources().edited().next().is_none() && !registry.has_foreign() {
         return Ok(());
     }
+    let lights = registry.lights_in(scene.light_types(registry));
     let pairs: BTreeSet<_> =
         scene.objects.iter().map(|o| (scene.model_of(o), scene.shading_model_of(o))).collect();
     for (model, shading) in pairs {
         let (Some(model), Some(shading)) = (registry.model(model), registry.shading_model(shading)) else {
             continue;
         };
-        let composed = compose(registry.sources(), model, shading, registry.lights());
+        let composed = compose(registry.sources(), model, shading, &lights);
         let faces = shading.declaration.stage == Stage::Polygon;
-        validate_drawing(&composed, faces).map_err(|problem| invalid(registry, &problem))?;
+        validate_drawing(&composed, faces).map_err(|problem| {
+            invalid(registry, &wgsl::blamed(problem, registry, model, shading, &lights))
+        })?;
     }
     Ok(())
 }
@@ -293,13 +294,14 @@ pub(super) fn not_followed_on_cpu(registry: &Registry, scene: &Scene) -> BTreeSe
     if registry.sources().edited().all(|path| path.starts_with("models/")) {
         return BTreeSet::new();
     }
+    let lights = &registry.lights_in(scene.light_types(registry));
     let pairs: BTreeSet<_> =
         scene.objects.iter().map(|o| (scene.model_of(o), scene.shading_model_of(o))).collect();
     let known = pairs.into_iter().filter_map(|(m, n)| Some((registry.model(m)?, registry.shading_model(n)?)));
     known
         .flat_map(|(model, shading)| {
             let own = model.declaration.family == Family::Custom;
-            files(registry.sources(), model, shading, registry.lights())
+            files(registry.sources(), model, shading, lights)
                 .into_iter()
                 .filter(move |file| file.edited && !(own && file.part == Part::Vocabulary))
                 .map(|file| file.path)
@@ -331,5 +333,36 @@ mod tests {
         }
         let found = not_followed_on_cpu(&registry, &scene);
         assert_eq!(found.into_iter().collect::<Vec<_>>(), ["loop.wgsl", "reflection/phong.wgsl"]);
+    }
+
+    #[test]
+    fn wrong_wgsl_of_another_crate_fails_with_file_and_line() {
+        use crate::{
+            optics::{Frame, Terms},
+            parameters,
+            reflection::{Declaration, ReflectionModel},
+            registry::Register as _,
+            shader::Source,
+        };
+        parameters! {
+            struct Guest {}
+        }
+        impl ReflectionModel for Guest {
+            const DECLARATION: Declaration =
+                Declaration::new("guest", "Guest", Source::new("guest.wgsl", "// mine\nfn respond() {}\n"));
+            fn response(&self, _: glam::Vec3, _: glam::Vec3, _: &Frame) -> Terms {
+                Terms::default()
+            }
+        }
+        let mut registry = Registry::builtin();
+        registry.add_reflection_model::<Guest>();
+        let scene = |id: &str| Scene { reflection_model: id.to_owned(), ..Scene::default() };
+        assert!(drawable(&registry, &scene("phong")).is_ok(), "it is not used");
+        let guest = registry.model("guest").expect("registered");
+        for outcome in [drawable(&registry, &scene("guest")), valid(&registry, guest)] {
+            let Err(Failure::Invalid(said)) = outcome else { panic!("{outcome:?}") };
+            assert!(said.contains("guest.wgsl:2:4"), "{said}");
+            assert!(said.contains("the function response is missing"), "{said}");
+        }
     }
 }

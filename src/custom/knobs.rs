@@ -124,7 +124,7 @@ impl Reader<'_> {
             let rule = format!(
                 "{} has a parameter of that name with type {}, and parameters are shared by name; use that type or another name",
                 model.declaration.id,
-                type_name(&parameter.kind),
+                parameter.kind.name(),
             );
             self.wrong(named, &rule);
         }
@@ -135,7 +135,7 @@ impl Reader<'_> {
         let kind = match fields.get("type") {
             Some(value) => self.word(value, "a type", &types)?,
             None => match (shared, fields.get("choices"), fields.get("default")) {
-                (Some(shared), ..) => type_name(shared),
+                (Some(shared), ..) => shared.name(),
                 (None, Some(_), _) => "choice",
                 (None, None, Some(default)) if default.list().is_some() => {
                     self.lacking(fields, "type", "a list may be a \"colour\" or a \"triple\"");
@@ -403,17 +403,5 @@ impl Reader<'_> {
             );
         }
         (self.mistakes.len() == before).then_some(options)
-    }
-}
-
-/// The word for the type of a parameter.
-pub(super) fn type_name(kind: &ParameterKind) -> &'static str {
-    match kind {
-        ParameterKind::Number { .. } => "number",
-        ParameterKind::Integer { .. } => "integer",
-        ParameterKind::Colour { .. } => "colour",
-        ParameterKind::Triple { .. } => "triple",
-        ParameterKind::Choice { .. } => "choice",
-        ParameterKind::File { .. } => "file",
     }
 }

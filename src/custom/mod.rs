@@ -22,22 +22,11 @@
 
 use std::path::Path;
 
-use naga::{Module, ScalarKind, TypeInner, VectorSize};
-
 use crate::{
     reflection::{Ambient, Declaration, Family, ModelEntry},
-    registry::{
-        Registry,
-        compose::{compose, compose_evaluation},
-    },
-    shader::{
-        Source,
-        check::{self, ShaderProblem},
-        limits,
-        whole::validate_drawing,
-    },
+    registry::{Registry, check::wgsl, compose::compose},
+    shader::{Source, check::ShaderProblem, limits, whole::validate_drawing},
     shading::Stage,
-    text::nearest,
 };
 
 mod condition;
@@ -114,32 +103,12 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
     if let Some((at, what)) = limits::unfinished(text) {
         return Err(problem_at(at, what));
     }
-    if text::definition(text, "response").is_none() {
-        let defined = text::functions(text);
-        let near = nearest("response", defined.iter().map(|(_, name)| (*name, *name)));
-        let (at, hint) = match defined.iter().find(|(_, name)| Some(*name) == near) {
-            Some((at, name)) => (*at, format!("; did you name it {name}?")),
-            None => (text::comment(text).map_or(0, |c| c.end), String::new()),
-        };
-        return Err(problem_at(at, format!("the function response is missing; it is {RESPONSE}{hint}")));
+    if let Some((at, what)) = wgsl::RESPONSE.missing(text) {
+        return Err(problem_at(at.unwrap_or_else(|| text::comment(text).map_or(0, |c| c.end)), what));
     }
     let mut sources = registry.sources().clone();
     sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
-    let module = check::validate(&compose_evaluation(&sources, &model.entry)).map_err(|found| {
-        // The caller of the model is not the culprit.
-        if found.file == crate::shader::compose::EVALUATE.path
-            && let Some(at) = text::definition(text, "response")
-        {
-            return problem_at(at, format!("response must be {RESPONSE}"));
-        }
-        vec![*found]
-    })?;
-    if model.entry.declaration.ambient == Ambient::Formula
-        && !has_ambient_signature(&module)
-        && let Some(at) = text::definition(text, "ambient_response")
-    {
-        return Err(problem_at(at, format!("ambient_response must be {AMBIENT_RESPONSE}")));
-    }
+    let module = wgsl::model(&sources, &model.entry).map_err(|found| vec![*found])?;
     for shading in registry.shading_models() {
         let composed = compose(&sources, &model.entry, shading, registry.lights());
         let faces = shading.declaration.stage == Stage::Polygon;
@@ -158,10 +127,6 @@ pub fn declare(path: &Path, text: &str, registry: &Registry) -> Result<CustomMod
     declared(path, text, registry).map(|(model, _)| model)
 }
 
-/// The signatures of a model's functions, for messages.
-const RESPONSE: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms";
-const AMBIENT_RESPONSE: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>";
-
 /// The declared model, drawn as the stand-in; and the model whose lobe it uses.
 fn declared(
     path: &Path,
@@ -173,8 +138,7 @@ fn declared(
     let said = declaration::read(text, id, registry)
         .map_err(|mistakes| mistakes.into_iter().map(wrong).collect::<Vec<_>>())?;
     let formula = text::definition(&text[said.end..], "ambient_response").is_some();
-    let (ambient, stand_in) =
-        if formula { (Ambient::Formula, FORMULA_STAND_IN) } else { (Ambient::Albedo, STAND_IN) };
+    let ambient = if formula { Ambient::Formula } else { Ambient::Albedo };
     let declaration = intern::declaration(Declaration {
         id: intern::text(id),
         name: said.name,
@@ -186,7 +150,7 @@ fn declared(
         laws: said.laws,
         ambient,
         anisotropic: said.anisotropic,
-        wgsl: Source { path: intern::text(&source_path(id)), text: stand_in },
+        wgsl: Source { path: intern::text(&source_path(id)), text: stand_in(ambient) },
     });
     let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
     let entry = surface::stand_in(declaration, said.parameters, lobe.as_ref());
@@ -204,7 +168,15 @@ fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String>
     Ok(id)
 }
 
-/// Lambert's law in grey, whatever the parameters: the stand-in for models without a good version.
+/// The stand-in for models without a good version.
+pub(crate) fn stand_in(ambient: Ambient) -> &'static str {
+    match ambient {
+        Ambient::Formula => FORMULA_STAND_IN,
+        Ambient::Albedo => STAND_IN,
+    }
+}
+
+/// Lambert's law in grey, whatever the parameters.
 const STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
 }
@@ -218,22 +190,3 @@ fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
     return vec3(0.5);
 }
 ";
-
-/// True if the function for uniform light has the signature that the light loop expects.
-fn has_ambient_signature(module: &Module) -> bool {
-    let vector = |ty| {
-        matches!(
-            module.types[ty].inner,
-            TypeInner::Vector { size: VectorSize::Tri, scalar } if scalar.kind == ScalarKind::Float
-        )
-    };
-    let called = |ty, name: &str| module.types[ty].name.as_deref() == Some(name);
-    module.functions.iter().any(|(_, f)| {
-        f.name.as_deref() == Some("ambient_response")
-            && f.result.as_ref().is_some_and(|r| vector(r.ty))
-            && matches!(
-                f.arguments.as_slice(),
-                [v, frame, m] if vector(v.ty) && called(frame.ty, "Frame") && called(m.ty, "Parameters")
-            )
-    })
-}

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use serde_json::{Value as Json, json};
 
 use super::{
-    knobs::type_name,
     source_path,
     text::{LONGEST_ID, MARKER, comment, humanised, identifier},
 };
@@ -239,7 +238,7 @@ fn declare(out: &mut String, p: &Parameter) {
         text(p.symbol),
         text(p.label),
         text(p.unit),
-        type_name(&p.kind)
+        p.kind.name()
     );
     let smallest = |min: f32| {
         if min == ABOVE_ZERO { "\"above\": 0".to_owned() } else { format!("\"min\": {}", number(min)) }

@@ -1,6 +1,7 @@
 //! The folders of shaders and custom models: finding and reading them, and writing copies to edit.
 
 use std::{
+    collections::BTreeSet,
     env, fs, io,
     path::{Path, PathBuf},
 };
@@ -11,7 +12,7 @@ pub use crate::registry::Folders;
 use crate::{
     custom::{self, file},
     files::{self, FileError},
-    registry::Registry,
+    registry::{Registry, compose::SHARED},
     shader::{Source, check::ShaderProblem, compose},
 };
 
@@ -112,7 +113,7 @@ impl Folders {
         let beside = || shaders.as_ref().map(|s| s.with_file_name("models"));
         let data = || surroundings.data.as_ref().map(|d| d.join("models"));
         let models = models.map(Path::to_owned).or_else(beside).or_else(data);
-        Ok(Self { shaders, models })
+        Ok(Self { shaders, models, extensions: Vec::new() })
     }
 }
 
@@ -143,20 +144,12 @@ fn shaders_of(folder: &Path) -> Result<PathBuf, AssetError> {
 /// shading models. Without custom models.
 #[must_use]
 pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
-    let shared = [
-        compose::ALBEDO,
-        compose::LIGHTS,
-        compose::SHADING,
-        compose::LOOP,
-        compose::WRAPPER,
-        compose::EVALUATE,
-    ];
     let models =
         registry.models().iter().map(|m| m.declaration).filter(|d| registry.custom_file(d.id).is_none());
     compose::OPTICS
         .iter()
         .copied()
-        .chain(shared)
+        .chain(SHARED)
         .chain(models.map(|d| d.wgsl))
         .chain(registry.lights().iter().map(|l| l.declaration.wgsl))
         .chain(registry.shading_models().iter().map(|m| m.declaration.wgsl))
@@ -170,6 +163,32 @@ pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
 /// The files that could not be read.
 pub fn read_shaders(folder: &Path, registry: &mut Registry) -> Result<(), Vec<(PathBuf, ShaderProblem)>> {
     registry.set_shader_folder(folder);
+    read_texts(folder, registry, |_| true)
+}
+
+/// Reads the shaders of the folders of other crates, as [`read_shaders`] does. Files with the names of ours are theirs
+/// alone.
+///
+/// # Errors
+/// The files that could not be read.
+pub fn read_extensions(registry: &mut Registry) -> Result<(), Vec<(PathBuf, ShaderProblem)>> {
+    let ours = shipped(registry);
+    let folders = registry.folders().extensions.clone();
+    let read = |folder: &PathBuf| read_texts(folder, registry, |name| !ours.contains(name)).err();
+    let problems: Vec<_> = folders.iter().filter_map(read).flatten().collect();
+    if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+/// The source paths of the shaders that ship with this crate.
+pub(super) fn shipped(registry: &Registry) -> BTreeSet<&'static str> {
+    built_in_sources(registry).iter().map(|s| s.path).filter(|path| !registry.is_foreign(path)).collect()
+}
+
+fn read_texts(
+    folder: &Path,
+    registry: &mut Registry,
+    takes: impl Fn(&str) -> bool,
+) -> Result<(), Vec<(PathBuf, ShaderProblem)>> {
     let built_in = built_in_sources(registry);
     let mut problems = Vec::new();
     let mut files = Vec::new();
@@ -177,6 +196,9 @@ pub fn read_shaders(folder: &Path, registry: &mut Registry) -> Result<(), Vec<(P
     for path in files {
         let Ok(name) = path.strip_prefix(folder) else { continue };
         let name = name.components().map(|c| c.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/");
+        if !takes(&name) {
+            continue;
+        }
         match file::read(&path, &name) {
             Ok(text) => {
                 // A checkout may have other line ends than the program was built with.
@@ -281,11 +303,15 @@ mod tests {
         fs::create_dir_all(a.join("assets/shaders"))?;
         assert_eq!(find(None, None).expect("there").shaders, Some(a.join("assets/shaders")));
         let named = find(Some(&b.join("assets")), Some(&at("mine"))).expect("there");
-        let expected = Folders { shaders: Some(b.join("assets/shaders")), models: Some(at("mine")) };
+        let expected = Folders {
+            shaders: Some(b.join("assets/shaders")),
+            models: Some(at("mine")),
+            ..Folders::default()
+        };
         assert_eq!(named, expected);
         // Without any there are the built-in ones, and models in the user's data.
         let none = Folders::find_in(None, None, &surroundings(&[], &data)).expect("there");
-        assert_eq!(none, Folders { shaders: None, models: Some(data.join("models")) });
+        assert_eq!(none, Folders { models: Some(data.join("models")), ..Folders::default() });
         Ok(())
     }
 

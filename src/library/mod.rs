@@ -3,12 +3,14 @@
 //!
 //! The texts that are drawn with and the folders are held by the [`Registry`](crate::registry::Registry), which the
 //! library keeps up to date; it holds only the texts that are not drawn with. [`Library`] is in `texts`, problems in
-//! `problem` and `blame`, what panels are told in [`status`], reading on a thread in [`reading`].
+//! `problem` and `blame`, what panels are told in [`status`], reading on a thread in [`reading`],
+//! the texts that replace broken ones in [`stand_in`].
 
 pub mod assets;
 mod blame;
 pub mod problem;
 pub mod reading;
+pub mod stand_in;
 pub mod status;
 #[cfg(test)]
 mod tests;

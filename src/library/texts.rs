@@ -7,7 +7,7 @@ use std::{
 };
 
 use super::{
-    assets::built_in_sources,
+    assets::{built_in_sources, shipped},
     problem::Problem,
     reading::{Done, Job, Reader},
     status::Reloaded,
@@ -54,6 +54,11 @@ impl Library {
         drawn: impl Fn(&str) -> bool,
     ) -> Option<String> {
         let source = registry.folders().source_of(file)?;
+        let of_extension = || registry.folders().extensions.iter().any(|folder| file.starts_with(folder));
+        let of_lab = || registry.folders().shaders.as_ref().is_some_and(|folder| file.starts_with(folder));
+        if of_extension() && !of_lab() && shipped(registry).contains(source.as_str()) {
+            return None;
+        }
         let in_folder = source.strip_prefix(MODELS).is_some_and(|name| !name.contains('/'));
         let id = custom::id_of(file).filter(|_| in_folder);
         let registered = id.is_some_and(|id| registry.custom_file(id).is_some());
@@ -276,12 +281,13 @@ impl Library {
         sources
     }
 
-    /// True if a composed source holds only built-in texts, which tests have tried.
+    /// True if a composed source holds only texts that ship with this crate, which tests have tried.
     #[must_use]
     pub fn is_built_in(&self, composed: &Composed, registry: &Registry) -> bool {
         let edited =
             |source: &str| registry.sources().get(source).is_some() || self.good.get(source).is_some();
-        !composed.map.files().any(edited) && composed.problem.is_none()
+        let tried = |source: &str| !edited(source) && !registry.is_foreign(source);
+        composed.map.files().all(tried) && composed.problem.is_none()
     }
 
     /// The source path of the file that changed last.

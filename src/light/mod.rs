@@ -15,6 +15,7 @@ use crate::{
 };
 
 mod ambient;
+mod builder;
 mod directional;
 pub mod ies;
 mod photometric;
@@ -47,6 +48,7 @@ pub const MAX_LIGHTS: usize = 256;
 
 /// The name and properties of a light type.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Declaration {
     /// The name in scene files.
     pub id: &'static str,
@@ -145,6 +147,8 @@ pub struct LightEntry {
     pub declaration: &'static Declaration,
     /// Its parameters.
     pub parameters: &'static [Parameter],
+    /// Its number in the registry, by which shaders know the type.
+    pub index: u32,
     /// The type with the parameters of one light.
     pub instantiate: fn(&Values, Encoding) -> Box<dyn Emitter>,
     solid_angle: fn(&Values) -> Option<f64>,
@@ -161,6 +165,7 @@ impl LightEntry {
         Self {
             declaration: const { &L::DECLARATION },
             parameters: L::PARAMETERS,
+            index: 0,
             instantiate: |values, encoding| Box::new(L::from_values(values, encoding)),
             solid_angle: |values| L::from_values(values, Encoding::default()).solid_angle(),
             mark: |entity, values| {

@@ -275,6 +275,20 @@ mod tests {
     }
 
     #[test]
+    fn the_letters_that_shading_models_must_leave_alone_are_those_of_other_actions() {
+        let registry = Registry::builtin();
+        let shading: Vec<_> =
+            registry.shading_models().iter().map(|s| s.declaration.key.to_string()).collect();
+        let table = bindings(&Session::default(), &registry);
+        let letter = |b: &&Binding| !b.ctrl && !b.shift && b.key.name().len() == 1;
+        let letters = table.iter().filter(letter).map(|b| b.key.name().to_owned());
+        let letters = letters.filter(|l| l.chars().all(|c| c.is_ascii_uppercase()) && !shading.contains(l));
+        let mut letters: Vec<_> = letters.collect();
+        letters.sort();
+        assert_eq!(letters, crate::registry::WINDOW_KEYS.iter().map(char::to_string).collect::<Vec<_>>());
+    }
+
+    #[test]
     fn every_shading_mode_has_its_key() {
         let registry = Registry::builtin();
         let table = bindings(&Session::default(), &registry);

@@ -9,6 +9,7 @@ use super::{
 
 /// The declaration of one parameter.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Parameter {
     /// The name in scene files and on the command line.
     pub name: &'static str,
@@ -89,6 +90,21 @@ pub enum ParameterKind {
         /// The name of the shipped file that is the value if the scene gives none.
         default: &'static str,
     },
+}
+
+impl ParameterKind {
+    /// Its word in messages and in the declarations of custom models.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Number { .. } => "number",
+            Self::Integer { .. } => "integer",
+            Self::Colour { .. } => "colour",
+            Self::Triple { .. } => "triple",
+            Self::Choice { .. } => "choice",
+            Self::File { .. } => "file",
+        }
+    }
 }
 
 impl Parameter {

@@ -4,6 +4,7 @@
 //! Models share parameters **by name**, so changing the model keeps the user's settings. Parameters of several models
 //! are declared here once.
 
+mod builder;
 mod declaration;
 mod file;
 mod layout;

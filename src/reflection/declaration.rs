@@ -4,6 +4,7 @@ use crate::{optics::TermSelection, shader::Source};
 
 /// The name, the source and the claims of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Declaration {
     /// The name in scene files: lower case, underscores.
     pub id: &'static str,
@@ -110,6 +111,7 @@ impl Family {
 
 /// The physical laws that a model claims to keep. Tests assert each claimed law, and the violation of each other one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Laws {
     /// `f_r(l, v) = f_r(v, l)` (Helmholtz).
     pub reciprocal: bool,
@@ -120,6 +122,9 @@ pub struct Laws {
 }
 
 impl Laws {
+    /// None of them.
+    pub const NONE: Self = Self { reciprocal: false, energy_conserving: false, non_negative: false };
+
     /// The laws with their names, and true for those kept.
     #[must_use]
     pub fn list(self) -> [(&'static str, bool); 3] {

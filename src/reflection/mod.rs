@@ -13,6 +13,7 @@ pub mod usage;
 mod ashikhmin_shirley;
 mod blinn_phong;
 mod blinn_phong_normalised;
+mod builder;
 mod burley_diffuse;
 mod cook_torrance;
 mod declaration;

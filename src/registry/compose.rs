@@ -11,12 +11,13 @@ use std::fmt::Write as _;
 use crate::{
     light::LightEntry,
     optics::albedo::NODES,
+    parameter::Values,
     reflection::{Ambient, Family, ModelEntry},
     shader::{
         Source,
         compose::{
-            ALBEDO, Composed, Composer, EVALUATE, LIGHTS, LOOP, OPTICS, SHADING, Sources, WRAPPER,
-            parameter_struct,
+            ALBEDO, Composed, Composer, EVALUATE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, SHADING, Sources,
+            WRAPPER, parameter_struct,
         },
     },
     shading::ShadingEntry,
@@ -80,8 +81,8 @@ fn push_light(c: &mut Composer, light: &LightEntry) {
     c.source(&light.declaration.wgsl);
 }
 
-/// The function that hands a light to its type, by the index of the type in the registry, with its own parameters, of
-/// which [`words`](LightEntry::words) are the source.
+/// The function that hands a light to its type, by the number of the type in the registry, with its own parameters, of
+/// which [`words`](LightEntry::words) are the source. Lights of other types give no light.
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
     let mut text = String::from(
@@ -98,7 +99,7 @@ fn incident(light: Light, p: vec3<f32>) -> Incident {
     switch light.light_type {
 ",
     );
-    for (i, light) in lights.iter().enumerate() {
+    for light in lights {
         let mut at = 0;
         let mut next = |function: &str| {
             at += 1;
@@ -117,14 +118,52 @@ fn incident(light: Light, p: vec3<f32>) -> Incident {
             [] => String::new(),
             _ => format!("{}({}), ", light.parameter_struct(), fields.join(", ")),
         };
-        let id = light.declaration.id;
-        let _ = writeln!(text, "        case {i}u: {{ return incident_{id}(light, {parameters}p); }}");
+        let (index, id) = (light.index, light.declaration.id);
+        let _ = writeln!(text, "        case {index}u: {{ return incident_{id}(light, {parameters}p); }}");
     }
     text.push_str("        default: { return Incident(vec3(0.0), vec3(0.0), 0u); }\n    }\n}\n");
     text
 }
 
-/// The complete source for drawing with a model and a shading model under the given light types.
+/// The files that every source for drawing needs beside the vocabulary, and those for other uses.
+pub(crate) const SHARED: [Source; 6] = [ALBEDO, LIGHTS, SHADING, LOOP, WRAPPER, EVALUATE];
+
+/// The table that a light type alone reads the numbers of its files from: one row, see [`compose_light`].
+pub const FILE_TABLE: &str = "file_table";
+
+/// The source of a light type alone, with a function that calls its own. The numbers of its files are not in
+/// `illumination`, but in a table of one row with room for those of its defaults.
+#[must_use]
+pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
+    let mut c = Composer::new(sources);
+    OPTICS.iter().chain([&LIGHTS]).for_each(|s| c.source(s));
+    push_light(&mut c, light);
+    let tables = light.tables(&Values::default());
+    let numbers = tables.iter().map(|(_, table)| table.numbers.len()).sum::<usize>().max(1);
+    let id = light.declaration.id;
+    let (taken, given) = match light.parameters {
+        [] => (String::new(), ""),
+        _ => (format!("m: {}, ", light.parameter_struct()), "m, "),
+    };
+    c.push(
+        LIGHT_ALONE,
+        &format!(
+            "struct FileRow {{ numbers: array<f32, {numbers}> }}
+@group(0) @binding(0) var<storage, read> {FILE_TABLE}: array<FileRow>;
+fn illumination_number(i: u32) -> f32 {{
+    return {FILE_TABLE}[0].numbers[i];
+}}
+fn incident(light: Light, {taken}p: vec3<f32>) -> Incident {{
+    return incident_{id}(light, {given}p);
+}}
+"
+        ),
+    );
+    c.composed
+}
+
+/// The complete source for drawing with a model and a shading model under the given light types, those of the scene: a
+/// mistake in another one takes no picture away.
 #[must_use]
 pub fn compose(
     sources: &Sources,
@@ -332,11 +371,31 @@ mod tests {
     }
 
     #[test]
-    fn every_light_type_is_dispatched_by_its_index() {
+    fn every_light_type_is_dispatched_by_its_number_in_the_registry() {
         let registry = Registry::builtin();
-        let text = light_dispatch(registry.lights());
+        let all = light_dispatch(registry.lights());
         for (i, light) in registry.lights().iter().enumerate() {
-            assert!(text.contains(&format!("case {i}u: {{ return incident_{}(", light.declaration.id)));
+            let case = format!("case {i}u: {{ return incident_{}(", light.declaration.id);
+            assert!(all.contains(&case));
+            // Alone as among all.
+            let alone = light_dispatch(&[*light]);
+            assert!(alone.contains(&case) && alone.matches("case ").count() == 1, "{alone}");
         }
+    }
+
+    #[test]
+    fn a_source_holds_the_light_types_that_are_asked_for_and_no_other() {
+        let registry = Registry::builtin();
+        let lights = registry.lights_in(registry.light_set(["spot"]));
+        let composed =
+            compose(&Sources::default(), &registry.models()[0], &registry.shading_models()[0], &lights);
+        let types: Vec<_> = composed.map.files().filter(|path| path.starts_with("light/")).collect();
+        assert_eq!(types, ["light/spot.wgsl"]);
+        let unlit = compose(&Sources::default(), &registry.models()[0], &registry.shading_models()[0], &[]);
+        assert_eq!(
+            crate::shader::whole::validate_drawing(&unlit, true),
+            Ok(()),
+            "a scene whose lights are all unknown"
+        );
     }
 }

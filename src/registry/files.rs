@@ -1,7 +1,7 @@
 //! The files that the registry was read from: folders, custom models, and how much of each was read.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -42,7 +42,9 @@ struct CustomSource {
 /// The files of shaders and custom models.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Files {
-    folders: Folders,
+    pub(super) folders: Folders,
+    /// The source paths of WGSL that other crates compiled in.
+    pub(super) foreign: BTreeSet<&'static str>,
     /// The files of custom models, by id.
     custom: BTreeMap<&'static str, CustomSource>,
     /// The mistakes of files that give no model, by id.
@@ -61,6 +63,18 @@ impl Registry {
     /// Notes the folder that shaders are read from.
     pub fn set_shader_folder(&mut self, folder: &Path) {
         self.files_mut().folders.shaders = Some(folder.to_owned());
+    }
+
+    /// True if other crates compiled in WGSL.
+    #[must_use]
+    pub fn has_foreign(&self) -> bool {
+        !self.files.foreign.is_empty()
+    }
+
+    /// True if the WGSL of a source path was compiled in by another crate, so that no test of this one has tried it.
+    #[must_use]
+    pub fn is_foreign(&self, source: &str) -> bool {
+        self.files.foreign.contains(source)
     }
 
     /// The existing file behind a source path.
@@ -116,7 +130,7 @@ impl Registry {
         }
     }
 
-    fn files_mut(&mut self) -> &mut Files {
+    pub(super) fn files_mut(&mut self) -> &mut Files {
         Arc::make_mut(&mut self.files)
     }
 

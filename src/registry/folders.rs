@@ -12,6 +12,8 @@ pub struct Folders {
     pub shaders: Option<PathBuf>,
     /// The folder whose files are custom models. It need not exist yet.
     pub models: Option<PathBuf>,
+    /// The folders with shaders of other crates; see [`add_shader_folder`](super::Register::add_shader_folder).
+    pub extensions: Vec<PathBuf>,
 }
 
 impl Folders {
@@ -21,16 +23,18 @@ impl Folders {
         if file.extension().is_none_or(|e| e != "wgsl") {
             return None;
         }
-        let below = |folder: &Option<PathBuf>, prefix: &str| {
-            let rest = file.strip_prefix(folder.as_ref()?).ok()?;
+        let below = |folder: Option<&PathBuf>, prefix: &str| {
+            let rest = file.strip_prefix(folder?).ok()?;
             let parts: Option<Vec<_>> = rest.iter().map(|p| p.to_str()).collect();
             Some(format!("{prefix}{}", parts?.join("/")))
         };
-        let shader = || below(&self.shaders, "").filter(|source| !source.starts_with(MODELS));
-        below(&self.models, MODELS).or_else(shader)
+        let shader = |folder| below(folder, "").filter(|source| !source.starts_with(MODELS));
+        let mut folders = [self.shaders.as_ref()].into_iter().chain(self.extensions.iter().map(Some));
+        below(self.models.as_ref(), MODELS).or_else(|| folders.find_map(shader))
     }
 
-    /// The file on disk of a source path, whether it is there or not; none of generated text.
+    /// The file on disk of a source path, whether it is there or not; none of generated text. Of several folders that
+    /// may hold it, the first that does.
     #[must_use]
     pub fn file_of(&self, source: &str) -> Option<PathBuf> {
         if source.starts_with('(') {
@@ -38,7 +42,10 @@ impl Folders {
         }
         match source.strip_prefix(MODELS) {
             Some(name) => Some(self.models.as_ref()?.join(name)),
-            None => Some(self.shaders.as_ref()?.join(source)),
+            None => {
+                let own = || self.shaders.iter().chain(&self.extensions).map(|folder| folder.join(source));
+                own().find(|file| file.is_file()).or_else(|| own().next())
+            }
         }
     }
 }
@@ -50,7 +57,11 @@ mod tests {
     #[test]
     fn files_and_source_paths_lead_to_each_other() {
         // The folder of the models may lie within that of the shaders.
-        let folders = Folders { shaders: Some("/a/shaders".into()), models: Some("/a/shaders/mine".into()) };
+        let folders = Folders {
+            shaders: Some("/a/shaders".into()),
+            models: Some("/a/shaders/mine".into()),
+            extensions: vec!["/b".into()],
+        };
         for (file, source) in [
             ("/a/shaders/loop.wgsl", "loop.wgsl"),
             ("/a/shaders/reflection/phong.wgsl", "reflection/phong.wgsl"),
@@ -62,6 +73,14 @@ mod tests {
         for file in ["/a/loop.wgsl", "/a/shaders/loop.txt", "/a/shaders/models/velvet.wgsl"] {
             assert_eq!(folders.source_of(Path::new(file)), None, "{file}");
         }
+        assert_eq!(folders.source_of(Path::new("/b/light/lamp.wgsl")).as_deref(), Some("light/lamp.wgsl"));
+        assert_eq!(
+            folders.file_of("light/lamp.wgsl"),
+            Some("/a/shaders/light/lamp.wgsl".into()),
+            "neither is there"
+        );
+        let alone = Folders { shaders: None, ..folders.clone() };
+        assert_eq!(alone.file_of("light/lamp.wgsl"), Some("/b/light/lamp.wgsl".into()));
         assert_eq!(folders.file_of("(row)"), None);
         assert_eq!(Folders::default().file_of("loop.wgsl"), None);
     }

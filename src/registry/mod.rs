@@ -12,41 +12,155 @@
 //! app.add_reflection_model::<Lambert>();
 //! ```
 
+pub mod check;
 pub mod compose;
+mod error;
 mod files;
 mod folders;
+mod light_set;
 
-use std::{collections::HashSet, sync::Arc};
+use std::{collections::HashSet, path::PathBuf, sync::Arc};
 
 use bevy::ecs::resource::Resource;
 
+use error::Mistake;
+pub use error::RegistrationError;
 use files::Files;
 pub use files::{CustomModel, Extent};
 pub use folders::Folders;
 pub(crate) use folders::MODELS;
+pub use light_set::{LightSet, MAX_LIGHT_TYPES};
 
 use crate::{
     light::{self, LightEntry, LightType},
-    parameter::{BLOCK_BYTES, Parameter, ParameterKind, Value, layout},
-    reflection::{self, Family, Measured, ModelEntry, ReflectionModel, usage},
-    shader::compose::Sources,
+    parameter::{Parameter, Value},
+    reflection::{self, Family, Measured, ModelEntry, ReflectionModel},
+    shader::{Source, compose::Sources},
     shading::{self, ShadingEntry, ShadingModel},
     shape::{self, ObjectType, ShapeEntry},
 };
 
+/// The keys that lights of every type may have in scene files.
+pub const LIGHT_KEYS: &[&str] = &[
+    "type",
+    "name",
+    "enabled",
+    "position",
+    "direction",
+    "colour",
+    "colour_temperature",
+    "intensity",
+    "luminous_flux",
+];
+/// The keys that objects of every type may have in scene files.
+pub const OBJECT_KEYS: &[&str] = &[
+    "type",
+    "name",
+    "visible",
+    "position",
+    "size",
+    "rotation",
+    "tessellation",
+    "reflection_model",
+    "shading_model",
+    "material",
+];
+/// The letters that do something in the window other than to choose a shading model.
+pub const WINDOW_KEYS: &[char] = &['C', 'H', 'R', 'T', 'V'];
+
+/// The trust with which something is registered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Admission {
+    /// It ships with this crate, whose tests have tried its meshes and its WGSL.
+    BuiltIn,
+    /// It is new. Its WGSL is tried when it is drawn with.
+    New,
+    /// It is new, and its WGSL is checked at once.
+    Checked,
+    /// It replaces the one of its id, and its WGSL is checked at once.
+    Replacing,
+}
+
+/// The calls that register one sort of part.
+macro_rules! calls {
+    ($what:literal $Trait:ident $add:ident $try_add:ident $replace:ident $admit:ident) => {
+        #[doc = concat!("Makes ", $what, " known. Should its WGSL be wrong, a stand-in is drawn, and the mistake is")]
+        /// reported with file and line wherever it is used.
+        ///
+        /// # Panics
+        #[doc = concat!("With the message of [`", stringify!($try_add), "`](Self::", stringify!($try_add), ") if anything else is wrong:")]
+        /// a mistake of its author, found at the first start.
+        fn $add<T: $Trait>(&mut self) -> &mut Self {
+            match self.$admit::<T>(Admission::New) {
+                Ok(()) => self,
+                Err(error) => panic!("{error}"),
+            }
+        }
+
+        #[doc = concat!("Makes ", $what, " known, if everything about it is right, its WGSL included.")]
+        ///
+        /// # Errors
+        /// The first mistake. Nothing is registered then.
+        fn $try_add<T: $Trait>(&mut self) -> Result<&mut Self, RegistrationError> {
+            self.$admit::<T>(Admission::Checked).map(|()| self)
+        }
+
+        #[doc = concat!("Puts ", $what, " in the place of the one of its id.")]
+        ///
+        /// # Errors
+        /// The first mistake, or that there is none of that id. Nothing changes then.
+        fn $replace<T: $Trait>(&mut self) -> Result<&mut Self, RegistrationError> {
+            self.$admit::<T>(Admission::Replacing).map(|()| self)
+        }
+    };
+}
+
 /// Registration of reflection models, shading models, light types and object types.
 pub trait Register {
-    /// Makes a reflection model known. A second one with the same id replaces the first.
-    fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self;
-    /// Makes a shading model known.
-    fn add_shading_model<S: ShadingModel>(&mut self) -> &mut Self;
-    /// Makes a light type known.
-    fn add_light_type<L: LightType>(&mut self) -> &mut Self;
-    /// Makes an object type known.
-    fn add_object_type<T: ObjectType>(&mut self) -> &mut Self;
+    calls!("a reflection model" ReflectionModel add_reflection_model try_add_reflection_model replace_reflection_model admit_reflection_model);
+    calls!("a shading model" ShadingModel add_shading_model try_add_shading_model replace_shading_model admit_shading_model);
+    calls!("a light type" LightType add_light_type try_add_light_type replace_light_type admit_light_type);
+    calls!("an object type" ObjectType add_object_type try_add_object_type replace_object_type admit_object_type);
+
+    /// Names a folder with the shaders of other crates: `concat!(env!("CARGO_MANIFEST_DIR"), "/shaders")`. Files in it
+    /// are known by their paths below it. The window follows them while they are edited; where there is no such
+    /// folder, the texts that were compiled in are used.
+    fn add_shader_folder(&mut self, folder: impl Into<PathBuf>) -> &mut Self;
+
+    /// Registers a reflection model.
+    ///
+    /// # Errors
+    /// The first mistake.
+    #[doc(hidden)]
+    fn admit_reflection_model<M: ReflectionModel>(
+        &mut self,
+        admission: Admission,
+    ) -> Result<(), RegistrationError>;
+    /// Registers a shading model.
+    ///
+    /// # Errors
+    /// The first mistake.
+    #[doc(hidden)]
+    fn admit_shading_model<S: ShadingModel>(&mut self, admission: Admission)
+    -> Result<(), RegistrationError>;
+    /// Registers a light type.
+    ///
+    /// # Errors
+    /// The first mistake.
+    #[doc(hidden)]
+    fn admit_light_type<L: LightType>(&mut self, admission: Admission) -> Result<(), RegistrationError>;
+    /// Registers an object type.
+    ///
+    /// # Errors
+    /// The first mistake.
+    #[doc(hidden)]
+    fn admit_object_type<T: ObjectType>(&mut self, admission: Admission) -> Result<(), RegistrationError>;
 }
 
 /// Registers everything built in. The app and the registry both go through here.
+///
+/// # Panics
+/// If something built in is declared wrongly.
 pub fn register_builtin(to: &mut impl Register) {
     let to = &mut Adding(to);
     reflection::register_builtin(to);
@@ -58,27 +172,32 @@ pub fn register_builtin(to: &mut impl Register) {
 /// Registers everything that it takes.
 struct Adding<'a, R>(&'a mut R);
 
+/// What ships with the crate is right: tests see to it.
+fn admitted(result: Result<(), RegistrationError>) {
+    result.unwrap_or_else(|error| panic!("{error}"));
+}
+
 impl<R: Register> reflection::Take for Adding<'_, R> {
     fn take<T: ReflectionModel>(&mut self) {
-        self.0.add_reflection_model::<T>();
+        admitted(self.0.admit_reflection_model::<T>(Admission::BuiltIn));
     }
 }
 
 impl<R: Register> shading::Take for Adding<'_, R> {
     fn take<T: ShadingModel>(&mut self) {
-        self.0.add_shading_model::<T>();
+        admitted(self.0.admit_shading_model::<T>(Admission::BuiltIn));
     }
 }
 
 impl<R: Register> light::Take for Adding<'_, R> {
     fn take<T: LightType>(&mut self) {
-        self.0.add_light_type::<T>();
+        admitted(self.0.admit_light_type::<T>(Admission::BuiltIn));
     }
 }
 
 impl<R: Register> shape::Take for Adding<'_, R> {
     fn take<T: ObjectType>(&mut self) {
-        self.0.add_object_type::<T>();
+        admitted(self.0.admit_object_type::<T>(Admission::BuiltIn));
     }
 }
 
@@ -115,7 +234,7 @@ impl Registry {
         &self.shadings
     }
 
-    /// All light types. The index is the number that shaders know the type by.
+    /// All light types, in the order of their numbers.
     #[must_use]
     pub fn lights(&self) -> &[LightEntry] {
         &self.lights
@@ -148,7 +267,7 @@ impl Registry {
     /// The number that shaders know a light type by.
     #[must_use]
     pub fn light_index(&self, id: &str) -> Option<u32> {
-        self.lights.iter().position(|l| l.declaration.id == id).map(|i| i as u32)
+        self.light(id).map(|light| light.index)
     }
 
     /// The object type of that id.
@@ -168,7 +287,7 @@ impl Registry {
         &mut self.sources
     }
 
-    /// Adds the types of another registry that are not known here.
+    /// Adds the types of another registry that are not known here, and its folders of shaders.
     pub fn add_missing(&mut self, other: &Self) {
         fn extend<T: Clone>(list: &mut Vec<T>, other: &[T], id: impl Fn(&T) -> &'static str) {
             for entry in other {
@@ -180,7 +299,15 @@ impl Registry {
         extend(&mut self.models, &other.models, |m| m.declaration.id);
         extend(&mut self.shadings, &other.shadings, |s| s.declaration.id);
         extend(&mut self.lights, &other.lights, |l| l.declaration.id);
+        self.lights.iter_mut().zip(0..).for_each(|(light, index)| light.index = index);
         extend(&mut self.shapes, &other.shapes, |s| s.declaration.id);
+        let files = self.files_mut();
+        files.foreign.extend(&other.files.foreign);
+        for folder in &other.files.folders.extensions {
+            if !files.folders.extensions.contains(folder) {
+                files.folders.extensions.push(folder.clone());
+            }
+        }
     }
 
     /// Every parameter that some model declares, each name once, in order of first declaration.
@@ -225,68 +352,125 @@ fn put<T>(list: &mut Vec<T>, entry: T, id: impl Fn(&T) -> &'static str) {
     }
 }
 
-/// Parameters that fit: few enough, used under choices that exist, and of the same type as those of that name `before`.
-///
-/// # Panics
-/// If they do not.
-fn fit(what: &str, parameters: &[Parameter], before: impl Fn(&str) -> Option<&'static Parameter>) {
-    let end = layout(parameters).last().map_or(0, |f| f.2 + 12);
-    assert!(end <= BLOCK_BYTES, "{what}: its parameters take {end} bytes, at most {BLOCK_BYTES} fit");
-    for p in parameters {
-        if let Some(problem) = usage::problem(parameters, p) {
-            panic!("{what}: used_when of parameter `{}`: {problem}", p.name);
+/// Checks that an id is new, or known if something is to be replaced.
+fn place(known: bool, id: &str, admission: Admission, part: &str) -> Result<(), Mistake> {
+    let call = part.replace(' ', "_");
+    match (admission == Admission::Replacing, known) {
+        (false, true) => Err(Mistake::Declared(format!(
+            "another {part} has that id already; choose another, or call replace_{call}"
+        ))),
+        (true, false) => {
+            Err(Mistake::Declared(format!("there is no {part} `{id}` to replace; add_{call} adds a new one")))
         }
-        if let Some(other) = before(p.name) {
-            assert!(
-                std::mem::discriminant(&other.kind) == std::mem::discriminant(&p.kind),
-                "{what}: parameter `{}` has another type than in those before it; parameters are shared by name",
-                p.name
-            );
-        }
+        _ => Ok(()),
+    }
+}
+
+impl Registry {
+    /// True if the WGSL of a new part is to be checked at once.
+    fn wants_wgsl(admission: Admission) -> bool {
+        matches!(admission, Admission::Checked | Admission::Replacing)
+    }
+
+    /// Notes where the WGSL of a part comes from.
+    fn note_origin(&mut self, path: &'static str, admission: Admission) {
+        if admission == Admission::BuiltIn {
+            self.files_mut().foreign.remove(path)
+        } else {
+            self.files_mut().foreign.insert(path)
+        };
+    }
+
+    /// The ids of all parts that have WGSL, with it.
+    fn parts(&self) -> impl Iterator<Item = (&'static str, Source)> + '_ {
+        let models = self.models.iter().map(|m| (m.declaration.id, m.declaration.wgsl));
+        let shadings = self.shadings.iter().map(|s| (s.declaration.id, s.declaration.wgsl));
+        models.chain(shadings).chain(self.lights.iter().map(|l| (l.declaration.id, l.declaration.wgsl)))
     }
 }
 
 impl Register for Registry {
-    /// # Panics
-    /// If the parameters take more bytes than a model may have, one shares its name, but not its type, with a
-    /// parameter of another model, or is used under choices that the model does not have: mistakes of the author
-    /// of the model, found at the first start.
-    fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self {
+    fn add_shader_folder(&mut self, folder: impl Into<PathBuf>) -> &mut Self {
+        self.files_mut().folders.extensions.push(folder.into());
+        self
+    }
+
+    fn admit_reflection_model<M: ReflectionModel>(
+        &mut self,
+        admission: Admission,
+    ) -> Result<(), RegistrationError> {
+        const PART: &str = "reflection model";
         let entry = ModelEntry::of::<M>();
-        let id = entry.declaration.id;
-        let what = format!("reflection model `{id}`");
-        fit(&what, entry.parameters, |name| self.material_parameter(name));
+        let d = entry.declaration;
+        let check = || -> Result<(), Mistake> {
+            check::reflection_model(self, &entry)?;
+            place(self.model(d.id).is_some(), d.id, admission, PART)?;
+            if Self::wants_wgsl(admission) {
+                check::wgsl::model(&Sources::default(), &entry)?;
+            }
+            Ok(())
+        };
+        check().map_err(|mistake| RegistrationError::of::<M>(PART, d.id, mistake))?;
+        self.note_origin(d.wgsl.path, admission);
         put(&mut self.models, entry, |m| m.declaration.id);
-        self
+        Ok(())
     }
 
-    fn add_shading_model<S: ShadingModel>(&mut self) -> &mut Self {
-        put(&mut self.shadings, ShadingEntry::of::<S>(), |m| m.declaration.id);
-        self
+    fn admit_shading_model<S: ShadingModel>(
+        &mut self,
+        admission: Admission,
+    ) -> Result<(), RegistrationError> {
+        const PART: &str = "shading model";
+        let entry = ShadingEntry::of::<S>();
+        let d = entry.declaration;
+        let check = || -> Result<(), Mistake> {
+            check::shading_model(self, &entry)?;
+            place(self.shading_model(d.id).is_some(), d.id, admission, PART)?;
+            if let Some(model) = self.models.first().filter(|_| Self::wants_wgsl(admission)) {
+                check::wgsl::shading(&Sources::default(), &entry, model)?;
+            }
+            Ok(())
+        };
+        check().map_err(|mistake| RegistrationError::of::<S>(PART, d.id, mistake))?;
+        self.note_origin(d.wgsl.path, admission);
+        put(&mut self.shadings, entry, |s| s.declaration.id);
+        Ok(())
     }
 
-    /// # Panics
-    /// If the parameters take more bytes than a type may have, one shares its name, but not its type, with a parameter
-    /// of another light type, or is used under choices that the type does not have, or the cone is no number.
-    fn add_light_type<L: LightType>(&mut self) -> &mut Self {
-        let entry = LightEntry::of::<L>();
-        let id = entry.declaration.id;
-        let others = || self.lights.iter().filter(|other| other.declaration.id != id);
-        fit(&format!("light type `{id}`"), entry.parameters, |name| others().find_map(|l| l.parameter(name)));
-        if let Some(cone) = entry.declaration.cone_parameter {
-            let number = |p: &Parameter| matches!(p.kind, ParameterKind::Number { .. });
-            assert!(
-                entry.parameter(cone).is_some_and(number),
-                "light type `{id}`: the parameter of its cone, `{cone}`, must be one of its numbers"
-            );
-        }
+    fn admit_light_type<L: LightType>(&mut self, admission: Admission) -> Result<(), RegistrationError> {
+        const PART: &str = "light type";
+        let mut entry = LightEntry::of::<L>();
+        let d = entry.declaration;
+        let check = || -> Result<(), Mistake> {
+            check::light_type(self, &entry)?;
+            place(self.light(d.id).is_some(), d.id, admission, PART)?;
+            if Self::wants_wgsl(admission) {
+                check::wgsl::light(&Sources::default(), &entry)?;
+            }
+            Ok(())
+        };
+        check().map_err(|mistake| RegistrationError::of::<L>(PART, d.id, mistake))?;
+        self.note_origin(d.wgsl.path, admission);
+        entry.index = self.light_index(d.id).unwrap_or(self.lights.len() as u32);
         put(&mut self.lights, entry, |l| l.declaration.id);
-        self
+        Ok(())
     }
 
-    fn add_object_type<T: ObjectType>(&mut self) -> &mut Self {
-        put(&mut self.shapes, ShapeEntry::of::<T>(), |s| s.declaration.id);
-        self
+    fn admit_object_type<T: ObjectType>(&mut self, admission: Admission) -> Result<(), RegistrationError> {
+        const PART: &str = "object type";
+        let entry = ShapeEntry::of::<T>();
+        let d = entry.declaration;
+        let check = || -> Result<(), Mistake> {
+            check::object_type(self, &entry)?;
+            place(self.shape(d.id).is_some(), d.id, admission, PART)?;
+            if admission != Admission::BuiltIn {
+                check::meshes(&entry)?;
+            }
+            Ok(())
+        };
+        check().map_err(|mistake| RegistrationError::of::<T>(PART, d.id, mistake))?;
+        put(&mut self.shapes, entry, |s| s.declaration.id);
+        Ok(())
     }
 }
 
@@ -294,6 +478,18 @@ impl Register for Registry {
 mod tests {
     use super::*;
     use crate::reflection::preset;
+
+    #[test]
+    fn a_start_makes_no_meshes_and_parses_no_wgsl_of_what_ships() {
+        const RUNS: u32 = 20;
+        let start = std::time::Instant::now();
+        for _ in 0..RUNS {
+            assert!(!Registry::builtin().has_foreign());
+        }
+        let each = start.elapsed() / RUNS;
+        // Without optimisation; the finest teapot alone takes longer, and so does naga for any model.
+        assert!(each < std::time::Duration::from_millis(10), "{each:?}");
+    }
 
     #[test]
     fn gold_stays_gold_when_the_model_is_exchanged() {

@@ -2,7 +2,7 @@
 
 use bevy::ecs::component::Component;
 
-use crate::optics::colour::Encoding;
+use crate::{optics::colour::Encoding, registry::LightSet};
 
 /// The model, shading model and settings with which an object is drawn.
 #[derive(Clone, Component, Debug, Default, PartialEq)]
@@ -11,6 +11,8 @@ pub struct Drawn {
     pub(super) shading: String,
     pub(super) encoding: Encoding,
     pub(super) everywhere: bool,
+    /// The light types that its shader knows.
+    pub(super) lights: LightSet,
     /// Version of the model; a file that is read again makes another.
     pub(super) version: u64,
 }

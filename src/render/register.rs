@@ -1,39 +1,51 @@
 //! Registering in an app: the registry learns of it, and the renderer gets a material for each reflection model.
 
-use bevy::app::App;
+use std::path::PathBuf;
+
+use bevy::{app::App, ecs::change_detection::Mut};
 
 use super::material::MaterialApp as _;
 use crate::{
     light::LightType,
     reflection::ReflectionModel,
-    registry::{Register, Registry},
+    registry::{Admission, Register, RegistrationError, Registry},
     shading::ShadingModel,
     shape::ObjectType,
 };
 
+/// The registry of an app, which gets one if it has none.
+fn registry(app: &mut App) -> Mut<'_, Registry> {
+    app.init_resource::<Registry>();
+    app.world_mut().resource_mut::<Registry>()
+}
+
 impl Register for App {
-    fn add_reflection_model<M: ReflectionModel>(&mut self) -> &mut Self {
-        self.init_resource::<Registry>();
-        self.world_mut().resource_mut::<Registry>().add_reflection_model::<M>();
+    fn add_shader_folder(&mut self, folder: impl Into<PathBuf>) -> &mut Self {
+        registry(self).add_shader_folder(folder);
+        self
+    }
+
+    fn admit_reflection_model<M: ReflectionModel>(
+        &mut self,
+        admission: Admission,
+    ) -> Result<(), RegistrationError> {
+        registry(self).admit_reflection_model::<M>(admission)?;
         self.add_model_material::<M>();
-        self
+        Ok(())
     }
 
-    fn add_shading_model<S: ShadingModel>(&mut self) -> &mut Self {
-        self.init_resource::<Registry>();
-        self.world_mut().resource_mut::<Registry>().add_shading_model::<S>();
-        self
+    fn admit_shading_model<S: ShadingModel>(
+        &mut self,
+        admission: Admission,
+    ) -> Result<(), RegistrationError> {
+        registry(self).admit_shading_model::<S>(admission)
     }
 
-    fn add_light_type<L: LightType>(&mut self) -> &mut Self {
-        self.init_resource::<Registry>();
-        self.world_mut().resource_mut::<Registry>().add_light_type::<L>();
-        self
+    fn admit_light_type<L: LightType>(&mut self, admission: Admission) -> Result<(), RegistrationError> {
+        registry(self).admit_light_type::<L>(admission)
     }
 
-    fn add_object_type<T: ObjectType>(&mut self) -> &mut Self {
-        self.init_resource::<Registry>();
-        self.world_mut().resource_mut::<Registry>().add_object_type::<T>();
-        self
+    fn admit_object_type<T: ObjectType>(&mut self, admission: Admission) -> Result<(), RegistrationError> {
+        registry(self).admit_object_type::<T>(admission)
     }
 }

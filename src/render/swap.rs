@@ -26,7 +26,7 @@ use crate::{
     light::MAX_LIGHTS,
     optics::colour::Encoding,
     reflection::ModelEntry,
-    registry::Registry,
+    registry::{LightSet, Registry},
     scene::{MAX_OBJECTS, Object, Scene, shines_from_everywhere},
     shading,
 };
@@ -54,6 +54,7 @@ pub struct Common {
     shading: String,
     encoding: Encoding,
     everywhere: bool,
+    lights: LightSet,
 }
 
 /// Drawables that have never been drawn, or that wait for their shader.
@@ -168,6 +169,7 @@ fn common(scene: &Scene, registry: &Registry) -> Common {
         shading: scene.shading_model.clone(),
         encoding: scene.display.encoding,
         everywhere: shines_from_everywhere(scene, registry),
+        lights: scene.light_types(registry),
     }
 }
 
@@ -214,6 +216,7 @@ fn find(
             shading: shading.to_owned(),
             encoding,
             everywhere: common.everywhere,
+            lights: common.lights,
             version: registry.model(model).map_or(0, ModelEntry::version),
         };
         if only_different && !waits && !object.is_changed() && drawn == Some(&now) {
@@ -242,8 +245,9 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     };
     let key = shape.key(&shown.shape, shown.tessellation);
     let Some(pair) = world.resource::<ShapeMeshes>().get(&key) else { return };
-    let shader = world
-        .resource_scope(|world, mut shaders: Mut<LiveShaders>| shaders.get(world, model, shading, registry));
+    let shader = world.resource_scope(|world, mut shaders: Mut<LiveShaders>| {
+        shaders.get(world, (model, shading, now.lights), registry)
+    });
     let Some(shader) = shader else {
         world.entity_mut(drawable).insert(AwaitsShader);
         return;

@@ -12,7 +12,7 @@ use crate::{
         tone::ToneMapping,
     },
     parameter::Values,
-    registry::Registry,
+    registry::{LightSet, Registry},
     shape::ShapeEntry,
 };
 use std::collections::BTreeSet;
@@ -315,6 +315,12 @@ impl Scene {
         self.lights.iter().filter(|light| light.enabled)
     }
 
+    /// The light types of the lights, switched off or not: what a shader for the scene is composed of.
+    #[must_use]
+    pub fn light_types(&self, registry: &Registry) -> LightSet {
+        registry.light_set(self.lights.iter().map(|light| light.light_type.as_str()))
+    }
+
     /// The visible objects.
     pub fn shown(&self) -> impl Iterator<Item = &Object> {
         self.objects.iter().filter(|object| object.visible)
@@ -336,13 +342,11 @@ impl Scene {
 /// A light of the scene for calculation, but for its own parameters. A light of an unknown type gives no light.
 #[must_use]
 pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRecord {
-    let Some((light_type, entry)) =
-        registry.light_index(&light.light_type).zip(registry.light(&light.light_type))
-    else {
+    let Some(entry) = registry.light(&light.light_type) else {
         return LightRecord { light_type: u32::MAX, ..LightRecord::default() };
     };
     LightRecord {
-        light_type,
+        light_type: entry.index,
         position: light.position.unwrap_or(Vec3::ZERO),
         direction: light.direction.unwrap_or(Vec3::ZERO).normalize_or_zero(),
         colour: light.colour_under(encoding),

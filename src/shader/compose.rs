@@ -36,6 +36,9 @@ pub const WRAPPER: Source = wgsl!("wrapper.wgsl");
 /// The entry point that evaluates a model alone.
 pub const EVALUATE: Source = wgsl!("evaluate.wgsl");
 
+/// The generated part of the source of a light type alone, with the numbers of its files.
+pub const LIGHT_ALONE: &str = "(light type)";
+
 /// The texts of sources: edited copies by path, otherwise the built-in ones. Cloning is cheap: clones share the texts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sources {

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod compose;
+pub(crate) mod definitions;
 mod explain;
 pub mod interpret;
 pub mod limits;
@@ -18,6 +19,14 @@ pub struct Source {
     pub path: &'static str,
     /// The text at build time.
     pub text: &'static str,
+}
+
+impl Source {
+    /// A file by its path below a folder of shaders, and its text: `include_str!("../shaders/light/lamp.wgsl")`.
+    #[must_use]
+    pub const fn new(path: &'static str, text: &'static str) -> Self {
+        Self { path, text }
+    }
 }
 
 /// The built-in copy of a file under `assets/shaders/`.

@@ -7,10 +7,11 @@ use std::fmt;
 
 use glam::Vec3;
 
-use crate::shader::Source;
+use crate::shader::{Source, wgsl};
 
 pub mod normals;
 
+mod builder;
 mod derivative;
 mod flat;
 mod gouraud;
@@ -20,6 +21,9 @@ pub use derivative::Derivative;
 pub use flat::Flat;
 pub use gouraud::Gouraud;
 pub use phong::PhongShading;
+
+/// The shader that is drawn with instead of a broken one.
+pub(crate) const STAND_IN: Source = wgsl!("shading/phong.wgsl");
 
 /// Receives shading models one after the other.
 pub trait Take {
@@ -60,6 +64,7 @@ impl Stage {
 
 /// The name, source and needs of a shading model.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Declaration {
     /// The name in scene files.
     pub id: &'static str,

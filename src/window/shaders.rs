@@ -68,6 +68,7 @@ fn open(world: &mut World) {
         Some(folder) => assets::read_shaders(folder, &mut registry).err().unwrap_or_default(),
         None => Vec::new(),
     };
+    let of_extensions = assets::read_extensions(&mut registry).err().unwrap_or_default();
     // Their problems are found when they are read. Models with a correct declaration are read
     // when the scene uses them.
     let declared = |path: &PathBuf| custom::id_of(path).is_some_and(|id| registry.unread_file(id).is_some());
@@ -76,12 +77,12 @@ fn open(world: &mut World) {
         .iter()
         .flat_map(|folder| custom::folder::files_in(folder).unwrap_or_default())
         .filter(|path| !declared(path))
-        .chain(unreadable.into_iter().map(|(path, _)| path))
+        .chain(unreadable.into_iter().chain(of_extensions).map(|(path, _)| path))
         .collect();
     world.resource_mut::<LiveShaders>().start();
     look_at(world, &broken);
     let Some(mut watch) = world.get_resource_mut::<FileWatch>() else { return };
-    for folder in [&folders.shaders, &folders.models].into_iter().flatten() {
+    for folder in folders.shaders.iter().chain(&folders.models).chain(&folders.extensions) {
         watch.0.watch_folder(folder);
     }
 }

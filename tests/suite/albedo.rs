@@ -9,9 +9,9 @@ use lights_camera_models::{
         albedo::{AlbedoCurve, LobeAlbedo, directional},
         colour::{BACKGROUND, Encoding},
     },
-    parameter::{BASE_COLOUR, Parameter, ParameterKind, Value, Values},
+    parameter::{BASE_COLOUR, Parameter, Value, Values},
     parameters, reference,
-    reflection::{self, Ambient, EquationPart, Family, Laws, ModelEntry, ReflectionModel, Term},
+    reflection::{self, EquationPart, ModelEntry, ReflectionModel, Term},
     registry::{Register, Registry, compose::compose_evaluation},
     render::capture::{
         evaluate::{albedos, evaluate},
@@ -28,15 +28,7 @@ use lights_camera_models::{
 use crate::pictures::{close_up, compare};
 
 const fn number(name: &'static str, default: f32) -> Parameter {
-    Parameter {
-        name,
-        symbol: name,
-        label: name,
-        unit: "",
-        help: "A number.",
-        kind: ParameterKind::Number { min: 0.0, max: 1.0, default },
-        used_when: None,
-    }
+    Parameter::number(name, 0.0..=1.0, default).help("A number.")
 }
 
 const SHARE: Parameter = number("share", 0.5);
@@ -110,20 +102,12 @@ fn lobe_of_test(l: vec3<f32>, v: vec3<f32>, frame: Frame, alpha_x: f32, alpha_y:
     };
 }
 
-const PATCHWORK: reflection::Declaration = reflection::Declaration {
-    id: "patchwork",
-    name: "Patchwork",
-    family: Family::Custom,
-    author: "a test",
-    source: "a test",
-    summary: "Lambert and GGX.",
-    equation: &[EquationPart { term: Term::Total, text: "I = I_d + I_s" }],
-    laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-    ambient: Ambient::Albedo,
-    anisotropic: false,
-    wgsl: Source {
-        path: "patchwork.wgsl",
-        text: concat!(
+const PATCHWORK: reflection::Declaration = reflection::Declaration::new(
+    "patchwork",
+    "Patchwork",
+    Source::new(
+        "patchwork.wgsl",
+        concat!(
             ggx!(),
             "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let lit = select(0.0, max(dot(frame.n, l), 0.0), dot(frame.n, v) > 0.0);
@@ -132,8 +116,14 @@ const PATCHWORK: reflection::Declaration = reflection::Declaration {
 }
 "
         ),
-    },
-};
+    ),
+)
+.summary("Lambert and GGX.")
+.equation(&[EquationPart::new(Term::Total, "I = I_d + I_s")])
+.reciprocal()
+.energy_conserving()
+.non_negative()
+.ambient_by_albedo();
 
 impl ReflectionModel for Patchwork {
     const DECLARATION: reflection::Declaration = PATCHWORK;
@@ -149,13 +139,12 @@ impl ReflectionModel for Patchwork {
 }
 
 impl ReflectionModel for Brushed {
-    const DECLARATION: reflection::Declaration = reflection::Declaration {
-        id: "brushed",
-        name: "Brushed",
-        anisotropic: true,
-        wgsl: Source {
-            path: "brushed.wgsl",
-            text: concat!(
+    const DECLARATION: reflection::Declaration = reflection::Declaration::new(
+        "brushed",
+        "Brushed",
+        Source::new(
+            "brushed.wgsl",
+            concat!(
                 ggx!(),
                 "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     let cos_l = dot(l, frame.n);
@@ -167,9 +156,14 @@ impl ReflectionModel for Brushed {
 }
 "
             ),
-        },
-        ..PATCHWORK
-    };
+        ),
+    )
+    .summary("A brushed GGX lobe.")
+    .reciprocal()
+    .energy_conserving()
+    .non_negative()
+    .ambient_by_albedo()
+    .anisotropic();
     const LOBE: bool = true;
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {

@@ -24,10 +24,11 @@ use lights_camera_models::{
         load::{self, Defaults},
         save,
     },
+    testing::random_values,
     window::files::DiskFiles,
 };
 
-use crate::{gpu_parity::random_values, reload::random::Random};
+use crate::reload::random::Random;
 
 /// As many steps a history keeps.
 const MOST_STEPS: usize = 500;

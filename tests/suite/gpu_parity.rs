@@ -4,20 +4,17 @@ use bevy::render::{RenderApp, render_resource::TextureFormat, view::ViewTarget};
 use glam::Vec3;
 use lights_camera_models::{
     optics::{
-        Frame, TermSelection,
+        TermSelection,
         colour::{BACKGROUND, Encoding},
         tone::ToneMapping,
     },
-    parameter::{ParameterKind, Value, Values},
+    parameter::Value,
     reference,
-    reflection::ModelEntry,
     registry::Registry,
-    render::capture::{
-        evaluate::evaluate,
-        gpu::{GpuRenderer, Output},
-    },
+    render::capture::gpu::{GpuRenderer, Output},
     scene::{Display, Light, Scene},
     shader::compose::Sources,
+    testing,
 };
 
 use crate::pictures::{Difference, close_up, compare};
@@ -249,149 +246,22 @@ fn lights_in_lumen_and_kelvin_give_the_same_picture() {
     }
 }
 
-/// Values of a small deterministic generator, uniform in [0, 1).
-pub fn random(seed: &mut u64) -> f32 {
-    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-    (*seed >> 40) as f32 / (1u64 << 24) as f32
-}
-
-/// A direction above the surface.
-pub fn direction(seed: &mut u64) -> Vec3 {
-    let z = random(seed);
-    let phi = std::f32::consts::TAU * random(seed);
-    let r = (1.0 - z * z).max(0.0).sqrt();
-    Vec3::new(r * phi.cos(), r * phi.sin(), z)
-}
-
-/// Legal values of all parameters of a model.
-pub fn random_values(model: &ModelEntry, seed: &mut u64) -> Values {
-    let mut values = Values::default();
-    for p in model.parameters {
-        let r = random(seed);
-        values.set(
-            p.name,
-            match p.kind {
-                ParameterKind::Number { min, max, .. } => Value::Number(min + r * (max - min)),
-                ParameterKind::Integer { min, max, slider_max, .. } => {
-                    Value::Integer(min + (r * (max.unwrap_or(slider_max) - min) as f32) as i64)
-                }
-                ParameterKind::Colour { .. } => Value::Colour([
-                    (255.0 * r) as u8,
-                    (255.0 * random(seed)) as u8,
-                    (255.0 * random(seed)) as u8,
-                ]),
-                ParameterKind::Triple { min, max, .. } => {
-                    Value::Triple([0; 3].map(|_| min + random(seed) * (max - min)))
-                }
-                ParameterKind::Choice { options, .. } => {
-                    Value::Choice(options[(r * options.len() as f32) as usize].0.into())
-                }
-                ParameterKind::File { .. } => p.default_value(),
-            },
-        );
-    }
-    values
-}
-
 #[test]
 fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
-    let registry = Registry::builtin();
-    let mut seed = 7;
-    for model in registry.models() {
-        // Every choice should come up.
-        let choices =
-            model.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::Choice { .. })).count();
-        let mut wrong_twin_noticed = false;
-        for _ in 0..8 * (1 + choices) {
-            let values = random_values(model, &mut seed);
-            let pairs: Vec<_> = (0..2000).map(|_| (direction(&mut seed), direction(&mut seed))).collect();
-            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs)
-                .expect("the GPU evaluates");
-            let surface = model.instantiate(&values, Encoding::Srgb);
-            let frame = Frame::LOCAL;
-            for ((l, v), gpu) in pairs.iter().zip(answers) {
-                let cpu = surface.response(*l, *v, &frame);
-                for (g, c) in
-                    [(gpu.ambient, cpu.ambient), (gpu.diffuse, cpu.diffuse), (gpu.specular, cpu.specular)]
-                {
-                    assert!(
-                        g.is_finite() && c.is_finite(),
-                        "{} {values:?} l {l} v {v}",
-                        model.declaration.id
-                    );
-                    // A response below 1e-5 is darker than any display shows.
-                    let error = ((g - c).abs() / c.abs().max(Vec3::splat(1e-2))).max_element();
-                    assert!(
-                        error <= 1e-4,
-                        "{} {values:?} l {l} v {v}: GPU {g}, CPU {c}",
-                        model.declaration.id
-                    );
-                    let twin = ((g - c * 1.0005).abs() / c.abs().max(Vec3::splat(1e-2))).max_element();
-                    wrong_twin_noticed |= twin > 1e-4;
-                }
-            }
-        }
-        assert!(wrong_twin_noticed, "{}: 0.05 % more goes unnoticed", model.declaration.id);
+    for model in Registry::builtin().models() {
+        assert_eq!(testing::parity::on_gpu(model, &Sources::default()), Ok(()), "{}", model.declaration.id);
     }
 }
 
 #[test]
 fn at_the_ends_of_all_ranges_both_languages_are_finite_and_agree() {
-    let registry = Registry::builtin();
-    let mut seed = 11;
-    // Straight on, at the horizon and within it, below; opposite each other, and on one line.
-    let mut ends = vec![Vec3::Z, Vec3::NEG_Z, Vec3::X, Vec3::ZERO];
-    for lift in [1e-20, 1e-9, 1e-6, 1e-3, -1e-6] {
-        ends.extend([Vec3::new(1.0, 0.0, lift), Vec3::new(-1.0, 0.0, lift), Vec3::new(0.0, 1.0, lift)]);
+    let mut seed = testing::parity::SEED_OF_ENDS;
+    // As many numbers as six directions take.
+    for _ in 0..6 {
+        testing::direction(&mut seed);
     }
-    ends.extend((0..6).map(|_| direction(&mut seed)));
-    let pairs: Vec<_> = ends.iter().flat_map(|l| ends.iter().map(|v| (*l, *v))).collect();
-    for model in registry.models() {
-        let mut wrong_twin_noticed = false;
-        // All at the smallest, all at the largest, then each at either.
-        for set in 0..10 {
-            let mut values = Values::default();
-            for p in model.parameters {
-                let high = if set < 2 { set == 1 } else { random(&mut seed) < 0.5 };
-                let value = match p.kind {
-                    ParameterKind::Number { min, max, .. } => Value::Number(if high { max } else { min }),
-                    ParameterKind::Integer { min, max, slider_max, .. } => {
-                        Value::Integer(if high { max.unwrap_or(slider_max) } else { min })
-                    }
-                    ParameterKind::Colour { .. } => Value::Colour([if high { 255 } else { 0 }; 3]),
-                    ParameterKind::Triple { min, max, .. } => {
-                        Value::Triple([if high { max } else { min }; 3])
-                    }
-                    ParameterKind::Choice { options, .. } => {
-                        let i = (random(&mut seed) * options.len() as f32) as usize;
-                        Value::Choice(options[i].0.into())
-                    }
-                    ParameterKind::File { .. } => p.default_value(),
-                };
-                values.set(p.name, value);
-            }
-            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs)
-                .expect("the GPU evaluates");
-            let surface = model.instantiate(&values, Encoding::Srgb);
-            for ((l, v), gpu) in pairs.iter().zip(answers) {
-                let cpu = surface.response(*l, *v, &Frame::LOCAL);
-                let case =
-                    || format!("{} {values:?} l {l} v {v}: GPU {gpu:?}, CPU {cpu:?}", model.declaration.id);
-                for (g, c) in
-                    [(gpu.ambient, cpu.ambient), (gpu.diffuse, cpu.diffuse), (gpu.specular, cpu.specular)]
-                {
-                    assert!(g.is_finite() && c.is_finite(), "{}", case());
-                    assert!(!model.declaration.laws.non_negative || g.min_element() >= -1e-6, "{}", case());
-                    // Of a sum as short as this the languages need not find the same direction.
-                    if (*l + *v).length() < 1e-12 {
-                        continue;
-                    }
-                    let error = |c: Vec3| ((g - c).abs() / c.abs().max(Vec3::splat(1e-2))).max_element();
-                    assert!(error(c) <= 1e-3, "{}", case());
-                    wrong_twin_noticed |= error(c * 1.002) > 1e-3;
-                }
-            }
-        }
-        assert!(wrong_twin_noticed, "{}: 0.2 % more goes unnoticed", model.declaration.id);
+    for model in Registry::builtin().models() {
+        let outcome = testing::parity::at_the_ends_on_gpu(model, &Sources::default(), &mut seed);
+        assert_eq!(outcome, Ok(()), "{}", model.declaration.id);
     }
 }

@@ -2,6 +2,7 @@
 
 use bevy::ecs::{resource::Resource, world::World};
 use bevy_egui::egui::{Rect, Shape, Ui, vec2};
+use glam::Vec3;
 use lights_camera_models::{
     document::{Edit, Selection},
     panel::{
@@ -11,7 +12,7 @@ use lights_camera_models::{
     },
     parameters,
     registry::{Register as _, Registry},
-    shape::{self, ObjectType, PolygonMesh},
+    shape::{self, ObjectType, PolygonMesh, mesh::Polygon},
 };
 
 use crate::panels::Bench;
@@ -217,18 +218,20 @@ parameters! {
 }
 
 impl ObjectType for Prism {
-    const DECLARATION: shape::Declaration = shape::Declaration {
-        id: "prism",
-        name: "𝔓rism",
-        summary: "",
-        glyph: "⏢",
-        tessellation_help: "",
-        tessellation: 1..=1,
-        default_tessellation: 1,
-    };
+    const DECLARATION: shape::Declaration = shape::Declaration::new("prism", "𝔓rism").glyph("⏢");
 
     fn mesh(&self, _: u32) -> PolygonMesh {
-        PolygonMesh { positions: Vec::new(), polygons: Vec::new() }
+        let mut mesh = PolygonMesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z],
+            polygons: vec![
+                Polygon::triangle(0, 2, 1),
+                Polygon::triangle(0, 1, 3),
+                Polygon::triangle(0, 3, 2),
+                Polygon::triangle(1, 2, 3),
+            ],
+        };
+        mesh.normalise();
+        mesh
     }
 }
 

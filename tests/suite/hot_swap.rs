@@ -151,6 +151,45 @@ fn every_model_and_mode_follows_every_other_model_and_mode_in_one_frame() {
 }
 
 #[test]
+fn a_scene_that_gets_its_first_light_of_a_type_is_right_in_the_next_frame() {
+    let registry = Registry::builtin();
+    let mut scene = close_up("torus", "point");
+    let lamp = scene.lights[0].clone();
+    let mut all = vec![scene.clone()];
+    for entry in registry.lights().iter().filter(|l| l.declaration.id != "point") {
+        let mut light = lamp.clone();
+        light.direction = Some(Vec3::new(-0.5, -0.55, -1.0));
+        light.set_type(entry, &registry, scene.scene_size);
+        // Of a photometric lamp, a hundredth of what it is by itself.
+        light.intensity = if entry.declaration.unit == "×" { 0.01 } else { 3.0 };
+        scene.lights.push(light);
+        all.push(scene.clone());
+    }
+    // Back again, and to none of the first.
+    let mut without = scene.clone();
+    without.lights.remove(0);
+    all.extend([all[0].clone(), without]);
+    let mut drawn = Vec::new();
+    for scene in &all {
+        // Each by a renderer that never drew another.
+        let mut renderer = renderer();
+        renderer.set_scene(scene.clone());
+        renderer.settle().expect("the GPU draws");
+        drawn.push(renderer.read_rgb8().expect("the picture can be read"));
+    }
+    for (i, pair) in drawn.windows(2).enumerate() {
+        assert_ne!(pair[0], pair[1], "{i}: a swap could not be seen");
+    }
+    let mut renderer = renderer();
+    renderer.set_scene(all[0].clone());
+    renderer.settle().expect("the GPU draws");
+    for (i, (scene, expected)) in all.iter().zip(&drawn).enumerate() {
+        renderer.set_scene(scene.clone());
+        assert!(frame(&mut renderer) == *expected, "{i}: the next frame shows something else");
+    }
+}
+
+#[test]
 fn changing_a_component_changes_the_next_frame_and_the_scene() {
     let mut renderer = renderer();
     renderer.set_scene(close_up("sphere", "point"));

@@ -45,7 +45,7 @@ fn laws_are_checked_in_another_process_and_shown() {
 
     // A new user has no folder of models yet.
     let nowhere = tempfile::tempdir().expect("a folder").path().join("models");
-    let folders = Folders { shaders: None, models: Some(nowhere) };
+    let folders = Folders { models: Some(nowhere), ..Folders::default() };
     let found = outcome("lambert", &folders, program());
     assert_eq!(found.as_ref().map(|r| r.laws.len()), Ok(3), "{found:?}");
     bench.session.laws_checked("phong", found.clone());
@@ -89,7 +89,7 @@ fn a_model_of_the_folder_that_breaks_a_law_is_shown_with_the_place() {
     let text = std::fs::read_to_string(root().join("assets/models/gooch.wgsl")).expect("there");
     let text = text.replace("\"laws\": [", "\"laws\": [\"reciprocal\", ");
     std::fs::write(folder.path().join("mine.wgsl"), text).expect("writable");
-    let folders = Folders { shaders: None, models: Some(folder.path().to_owned()) };
+    let folders = Folders { models: Some(folder.path().to_owned()), ..Folders::default() };
     let report = outcome("mine", &folders, program()).expect("was checked");
     assert_eq!(report.broken(), ["reciprocal"]);
     assert!(report.laws[0].at[0].starts_with("at l (θ "), "{:?}", report.laws[0].at);

@@ -1,141 +1,40 @@
 //! The laws of every registered model, over random directions and parameters: asserted if the model declares them, and
 //! found violated otherwise.
 
-use std::f32::consts::FRAC_PI_2;
-
 use glam::Vec3;
 use lights_camera_models::{
     optics::{Frame, colour::Encoding},
     parameter::{Value, Values},
-    reflection::{
-        ModelEntry, Surface, brdf,
-        laws::{
-            self, COARSE, FINE, LARGEST_ALBEDO, NEARLY_ALL, NEGATIVE_TOLERANCE, RECIPROCITY_TOLERANCE,
-            Random, is_finite, least, reciprocity_error, smallest,
-        },
-    },
+    reflection::{ModelEntry, laws::Random},
     registry::Registry,
+    testing::{self, laws::albedo},
 };
 
-const SETS: usize = 60;
-const PAIRS: usize = 200;
-
-/// Every model with its defaults, with its smallest numbers and with random parameters, in the frame of a
-/// random normal.
-fn surfaces(seed: u64, mut visit: impl FnMut(&ModelEntry, &Values, &dyn Surface, &Frame, &mut Random)) {
+/// A law, for every model.
+fn hold(law: fn(&ModelEntry) -> testing::Outcome) {
     for model in Registry::builtin().models() {
-        let mut random = Random(seed);
-        for set in 0..SETS {
-            let values = match set {
-                0 => Values::default(),
-                1 => least(model),
-                _ => random.values(model),
-            };
-            let surface = model.instantiate(&values, Encoding::Srgb);
-            let frame = Frame::from_normal(random.direction());
-            visit(model, &values, &*surface, &frame, &mut random);
-        }
+        assert_eq!(law(model), Ok(()), "{}", model.declaration.id);
     }
 }
 
 #[test]
 fn responses_are_finite_for_all_directions_and_legal_parameters() {
-    surfaces(1, |model, values, surface, frame, random| {
-        let grazing = (frame.t + 1e-7 * frame.n).normalize();
-        let special = [frame.n, -frame.n, frame.t, -frame.t, frame.b, grazing, Vec3::ZERO];
-        for i in 0..PAIRS {
-            let l = special.get(i / 7).copied().unwrap_or_else(|| random.direction());
-            let v = if i < 49 { special[i % 7] } else { random.direction() };
-            let terms = surface.response(l, v, frame);
-            let id = model.declaration.id;
-            assert!(is_finite(&terms), "{id} {values:?} {l} {v}: {terms:?}");
-            assert!(surface.ambient_response(v, frame).is_finite(), "{id} {values:?} {v}");
-            assert!(brdf(surface, l, v, frame).is_finite(), "{id} {values:?} {l} {v}");
-        }
-    });
-}
-
-/// The worst violation of a law by a model, over everything: a number that is 0 for models that keep it exactly.
-fn worst(
-    seed: u64,
-    measure: impl Fn(&dyn Surface, &Frame, &mut Random) -> f32,
-) -> Vec<(&'static str, lights_camera_models::reflection::Laws, f32)> {
-    let mut out: Vec<(&'static str, _, f32)> = Vec::new();
-    surfaces(seed, |model, _, surface, frame, random| {
-        let broken = measure(surface, frame, random);
-        match out.last_mut() {
-            Some((id, _, worst)) if *id == model.declaration.id => *worst = worst.max(broken),
-            _ => out.push((model.declaration.id, model.declaration.laws, broken)),
-        }
-    });
-    out
+    hold(testing::laws::finite);
 }
 
 #[test]
 fn no_light_is_negative_where_that_is_declared_and_somewhere_it_is_where_not() {
-    let results = worst(2, |surface, frame, random| {
-        let mut least = 0.0f32;
-        for _ in 0..PAIRS {
-            let (l, v) = (random.direction(), random.direction());
-            least = least.min(smallest(&surface.response(l, v, frame)));
-            least = least.min(surface.ambient_response(v, frame).min_element());
-        }
-        -least
-    });
-    for (id, laws, broken) in results {
-        assert_eq!(broken <= NEGATIVE_TOLERANCE, laws.non_negative, "{id}: {broken}");
-    }
+    hold(testing::laws::non_negative);
 }
 
 #[test]
 fn light_may_go_backwards_where_that_is_declared_and_somewhere_it_may_not_where_not() {
-    let results = worst(3, |surface, frame, random| {
-        let mut most = 0.0f32;
-        for _ in 0..PAIRS {
-            let (l, v) = (random.above(frame), random.above(frame));
-            let (there, back) = (surface.response(l, v, frame), surface.response(v, l, frame));
-            most = most.max(reciprocity_error(there, back, l, v, frame));
-        }
-        most
-    });
-    for (id, laws, broken) in results {
-        if laws.reciprocal {
-            assert!(broken < RECIPROCITY_TOLERANCE, "{id}: {broken}");
-        } else {
-            assert!(broken > 0.02, "{id} declares that it is not reciprocal, but differs by {broken} only");
-        }
-    }
-}
-
-/// The fraction of light from direction `v` that leaves the surface in any direction, largest channel.
-fn albedo(surface: &dyn Surface, v: Vec3, frame: &Frame, rows: usize) -> f32 {
-    let directions = laws::albedo_directions(v, frame, rows);
-    laws::albedo(&directions, directions.iter().map(|(l, _)| surface.response(*l, v, frame)))
+    hold(testing::laws::reciprocal);
 }
 
 #[test]
 fn no_light_is_made_where_that_is_declared_and_somewhere_it_is_where_not() {
-    let results = worst(4, |surface, frame, random| {
-        let mut most = 0.0f32;
-        for i in 0..4 {
-            let theta = FRAC_PI_2 * [0.02, 0.5, 0.95, random.unit() * 0.99][i];
-            let (sin, cos) = theta.sin_cos();
-            let v = cos * frame.n + sin * frame.t;
-            // Findings of a coarse grid are checked by a finer one, so that its error is no verdict.
-            let coarse = albedo(surface, v, frame, COARSE);
-            let found = if coarse > NEARLY_ALL { albedo(surface, v, frame, FINE) } else { coarse };
-            most = most.max(found);
-        }
-        most
-    });
-    for (id, laws, most) in results {
-        if laws.energy_conserving {
-            assert!(most < LARGEST_ALBEDO, "{id} reflects {most} of the light");
-        } else {
-            // The finer grid is right to 3e-4 for wide lobes; Strauss's makes 0.5 % too much at most.
-            assert!(most > 1.003, "{id} declares that it makes light, but reflects {most} at most");
-        }
-    }
+    hold(testing::laws::energy_conserving);
 }
 
 #[test]

@@ -24,14 +24,10 @@ use lights_camera_models::{
             ThemeChoice, ViewChange,
         },
     },
-    parameter::{
-        BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, ParameterKind, REFLECTANCE, ROUGHNESS, Value,
-        Values,
-    },
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, METALLIC, Parameter, REFLECTANCE, ROUGHNESS, Value, Values},
     parameters,
     reflection::{
-        self, EquationPart, Family, Laws, Measured, Readout, ReadoutValue, ReflectionModel, Term, preset,
-        usage,
+        self, EquationPart, Family, Measured, Readout, ReadoutValue, ReflectionModel, Term, preset, usage,
     },
     registry::{Register, Registry},
     scene::{Display, Light, Object, Scene, load::Stamp},
@@ -40,22 +36,13 @@ use lights_camera_models::{
 
 // ── a model with everything that a panel can be asked for, and enough of them ──
 
-const DISTRIBUTION: Parameter = Parameter {
-    name: "distribution",
-    symbol: "D",
-    label: "distribution",
-    unit: "",
-    help: "How the normals of the microfacets are spread.",
-    kind: ParameterKind::Choice {
-        options: &[("beckmann", "Beckmann"), ("ggx", "GGX (Trowbridge–Reitz)")],
-        default: 1,
-    },
-    used_when: None,
-};
+const DISTRIBUTION: Parameter =
+    Parameter::choice("distribution", &[("beckmann", "Beckmann"), ("ggx", "GGX (Trowbridge–Reitz)")], 1)
+        .symbol("D")
+        .help("How the normals of the microfacets are spread.");
 
 const fn fraction(name: &'static str, label: &'static str) -> Parameter {
-    let kind = ParameterKind::Number { min: 0.0, max: 1.0, default: 0.0 };
-    Parameter { name, symbol: "", label, unit: "", help: "A fraction.", kind, used_when: None }
+    Parameter::number(name, 0.0..=1.0, 0.0).symbol("").label(label).help("A fraction.")
 }
 
 parameters! {
@@ -95,35 +82,35 @@ parameters! {
 }
 
 impl ReflectionModel for Everything {
-    const DECLARATION: reflection::Declaration = reflection::Declaration {
-        id: "everything",
-        name: "Everything",
-        family: Family::Microfacet,
-        author: "K. E. Torrance, E. M. Sparrow 1967",
-        source: "a test",
-        summary: "A model of many parameters.",
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart {
-                term: Term::Diffuse,
-                text: "I_d = (1 − m) (1 − F) ρ/π N·L (1 + (F_{90} − 1)(1 − N·L)^5)",
-            },
-            EquationPart {
-                term: Term::Specular, text: "I_s = π D(H) G(L, V) F(V·H) / (4 (N·L) (N·V)) N·L"
-            },
-            EquationPart {
-                term: Term::Specular,
-                text: "D = α^2 / (π ((N·H)^2 (α^2 − 1) + 1)^2), α = r^2, Λ = (√(1 + α² tan² θ_h) − 1)/2",
-            },
-            EquationPart {
-                term: Term::Specular, text: "E(μ) = ∫ f_r ⟨N·L⟩ dω ≤ 1, α_{GGX} = √(2/(n + 2))"
-            },
-        ],
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: reflection::Ambient::Albedo,
-        anisotropic: true,
-        wgsl: Source { path: "everything.wgsl", text: "" },
-    };
+    const DECLARATION: reflection::Declaration =
+        reflection::Declaration::new("everything", "Everything", Source::new("everything.wgsl", ""))
+            .family(Family::Microfacet)
+            .published("K. E. Torrance, E. M. Sparrow 1967", "a test")
+            .summary("A model of many parameters.")
+            .equation(&[
+                EquationPart { term: Term::Total, text: "I = I_d + I_s" },
+                EquationPart {
+                    term: Term::Diffuse,
+                    text: "I_d = (1 − m) (1 − F) ρ/π N·L (1 + (F_{90} − 1)(1 − N·L)^5)",
+                },
+                EquationPart {
+                    term: Term::Specular,
+                    text: "I_s = π D(H) G(L, V) F(V·H) / (4 (N·L) (N·V)) N·L",
+                },
+                EquationPart {
+                    term: Term::Specular,
+                    text: "D = α^2 / (π ((N·H)^2 (α^2 − 1) + 1)^2), α = r^2, Λ = (√(1 + α² tan² θ_h) − 1)/2",
+                },
+                EquationPart {
+                    term: Term::Specular,
+                    text: "E(μ) = ∫ f_r ⟨N·L⟩ dω ≤ 1, α_{GGX} = √(2/(n + 2))",
+                },
+            ])
+            .reciprocal()
+            .energy_conserving()
+            .non_negative()
+            .ambient_by_albedo()
+            .anisotropic();
 
     fn response(&self, _l: glam::Vec3, _v: glam::Vec3, _frame: &Frame) -> Terms {
         Terms::default()

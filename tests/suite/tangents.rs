@@ -10,7 +10,7 @@ use lights_camera_models::{
     parameter::BASE_COLOUR,
     parameters,
     reference::{self, Picture},
-    reflection::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term},
+    reflection::{Declaration, EquationPart, ReflectionModel, Term},
     registry::{Register, Registry},
     render::capture::gpu::{GpuRenderer, Output},
     scene::Scene,
@@ -28,25 +28,23 @@ parameters! {
 }
 
 impl ReflectionModel for Brushed {
-    const DECLARATION: Declaration = Declaration {
-        id: "brushed",
-        name: "Brushed",
-        family: Family::Custom,
-        author: "a test",
-        source: "a test",
-        summary: "Depends on the tangent.",
-        equation: &[EquationPart { term: Term::Diffuse, text: "I_d = max(0, N·L) (1 + T·H)/2 C_b" }],
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: Ambient::Formula,
-        anisotropic: true,
-        wgsl: Source {
-            path: "brushed.wgsl",
-            text: "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {\n\
+    const DECLARATION: Declaration = Declaration::new(
+        "brushed",
+        "Brushed",
+        Source::new(
+            "brushed.wgsl",
+            "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {\n\
                    let along = 0.5 + 0.5 * dot(frame.t, half_vector(l, v));\n\
                    return Terms(vec3(0.0), max(dot(frame.n, l), 0.0) * along * m.base_colour, vec3(0.0)); }\n\
                    fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> { return (0.5 + 0.5 * frame.t) * m.base_colour; }\n",
-        },
-    };
+        ),
+    )
+    .summary("Depends on the tangent.")
+    .equation(&[EquationPart::new(Term::Diffuse, "I_d = max(0, N·L) (1 + T·H)/2 C_b")])
+    .reciprocal()
+    .energy_conserving()
+    .non_negative()
+    .anisotropic();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let along = 0.5 + 0.5 * frame.t.dot(half_vector(l, v));
@@ -67,7 +65,7 @@ parameters! {
 }
 
 impl ReflectionModel for Crosswise {
-    const DECLARATION: Declaration = Declaration { id: "crosswise", ..Brushed::DECLARATION };
+    const DECLARATION: Declaration = Brushed::DECLARATION.id("crosswise");
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let turned = Frame { t: frame.b, ..*frame };

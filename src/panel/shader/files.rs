@@ -69,7 +69,8 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
         ui.add(egui::Label::new(missing_model(session, registry, session.model_shown())).wrap());
         return;
     };
-    let files = crate::registry::compose::files(registry.sources(), model, shading, registry.lights());
+    let lights = registry.lights_in(session.document.scene().light_types(registry));
+    let files = crate::registry::compose::files(registry.sources(), model, shading, &lights);
     let title = format!("{} · {}", model.declaration.name, shading.declaration.name);
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -2,8 +2,10 @@
 
 use bevy::ecs::prelude::*;
 
-use super::{super::trial::Verdict, CurrentScene, LiveShaders, Overrides, Registry, Visible};
-use crate::{library::model_of, registry::compose::compose};
+use super::{
+    super::trial::Verdict, CurrentScene, LiveShaders, Overrides, Registry, Visible, composed, lights_of,
+};
+use crate::library::model_of;
 
 /// The number of custom models that are tried at the same time.
 const ARRIVING: usize = 16;
@@ -25,6 +27,7 @@ impl LiveShaders {
     pub(super) fn adopt(&mut self, world: &mut World, visible: &Visible) {
         for model in self.library.next_arriving(ARRIVING) {
             let registry = world.resource::<Registry>().clone();
+            let lights = lights_of(world, &registry);
             let (id, source) = (model.entry.declaration.id, model.entry.declaration.wgsl.path);
             let shown = registry.shading_models().iter().filter(|shading| visible.shows(id, shading));
             let mut shadings: Vec<_> = shown.collect();
@@ -40,8 +43,8 @@ impl LiveShaders {
             for shading in shadings {
                 let mut tried = Verdict::Good;
                 for sources in [&current, &lenient] {
-                    let wanted = compose(sources, &model.entry, shading, registry.lights());
-                    tried = self.try_out(world, &wanted, &model.entry, shading);
+                    let parts = (&model.entry, shading, lights);
+                    tried = self.try_out(world, &composed(sources, parts, &registry), parts);
                     if !matches!(tried, Verdict::Bad(_)) {
                         break;
                     }

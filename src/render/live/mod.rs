@@ -42,8 +42,11 @@ use crate::{
         status::{Reloaded, ShaderStatus},
     },
     reflection::ModelEntry,
-    registry::Registry,
-    shader::{check::ShaderProblem, compose::Composed},
+    registry::{LightSet, Registry, compose::compose},
+    shader::{
+        check::ShaderProblem,
+        compose::{Composed, Sources},
+    },
     shading::ShadingEntry,
 };
 
@@ -62,11 +65,24 @@ impl Plugin for LiveShadersPlugin {
     }
 }
 
-/// The identity of a shader: model, shading model, and the number of light types that were known.
-type Key = (&'static str, &'static str, usize);
+/// The identity of a shader: model, shading model, and light types.
+type Key = (&'static str, &'static str, LightSet);
 
-fn key(model: &ModelEntry, shading: &ShadingEntry, registry: &Registry) -> Key {
-    (model.declaration.id, shading.declaration.id, registry.lights().len())
+/// The parts that a shader is composed of.
+pub(super) type Parts<'a> = (&'a ModelEntry, &'a ShadingEntry, LightSet);
+
+fn key((model, shading, lights): Parts) -> Key {
+    (model.declaration.id, shading.declaration.id, lights)
+}
+
+fn composed(sources: &Sources, (model, shading, lights): Parts, registry: &Registry) -> Composed {
+    compose(sources, model, shading, &registry.lights_in(lights))
+}
+
+/// The light types of the scene, all where there is none.
+fn lights_of(world: &World, registry: &Registry) -> LightSet {
+    let scene = world.get_resource::<CurrentScene>();
+    scene.map_or_else(|| registry.lights().iter().collect(), |scene| scene.0.light_types(registry))
 }
 
 /// One shader.
@@ -76,6 +92,8 @@ struct Live {
     declared: u64,
     /// The source that is drawn with.
     shown: Composed,
+    /// The paths of the files that stand-ins replace in it, see [`stand_in`](crate::library::stand_in).
+    replaced: Vec<&'static str>,
     /// The source that was drawn with before, and until when: the renderer may still refuse the one that came after.
     before: Option<(Composed, Instant)>,
     /// The source that was tried last and refused.
@@ -202,25 +220,25 @@ impl LiveShaders {
     }
 }
 
-/// The models and shading models on the picture.
-struct Visible(Vec<(String, String)>);
+/// The models and shading models on the picture, with the light types of their shaders.
+struct Visible(Vec<(String, String, LightSet)>);
 
 impl Visible {
     fn of(world: &mut World) -> Self {
         let mut query = world.query::<&Drawn>();
         let mut pairs: Vec<_> =
-            query.iter(world).map(|d| (d.model().to_owned(), d.shading().to_owned())).collect();
+            query.iter(world).map(|d| (d.model().to_owned(), d.shading().to_owned(), d.lights)).collect();
         pairs.sort_unstable();
         pairs.dedup();
         Self(pairs)
     }
 
     fn shows(&self, model: &str, shading: &ShadingEntry) -> bool {
-        self.0.iter().any(|(m, s)| m == model && s == shading.declaration.id)
+        self.0.iter().any(|(m, s, _)| m == model && s == shading.declaration.id)
     }
 
     fn has(&self, key: &Key) -> bool {
-        self.0.iter().any(|(model, shading)| model == key.0 && shading == key.1)
+        self.0.iter().any(|(model, shading, lights)| model == key.0 && shading == key.1 && *lights == key.2)
     }
 }
 

@@ -8,11 +8,10 @@ use bevy::{
 
 use super::{
     super::trial::{Bench, COMPOSED, Verdict},
-    Key, Live, LiveShaders, ModelEntry, Refused, Registry, ShadingEntry, Visible, key,
+    Key, Live, LiveShaders, Parts, Refused, Registry, Visible, composed, key,
 };
 use crate::{
-    library::problem::Problem,
-    registry::compose::compose,
+    library::{problem::Problem, stand_in},
     shader::{
         compose::{Composed, Sources},
         slim::slim,
@@ -29,19 +28,18 @@ const RESTING: &str = "
 
 /// The path by which Bevy knows the asset of a shader.
 pub(super) fn path_of_asset(key: Key) -> String {
-    format!("{COMPOSED}{}/{}.wgsl", key.0, key.1)
+    format!("{COMPOSED}{}/{}/{:x}.wgsl", key.0, key.1, key.2.bits())
 }
 
 impl LiveShaders {
-    /// The shader of a model and a shading model; none yet while another process tries it.
+    /// The shader of a model, a shading model and light types; none yet while another process tries it.
     pub(crate) fn get(
         &mut self,
         world: &mut World,
-        model: &ModelEntry,
-        shading: &ShadingEntry,
+        parts: Parts,
         registry: &Registry,
     ) -> Option<Handle<Shader>> {
-        let key = key(model, shading, registry);
+        let (key, model) = (key(parts), parts.0);
         let declared = model.declared();
         if let Some(live) = self.shaders.get(&key).filter(|live| live.declared == declared) {
             return Some(live.handle.clone());
@@ -50,7 +48,7 @@ impl LiveShaders {
             self.awaited = true;
             return None;
         }
-        let wanted = compose(registry.sources(), model, shading, registry.lights());
+        let wanted = composed(registry.sources(), parts, registry);
         // From here on these files are used.
         for path in wanted.map.files() {
             self.unused.remove(path);
@@ -62,13 +60,14 @@ impl LiveShaders {
         if self.library.is_built_in(&wanted, registry) {
             shown = Some(wanted);
         } else {
-            match self.try_out(world, &wanted, model, shading) {
+            match self.try_out(world, &wanted, parts) {
                 Verdict::Good => {
                     self.library.note_good(&wanted, registry);
                     shown = Some(wanted);
                 }
                 Verdict::Bad(problem) => {
-                    refused = Some(Refused { composed: wanted, problem: Problem::new(problem) })
+                    let problem = self.blamed(problem, &wanted, parts, registry);
+                    refused = Some(Refused { composed: wanted, problem: Problem::new(problem) });
                 }
                 Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
                     self.awaited = true;
@@ -77,14 +76,14 @@ impl LiveShaders {
                 Verdict::NotYet => due = true,
             }
         }
-        let shown = match shown {
-            Some(shown) => shown,
-            None => self.last_good(world, model, shading, registry)?,
+        let (shown, replaced) = match shown {
+            Some(shown) => (shown, Vec::new()),
+            None => self.last_good(world, parts, registry)?,
         };
         let asset = self.asset(&shown, key, registry);
-        let replaced = self.replaced(key, registry);
+        let taken_over = self.taken_over(key, registry);
         let mut assets = world.resource_mut::<Assets<Shader>>();
-        let handle = match replaced {
+        let handle = match taken_over {
             Some(handle) => {
                 // The asset is there as long as its handle.
                 let _ = assets.insert(handle.id(), asset);
@@ -94,7 +93,8 @@ impl LiveShaders {
         };
         self.stale_status = true;
         let seen = self.looks;
-        let live = Live { handle: handle.clone(), declared, shown, before: None, refused, due, seen };
+        let live =
+            Live { handle: handle.clone(), declared, shown, replaced, before: None, refused, due, seen };
         self.shaders.insert(key, live);
         Some(handle)
     }
@@ -102,7 +102,7 @@ impl LiveShaders {
     /// The asset that a shader takes over: that of the same model as it was declared before or as it rested, or of a
     /// custom model that is gone. Bevy never lets go of a pipeline, but makes it anew when its shader changes; with an
     /// asset for each declaration, each would keep megabytes.
-    fn replaced(&mut self, key: Key, registry: &Registry) -> Option<Handle<Shader>> {
+    fn taken_over(&mut self, key: Key, registry: &Registry) -> Option<Handle<Shader>> {
         if let Some(live) = self.shaders.remove(&key) {
             return Some(live.handle);
         }
@@ -138,29 +138,46 @@ impl LiveShaders {
     }
 
     /// The latest that can be drawn with: the file of the model with the others as they last came through, else all
-    /// as they last came through, else what is built in. None yet while another process tries one of them.
+    /// as they last came through, else what is compiled in. Of the last, stand-ins replace the files of other crates
+    /// that cannot be drawn with; their paths are returned with it. None yet while another process tries one of them.
     fn last_good(
         &mut self,
         world: &mut World,
-        model: &ModelEntry,
-        shading: &ShadingEntry,
+        parts: Parts,
         registry: &Registry,
-    ) -> Option<Composed> {
+    ) -> Option<(Composed, Vec<&'static str>)> {
         for sources in [self.library.lenient(registry), self.library.good().clone()] {
-            let composed = compose(&sources, model, shading, registry.lights());
-            if self.library.is_built_in(&composed, registry) {
-                return Some(composed);
-            }
-            match self.try_out(world, &composed, model, shading) {
-                Verdict::Good => return Some(composed),
-                Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
-                    self.awaited = true;
-                    return None;
-                }
-                Verdict::Bad(_) | Verdict::NotYet => {}
+            let composed = composed(&sources, parts, registry);
+            if self.library.is_built_in(&composed, registry) || self.passes(world, &composed, parts)? {
+                return Some((composed, Vec::new()));
             }
         }
-        Some(compose(&Sources::default(), model, shading, registry.lights()))
+        let (model, shading, lights) = parts;
+        let mut foreign = stand_in::of(model, shading, &registry.lights_in(lights));
+        foreign.retain(|(path, _)| registry.is_foreign(path));
+        let mut sources = Sources::default();
+        foreign.iter().for_each(|(path, text)| sources.edit(*path, text.as_str()));
+        let mut replaced = Vec::new();
+        for (path, text) in &foreign {
+            sources.forget(path);
+            if !self.passes(world, &composed(&sources, parts, registry), parts)? {
+                sources.edit(*path, text.as_str());
+                replaced.push(*path);
+            }
+        }
+        Some((composed(&sources, parts, registry), replaced))
+    }
+
+    /// True if a source can be drawn with; none yet while another process tries it.
+    fn passes(&mut self, world: &mut World, composed: &Composed, parts: Parts) -> Option<bool> {
+        match self.try_out(world, composed, parts) {
+            Verdict::Good => Some(true),
+            Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
+                self.awaited = true;
+                None
+            }
+            Verdict::Bad(_) | Verdict::NotYet => Some(false),
+        }
     }
 
     /// The asset of a composed source.

@@ -1,5 +1,7 @@
 //! The status of the shaders for people.
 
+use std::path::PathBuf;
+
 use super::{Key, LiveShaders, Registry, Visible};
 use crate::{
     library::status::{ShaderStatus, Trouble},
@@ -12,7 +14,9 @@ impl LiveShaders {
         let mut troubles: Vec<Trouble> = Vec::new();
         let mut add = |problem: &ShaderProblem, stale: Option<String>| {
             let i = troubles.iter().position(|t| t.problem == *problem).unwrap_or_else(|| {
-                let path = registry.folders().file_of(&problem.file);
+                // What another crate compiled in may be on the disk of its author only.
+                let there = |path: &PathBuf| !registry.is_foreign(&problem.file) || path.is_file();
+                let path = registry.folders().file_of(&problem.file).filter(there);
                 troubles.push(Trouble { problem: problem.clone(), path, stale: Vec::new() });
                 troubles.len() - 1
             });
@@ -30,7 +34,16 @@ impl LiveShaders {
             {
                 format!("{} (a grey stand-in)", m.declaration.name)
             }
-            Some(model) => model.declaration.name.to_owned(),
+            Some(model) => {
+                let (name, replaced) = (model.declaration.name, &self.shaders[key].replaced);
+                match replaced.as_slice() {
+                    [] => name.to_owned(),
+                    paths if paths.contains(&model.declaration.wgsl.path) => {
+                        format!("{name} (a grey stand-in)")
+                    }
+                    paths => format!("{name} (without {})", crate::text::listed(paths, "and")),
+                }
+            }
             None => key.0.to_owned(),
         };
         let mut keys: Vec<_> = self.shaders.keys().collect();

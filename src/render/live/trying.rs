@@ -14,14 +14,14 @@ use bevy::{
 
 use super::{
     super::trial::{Bench, Tools, Verdict},
-    Key, LiveShaders, ModelEntry, Refused, Registry, ShadingEntry, Visible,
+    Key, LiveShaders, ModelEntry, Parts, Refused, Registry, ShadingEntry, Visible, composed, lights_of,
     ready::path_of_asset,
 };
 use crate::{
     library::problem::Problem,
     optics::colour::Encoding,
     parameter::Values,
-    registry::compose::compose,
+    registry::{LightSet, check::wgsl},
     shader::{
         check::ShaderProblem,
         compose::{Composed, WRAPPER},
@@ -40,8 +40,7 @@ impl LiveShaders {
         &mut self,
         world: &mut World,
         composed: &Composed,
-        model: &ModelEntry,
-        shading: &ShadingEntry,
+        (model, shading, _): Parts,
     ) -> Verdict {
         if composed.problem.is_none() && self.approved.contains(&composed.text) {
             return Verdict::Good;
@@ -51,6 +50,18 @@ impl LiveShaders {
             self.approved.insert(composed.text.clone());
         }
         verdict
+    }
+
+    /// Names the author's file where a problem shows in another one.
+    pub(super) fn blamed(
+        &self,
+        problem: Box<ShaderProblem>,
+        composed: &Composed,
+        (model, shading, lights): Parts,
+        registry: &Registry,
+    ) -> Box<ShaderProblem> {
+        let problem = self.library.blamed(problem, composed, registry);
+        wgsl::blamed(problem, registry, model, shading, &registry.lights_in(lights))
     }
 
     /// Tries what is due, for as long as a frame may take: first what is on the picture; then, one in a frame, what
@@ -85,22 +96,20 @@ impl LiveShaders {
 
     /// Exchanges a shader for what its files say now, if that can be drawn with.
     fn refresh(&mut self, world: &mut World, registry: &Registry, key: Key) {
-        let entries = registry.model(key.0).zip(registry.shading_model(key.1));
-        let Some((model, shading)) =
-            entries.filter(|(model, shading)| super::key(model, shading, registry) == key)
-        else {
-            // Other light types were known then; nothing is drawn with it any more.
+        let Some((model, shading)) = registry.model(key.0).zip(registry.shading_model(key.1)) else {
+            // Nothing is drawn with it any more.
             if let Some(live) = self.shaders.get_mut(&key) {
                 live.due = false;
             }
             return;
         };
-        let wanted = compose(registry.sources(), model, shading, registry.lights());
+        let parts = (model, shading, key.2);
+        let wanted = composed(registry.sources(), parts, registry);
         let shown_already = self.shaders.get(&key).is_some_and(|live| live.shown == wanted);
         let verdict = if shown_already || self.library.is_built_in(&wanted, registry) {
             Verdict::Good
         } else {
-            self.try_out(world, &wanted, model, shading)
+            self.try_out(world, &wanted, parts)
         };
         if verdict == Verdict::Good {
             self.library.note_good(&wanted, registry);
@@ -115,13 +124,16 @@ impl LiveShaders {
                 // The asset is there as long as its handle.
                 let _ = world.resource_mut::<Assets<Shader>>().insert(id, asset);
                 live.before = Some((std::mem::replace(&mut live.shown, wanted), Instant::now()));
+                live.replaced.clear();
                 live.refused = None;
                 if let Some(reloaded) = self.library.reloaded() {
                     self.last = Some(reloaded);
                 }
             }
             Verdict::Bad(problem) => {
-                let problem = self.library.blamed(problem, &wanted, registry);
+                let problem = self.blamed(problem, &wanted, parts, registry);
+                let live = self.shaders.get_mut(&key);
+                let Some(live) = live else { return };
                 let problem = Problem::after(live.refused.as_ref().map(|r| &r.problem), problem);
                 live.refused = Some(Refused { composed: wanted, problem });
             }
@@ -130,30 +142,34 @@ impl LiveShaders {
         self.stale_status = true;
     }
 
-    /// Tries a file that nothing on the picture is made of, with a model or shading model that it belongs to.
+    /// Tries a file that nothing on the picture is made of: a model, a shading model or a light type, together with
+    /// others that are.
     fn try_unused(&mut self, world: &mut World, registry: &Registry, visible: &Visible, path: &str) {
         let shadings = registry.shading_models();
         let models = registry.models();
         let shading = shadings.iter().find(|m| m.declaration.wgsl.path == path);
         let model = models.iter().find(|m| m.declaration.wgsl.path == path);
-        if shading.is_none() && model.is_none() {
+        let light = registry.lights().iter().find(|l| l.declaration.wgsl.path == path);
+        if shading.is_none() && model.is_none() && light.is_none() {
             return;
         }
+        let lights: LightSet = registry.lights_in(lights_of(world, registry)).iter().chain(light).collect();
         let shown_shading =
-            || shadings.iter().find(|m| visible.0.iter().any(|(_, id)| id == m.declaration.id));
+            || shadings.iter().find(|m| visible.0.iter().any(|(_, id, _)| id == m.declaration.id));
         let Some((model, shading)) =
             model.or(models.first()).zip(shading.or_else(shown_shading).or(shadings.first()))
         else {
             return;
         };
-        let composed = compose(registry.sources(), model, shading, registry.lights());
-        match self.try_out(world, &composed, model, shading) {
+        let parts = (model, shading, lights);
+        let composed = composed(registry.sources(), parts, registry);
+        match self.try_out(world, &composed, parts) {
             Verdict::Good => {
                 self.unused_problems.remove(path);
                 self.library.note_good(&composed, registry);
             }
             Verdict::Bad(problem) => {
-                let problem = self.library.blamed(problem, &composed, registry);
+                let problem = self.blamed(problem, &composed, parts, registry);
                 self.unused_problems.insert(path.to_owned(), Problem::new(problem));
             }
             Verdict::NotYet => {

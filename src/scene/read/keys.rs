@@ -1,5 +1,6 @@
 //! The keys of scene files.
 
+pub(in crate::scene) use crate::registry::{LIGHT_KEYS, OBJECT_KEYS};
 use crate::{parameter::Parameter, registry::Registry};
 
 /// The keys of a scene, in the order of messages.
@@ -17,36 +18,11 @@ pub(in crate::scene) const SCENE_KEYS: &[&str] = &[
 ];
 /// The keys of `scene_size`.
 pub(in crate::scene) const SIZE_KEYS: &[&str] = &["height", "width", "depth"];
-/// The keys that lights of every type may have.
-pub(in crate::scene) const LIGHT_KEYS: &[&str] = &[
-    "type",
-    "name",
-    "enabled",
-    "position",
-    "direction",
-    "colour",
-    "colour_temperature",
-    "intensity",
-    "luminous_flux",
-];
 /// Alternative keys of a light; the first counts if neither is given.
 pub(in crate::scene) const LIGHT_ALTERNATIVES: [[&str; 2]; 2] =
     [["intensity", "luminous_flux"], ["colour", "colour_temperature"]];
 /// The keys of `observer`.
 pub(in crate::scene) const OBSERVER_KEYS: &[&str] = &["position", "direction", "field_of_view"];
-/// The keys that objects of every type may have.
-pub(in crate::scene) const OBJECT_KEYS: &[&str] = &[
-    "type",
-    "name",
-    "visible",
-    "position",
-    "size",
-    "rotation",
-    "tessellation",
-    "reflection_model",
-    "shading_model",
-    "material",
-];
 /// The keys of `display`.
 pub(in crate::scene) const DISPLAY_KEYS: &[&str] = &["tone_mapping", "exposure", "encoding"];
 

@@ -1,0 +1,50 @@
+//! Stand-ins: what is drawn with instead of WGSL that another crate compiled in and that is no good.
+
+use crate::{custom, light::LightEntry, reflection::ModelEntry, shading::ShadingEntry};
+
+/// The paths of the parts that a shader is composed of, each with the text that can stand in for it: grey Lambert, an
+/// interpolated normal, and darkness.
+#[must_use]
+pub fn of(model: &ModelEntry, shading: &ShadingEntry, lights: &[LightEntry]) -> Vec<(&'static str, String)> {
+    let dark = |light: &LightEntry| {
+        let own = match light.parameters {
+            [] => String::new(),
+            _ => format!("m: {}, ", light.parameter_struct()),
+        };
+        format!(
+            "fn incident_{}(light: Light, {own}p: vec3<f32>) -> Incident {{\n    return Incident(vec3(0.0), vec3(0.0), 0u);\n}}\n",
+            light.declaration.id
+        )
+    };
+    let lights = lights.iter().map(|light| (light.declaration.wgsl.path, dark(light)));
+    let model = (model.declaration.wgsl.path, custom::stand_in(model.declaration.ambient).to_owned());
+    let shading = (shading.declaration.wgsl.path, crate::shading::STAND_IN.text.to_owned());
+    lights.chain([model, shading]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        registry::{Registry, compose::compose},
+        shader::{compose::Sources, whole::validate_drawing},
+        shading::Stage,
+    };
+
+    #[test]
+    fn everything_has_a_stand_in_that_can_be_drawn_with() {
+        let registry = Registry::builtin();
+        for model in registry.models() {
+            for shading in registry.shading_models() {
+                let mut sources = Sources::default();
+                let all = of(model, shading, registry.lights());
+                assert_eq!(all.len(), registry.lights().len() + 2);
+                all.into_iter().for_each(|(path, text)| sources.edit(path, text));
+                let composed = compose(&sources, model, shading, registry.lights());
+                for faces in [false, shading.declaration.stage == Stage::Polygon] {
+                    assert_eq!(validate_drawing(&composed, faces), Ok(()), "{}", model.declaration.id);
+                }
+            }
+        }
+    }
+}

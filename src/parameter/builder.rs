@@ -1,0 +1,122 @@
+//! Declarations of parameters, step by step: another field of [`Parameter`] changes none of them.
+
+use std::ops::RangeInclusive;
+
+use super::{
+    declaration::{Parameter, ParameterKind},
+    file::FileFormat,
+};
+
+impl Parameter {
+    /// A parameter whose symbol and label are its name, without unit and help.
+    const fn new(name: &'static str, kind: ParameterKind) -> Self {
+        Self { name, symbol: name, label: name, unit: "", help: "", kind, used_when: None }
+    }
+
+    /// A real number in a range. From [`ABOVE_ZERO`](super::ABOVE_ZERO) on it is greater than zero.
+    ///
+    /// ```
+    /// use lights_camera_models::parameter::Parameter;
+    /// const WIDTH: Parameter = Parameter::number("width", 0.0..=1.0, 0.5)
+    ///     .symbol("w")
+    ///     .unit("m")
+    ///     .help("The width of the stripes.");
+    /// assert_eq!(WIDTH.rule(), "between 0 and 1");
+    /// ```
+    #[must_use]
+    pub const fn number(name: &'static str, range: RangeInclusive<f32>, default: f32) -> Self {
+        Self::new(name, ParameterKind::Number { min: *range.start(), max: *range.end(), default })
+    }
+
+    /// A whole number in a range.
+    #[must_use]
+    pub const fn integer(name: &'static str, range: RangeInclusive<i64>, default: i64) -> Self {
+        let (min, max) = (*range.start(), *range.end());
+        Self::new(name, ParameterKind::Integer { min, max: Some(max), slider_max: max, default })
+    }
+
+    /// A whole number, that or more; `slider_max` is the end of its slider.
+    #[must_use]
+    pub const fn integer_from(name: &'static str, min: i64, slider_max: i64, default: i64) -> Self {
+        Self::new(name, ParameterKind::Integer { min, max: None, slider_max, default })
+    }
+
+    /// A colour: three sRGB-encoded integers, 0–255.
+    #[must_use]
+    pub const fn colour(name: &'static str, default: [u8; 3]) -> Self {
+        Self::new(name, ParameterKind::Colour { default }).unit("sRGB")
+    }
+
+    /// Three real numbers in a range, for red, green and blue.
+    #[must_use]
+    pub const fn triple(name: &'static str, range: RangeInclusive<f32>, default: [f32; 3]) -> Self {
+        Self::new(name, ParameterKind::Triple { min: *range.start(), max: *range.end(), default })
+    }
+
+    /// One of several choices, the name of each in files and that in the window; the default is an index.
+    #[must_use]
+    pub const fn choice(
+        name: &'static str,
+        options: &'static [(&'static str, &'static str)],
+        default: usize,
+    ) -> Self {
+        Self::new(name, ParameterKind::Choice { options, default })
+    }
+
+    /// A file of numbers, for light types; the default is the name of a file that is shipped with the format.
+    #[must_use]
+    pub const fn file(name: &'static str, format: &'static FileFormat, default: &'static str) -> Self {
+        Self::new(name, ParameterKind::File { format, default })
+    }
+
+    /// The same with a symbol for equations.
+    #[must_use]
+    pub const fn symbol(self, symbol: &'static str) -> Self {
+        Self { symbol, ..self }
+    }
+
+    /// The same with a label for people.
+    #[must_use]
+    pub const fn label(self, label: &'static str) -> Self {
+        Self { label, ..self }
+    }
+
+    /// The same with a unit.
+    #[must_use]
+    pub const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// The same with a sentence about its effect.
+    #[must_use]
+    pub const fn help(self, help: &'static str) -> Self {
+        Self { help, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::Value;
+
+    #[test]
+    fn every_type_is_declared_with_its_default() {
+        const ALL: [(Parameter, Value); 6] = [
+            (Parameter::number("a", 0.0..=2.0, 1.5), Value::Number(1.5)),
+            (Parameter::integer("b", 1..=16, 4), Value::Integer(4)),
+            (Parameter::integer_from("c", 0, 512, 32), Value::Integer(32)),
+            (Parameter::colour("d", [1, 2, 3]), Value::Colour([1, 2, 3])),
+            (Parameter::triple("e", 0.0..=6.0, [1.0, 2.0, 3.0]), Value::Triple([1.0, 2.0, 3.0])),
+            (
+                Parameter::choice("f", &[("g", "G"), ("h", "H")], 1),
+                Value::Choice(std::borrow::Cow::Borrowed("h")),
+            ),
+        ];
+        for (p, value) in ALL {
+            assert_eq!(p.default_value(), value, "{}", p.name);
+            assert!(p.allows(&value), "{}", p.name);
+        }
+        let all = Parameter::number("a", 0.0..=2.0, 1.5).symbol("α").label("shine").unit("m").help("More.");
+        assert_eq!((all.symbol, all.label, all.unit, all.help), ("α", "shine", "m", "More."));
+    }
+}

@@ -1,0 +1,246 @@
+//! Checks of what is registered. Each names what is wrong and what would be right; the caller adds the type and its id.
+
+pub mod mesh;
+pub(crate) mod wgsl;
+
+use std::collections::HashSet;
+
+use super::{LIGHT_KEYS, MODELS, OBJECT_KEYS, Registry, WINDOW_KEYS, light_set::MAX_LIGHT_TYPES};
+use crate::{
+    light::LightEntry,
+    parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, layout},
+    reflection::{ModelEntry, usage},
+    shader::{Source, definitions::allowed_in_wgsl},
+    shading::ShadingEntry,
+    shape::ShapeEntry,
+    text::identifier::{as_identifier, identifier},
+};
+
+type Check = Result<(), String>;
+
+/// The units of light types.
+const UNITS: [&str; 3] = ["cd", "lx", "×"];
+/// A light of a scene file, in messages.
+const LIGHT: &str = "a light";
+/// The names of the literals of JSON.
+const JSON_WORDS: [&str; 3] = ["true", "false", "null"];
+
+fn ensure(right: bool, otherwise: impl FnOnce() -> String) -> Check {
+    if right { Ok(()) } else { Err(otherwise()) }
+}
+
+/// Checks an id or the name of a parameter.
+fn name(name: &str) -> Check {
+    identifier(name).map_err(|rule| match as_identifier(name) {
+        Some(meant) => format!("{rule}; {meant} would do"),
+        None => rule,
+    })?;
+    ensure(allowed_in_wgsl(name) && !JSON_WORDS.contains(&name), || {
+        "is a reserved word in WGSL or JSON; choose another".to_owned()
+    })
+}
+
+/// Checks an id and the name shown to people.
+pub(super) fn identity(id: &str, shown: &str) -> Check {
+    name(id).map_err(|what| format!("the id {what}"))?;
+    ensure(!shown.trim().is_empty(), || "the name is empty; it is what people read in lists".to_owned())
+}
+
+/// Checks a number of a declaration.
+fn positive(what: &str, number: f32) -> Check {
+    ensure(number.is_finite() && number > 0.0, || format!("{what} is {number}, but must be greater than 0"))
+}
+
+/// Checks declarations of parameters; `reserved` are the other keys of the part of a scene that they stand in.
+pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str) -> Check {
+    let mut known = HashSet::new();
+    for p in all {
+        let of = |what: String| format!("parameter `{}`: {what}", p.name);
+        name(p.name).map_err(|what| of(format!("the name {what}")))?;
+        ensure(known.insert(p.name), || of("is declared twice; names must differ".to_owned()))?;
+        ensure(!reserved.contains(&p.name), || {
+            of(format!("the name is that of another key of {part} in scene files; choose another"))
+        })?;
+        ensure(part == LIGHT || !matches!(p.kind, ParameterKind::File { .. }), || {
+            of("is a file, which light types alone may have".to_owned())
+        })?;
+        kind(p).map_err(of)?;
+        if let Some(problem) = usage::problem(all, p) {
+            return Err(of(format!("used_when: {problem}")));
+        }
+    }
+    Ok(())
+}
+
+/// Checks the range and the default of a parameter.
+fn kind(p: &Parameter) -> Check {
+    let ends = |min: f32, max: f32| {
+        ensure(min.is_finite() && max.is_finite() && min <= max, || {
+            format!("its range is {min} to {max}, but must be two finite numbers, the smaller one first")
+        })
+    };
+    match &p.kind {
+        ParameterKind::Number { min, max, .. } | ParameterKind::Triple { min, max, .. } => ends(*min, *max)?,
+        ParameterKind::Integer { min, max, slider_max, .. } => {
+            let top = max.unwrap_or(*slider_max);
+            ensure(*min <= top, || {
+                format!("its range is {min} to {top}, but the smaller one must be first")
+            })?;
+        }
+        ParameterKind::Choice { options, default } => {
+            ensure(!options.is_empty(), || "it has no choices, but needs at least one".to_owned())?;
+            let mut known = HashSet::new();
+            for (id, _) in *options {
+                ensure(!id.is_empty() && known.insert(id), || {
+                    format!("the choice \"{id}\" is empty or there twice; each needs a name of its own")
+                })?;
+            }
+            ensure(*default < options.len(), || {
+                format!(
+                    "its default is choice {default}, but must be an index from 0 to {}",
+                    options.len() - 1
+                )
+            })?;
+        }
+        ParameterKind::Colour { .. } => {}
+        ParameterKind::File { format, default } => {
+            ensure(format.shipped.iter().any(|(name, _)| name == default), || {
+                format!("its default is the file \"{default}\", but must be one that its format ships")
+            })?;
+        }
+    }
+    let default = p.default_value();
+    ensure(p.allows(&default), || format!("its default is {default}, but must be {}", p.rule()))
+}
+
+/// Checks the path of a shader: it names one text.
+fn path(registry: &Registry, source: &Source, replaced: Option<&str>) -> Check {
+    let is = |what: &str| format!("the path of its shader is \"{}\", {what}", source.path);
+    let plain = source.path.ends_with(".wgsl")
+        && !source.path.starts_with(MODELS)
+        && source.path.split('/').all(|part| !matches!(part, "" | "." | "..") && !part.starts_with('('));
+    ensure(plain, || is("but must be a path below the folder of shaders such as \"light/lamp.wgsl\""))?;
+    let others = crate::shader::compose::OPTICS.iter().copied().chain(super::compose::SHARED);
+    let of_parts = registry.parts().filter(|(id, _)| replaced != Some(*id)).map(|(_, source)| source);
+    let differs = |other: Source| other.path == source.path && other.text != source.text;
+    ensure(!others.chain(of_parts).any(differs), || {
+        is("which is that of another text; each needs a path of its own")
+    })
+}
+
+/// Checks that parameters fit, and have the types of those of the same names in others of their sort.
+fn shared(
+    all: &[Parameter],
+    sort: &str,
+    others: impl Iterator<Item = (&'static str, &'static [Parameter])> + Clone,
+) -> Check {
+    let end = layout(all).last().map_or(0, |f| f.2 + 12);
+    ensure(end <= BLOCK_BYTES, || format!("its parameters take {end} bytes, at most {BLOCK_BYTES} fit"))?;
+    for p in all {
+        let differs = |other: &&Parameter| {
+            other.name == p.name && std::mem::discriminant(&other.kind) != std::mem::discriminant(&p.kind)
+        };
+        let other = others.clone().find_map(|(id, all)| Some((id, all.iter().find(differs)?)));
+        if let Some((id, other)) = other {
+            return Err(format!(
+                "parameter `{}`: is {}, but that of `{id}` is {}; {sort} share parameters by name, so they must have \
+                 one type: use that, or another name",
+                p.name,
+                p.kind.name(),
+                other.kind.name()
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Checks a reflection model.
+pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check {
+    let d = entry.declaration;
+    identity(d.id, d.name)?;
+    parameters(entry.parameters, OBJECT_KEYS, "an object")?;
+    let others = registry.models().iter().filter(|m| m.declaration.id != d.id);
+    shared(entry.parameters, "models", others.map(|m| (m.declaration.id, m.parameters)))?;
+    path(registry, &d.wgsl, registry.model(d.id).map(|m| m.declaration.id))
+}
+
+/// Checks a shading model.
+pub(super) fn shading_model(registry: &Registry, entry: &ShadingEntry) -> Check {
+    let d = entry.declaration;
+    identity(d.id, d.name)?;
+    let is = |what: String| format!("its key is '{}', {what}", d.key);
+    ensure(d.key.is_ascii_uppercase(), || is("but must be a letter from A to Z".to_owned()))?;
+    ensure(!WINDOW_KEYS.contains(&d.key), || {
+        let others = registry.shading_models().iter().map(|s| s.declaration.key);
+        let taken: HashSet<_> = WINDOW_KEYS.iter().copied().chain(others).collect();
+        let free: String = ('A'..='Z').filter(|key| !taken.contains(key)).collect();
+        is(format!("which has another use in the window; free are {free}"))
+    })?;
+    let mut others = registry.shading_models().iter().filter(|s| s.declaration.id != d.id);
+    if let Some(other) = others.find(|s| s.declaration.key == d.key) {
+        return Err(is(format!("which is that of `{}`; choose another", other.declaration.id)));
+    }
+    path(registry, &d.wgsl, registry.shading_model(d.id).map(|s| s.declaration.id))
+}
+
+/// Checks a light type.
+pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
+    let d = entry.declaration;
+    identity(d.id, d.name)?;
+    parameters(entry.parameters, LIGHT_KEYS, LIGHT)?;
+    let others = registry.lights().iter().filter(|l| l.declaration.id != d.id);
+    shared(entry.parameters, "light types", others.map(|l| (l.declaration.id, l.parameters)))?;
+    ensure(UNITS.contains(&d.unit), || {
+        format!(
+            "its unit is \"{}\", but must be cd or lx, for lights with a position and without, or × for a factor",
+            d.unit
+        )
+    })?;
+    positive("its default intensity", d.default_intensity)?;
+    positive("the end of the slider for its intensity", d.slider_max)?;
+    if let Some(cone) = d.cone_parameter {
+        let number = |p: &Parameter| matches!(p.kind, ParameterKind::Number { .. });
+        ensure(entry.parameter(cone).is_some_and(number), || {
+            format!("its cone is parameter `{cone}`, but must be one of its numbers")
+        })?;
+    }
+    let known = registry.light(d.id).is_some();
+    ensure(known || registry.lights().len() < MAX_LIGHT_TYPES, || {
+        format!("there are {MAX_LIGHT_TYPES} light types already, and there is no room for more")
+    })?;
+    path(registry, &d.wgsl, registry.light(d.id).map(|l| l.declaration.id))
+}
+
+/// Checks the declaration of an object type.
+pub(super) fn object_type(registry: &Registry, entry: &ShapeEntry) -> Check {
+    let d = entry.declaration;
+    identity(d.id, d.name)?;
+    parameters(entry.parameters, OBJECT_KEYS, "an object")?;
+    let others = registry.shapes().iter().filter(|s| s.declaration.id != d.id);
+    shared(entry.parameters, "object types", others.map(|s| (s.declaration.id, s.parameters)))?;
+    let (least, most) = (*d.tessellation.start(), *d.tessellation.end());
+    ensure(1 <= least && least <= most, || {
+        format!("its tessellations are {least} to {most}, but must be at least 1, the smaller one first")
+    })?;
+    ensure(d.tessellation.contains(&d.default_tessellation), || {
+        format!("its default tessellation is {}, but must be from {least} to {most}", d.default_tessellation)
+    })
+}
+
+/// Checks the meshes of an object type: at both ends of its tessellations and at the default, and each parameter at both
+/// ends of its range.
+pub(super) fn meshes(entry: &ShapeEntry) -> Check {
+    let d = entry.declaration;
+    let check = |values: &Values, tessellation: u32| {
+        mesh::check(&entry.mesh(values, tessellation)).map_err(|what| {
+            let set: Vec<_> = values.0.iter().map(|(name, value)| format!(" with {name} {value}")).collect();
+            format!("the mesh of tessellation {tessellation}{}: {what}", set.concat())
+        })
+    };
+    let mut all = vec![d.default_tessellation, *d.tessellation.start(), *d.tessellation.end()];
+    all.dedup();
+    all.into_iter().try_for_each(|tessellation| check(&Values::default(), tessellation))?;
+    let ends = entry.parameters.iter().flat_map(|p| p.ends().into_iter().map(move |end| (p.name, end)));
+    ends.into_iter()
+        .try_for_each(|(name, end)| check(&Values([(name.into(), end)].into()), d.default_tessellation))
+}

@@ -1,0 +1,33 @@
+//! Declarations of shading models, step by step: another field of [`Declaration`] changes none of them.
+
+use super::{Declaration, Stage};
+use crate::shader::Source;
+
+impl Declaration {
+    /// A shading model with an id and a name, the stage that evaluates the reflection model, the key that selects it in
+    /// the window, and its twin in WGSL.
+    ///
+    /// ```
+    /// use lights_camera_models::{shader::Source, shading::{Declaration, Stage}};
+    /// const NORMALS: Declaration =
+    ///     Declaration::new("normals", "Normals", Stage::Pixel, 'N', Source::new("normals.wgsl", "…"))
+    ///         .summary("The normal as a colour.");
+    /// assert_eq!(NORMALS.key, 'N');
+    /// ```
+    #[must_use]
+    pub const fn new(id: &'static str, name: &'static str, stage: Stage, key: char, wgsl: Source) -> Self {
+        Self { id, name, author: "", source: "", summary: "", stage, key, wgsl }
+    }
+
+    /// The same with author and year, in short, and the publication.
+    #[must_use]
+    pub const fn published(self, author: &'static str, source: &'static str) -> Self {
+        Self { author, source, ..self }
+    }
+
+    /// The same with its method and what to look for, in one or two sentences.
+    #[must_use]
+    pub const fn summary(self, summary: &'static str) -> Self {
+        Self { summary, ..self }
+    }
+}

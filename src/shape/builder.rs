@@ -1,0 +1,46 @@
+//! Declarations of object types, step by step: another field of [`Declaration`] changes none of them.
+
+use std::ops::RangeInclusive;
+
+use super::Declaration;
+
+impl Declaration {
+    /// An object type with an id and a name, and one tessellation.
+    ///
+    /// ```
+    /// use lights_camera_models::shape::Declaration;
+    /// const PRISM: Declaration =
+    ///     Declaration::new("prism", "Prism").summary("A column.").tessellation(3..=64, 6, "Its sides.");
+    /// assert_eq!(PRISM.default_tessellation, 6);
+    /// ```
+    #[must_use]
+    pub const fn new(id: &'static str, name: &'static str) -> Self {
+        Self {
+            id,
+            name,
+            summary: "",
+            glyph: "■",
+            tessellation_help: "It is always 1.",
+            tessellation: 1..=1,
+            default_tessellation: 1,
+        }
+    }
+
+    /// The same with one sentence about its shape and use.
+    #[must_use]
+    pub const fn summary(self, summary: &'static str) -> Self {
+        Self { summary, ..self }
+    }
+
+    /// The same with a glyph for lists.
+    #[must_use]
+    pub const fn glyph(self, glyph: &'static str) -> Self {
+        Self { glyph, ..self }
+    }
+
+    /// The same with several tessellations, and the meaning of the number.
+    #[must_use]
+    pub const fn tessellation(self, range: RangeInclusive<u32>, default: u32, help: &'static str) -> Self {
+        Self { tessellation: range, default_tessellation: default, tessellation_help: help, ..self }
+    }
+}

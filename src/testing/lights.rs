@@ -1,0 +1,201 @@
+//! Light types in Rust and in WGSL, compared, and the laws that they keep.
+
+use std::f32::consts::TAU;
+
+use glam::Vec3;
+
+use super::{
+    Outcome,
+    sample::{any_direction, random, random_value},
+};
+use crate::{
+    light::{Incident, LightEntry, LightRecord},
+    optics::colour::Encoding,
+    parameter::Values,
+    registry::compose::{FILE_TABLE, compose_light},
+    shader::{check::validate, compose::Sources, interpret::Program},
+};
+
+/// The largest relative difference between the languages attributed to rounding.
+pub const TOLERANCE: f32 = 1e-4;
+/// The largest relative difference of a luminous flux attributed to its quadrature.
+const FLUX_TOLERANCE: f64 = 0.02;
+/// Directions of that quadrature.
+const DIRECTIONS: usize = 50_000;
+
+/// All of them.
+///
+/// # Errors
+/// The first that does not hold.
+pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
+    parity(light, sources)?;
+    laws(light)?;
+    flux(light)
+}
+
+/// A light of a type somewhere in the default room, with parameters as a scene may have them.
+fn sample(light: &LightEntry, seed: &mut u64) -> (Values, LightRecord) {
+    let mut values = Values::default();
+    for p in light.parameters {
+        values.set(p.name, random_value(p, seed));
+    }
+    let position = place(seed);
+    let direction = any_direction(seed);
+    let d = light.declaration;
+    let record = LightRecord {
+        light_type: light.index,
+        position: if d.has_position { position } else { Vec3::ZERO },
+        direction: if d.has_direction { direction } else { Vec3::ZERO },
+        colour: Vec3::ONE,
+        intensity: 0.1 + 100.0 * random(seed),
+    };
+    (values, record)
+}
+
+/// A point in the default room.
+fn place(seed: &mut u64) -> Vec3 {
+    Vec3::from_array([0; 3].map(|_| 10.0 * random(seed)))
+}
+
+/// The answer of a light, for comparison: direction, intensity, 1 if it comes from everywhere.
+fn flat(incident: Incident) -> (Vec3, Vec3, u32) {
+    match incident {
+        Incident::From { l, intensity } => (l, intensity, 0),
+        Incident::Uniform { intensity } => (Vec3::ZERO, intensity, 1),
+    }
+}
+
+/// The parameters of a light as its function in WGSL takes them, and the numbers of its files.
+fn words(light: &LightEntry, values: &Values) -> (Vec<u32>, Vec<u32>) {
+    let mut words = light.words(values, Encoding::Srgb);
+    let mut files = Vec::new();
+    for (at, table) in light.tables(values) {
+        words[at] = files.len() as u32;
+        files.extend(table.numbers.iter().map(|n| n.to_bits()));
+    }
+    (words, files)
+}
+
+/// WGSL that the CPU interprets agrees with the Rust function.
+///
+/// # Errors
+/// The first difference.
+pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
+    let module = validate(&compose_light(sources, light)).map_err(|problem| problem.to_string())?;
+    let function = format!("incident_{}", light.declaration.id);
+    let program =
+        Program::with_table(&module, "incident", FILE_TABLE).map_err(|e| format!("{function}: {e}"))?;
+    let mut seed = 31;
+    let mut sensitive = false;
+    for _ in 0..4000 {
+        let (values, record) = sample(light, &mut seed);
+        let p = place(&mut seed);
+        let LightRecord { light_type, position, direction, colour, intensity } = record;
+        let (own, files) = words(light, &values);
+        let mut arguments = Vec::new();
+        let mut put = |numbers: &[f32]| arguments.extend(numbers.iter().map(|n| n.to_bits()));
+        put(&position.to_array());
+        put(&[f32::from_bits(light_type)]);
+        put(&direction.to_array());
+        put(&[intensity]);
+        put(&colour.to_array());
+        // Where its parameters begin: they are given to it here.
+        put(&[0.0]);
+        arguments.extend(own);
+        arguments.extend(p.to_array().map(f32::to_bits));
+        let mut results = [0; 7];
+        program.run_with(&files, &arguments, &mut results).map_err(|e| e.to_string())?;
+        let [x, y, z, red, green, blue, everywhere] = results;
+        let vector = |words: [u32; 3]| Vec3::from_array(words.map(f32::from_bits));
+        let wgsl = (vector([x, y, z]), vector([red, green, blue]));
+        let (l, rust, uniform) = flat((light.instantiate)(&values, Encoding::Srgb).incident(&record, p));
+        // At the edge of a beam a rounded angle is much of little light: 1 % of the mean in all directions is dark.
+        let mean = light.solid_angle(&values).map_or(0.0, |sr| sr as f32 / (2.0 * TAU));
+        let dark = 0.01 * mean * record.intensity / (record.position - p).length_squared().max(1e-6);
+        let scale = rust.abs().max(Vec3::splat(dark.max(1e-3)));
+        let turned = if uniform == 1 { 0.0 } else { (wgsl.0 - l).abs().max_element() };
+        let error = |rust: Vec3| ((wgsl.1 - rust).abs() / scale).max_element();
+        let close = turned <= TOLERANCE && error(rust) <= TOLERANCE;
+        if !(close && (everywhere != 0) == (uniform == 1)) {
+            return Err(format!(
+                "{values:?} at {p}, {record:?}: WGSL gives {wgsl:?} and everywhere = {everywhere}, Rust {l}, {rust} and {uniform}"
+            ));
+        }
+        sensitive |= error(1.0005 * rust) > TOLERANCE;
+    }
+    match sensitive {
+        true => Ok(()),
+        false => Err("it gives no light anywhere, so a wrong twin would not be noticed".to_owned()),
+    }
+}
+
+/// Light is finite and not negative, comes from a direction of unit length, and is proportional to the intensity.
+///
+/// # Errors
+/// The first violation.
+pub fn laws(light: &LightEntry) -> Outcome {
+    let mut seed = 32;
+    for _ in 0..4000 {
+        let (values, record) = sample(light, &mut seed);
+        // Sometimes at the light itself.
+        let p = if random(&mut seed) < 0.01 { record.position } else { place(&mut seed) };
+        let case = |what: String| Err(format!("{values:?} at {p}, {record:?}: {what}"));
+        let emitter = (light.instantiate)(&values, Encoding::Srgb);
+        let (l, intensity, uniform) = flat(emitter.incident(&record, p));
+        if !(intensity.is_finite() && intensity.min_element() >= 0.0) {
+            return case(format!("the intensity is {intensity}, but must be finite and not negative"));
+        }
+        // At the light itself there is none.
+        let directed = uniform == 0 && intensity != Vec3::ZERO && p != record.position;
+        if directed && (l.length() - 1.0).abs() > 1e-4 {
+            return case(format!("the direction to the light is {l}, but must be a unit vector"));
+        }
+        let twice = LightRecord { intensity: 2.0 * record.intensity, ..record };
+        let (_, doubled, _) = flat(emitter.incident(&twice, p));
+        if (doubled - 2.0 * intensity).abs().cmpgt(1e-3 * intensity).any() {
+            return case(format!(
+                "twice the intensity gives {doubled} instead of {intensity}, but must give twice as much"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The luminous flux of a type that has one is its light in all directions: `Φ = ∫ I dω`.
+///
+/// # Errors
+/// If it is not.
+pub fn flux(light: &LightEntry) -> Outcome {
+    let mut seed = 33;
+    for set in 0..8 {
+        let (mut values, record) = sample(light, &mut seed);
+        if set == 0 {
+            values = Values::default();
+        }
+        let Some(expected) = light.solid_angle(&values) else { continue };
+        // Of a very narrow beam the quadrature sees too little.
+        if !light.declaration.has_position || expected < 0.2 {
+            continue;
+        }
+        let emitter = (light.instantiate)(&values, Encoding::Srgb);
+        // Points spread evenly over the unit sphere (the golden angle), where 1/d² is 1.
+        let golden = TAU * (1.0 - 2.0 / (1.0 + 5.0f32.sqrt()));
+        let sum: f64 = (0..DIRECTIONS)
+            .map(|i| {
+                let y = 1.0 - 2.0 * (i as f32 + 0.5) / DIRECTIONS as f32;
+                let (sin, cos) = (golden * i as f32).rem_euclid(TAU).sin_cos();
+                let r = (1.0 - y * y).sqrt();
+                let p = record.position + Vec3::new(r * cos, y, r * sin);
+                // Of coloured light, what its colours have in the middle.
+                f64::from(flat(emitter.incident(&record, p)).1.element_sum() / 3.0)
+            })
+            .sum();
+        let found = sum / f64::from(record.intensity) * f64::from(2.0 * TAU) / DIRECTIONS as f64;
+        if (found - expected).abs() > FLUX_TOLERANCE * expected {
+            return Err(format!(
+                "{values:?}: solid_angle is {expected:.4} sr, but its light in all directions is {found:.4} sr times the intensity"
+            ));
+        }
+    }
+    Ok(())
+}

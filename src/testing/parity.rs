@@ -1,0 +1,306 @@
+//! Reflection models in Rust and in WGSL, compared: both say the same.
+
+use glam::Vec3;
+use naga::Module;
+
+use super::{
+    Outcome,
+    sample::{direction, random, random_values},
+};
+use crate::{
+    optics::{Frame, Terms, colour::Encoding},
+    parameter::{self, ParameterKind, Value, Values},
+    reflection::{Ambient, ModelEntry},
+    registry::compose::compose_evaluation,
+    render::capture::evaluate::evaluate,
+    shader::{check::validate, compose::Sources, interpret::Program},
+};
+
+/// The largest difference attributed to rounding, relative where the response is not dark.
+pub const TOLERANCE: f32 = 1e-4;
+/// The same where all parameters are at the ends of their ranges, or directions were rotated back and forth.
+const WIDE: f32 = 1e-3;
+
+/// A seed for [`at_the_ends_on_gpu`].
+pub const SEED_OF_ENDS: u64 = 11;
+
+/// All that needs no GPU.
+///
+/// # Errors
+/// The first difference.
+pub fn all(model: &ModelEntry, sources: &Sources) -> Outcome {
+    interpreted(model, sources)?;
+    in_any_frame(model, sources)?;
+    under_uniform_light(model, sources)
+}
+
+fn module(model: &ModelEntry, sources: &Sources) -> Result<Module, String> {
+    validate(&compose_evaluation(sources, model)).map_err(|problem| problem.to_string())
+}
+
+fn program(module: &Module, function: &str) -> Result<Program, String> {
+    Program::with_table(module, function, "parameter_table").map_err(|e| format!("{function}: {e}"))
+}
+
+/// Bytes as words.
+fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+}
+
+fn put(to: &mut Vec<u32>, v: Vec3) {
+    to.extend(v.to_array().map(f32::to_bits));
+}
+
+fn put_frame(to: &mut Vec<u32>, frame: &Frame) {
+    [frame.n, frame.t, frame.b].into_iter().for_each(|v| put(to, v));
+}
+
+/// A model's response by its WGSL, with one set of parameters.
+struct Twin<'a> {
+    program: &'a Program,
+    row: Vec<u32>,
+    parameters: Vec<u32>,
+}
+
+impl<'a> Twin<'a> {
+    fn new(program: &'a Program, model: &ModelEntry, values: &Values) -> Self {
+        let row = words(&model.row(values, Encoding::Srgb, false));
+        Self { program, row, parameters: parameter::words(model.parameters, values, Encoding::Srgb) }
+    }
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Result<Terms, String> {
+        let mut arguments = Vec::new();
+        put(&mut arguments, l);
+        put(&mut arguments, v);
+        put_frame(&mut arguments, frame);
+        arguments.extend(&self.parameters);
+        let mut results = [0; 9];
+        let (takes, gives) = (self.program.argument_words(), self.program.result_words());
+        if (takes, gives) != (arguments.len(), results.len()) {
+            return Err(format!(
+                "response takes {takes} numbers and gives {gives}, but must take {} and give {}",
+                arguments.len(),
+                results.len()
+            ));
+        }
+        self.program.run_with(&self.row, &arguments, &mut results).map_err(|e| e.to_string())?;
+        let at = |i: usize| Vec3::from_array([0, 1, 2].map(|k| f32::from_bits(results[i + k])));
+        Ok(Terms { ambient: at(0), diffuse: at(3), specular: at(6) })
+    }
+}
+
+/// The largest difference, relative where the response is not dark: below 1e-5 no display shows it.
+#[must_use]
+pub fn difference(a: Terms, b: Terms) -> f32 {
+    [(a.ambient, b.ambient), (a.diffuse, b.diffuse), (a.specular, b.specular)]
+        .map(|(a, b)| (a - b).abs() / b.abs().max(Vec3::splat(1e-2)))
+        .into_iter()
+        .flat_map(|error| error.to_array())
+        .fold(0.0, |worst, error| if error.is_nan() { f32::INFINITY } else { worst.max(error) })
+}
+
+/// A response that is larger by a factor.
+fn scaled(terms: Terms, factor: f32) -> Terms {
+    let Terms { ambient, diffuse, specular } = terms;
+    Terms { ambient: factor * ambient, diffuse: factor * diffuse, specular: factor * specular }
+}
+
+/// A comparison, which notes if a slightly wrong twin would have been noticed.
+struct Comparison {
+    tolerance: f32,
+    sensitive: bool,
+}
+
+impl Comparison {
+    fn new(tolerance: f32) -> Self {
+        Self { tolerance, sensitive: false }
+    }
+
+    fn compare(&mut self, wgsl: Terms, rust: Terms, case: impl FnOnce() -> String) -> Outcome {
+        let error = difference(wgsl, rust);
+        if error > self.tolerance {
+            return Err(format!("{}: WGSL gives {wgsl:?}, Rust {rust:?}: {error:.1e} apart", case()));
+        }
+        // 0.05 % more where the tolerance is 1e-4.
+        self.sensitive |= difference(wgsl, scaled(rust, 1.0 + 5.0 * self.tolerance)) > self.tolerance;
+        Ok(())
+    }
+
+    fn done(&self) -> Outcome {
+        match self.sensitive {
+            true => Ok(()),
+            false => Err("all responses are black, so a wrong one would not be noticed".to_owned()),
+        }
+    }
+}
+
+/// WGSL that the CPU interprets agrees with the Rust function in the local frame.
+///
+/// # Errors
+/// The first difference.
+pub fn interpreted(model: &ModelEntry, sources: &Sources) -> Outcome {
+    let module = module(model, sources)?;
+    let program = program(&module, "response")?;
+    let mut seed = 21;
+    let mut comparison = Comparison::new(TOLERANCE);
+    for _ in 0..40 {
+        let values = random_values(model, &mut seed);
+        let twin = Twin::new(&program, model, &values);
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        for _ in 0..200 {
+            let (l, v) = (direction(&mut seed), direction(&mut seed));
+            let rust = surface.response(l, v, &Frame::LOCAL);
+            comparison
+                .compare(twin.response(l, v, &Frame::LOCAL)?, rust, || format!("{values:?} l {l} v {v}"))?;
+        }
+    }
+    comparison.done()
+}
+
+/// The frame is used as the Rust function uses it.
+///
+/// # Errors
+/// The first difference.
+pub fn in_any_frame(model: &ModelEntry, sources: &Sources) -> Outcome {
+    let module = module(model, sources)?;
+    let program = program(&module, "response")?;
+    let mut seed = 23;
+    let values = random_values(model, &mut seed);
+    let twin = Twin::new(&program, model, &values);
+    let surface = model.instantiate(&values, Encoding::Srgb);
+    for _ in 0..100 {
+        let frame = Frame::new(direction(&mut seed), direction(&mut seed) - direction(&mut seed));
+        let room = |d: Vec3| d.x * frame.t + d.y * frame.b + d.z * frame.n;
+        let (l, v) = (room(direction(&mut seed)), room(direction(&mut seed)));
+        let error = difference(twin.response(l, v, &frame)?, surface.response(l, v, &frame));
+        // Directions rotated back and forth are rounded differently.
+        if error > 2.0 * WIDE {
+            return Err(format!("{values:?} {frame:?} l {l} v {v}: WGSL and Rust are {error:.1e} apart"));
+        }
+    }
+    Ok(())
+}
+
+/// Uniform light is answered alike, by the formula or by the curve in the row of the object.
+///
+/// # Errors
+/// The first difference.
+pub fn under_uniform_light(model: &ModelEntry, sources: &Sources) -> Outcome {
+    let module = module(model, sources)?;
+    let program = program(&module, "ambient_response")?;
+    let mut seed = 24;
+    for _ in 0..5 {
+        let values = random_values(model, &mut seed);
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        let row = words(&model.row(&values, Encoding::Srgb, true));
+        for _ in 0..50 {
+            let v = direction(&mut seed);
+            let mut arguments = Vec::new();
+            put(&mut arguments, v);
+            put_frame(&mut arguments, &Frame::LOCAL);
+            arguments.extend(parameter::words(model.parameters, &values, Encoding::Srgb));
+            let run = |row: &[u32]| {
+                let mut results = [0; 3];
+                let ran = program.run_with(row, &arguments, &mut results);
+                ran.map(|()| Vec3::from_array(results.map(f32::from_bits))).map_err(|e| e.to_string())
+            };
+            let wgsl = run(&row)?;
+            let rust = surface.ambient_response(v, &Frame::LOCAL).max(Vec3::ZERO);
+            let close = (wgsl - rust).abs().max_element() <= TOLERANCE;
+            if !(close && wgsl.is_finite()) {
+                return Err(format!("{values:?} v {v}: in uniform light WGSL gives {wgsl}, Rust {rust}"));
+            }
+            let by_curve = model.declaration.ambient == Ambient::Albedo && rust.max_element() > 1e-2;
+            if by_curve && run(&vec![0; row.len()])? == wgsl {
+                return Err("the curve in the row is not read".to_owned());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// WGSL on the GPU agrees with the Rust function.
+///
+/// # Errors
+/// The first difference, or why the GPU gives no answer.
+pub fn on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
+    let mut seed = 7;
+    // Every choice should come up.
+    let choices = model.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::Choice { .. })).count();
+    let mut comparison = Comparison::new(TOLERANCE);
+    for _ in 0..8 * (1 + choices) {
+        let values = random_values(model, &mut seed);
+        let pairs: Vec<_> = (0..2000).map(|_| (direction(&mut seed), direction(&mut seed))).collect();
+        let answers = evaluate(sources, model, &values, Encoding::Srgb, &pairs).map_err(|e| e.to_string())?;
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        for ((l, v), gpu) in pairs.iter().zip(answers) {
+            let rust = surface.response(*l, *v, &Frame::LOCAL);
+            comparison.compare(gpu, rust, || format!("{values:?} l {l} v {v}"))?;
+        }
+    }
+    comparison.done()
+}
+
+/// At the ends of all ranges both languages are finite and agree, for directions straight on, at the horizon and
+/// within it, below, opposite each other, and on one line. `seed` chooses the ends.
+///
+/// # Errors
+/// The first difference, or why the GPU gives no answer.
+pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64) -> Outcome {
+    let mut directions = SEED_OF_ENDS;
+    let mut ends = vec![Vec3::Z, Vec3::NEG_Z, Vec3::X, Vec3::ZERO];
+    for lift in [1e-20, 1e-9, 1e-6, 1e-3, -1e-6] {
+        ends.extend([Vec3::new(1.0, 0.0, lift), Vec3::new(-1.0, 0.0, lift), Vec3::new(0.0, 1.0, lift)]);
+    }
+    ends.extend((0..6).map(|_| direction(&mut directions)));
+    let pairs: Vec<_> = ends.iter().flat_map(|l| ends.iter().map(|v| (*l, *v))).collect();
+    let mut sensitive = false;
+    // All at the smallest, all at the largest, then each at either.
+    for set in 0..10 {
+        let mut values = Values::default();
+        for p in model.parameters {
+            let high = if set < 2 { set == 1 } else { random(seed) < 0.5 };
+            let value = match p.kind {
+                ParameterKind::Number { min, max, .. } => Value::Number(if high { max } else { min }),
+                ParameterKind::Integer { min, max, slider_max, .. } => {
+                    Value::Integer(if high { max.unwrap_or(slider_max) } else { min })
+                }
+                ParameterKind::Colour { .. } => Value::Colour([if high { 255 } else { 0 }; 3]),
+                ParameterKind::Triple { min, max, .. } => Value::Triple([if high { max } else { min }; 3]),
+                ParameterKind::Choice { options, .. } => {
+                    let i = (random(seed) * options.len() as f32) as usize;
+                    Value::Choice(options[i].0.into())
+                }
+                ParameterKind::File { .. } => p.default_value(),
+            };
+            values.set(p.name, value);
+        }
+        let answers = evaluate(sources, model, &values, Encoding::Srgb, &pairs).map_err(|e| e.to_string())?;
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        for ((l, v), gpu) in pairs.iter().zip(answers) {
+            let cpu = surface.response(*l, *v, &Frame::LOCAL);
+            let case = || format!("{values:?} l {l} v {v}: GPU {gpu:?}, CPU {cpu:?}");
+            for (g, c) in
+                [(gpu.ambient, cpu.ambient), (gpu.diffuse, cpu.diffuse), (gpu.specular, cpu.specular)]
+            {
+                let legal = !model.declaration.laws.non_negative || g.min_element() >= -1e-6;
+                if !(g.is_finite() && c.is_finite() && legal) {
+                    return Err(case());
+                }
+                // Of a sum as short as this the languages need not find the same direction.
+                if (*l + *v).length() < 1e-12 {
+                    continue;
+                }
+                let error = |c: Vec3| ((g - c).abs() / c.abs().max(Vec3::splat(1e-2))).max_element();
+                if error(c) > WIDE {
+                    return Err(case());
+                }
+                sensitive |= error(c * 1.002) > WIDE;
+            }
+        }
+    }
+    match sensitive {
+        true => Ok(()),
+        false => Err("all responses are black, so a wrong one would not be noticed".to_owned()),
+    }
+}

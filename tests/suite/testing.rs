@@ -1,0 +1,237 @@
+//! The public tests for models, light types and object types: what is right passes, and a wrong twin of each fails.
+
+use glam::Vec3;
+use lights_camera_models::{
+    light::{self, Incident, LightRecord, LightType},
+    optics::{Frame, Terms},
+    parameters, reflection,
+    reflection::ReflectionModel,
+    registry::Registry,
+    shader::{Source, compose::Sources},
+    shape::{self, ObjectType, PolygonMesh, mesh::Polygon},
+    testing,
+};
+
+/// Paper that scatters this part of the light, in Rust; in WGSL it scatters all of it.
+macro_rules! paper {
+    ($name:ident, $share:literal, $declaration:expr) => {
+        parameters! {
+            /// Paper.
+            struct $name {}
+        }
+        impl ReflectionModel for $name {
+            const DECLARATION: reflection::Declaration = $declaration;
+            fn response(&self, l: Vec3, _: Vec3, frame: &Frame) -> Terms {
+                Terms { diffuse: Vec3::splat($share * frame.n.dot(l).max(0.0)), ..Terms::default() }
+            }
+            fn ambient_response(&self, _: Vec3, _: &Frame) -> Vec3 {
+                Vec3::splat($share)
+            }
+        }
+    };
+}
+
+const PAPER: reflection::Declaration = reflection::Declaration::new(
+    "paper",
+    "Paper",
+    Source::new(
+        "paper.wgsl",
+        "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), vec3(max(dot(frame.n, l), 0.0)), vec3(0.0));
+}
+fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    return vec3(1.0);
+}
+",
+    ),
+)
+.reciprocal()
+.energy_conserving()
+.non_negative();
+
+paper!(Paper, 1.0, PAPER);
+paper!(Darker, 0.9995, PAPER);
+paper!(Glowing, 1.5, PAPER);
+paper!(Black, 0.0, PAPER);
+paper!(
+    Modest,
+    1.0,
+    reflection::Declaration::new("paper", "Paper", PAPER.wgsl).energy_conserving().non_negative()
+);
+
+#[test]
+fn what_is_right_passes() {
+    testing::assert_laws::<Paper>();
+    testing::assert_parity::<Paper>();
+    testing::assert_parity_on_gpu::<Paper>();
+    testing::assert_light::<Downlight>();
+    testing::assert_mesh::<Tetrahedron>();
+}
+
+#[test]
+#[should_panic(expected = "paper: declares that it conserves energy, but reflects 1.5")]
+fn a_model_that_makes_light_fails() {
+    testing::assert_laws::<Glowing>();
+}
+
+#[test]
+#[should_panic(expected = "paper: declares that it is not reciprocal, but both directions differ by 0")]
+fn a_model_that_claims_less_than_it_keeps_fails() {
+    testing::assert_laws::<Modest>();
+}
+
+#[test]
+#[should_panic(expected = "WGSL gives")]
+fn a_model_that_is_darker_by_a_twentieth_of_a_percent_in_one_language_fails() {
+    testing::assert_parity::<Darker>();
+}
+
+#[test]
+#[should_panic(expected = "WGSL gives")]
+fn the_same_fails_on_the_gpu() {
+    testing::assert_parity_on_gpu::<Darker>();
+}
+
+#[test]
+#[should_panic(expected = "WGSL gives")]
+fn a_model_that_is_black_in_one_language_fails() {
+    testing::assert_parity::<Black>();
+}
+
+/// A lamp with that part of the light in Rust, and all in WGSL, and with that solid angle.
+macro_rules! downlight {
+    ($name:ident, $intensity:expr, $solid_angle:expr) => {
+        parameters! {
+            struct $name {}
+        }
+        impl LightType for $name {
+            const DECLARATION: light::Declaration = DOWNLIGHT;
+            fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
+                let to_light = light.position - p;
+                let share: fn(f32) -> f32 = $intensity;
+                let l = to_light.normalize_or_zero();
+                let falloff = light.intensity / to_light.length_squared().max(1e-12);
+                Incident::From { l, intensity: Vec3::splat(share(l.y.max(0.0) * falloff)) }
+            }
+            fn solid_angle(&self) -> Option<f64> {
+                Some($solid_angle)
+            }
+        }
+    };
+}
+
+const DOWNLIGHT: light::Declaration = light::Declaration::new(
+    "downlight",
+    "Downlight",
+    Source::new(
+        "downlight.wgsl",
+        "fn incident_downlight(light: Light, p: vec3<f32>) -> Incident {
+    let to_light = light.position - p;
+    let l = unit_or_zero(to_light);
+    return Incident(l, vec3(max(l.y, 0.0) * light.intensity / max(dot(to_light, to_light), 1e-12)), 0u);
+}
+",
+    ),
+)
+.at_position()
+.candela(10.0, 100.0);
+
+downlight!(Downlight, |i| i, std::f64::consts::PI);
+downlight!(Dimmer, |i| 0.9995 * i, std::f64::consts::PI);
+downlight!(Wider, |i| i, 1.1 * std::f64::consts::PI);
+
+#[test]
+#[should_panic(expected = "downlight: ")]
+fn a_light_that_is_darker_by_a_twentieth_of_a_percent_in_one_language_fails() {
+    testing::assert_light::<Dimmer>();
+}
+
+#[test]
+#[should_panic(expected = "solid_angle is 3.4558 sr, but its light in all directions is 3.14")]
+fn a_light_whose_flux_is_not_what_it_sends_out_fails() {
+    testing::assert_light::<Wider>();
+}
+
+#[test]
+fn every_built_in_light_passes() {
+    for light in Registry::builtin().lights() {
+        assert_eq!(testing::lights::all(light, &Sources::default()), Ok(()), "{}", light.declaration.id);
+    }
+}
+
+#[test]
+fn a_light_with_one_sign_changed_is_noticed() {
+    let registry = Registry::builtin();
+    for (id, from, to) in [
+        ("point", "light.position - p", "p - light.position"),
+        ("spot", "light.direction, -l", "light.direction, l"),
+        ("photometric", "cross(zero, axis)", "cross(axis, zero)"),
+        ("directional", "-light.direction", "light.direction"),
+        ("ambient", "1u", "0u"),
+    ] {
+        let light = registry.light(id).expect("built in");
+        let source = light.declaration.wgsl;
+        assert!(source.text.contains(from), "{id}: nothing to edit");
+        let mut sources = Sources::default();
+        sources.edit(source.path, source.text.replacen(from, to, 1));
+        let found = testing::lights::parity(light, &sources).expect_err(id);
+        assert!(found.contains("WGSL gives"), "{found}");
+    }
+}
+
+/// A tetrahedron, after a change.
+macro_rules! tetrahedron {
+    ($name:ident, $change:expr) => {
+        parameters! {
+            struct $name {}
+        }
+        impl ObjectType for $name {
+            const DECLARATION: shape::Declaration = shape::Declaration::new("tetrahedron", "Tetrahedron");
+            fn mesh(&self, _: u32) -> PolygonMesh {
+                let mut mesh = PolygonMesh {
+                    positions: vec![
+                        Vec3::new(0.5, 0.5, 0.5),
+                        Vec3::new(-0.5, -0.5, 0.5),
+                        Vec3::new(-0.5, 0.5, -0.5),
+                        Vec3::new(0.5, -0.5, -0.5),
+                    ],
+                    polygons: vec![
+                        Polygon::triangle(0, 2, 1),
+                        Polygon::triangle(0, 1, 3),
+                        Polygon::triangle(0, 3, 2),
+                        Polygon::triangle(1, 2, 3),
+                    ],
+                };
+                let change: fn(&mut PolygonMesh) = $change;
+                change(&mut mesh);
+                mesh
+            }
+        }
+    };
+}
+
+tetrahedron!(Tetrahedron, |_| {});
+tetrahedron!(Turned, |m| m.polygons[0] = Polygon::triangle(1, 2, 0));
+tetrahedron!(Torn, |m| {
+    m.positions.push(m.positions[0]);
+    m.polygons[2] = Polygon::triangle(4, 3, 2);
+});
+tetrahedron!(Lonely, |m| m.positions.push(Vec3::ZERO));
+
+#[test]
+#[should_panic(expected = "one of them faces the other way")]
+fn a_mesh_with_one_polygon_turned_fails() {
+    testing::assert_mesh::<Turned>();
+}
+
+#[test]
+#[should_panic(expected = "1 places have two vertices or more: polygons that meet must share their corners")]
+fn a_mesh_torn_at_a_vertex_fails() {
+    testing::assert_mesh::<Torn>();
+}
+
+#[test]
+#[should_panic(expected = "1 polygons or vertices have no normal")]
+fn a_mesh_with_a_vertex_of_no_polygon_fails() {
+    testing::assert_mesh::<Lonely>();
+}
