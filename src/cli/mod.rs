@@ -83,9 +83,18 @@ struct Options {
     /// Print details of what is done
     #[arg(long, short, global = true)]
     verbose: bool,
+    /// True if this program reads such arguments when it is started again.
+    #[arg(skip)]
+    restarts: bool,
 }
 
 impl Options {
+    /// The program that tries shaders in a process of its own: this one. None where the arguments are not those of the
+    /// process, since such a program may not read them when it is started again.
+    fn trial_program(self) -> Option<PathBuf> {
+        trial::program().filter(|_| self.restarts)
+    }
+
     /// The answer of the flags to missing parts, if they give one.
     fn defaults(self) -> Defaults {
         match (self.use_defaults, self.no_defaults) {
@@ -190,7 +199,7 @@ pub fn run_with(
     window: impl FnOnce(&mut App),
 ) -> ExitCode {
     let arguments: Vec<_> = arguments.into_iter().collect();
-    let cli = match Cli::try_parse_from(&arguments) {
+    let mut cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
         Err(error) => {
             return match error.kind() {
@@ -205,6 +214,7 @@ pub fn run_with(
             };
         }
     };
+    cli.options.restarts = arguments.iter().eq(&std::env::args_os().collect::<Vec<_>>());
     #[cfg(target_os = "linux")]
     if cli.may_draw() {
         runtime_folder::provide();

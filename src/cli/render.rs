@@ -178,7 +178,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     // All files are in one folder.
     files.first().into_iter().for_each(|file| outputs::tidy_beside(file));
     let bar = progress(scenes.len() as u64, options);
-    let mut painter = Painter::new(arguments.renderer)?;
+    let mut painter = Painter::new(arguments.renderer, options.trial_program())?;
     let by_cpu = scenes.iter().filter(|scene| !painter.takes_gpu(scene, registry));
     let passed: BTreeSet<_> = by_cpu.flat_map(|scene| not_followed_on_cpu(registry, scene)).collect();
     if !passed.is_empty() {
@@ -216,12 +216,14 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
 struct Painter {
     renderer: Renderer,
     gpu: bool,
+    /// The program that tries shaders in a process of its own.
+    trial_program: Option<PathBuf>,
     /// The renderer of the last picture, with its size and samples: the next picture likely has the same.
     last: Option<((u32, u32, u32), GpuRenderer)>,
 }
 
 impl Painter {
-    fn new(renderer: Renderer) -> Result<Self, Failure> {
+    fn new(renderer: Renderer, trial_program: Option<PathBuf>) -> Result<Self, Failure> {
         let gpu = match renderer {
             Renderer::Cpu => false,
             Renderer::Gpu => {
@@ -232,7 +234,7 @@ impl Painter {
             // GPU.
             Renderer::Auto => may_have_hardware() && find_adapter().is_ok_and(|a| !a.software),
         };
-        Ok(Self { renderer, gpu, last: None })
+        Ok(Self { renderer, gpu, trial_program, last: None })
     }
 
     /// True if the GPU renders a scene.
@@ -277,7 +279,7 @@ impl Painter {
                 let samples = if job.samples == 4 { 4 } else { 1 };
                 let renderer =
                     GpuRenderer::extended(job.width, job.height, samples, gpu::Output::Display, |app| {
-                        try_apart(app, registry);
+                        try_apart(app, registry, self.trial_program.clone());
                         app.insert_resource(registry.clone());
                     })
                     .map_err(failed)?;
@@ -295,9 +297,9 @@ impl Painter {
 }
 
 /// Tries the shaders of users and of other crates in another process, since a driver may not survive them.
-fn try_apart(app: &mut App, registry: &Registry) {
+fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
     if (registry.sources().edited().next().is_some() || registry.has_foreign())
-        && let Some(program) = super::trial::program()
+        && let Some(program) = program
         && let Some(mut bench) = app.world_mut().get_resource_mut::<Bench>()
     {
         bench.try_in(TrialProcess::new(program, Budget::default(), || {}));

@@ -73,7 +73,7 @@ pub(super) fn run(
         capture,
         // The scene decides how much of it is read.
         registry: None,
-        trial_program: super::trial::program(),
+        trial_program: options.trial_program(),
         warnings,
         verbose,
         quiet,

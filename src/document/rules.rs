@@ -48,14 +48,10 @@ impl Document {
             }
         };
         let material = |object: &Object, id: &str, value: &Value| {
-            let own = registry.model(self.scene.model_of(object)).and_then(|m| m.parameter(id));
-            match own.or_else(|| registry.material_parameter(id)) {
-                _ if check::material_parameter(registry, self.scene.model_of(object), id, value).is_ok() => {
-                    Ok(())
-                }
-                Some(p) => Err(format!("{} is {value}, but must be {}.", p.label, p.rule())),
-                None => Err(format!("No model has a parameter “{id}”.")),
-            }
+            check::Declared::of(registry, &self.scene, object, id).refusing(value).map_err(|p| match p {
+                Some(p) => format!("{} is {value}, but must be {}.", p.label, p.rule()),
+                None => format!("No model has a parameter “{id}”."),
+            })
         };
         let of_type = |part: Selection, declared: Option<&Parameter>, id: &str, value: &Value| match declared
         {

@@ -7,9 +7,9 @@ use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 use super::state::{Kept, ParameterPlace, Session, Severity, StashedValues};
 use crate::{
     document::Selection,
-    parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value},
+    parameter::{Parameter, ParameterKind, Value},
     registry::Registry,
-    scene::Object,
+    scene::{Object, check::Declared},
 };
 
 /// A value of the document that becomes another one.
@@ -74,15 +74,16 @@ fn plan(session: &Session, registry: &Registry) -> (Vec<Change>, StashedValues) 
     let mut stashed = StashedValues::default();
     let mut gone = BTreeMap::new();
     let mut place_value = |id, object: &Object, name: &Cow<'static, str>, wanted: &Value, from| {
-        let declarations = declarations(registry, session.document.model_of(object), name);
-        let to = legal(&declarations, wanted);
+        let declarations = Declared::of(registry, &session.document, object, name);
+        let to = declarations.nearest(wanted);
         if to.as_ref() != Some(wanted) {
             let kept = Kept { wanted: wanted.clone(), instead: to.clone() };
             stashed.0.insert((id, name.clone()), kept);
         }
         if to.as_ref() != from {
-            let declared = declarations.iter().find(|p| to.as_ref().is_some_and(|v| p.allows(v)));
-            let declared = declared.or(declarations.first()).copied();
+            let all = declarations.all();
+            let declared =
+                all.iter().find(|p| to.as_ref().is_some_and(|v| p.allows(v))).or(all.first()).copied();
             changes.push(Change { place: (id, name.clone()), wanted: wanted.clone(), to, declared });
         }
     };
@@ -106,53 +107,6 @@ fn plan(session: &Session, registry: &Registry) -> (Vec<Change>, StashedValues) 
     }
     stashed.0.extend(gone);
     (changes, stashed)
-}
-
-/// The declarations of a parameter that a value of an object of that model is held against.
-fn declarations(registry: &Registry, model: &str, name: &str) -> Vec<&'static Parameter> {
-    match registry.model(model).and_then(|m| m.parameter(name)) {
-        Some(own) => vec![own],
-        None => registry.models().iter().filter_map(|m| m.parameter(name)).collect(),
-    }
-}
-
-/// The value itself if one of the declarations allows it, else the nearest one that is allowed.
-fn legal(declarations: &[&Parameter], value: &Value) -> Option<Value> {
-    if declarations.iter().any(|p| p.allows(value)) {
-        return Some(value.clone());
-    }
-    let nearest = declarations.iter().filter_map(|p| nearest(p, value));
-    nearest.min_by(|a, b| distance(a, value).total_cmp(&distance(b, value)))
-}
-
-/// The nearest value that a parameter allows; where there is no nearest one, since it must be greater than 0, the
-/// default. None for a value of another type.
-fn nearest(parameter: &Parameter, value: &Value) -> Option<Value> {
-    let nearest = match (&parameter.kind, value) {
-        (ParameterKind::Number { min, default, .. }, Value::Number(v)) if *min == ABOVE_ZERO && v < min => {
-            Value::Number(*default)
-        }
-        (ParameterKind::Number { min, max, .. }, Value::Number(v)) => Value::Number(v.max(*min).min(*max)),
-        (ParameterKind::Integer { min, max, .. }, Value::Integer(v)) => {
-            let v = *v.max(min);
-            Value::Integer(max.map_or(v, |max| v.min(max)))
-        }
-        (ParameterKind::Triple { min, max, .. }, Value::Triple(v)) => {
-            Value::Triple(v.map(|c| c.max(*min).min(*max)))
-        }
-        _ => return None,
-    };
-    parameter.allows(&nearest).then_some(nearest)
-}
-
-/// Distance of a value from another one of its type.
-fn distance(a: &Value, b: &Value) -> f64 {
-    match (a, b) {
-        (Value::Number(a), Value::Number(b)) => f64::from((a - b).abs()),
-        (Value::Integer(a), Value::Integer(b)) => a.abs_diff(*b) as f64,
-        (Value::Triple(a), Value::Triple(b)) => a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())).sum(),
-        _ => f64::INFINITY,
-    }
 }
 
 /// The messages: one for each kind of change of a parameter, however many objects it is about.

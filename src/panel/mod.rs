@@ -70,6 +70,7 @@ pub mod reload;
 pub mod segmented;
 pub mod settings;
 pub mod shader;
+mod shares;
 mod sides;
 pub mod state;
 pub mod status;

@@ -16,6 +16,7 @@ use super::{
     marks::Lens,
     maths::{self, Sizes},
     notice,
+    shares::shared,
     state::{Action, PictureArea, Session, ViewChange},
     theme::Palette,
     typeset::Break,
@@ -262,21 +263,6 @@ fn partitions(heights: &[f32]) -> impl Iterator<Item = Vec<Range<usize>>> {
         out
     };
     (1..=64).map(move |k| fill(whole * k as f32 / 64.0 + 0.5)).filter(|r| r.iter().all(|r| !r.is_empty()))
-}
-
-/// The width that none may exceed for all to fit in this room: the short ones keep theirs.
-fn shared(widths: &[f32], room: f32) -> f32 {
-    let mut sorted = widths.to_vec();
-    sorted.sort_by(f32::total_cmp);
-    let mut left = room;
-    for (i, width) in sorted.iter().enumerate() {
-        let fair = left / (sorted.len() - i) as f32;
-        if *width > fair {
-            return fair;
-        }
-        left -= width;
-    }
-    f32::INFINITY
 }
 
 /// The objects as the camera sees them: discs, without what is far outside the picture.

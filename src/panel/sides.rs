@@ -10,6 +10,7 @@ use super::{
     focus::{self, Region},
     glyphs,
     icon::{self, Icon},
+    shares::shared,
     state::{Action, PanelInfo, Place, SHADER_TAB, Session, ViewChange},
     theme::{self, Palette},
 };
@@ -32,10 +33,14 @@ pub(super) fn side(
     context: &mut PanelContext<'_>,
 ) {
     let (guests, own): (Vec<_>, Vec<_>) = panels.at(place, session).partition(|(info, _)| info.guest);
-    let unfolded = guests.iter().filter(|(info, _)| !session.view.folds(info.id)).count();
+    let wanted = |info: &PanelInfo| {
+        let shown = ui.data(|data| data.get_temp(Id::new(("section", info.id))));
+        shown.unwrap_or(LEAST)
+    };
+    let unfolded = guests.iter().filter(|(info, _)| !session.view.folds(info.id));
+    let all: Vec<_> = unfolded.map(|(info, _)| wanted(info) + END).collect();
     let titles = guests.len() as f32 * TITLE;
-    let room = (GUESTS * ui.available_height() - titles).max(0.0);
-    let share = (room / unfolded.max(1) as f32).max(LEAST);
+    let share = (shared(&all, GUESTS * ui.available_height() - titles) - END).max(LEAST);
     // From the bottom up, so that the first is the highest.
     for (info, panel) in guests.into_iter().rev() {
         // As high as what it showed last, up to its share.

@@ -200,6 +200,31 @@ impl Parameter {
         }
     }
 
+    /// The nearest value that it allows; where there is no nearest one, since it must be greater than 0, the default. None
+    /// for a value of another type.
+    #[must_use]
+    pub fn nearest(&self, value: &Value) -> Option<Value> {
+        let nearest = match (&self.kind, value) {
+            (ParameterKind::Number { min, default, .. }, Value::Number(v))
+                if *min == ABOVE_ZERO && v < min =>
+            {
+                Value::Number(*default)
+            }
+            (ParameterKind::Number { min, max, .. }, Value::Number(v)) => {
+                Value::Number(v.max(*min).min(*max))
+            }
+            (ParameterKind::Integer { min, max, .. }, Value::Integer(v)) => {
+                let v = *v.max(min);
+                Value::Integer(max.map_or(v, |max| v.min(max)))
+            }
+            (ParameterKind::Triple { min, max, .. }, Value::Triple(v)) => {
+                Value::Triple(v.map(|c| c.max(*min).min(*max)))
+            }
+            _ => return None,
+        };
+        self.allows(&nearest).then_some(nearest)
+    }
+
     /// The WGSL type of its field.
     #[must_use]
     pub fn wgsl_type(&self) -> &'static str {

@@ -29,6 +29,21 @@ pub enum Value {
     File(NamedFile),
 }
 
+impl Value {
+    /// Distance from another one of its type; infinite where there is none.
+    #[must_use]
+    pub fn distance(&self, other: &Self) -> f64 {
+        match (self, other) {
+            (Self::Number(a), Self::Number(b)) => f64::from((a - b).abs()),
+            (Self::Integer(a), Self::Integer(b)) => a.abs_diff(*b) as f64,
+            (Self::Triple(a), Self::Triple(b)) => {
+                a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())).sum()
+            }
+            _ => f64::INFINITY,
+        }
+    }
+}
+
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

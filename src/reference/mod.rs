@@ -29,7 +29,7 @@ use crate::{
     reflection::Surface,
     registry::Registry,
     scene::{Display, Object, Scene, observer::clip_from_room},
-    shading::{Corner, Lighting, ShadingEntry, Stage, Varying},
+    shading::{Corner, Lighting, Shading, Stage, Varying},
 };
 
 mod display;
@@ -132,7 +132,8 @@ pub fn render_rgb8_until(
 struct Draw<'a> {
     object: &'a Object,
     shape: Arc<Prepared>,
-    shading: &'a ShadingEntry,
+    stage: Stage,
+    shading: Box<dyn Shading>,
     surface: Arc<dyn Surface>,
     /// True if the model needs tangents.
     anisotropic: bool,
@@ -206,11 +207,14 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
             .into_par_iter()
             .filter_map(|(object, shape)| {
                 let model = registry.model(scene.model_of(object)).filter(|_| !late())?;
+                let shading = registry.shading_model(scene.shading_model_of(object))?;
+                let encoding = scene.display.encoding;
                 Some(Draw {
                     object,
                     shape,
-                    shading: registry.shading_model(scene.shading_model_of(object))?,
-                    surface: model.instantiate(&object.material, scene.display.encoding),
+                    stage: shading.declaration.stage,
+                    shading: (shading.instantiate)(&object.material, encoding),
+                    surface: model.instantiate(&object.material, encoding),
                     anisotropic: model.declaration.anisotropic,
                 })
             })
@@ -236,7 +240,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                     let triangle = &triangles[object as usize][triangle as usize];
                     let lighting = lights.on(&*draw.surface);
                     let tile = tile.get_or_insert_with(Tile::new);
-                    tile.draw(triangle, draw.shading, &lighting, origin(i, &screen), &screen);
+                    tile.draw(triangle, &*draw.shading, &lighting, origin(i, &screen), &screen);
                 }
                 if !rest.is_empty() {
                     return None;
@@ -269,7 +273,7 @@ fn rotation(degrees: Vec3) -> Mat3 {
 
 /// The triangles of an object that may be visible, shaded as far as its shading model does at corners.
 fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Screen) -> Vec<Triangle> {
-    let Draw { object, shape, shading, surface, anisotropic } = draw;
+    let Draw { object, shape, stage, shading, surface, anisotropic } = draw;
     let mesh = &shape.mesh;
     let rotation = rotation(object.rotation);
     let room = |p: Vec3| rotation * (p * object.size) + object.position;
@@ -291,7 +295,7 @@ fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Scree
         .collect();
 
     // The values of corners are calculated once per polygon or once per vertex, and only where needed.
-    let per_polygon = shading.declaration.stage == Stage::Polygon;
+    let per_polygon = *stage == Stage::Polygon;
     let mut needed: Vec<u32> = if per_polygon {
         visible.iter().map(|(polygon, _)| *polygon).collect()
     } else {
@@ -322,7 +326,7 @@ fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Scree
                 face_tangent: tangent,
                 face_centre: position,
             };
-            (shading.vertex)(&lighting as &dyn Lighting, &corner)
+            shading.vertex(&lighting as &dyn Lighting, &corner)
         })
         .collect();
     let mut place = vec![0u32; if per_polygon { mesh.polygons.len() } else { mesh.positions.len() }];

@@ -3,8 +3,8 @@
 //!
 //! A source for drawing holds, in this order: terms, the light record, the row of an object (generated
 //! from the declaration of the model), the reading of curves where rows have them, the model, the light
-//! types, the dispatch over light types (generated), the light loop, the shading model, and the wrapper
-//! with bindings and entry points.
+//! types, the dispatch over light types (generated), the light loop, the shading model after its parameters (generated),
+//! and the wrapper with bindings and entry points.
 
 use std::fmt::Write as _;
 
@@ -20,17 +20,17 @@ use crate::{
             WRAPPER, parameter_struct,
         },
     },
-    shading::ShadingEntry,
+    shading::{self, ShadingEntry},
 };
 
 /// The WGSL struct `Row` of a model, what one object has in the table that the shader reads, and the
-/// functions that read the curve in it. The array of rows is `parameter_table`, the index of the
-/// object is `object_row`. Curves are read in place: a copy would cost every pixel.
+/// functions that read the curve in it; `more` are further fields. The array of rows is `parameter_table`, the index
+/// of the object is `object_row`. Curves are read in place: a copy would cost every pixel.
 #[must_use]
-pub fn row_struct(model: &ModelEntry) -> String {
+pub fn row_struct(model: &ModelEntry, more: &str) -> String {
     let mut text = parameter_struct("Parameters", model.parameters);
     if !model.has_curve() {
-        text.push_str("struct Row {\n    parameters: Parameters,\n}\n");
+        let _ = write!(text, "struct Row {{\n    parameters: Parameters,\n{more}}}\n");
         return text;
     }
     let harmonics = model.harmonics();
@@ -40,7 +40,7 @@ pub fn row_struct(model: &ModelEntry) -> String {
     parameters: Parameters,
     curve: array<vec4<f32>, {}>,
     lobe_mean: f32,
-}}
+{more}}}
 const HARMONICS: u32 = {harmonics}u;
 fn curve_node(i: u32) -> vec4<f32> {{
     return parameter_table[object_row].curve[i];
@@ -55,8 +55,8 @@ fn lobe_mean() -> f32 {{
 }
 
 /// The row of a model, and the model.
-fn push_model(c: &mut Composer, model: &ModelEntry) {
-    c.push("(row)", &row_struct(model));
+fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
+    c.push("(row)", &row_struct(model, more));
     if model.has_curve() {
         c.source(&ALBEDO);
     }
@@ -71,6 +71,35 @@ const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parame
     return directional_albedo(v, frame);
 }
 ";
+
+/// A shading model, after the struct of its parameters and the function that reads them.
+fn push_shading(c: &mut Composer, shading: &ShadingEntry) {
+    let all = shading.parameters;
+    if !all.is_empty() {
+        let mut at = 0;
+        let mut next = |kind: &str| {
+            let number =
+                format!("parameter_table[object_row].shading[{}u].{}", at / 4, ["x", "y", "z", "w"][at % 4]);
+            at += 1;
+            format!("bitcast<{kind}>({number})")
+        };
+        let fields: Vec<_> = all
+            .iter()
+            .map(|p| match p.wgsl_type() {
+                "vec3<f32>" => format!("vec3({})", [(); 3].map(|()| next("f32")).join(", ")),
+                kind => next(kind),
+            })
+            .collect();
+        let name = shading::PARAMETERS;
+        let text = format!(
+            "{}fn shading_parameters() -> {name} {{\n    return {name}({});\n}}\n",
+            parameter_struct(name, all),
+            fields.join(", ")
+        );
+        c.push("(parameters of the shading model)", &text);
+    }
+    c.source(&shading.declaration.wgsl);
+}
 
 /// A light type, after the struct of its parameters.
 fn push_light(c: &mut Composer, light: &LightEntry) {
@@ -173,10 +202,13 @@ pub fn compose(
 ) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&LIGHTS, &SHADING]).for_each(|s| c.source(s));
-    push_model(&mut c, model);
+    let words = format!("    shading: array<vec4<u32>, {}>,\n", shading::PARAMETER_WORDS / 4);
+    push_model(&mut c, model, &words);
     lights.iter().for_each(|light| push_light(&mut c, light));
     c.push("(light types)", &light_dispatch(lights));
-    [&LOOP, &shading.declaration.wgsl, &WRAPPER].into_iter().for_each(|s| c.source(s));
+    c.source(&LOOP);
+    push_shading(&mut c, shading);
+    c.source(&WRAPPER);
     c.composed
 }
 
@@ -254,7 +286,7 @@ pub fn files(
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().for_each(|s| c.source(s));
-    push_model(&mut c, model);
+    push_model(&mut c, model, "");
     c.source(&EVALUATE);
     c.composed
 }

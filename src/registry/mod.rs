@@ -310,16 +310,22 @@ impl Registry {
         }
     }
 
-    /// Every parameter that some model declares, each name once, in order of first declaration.
+    /// Every parameter that some reflection or shading model declares, each name once, in order of first declaration.
     pub fn material_parameters(&self) -> impl Iterator<Item = &'static Parameter> + '_ {
         let mut known = HashSet::new();
-        self.models.iter().flat_map(|m| m.parameters).filter(move |p| known.insert(p.name))
+        self.material_users().flat_map(|(_, all)| all).filter(move |p| known.insert(p.name))
+    }
+
+    /// The ids of reflection and shading models, with the parameters that these have in materials.
+    pub fn material_users(&self) -> impl Iterator<Item = (&'static str, &'static [Parameter])> + Clone + '_ {
+        let models = self.models.iter().map(|m| (m.declaration.id, m.parameters));
+        models.chain(self.shadings.iter().map(|s| (s.declaration.id, s.parameters)))
     }
 
     /// The declaration of a material parameter by name.
     #[must_use]
     pub fn material_parameter(&self, name: &str) -> Option<&'static Parameter> {
-        self.models.iter().find_map(|m| m.parameter(name))
+        self.material_users().find_map(|(_, all)| all.iter().find(|p| p.name == name))
     }
 }
 

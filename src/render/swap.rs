@@ -119,8 +119,11 @@ pub fn swap(
     let rows: Vec<_> = pending
         .par_iter()
         .map(|Pending { shown, now, .. }| {
-            let model = registry.model(&now.model)?;
-            Some(model.row(&shown.material, now.encoding, now.everywhere))
+            let (model, shading) = (registry.model(&now.model)?, registry.shading_model(&now.shading)?);
+            let mut row = model.row(&shown.material, now.encoding, now.everywhere);
+            row.resize(row.len().next_multiple_of(16), 0);
+            row.extend(shading.row(&shown.material, now.encoding));
+            Some(row)
         })
         .collect();
     world.resource_scope(|world, mut meshes: Mut<ShapeMeshes>| {

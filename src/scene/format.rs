@@ -151,7 +151,8 @@ struct ObjectFile<'a> {
     /// Override of the scene's shading model.
     #[serde(skip_serializing_if = "Option::is_none")]
     shading_model: Option<&'a str>,
-    /// Parameters of the reflection model, by name. One material serves every model: values not used by the current
+    /// Parameters of the reflection model and of the shading model, by name. One material serves every model: values not
+    /// used by the current
     /// model are kept for the others.
     #[schemars(with = "Option<serde_json::Map<String, serde_json::Value>>")]
     #[serde(skip_serializing_if = "Ordered::is_empty")]

@@ -7,6 +7,7 @@ use crate::{
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, json as value},
     reflection::ModelEntry,
     registry::Registry,
+    shading::ShadingEntry,
     text::number,
 };
 use schemars::{SchemaGenerator, generate::SchemaSettings};
@@ -192,7 +193,10 @@ fn objects(list: &mut Json, registry: &Registry) {
                 None => name.to_owned(),
             })
         };
-        let names: Vec<_> = registry.models().iter().filter_map(user).collect();
+        let shading =
+            |s: &ShadingEntry| s.parameter(p.name).map(|_| format!("{} shading", s.declaration.name));
+        let shadings = registry.shading_models().iter().filter_map(shading);
+        let names: Vec<_> = registry.models().iter().filter_map(user).chain(shadings).collect();
         let help = format!("{} Used by: {}.", p.help, names.join(", "));
         field["description"] = help.into();
         parameters.insert(p.name.to_owned(), field);

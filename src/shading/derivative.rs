@@ -1,17 +1,18 @@
 use glam::Vec3;
 
 use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
-use crate::shader::wgsl;
+use crate::{parameters, shader::wgsl};
 
-/// **Derivative shading**: the normal of the triangle from screen-space derivatives of the position,
-/// colour calculated per pixel (LC3).
-///
-/// On the GPU the normal is `normalize(dpdy(P) × dpdx(P))`; within a plane triangle that is the exact triangle normal,
-/// which the CPU renderer uses. Needs no normals in the mesh; tangents are interpolated. Looks faceted like flat
-/// shading, but the light varies within each facet.
-/// flat shading, but the light varies within each facet.
-#[derive(Clone, Copy, Debug)]
-pub struct Derivative;
+parameters! {
+    /// **Derivative shading**: the normal of the triangle from screen-space derivatives of the position,
+    /// colour calculated per pixel (LC3).
+    ///
+    /// On the GPU the normal is `normalize(dpdy(P) × dpdx(P))`; within a plane triangle that is the exact triangle normal,
+    /// which the CPU renderer uses. Needs no normals in the mesh; tangents are interpolated. Looks faceted like flat
+    /// shading, but the light varies within each facet.
+    /// flat shading, but the light varies within each facet.
+    pub struct Derivative {}
+}
 
 impl ShadingModel for Derivative {
     const DECLARATION: Declaration = Declaration {
@@ -25,7 +26,7 @@ impl ShadingModel for Derivative {
         wgsl: wgsl!("shading/derivative.wgsl"),
     };
 
-    fn vertex(_lighting: &dyn Lighting, corner: &Corner) -> Varying {
+    fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
         Varying {
             position: corner.position,
             normal: corner.normal,
@@ -34,7 +35,7 @@ impl ShadingModel for Derivative {
         }
     }
 
-    fn pixel(lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
+    fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
         lighting.colour(varying.position, face_normal, varying.tangent)
     }
 }

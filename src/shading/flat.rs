@@ -1,14 +1,15 @@
 use glam::Vec3;
 
 use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
-use crate::shader::wgsl;
+use crate::{parameters, shader::wgsl};
 
-/// **Flat shading**: one colour per polygon, calculated at its centre with its face normal (CA DD8).
-///
-/// Source: J. Bouknight (1970), *A Procedure for Generation of Three-dimensional Half-toned Computer
-/// Graphics Presentations*. Shows the polygons themselves, and Mach bands between them.
-#[derive(Clone, Copy, Debug)]
-pub struct Flat;
+parameters! {
+    /// **Flat shading**: one colour per polygon, calculated at its centre with its face normal (CA DD8).
+    ///
+    /// Source: J. Bouknight (1970), *A Procedure for Generation of Three-dimensional Half-toned Computer
+    /// Graphics Presentations*. Shows the polygons themselves, and Mach bands between them.
+    pub struct Flat {}
+}
 
 impl ShadingModel for Flat {
     const DECLARATION: Declaration = Declaration {
@@ -22,7 +23,7 @@ impl ShadingModel for Flat {
         wgsl: wgsl!("shading/flat.wgsl"),
     };
 
-    fn vertex(lighting: &dyn Lighting, corner: &Corner) -> Varying {
+    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
         Varying {
             position: corner.position,
             normal: corner.face_normal,
@@ -31,7 +32,7 @@ impl ShadingModel for Flat {
         }
     }
 
-    fn pixel(_lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
+    fn pixel(&self, _lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
         varying.colour
     }
 }

@@ -1,14 +1,15 @@
 use glam::Vec3;
 
 use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
-use crate::shader::wgsl;
+use crate::{parameters, shader::wgsl};
 
-/// **Gouraud shading**: colour calculated at the vertices, interpolated between them (CA DD9).
-///
-/// Source: H. Gouraud (1971), *Continuous Shading of Curved Surfaces*. Smooth and cheap; misses highlights that fall
-/// between the vertices.
-#[derive(Clone, Copy, Debug)]
-pub struct Gouraud;
+parameters! {
+    /// **Gouraud shading**: colour calculated at the vertices, interpolated between them (CA DD9).
+    ///
+    /// Source: H. Gouraud (1971), *Continuous Shading of Curved Surfaces*. Smooth and cheap; misses highlights that fall
+    /// between the vertices.
+    pub struct Gouraud {}
+}
 
 impl ShadingModel for Gouraud {
     const DECLARATION: Declaration = Declaration {
@@ -22,7 +23,7 @@ impl ShadingModel for Gouraud {
         wgsl: wgsl!("shading/gouraud.wgsl"),
     };
 
-    fn vertex(lighting: &dyn Lighting, corner: &Corner) -> Varying {
+    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
         Varying {
             position: corner.position,
             normal: corner.normal,
@@ -31,7 +32,7 @@ impl ShadingModel for Gouraud {
         }
     }
 
-    fn pixel(_lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
+    fn pixel(&self, _lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
         varying.colour
     }
 }

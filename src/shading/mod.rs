@@ -7,7 +7,11 @@ use std::fmt;
 
 use glam::Vec3;
 
-use crate::shader::{Source, wgsl};
+use crate::{
+    optics::colour::Encoding,
+    parameter::{self, Parameter, ParameterSet, Values},
+    shader::{Source, wgsl},
+};
 
 pub mod normals;
 
@@ -80,7 +84,7 @@ pub struct Declaration {
     pub stage: Stage,
     /// The key that selects it in the window.
     pub key: char,
-    /// The twin in WGSL: `fn shade_vertex` and `fn shade_pixel`.
+    /// The twin in WGSL: `fn shade_vertex` and `fn shade_pixel`. `shading_parameters()` has the parameters by name.
     pub wgsl: Source,
 }
 
@@ -123,35 +127,78 @@ pub struct Varying {
     pub colour: Vec3,
 }
 
-/// A shading model: the points at which the light loop runs, with their normals and tangents.
-pub trait ShadingModel: Send + Sync + 'static {
+/// A shading model: the points at which the light loop runs, with their normals and tangents. Its parameters stand in
+/// the material of objects, beside those of reflection models, and are shared with these by name.
+pub trait ShadingModel: ParameterSet {
     /// Name, source, stage, shader.
     const DECLARATION: Declaration;
 
     /// The values calculated at a corner of a polygon. For [`Stage::Polygon`] they must be the same at all corners of
     /// one polygon except for `position`.
-    fn vertex(lighting: &dyn Lighting, corner: &Corner) -> Varying;
+    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying;
 
     /// The colour of a pixel; `face_normal` is the exact normal of the **triangle** that covers it.
-    fn pixel(lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3;
+    fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3;
 }
+
+/// A shading model with its parameters.
+pub trait Shading: Send + Sync {
+    /// See [`ShadingModel::vertex`].
+    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying;
+
+    /// See [`ShadingModel::pixel`].
+    fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3;
+}
+
+impl<S: ShadingModel> Shading for S {
+    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
+        ShadingModel::vertex(self, lighting, corner)
+    }
+
+    fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
+        ShadingModel::pixel(self, lighting, varying, face_normal)
+    }
+}
+
+/// The name of the struct of parameters in WGSL, which `shading_parameters()` returns.
+pub(crate) const PARAMETERS: &str = "ShadingParameters";
+/// The room for parameters in the row of an object, in numbers: a colour takes three.
+pub const PARAMETER_WORDS: usize = 16;
 
 /// A registered shading model.
 #[derive(Clone, Copy)]
 pub struct ShadingEntry {
     /// Name, source, stage, shader.
     pub declaration: &'static Declaration,
-    /// See [`ShadingModel::vertex`].
-    pub vertex: fn(&dyn Lighting, &Corner) -> Varying,
-    /// See [`ShadingModel::pixel`].
-    pub pixel: fn(&dyn Lighting, &Varying, Vec3) -> Vec3,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+    /// The shading model with the parameters of one object.
+    pub instantiate: fn(&Values, Encoding) -> Box<dyn Shading>,
 }
 
 impl ShadingEntry {
     /// The entry of a shading model type.
     #[must_use]
     pub fn of<S: ShadingModel>() -> Self {
-        Self { declaration: const { &S::DECLARATION }, vertex: S::vertex, pixel: S::pixel }
+        Self {
+            declaration: const { &S::DECLARATION },
+            parameters: S::PARAMETERS,
+            instantiate: |values, encoding| Box::new(S::from_values(values, encoding)),
+        }
+    }
+
+    /// The parameter with that name, if the shading model has it.
+    #[must_use]
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+
+    /// The parameters of one object as [`PARAMETER_WORDS`] numbers, the end of its row in the table that shaders read.
+    #[must_use]
+    pub fn row(&self, values: &Values, encoding: Encoding) -> Vec<u8> {
+        let mut words = parameter::words(self.parameters, values, encoding);
+        words.resize(PARAMETER_WORDS, 0);
+        words.into_iter().flat_map(u32::to_le_bytes).collect()
     }
 }
 

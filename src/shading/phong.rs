@@ -1,14 +1,15 @@
 use glam::Vec3;
 
 use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
-use crate::shader::wgsl;
+use crate::{parameters, shader::wgsl};
 
-/// **Phong shading**: normals interpolated and renormalised, colour calculated per pixel (CA DD10).
-///
-/// Source: B. T. Phong (1975), *Illumination for Computer Generated Pictures*. Not to be confused
-/// with the Phong reflection model of the same paper.
-#[derive(Clone, Copy, Debug)]
-pub struct PhongShading;
+parameters! {
+    /// **Phong shading**: normals interpolated and renormalised, colour calculated per pixel (CA DD10).
+    ///
+    /// Source: B. T. Phong (1975), *Illumination for Computer Generated Pictures*. Not to be confused
+    /// with the Phong reflection model of the same paper.
+    pub struct PhongShading {}
+}
 
 impl ShadingModel for PhongShading {
     const DECLARATION: Declaration = Declaration {
@@ -22,7 +23,7 @@ impl ShadingModel for PhongShading {
         wgsl: wgsl!("shading/phong.wgsl"),
     };
 
-    fn vertex(_lighting: &dyn Lighting, corner: &Corner) -> Varying {
+    fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
         Varying {
             position: corner.position,
             normal: corner.normal,
@@ -31,7 +32,7 @@ impl ShadingModel for PhongShading {
         }
     }
 
-    fn pixel(lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
+    fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
         lighting.colour(varying.position, varying.normal.normalize_or_zero(), varying.tangent)
     }
 }

@@ -55,6 +55,14 @@ fn put_frame(to: &mut Vec<u32>, frame: &Frame) {
     [frame.n, frame.t, frame.b].into_iter().for_each(|v| put(to, v));
 }
 
+/// The parameters of a model as its WGSL takes them: a struct has one field at least.
+fn parameter_words(model: &ModelEntry, values: &Values) -> Vec<u32> {
+    match model.parameters {
+        [] => vec![0],
+        all => parameter::words(all, values, Encoding::Srgb),
+    }
+}
+
 /// A model's response by its WGSL, with one set of parameters.
 struct Twin<'a> {
     program: &'a Program,
@@ -65,7 +73,7 @@ struct Twin<'a> {
 impl<'a> Twin<'a> {
     fn new(program: &'a Program, model: &ModelEntry, values: &Values) -> Self {
         let row = words(&model.row(values, Encoding::Srgb, false));
-        Self { program, row, parameters: parameter::words(model.parameters, values, Encoding::Srgb) }
+        Self { program, row, parameters: parameter_words(model, values) }
     }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Result<Terms, String> {
@@ -198,7 +206,7 @@ pub fn under_uniform_light(model: &ModelEntry, sources: &Sources) -> Outcome {
             let mut arguments = Vec::new();
             put(&mut arguments, v);
             put_frame(&mut arguments, &Frame::LOCAL);
-            arguments.extend(parameter::words(model.parameters, &values, Encoding::Srgb));
+            arguments.extend(parameter_words(model, &values));
             let run = |row: &[u32]| {
                 let mut results = [0; 3];
                 let ran = program.run_with(row, &arguments, &mut results);

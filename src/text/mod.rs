@@ -8,4 +8,5 @@ mod words;
 
 pub use words::{
     detailed, did_you_mean, listed, nearest, number, one_of, plural, quoted, sentence, shortened,
+    with_article,
 };

@@ -82,6 +82,13 @@ pub fn shortened(text: &str) -> String {
     }
 }
 
+/// "a sphere", "an icosahedron".
+#[must_use]
+pub fn with_article(id: &str) -> String {
+    let article = if id.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {id}")
+}
+
 /// "1 light", "2 lights".
 #[must_use]
 pub fn plural(n: usize, what: &str) -> String {

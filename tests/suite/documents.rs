@@ -108,6 +108,11 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
             vec![
                 ("toon.wgsl", example("toon.wgsl", "wgsl")),
                 ("toon.rs", example("toon.rs", "rust")),
+                ("light.rs", example("light.rs", "rust")),
+                ("light.wgsl", example("light.wgsl", "wgsl")),
+                ("shape.rs", example("shape.rs", "rust")),
+                ("shading_model.rs", example("shading_model.rs", "rust")),
+                ("shading_model.wgsl", example("shading_model.wgsl", "wgsl")),
                 ("panel.rs", example("panel.rs", "rust")),
                 ("parts", parts()),
                 ("sets", sets()),

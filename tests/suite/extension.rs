@@ -21,6 +21,7 @@ use lights_camera_models::{
         save, schema,
     },
     shader::Source,
+    shading::{self, Corner, Lighting, ShadingModel, Stage, Varying},
     shape::{self, ObjectType, PolygonMesh, mesh::Polygon},
 };
 
@@ -173,8 +174,65 @@ impl ObjectType for Bricks {
     }
 }
 
+const ORDER: Parameter =
+    Parameter::choice("order", &[("first", "First"), ("last", "Last")], 0).symbol("").help("A parameter.");
+const STRENGTH: Parameter = Parameter::number("strength", 0.0..=1.0, 0.2).symbol("s").help("A parameter.");
+const TINT: Parameter =
+    Parameter::triple("tint", 0.0..=2.0, [1.0, 0.8, 0.6]).symbol("t").help("A parameter.");
+const WARM: Parameter = Parameter::colour("warm", [200, 120, 30]).symbol("w").help("A parameter.");
+const TIMES: Parameter = Parameter::integer("times", 1..=4, 1).symbol("n").help("A parameter.");
+
+parameters! {
+    /// Gouraud shading, tinted, with parameters of every type that shading models may have.
+    struct Tinted {
+        order: choice = ORDER,
+        strength: number = STRENGTH,
+        tint: triple = TINT,
+        warm: colour = WARM,
+        times: number = TIMES,
+    }
+}
+
+impl ShadingModel for Tinted {
+    const DECLARATION: shading::Declaration = shading::Declaration::new(
+        "tinted",
+        "Tinted",
+        Stage::Vertex,
+        'N',
+        Source::new(
+            "tinted.wgsl",
+            "fn shade_vertex(corner: Corner) -> Varying {
+                 let colour = illuminate(corner.position, corner.normal, corner.tangent) * shading_parameters().tint;
+                 return Varying(corner.position, corner.normal, corner.tangent, colour, vec3(0.0));
+             }
+             fn shade_pixel(passed: Varying) -> vec3<f32> {
+                 let m = shading_parameters();
+                 let added = m.strength * m.warm;
+                 if m.order == 1u { return m.times * passed.colour + added; }
+                 return m.times * (passed.colour + added);
+             }\n",
+        ),
+    )
+    .summary("Gouraud shading, tinted.");
+
+    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
+        let Corner { position, normal, tangent, .. } = *corner;
+        let colour = lighting.colour(position, normal, tangent) * self.tint;
+        Varying { position, normal, tangent, colour }
+    }
+
+    fn pixel(&self, _: &dyn Lighting, varying: &Varying, _: Vec3) -> Vec3 {
+        let added = self.strength * self.warm;
+        match self.order {
+            1 => self.times * varying.colour + added,
+            _ => self.times * (varying.colour + added),
+        }
+    }
+}
+
 fn register(to: &mut impl Register) {
     to.add_reflection_model::<Toon>();
+    to.add_shading_model::<Tinted>();
     to.add_light_type::<Skylight>();
     to.add_object_type::<Bricks>();
 }
@@ -412,6 +470,142 @@ fn parameters_of_every_kind_have_knobs() {
     assert_eq!(shape(&bench).0.get("pitch"), Some(&Value::Number(0.75)));
     let registry = registry();
     assert_eq!(check::scene(&bench.session.document, &registry), []);
+}
+
+#[test]
+fn every_type_of_parameter_of_a_shading_model_reaches_both_renderers() {
+    let registry = registry();
+    // The parameters stand in rows of different layouts: with a curve and without, and with three harmonics.
+    let curved = |anisotropic| {
+        let mut all = registry.models().iter();
+        all.find(|m| m.has_curve() && m.declaration.anisotropic == anisotropic).expect("one").declaration.id
+    };
+    let mut renderer = renderer();
+    for model in ["lambert", curved(false), curved(true)] {
+        let mut scene = close_up("sphere", "point");
+        scene.reflection_model = model.to_owned();
+        scene.shading_model = "tinted".to_owned();
+        let mut shown = gpu(&mut renderer, &scene);
+        assert!(alike(&shown, &scene), "{model}");
+        for (name, value) in [
+            ("order", Value::Choice("last".into())),
+            ("strength", Value::Number(0.7)),
+            ("tint", Value::Triple([0.3, 1.0, 2.0])),
+            ("warm", Value::Colour([10, 90, 250])),
+            ("times", Value::Integer(3)),
+        ] {
+            scene.objects[0].material.set(name, value);
+            // The wrong twin: the picture before the change.
+            assert!(name == "order" || !alike(&shown, &scene), "{model}: a change of {name} goes unnoticed");
+            shown = gpu(&mut renderer, &scene);
+            assert!(alike(&shown, &scene), "{model}: {name}");
+        }
+        let mut wrong = scene.clone();
+        wrong.objects[0].material.set("order", Value::Choice("first".into()));
+        assert!(!alike(&shown, &wrong), "{model}: order");
+    }
+}
+
+#[test]
+fn objects_of_one_model_may_have_shading_models_with_different_parameters() {
+    let mut renderer = renderer();
+    let mut scene = scene();
+    scene.objects[0].shading_model = Some("tinted".to_owned());
+    scene.objects[0].material.set("warm", Value::Colour([0, 255, 0]));
+    let mut other = scene.objects[0].clone();
+    other.position.x += 1.5;
+    other.shading_model = Some("flat".to_owned());
+    scene.objects.push(other);
+    let shown = gpu(&mut renderer, &scene);
+    assert!(alike(&shown, &scene));
+    scene.objects[1].shading_model = None;
+    scene.shading_model = "tinted".to_owned();
+    assert!(!alike(&shown, &scene));
+    assert!(alike(&gpu(&mut renderer, &scene), &scene));
+}
+
+#[test]
+fn parameters_of_a_shading_model_stand_in_materials_and_have_knobs() {
+    let registry = registry();
+    let mut scene = scene();
+    scene.shading_model = "tinted".to_owned();
+    let material =
+        json!({ "order": "last", "strength": 0.5, "tint": [1, 2, 0], "warm": [1, 2, 3], "times": 2 });
+    let file = |material: &Json| {
+        let mut file: Json = serde_json::from_str(&save::to_json(&scene, None, &registry)).expect("JSON");
+        file["objects"][0]["material"] = material.clone();
+        file.to_string()
+    };
+    let read = |text: &str| load::from_text(text, "scene.json", &registry, Defaults::Refuse);
+    let loaded = read(&file(&material)).expect("legal").scene;
+    assert_eq!(loaded.objects[0].material.0.len(), 5);
+    assert_eq!(read(&save::to_json(&loaded, None, &registry)).expect("legal").scene, loaded);
+    let schema = schema::text(&registry);
+    assert!(schema.contains("Used by: Tinted shading."), "{schema}");
+    for (key, value, message) in [
+        ("strength", json!(2), "objects[0].material.strength is 2, but the strength must be between 0 and 1"),
+        ("times", json!(1.5), "must be a whole number between 1 and 4"),
+        ("order", json!("lsat"), "did you mean \"last\"?"),
+        ("strenght", json!(1), "did you mean \"strength\"?"),
+    ] {
+        let mut wrong = material.clone();
+        wrong[key] = value;
+        let said = read(&file(&wrong)).expect_err("illegal").to_string();
+        assert!(said.contains(message), "{said}");
+    }
+    // Under another shading model they are kept, and shown as such.
+    let mut bench = Bench::with_registry(Session::new(loaded), registry);
+    bench.apply(Action::Select(Selection::Object(0)));
+    assert!(bench.says("Tinted shading"));
+    bench.type_into("strength", "0.25");
+    let strength = |b: &Bench| b.session.document.objects[0].material.0.get("strength").cloned();
+    assert_eq!(strength(&bench), Some(Value::Number(0.25)));
+    let refused = Edit::Object(0, ObjectField::Material("strength", Value::Number(3.0)));
+    bench.apply(Action::Edit(refused));
+    assert_eq!(strength(&bench), Some(Value::Number(0.25)));
+    assert!(!bench.field("strength").disabled);
+    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+    assert!(bench.field("strength").disabled);
+    assert_eq!(strength(&bench), Some(Value::Number(0.25)));
+}
+
+#[test]
+fn both_models_of_an_object_limit_a_parameter_that_they_share() {
+    const NARROW: Parameter = Parameter::integer("bands", 2..=6, 3).symbol("n").help("A parameter.");
+    parameters! {
+        /// Allows fewer bands than the reflection model.
+        struct Few {
+            bands: number = NARROW,
+        }
+    }
+    impl ShadingModel for Few {
+        const DECLARATION: shading::Declaration =
+            shading::Declaration::new("few", "Few", Stage::Pixel, 'K', Tinted::DECLARATION.wgsl);
+        fn vertex(&self, _: &dyn Lighting, _: &Corner) -> Varying {
+            Varying::default()
+        }
+        fn pixel(&self, _: &dyn Lighting, _: &Varying, _: Vec3) -> Vec3 {
+            Vec3::splat(self.bands)
+        }
+    }
+    let mut registry = registry();
+    registry.add_shading_model::<Few>();
+    let mut scene = scene();
+    scene.objects[0].material.set("bands", Value::Integer(12));
+    let mut bench = Bench::with_registry(Session::new(scene), registry);
+    let bands = |b: &Bench| b.session.document.objects[0].material.0["bands"].clone();
+    bench.apply(Action::Edit(Edit::ShadingModel("few".to_owned())));
+    assert_eq!(bands(&bench), Value::Integer(6), "the most that both allow");
+    assert!(bench.session.messages.iter().any(|m| m.text.contains("bands is 6 at")));
+    for (value, expected) in [(1, 6), (9, 6), (4, 4)] {
+        let edit = ObjectField::Material("bands", Value::Integer(value));
+        bench.apply(Action::Edit(Edit::Object(0, edit)));
+        assert_eq!(bands(&bench), Value::Integer(expected), "{value}");
+    }
+    bench.apply(Action::Undo);
+    bench.apply(Action::Undo);
+    assert_eq!(bands(&bench), Value::Integer(12));
+    assert_eq!(check::scene(&bench.session.document, &bench.registry), []);
 }
 
 #[test]

@@ -127,6 +127,20 @@ fn guests_beside_the_picture_are_whole_in_view_and_leave_room_for_the_lists() {
 }
 
 #[test]
+fn a_long_section_has_the_room_that_short_ones_leave() {
+    let short = |id, title| guest(id, title, Place::Right, 0);
+    let guests = vec![guest("long", "Long", Place::Right, 100), short("one", "One"), short("two", "Two")];
+    let mut bench = bench(100, guests);
+    let top = bench.find("Long").expect("a title").rect.top();
+    // Equal shares would leave a third of it unused.
+    assert!((0.46..0.56).contains(&(top / 720.0)), "{top}");
+    for id in ["one", "two"] {
+        let button = place(&mut bench, &format!("{id} was shown before"));
+        assert!(button.is_some_and(|row| row.bottom() < 696.0), "{id}: {button:?}");
+    }
+}
+
+#[test]
 fn a_section_folds_hides_and_comes_back_from_the_menu_and_settings_keep_it() {
     let mut bench = bench(100, vec![guest("guest", "Guest", Place::Left, 0)]);
     bench.click("Guest");

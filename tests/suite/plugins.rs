@@ -20,7 +20,7 @@ use bevy_egui::EguiPlugin;
 use lights_camera_models::{
     cli,
     panel::{PanelApp as _, PanelPlugin, Panels, state::Session},
-    registry::{Register as _, Registry},
+    registry::{Register, Registry},
     render::{
         drawn::Drawn,
         entities::LitObject,
@@ -33,8 +33,20 @@ use lights_camera_models::{
     },
 };
 
-use crate::screen::{Picture, Screen, alone};
+use crate::{
+    pictures::compare,
+    screen::{Picture, Screen, alone},
+};
 
+#[path = "../../examples/light.rs"]
+#[allow(dead_code)]
+pub mod light;
+#[path = "../../examples/shading_model.rs"]
+#[allow(dead_code)]
+pub mod shading_model;
+#[path = "../../examples/shape.rs"]
+#[allow(dead_code)]
+pub mod shape;
 #[path = "../../examples/window.rs"]
 #[allow(dead_code)]
 pub mod window;
@@ -274,6 +286,9 @@ fn stage() {
     match &*program {
         "window" => drop(window::main()),
         "panel" => drop(panel::main()),
+        "light" => drop(light::main()),
+        "shading_model" => drop(shading_model::main()),
+        "shape" => drop(shape::main()),
         "without panels" => {
             let plugins = window().build().disable::<PanelPlugin>().disable::<EguiPlugin>();
             assert_eq!(App::new().add_plugins(plugins).run(), AppExit::Success);
@@ -363,6 +378,43 @@ fn every_command_knows_what_an_extended_program_registers() {
     assert!(!unknown.status.success() && said(&unknown).contains("toon"), "{}", said(&unknown));
 }
 
+#[test]
+fn the_examples_pass_the_public_tests_and_draw_alike_without_a_window() {
+    use lights_camera_models::{
+        optics::{
+            TermSelection,
+            colour::{BACKGROUND, Encoding},
+        },
+        reference,
+        render::capture::gpu::{GpuRenderer, Output},
+        scene::load::{self, Defaults},
+        testing,
+    };
+    fn register(to: &mut impl Register) {
+        to.add_light_type::<light::Blind>()
+            .add_object_type::<shape::Pear>()
+            .add_shading_model::<shading_model::Banded>();
+    }
+    testing::assert_light::<light::Blind>();
+    testing::assert_mesh::<shape::Pear>();
+    let mut registry = Registry::builtin();
+    register(&mut registry);
+    let mut renderer =
+        GpuRenderer::extended(160, 90, 1, Output::Linear, register).expect("software Vulkan is installed");
+    for name in ["light", "shape", "shading_model"] {
+        let file = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let scene = load::file(Path::new(&file), &registry, Defaults::Refuse).expect(name).scene;
+        renderer.set_scene(scene.clone());
+        renderer.settle().expect("the GPU draws");
+        let gpu = renderer.read_linear().expect("the picture can be read");
+        let settings = reference::Settings { width: 160, height: 90, samples: 1, terms: TermSelection::All };
+        let cpu = reference::render(&scene, &registry, &settings);
+        let d = compare(&gpu, &cpu, Encoding::Srgb.decode(BACKGROUND), 1e-3);
+        // At the edge of a stripe or band a rounded number decides.
+        assert!(d.covered > 800 && d.wrong * 100 <= d.covered, "{name}: {d:?}");
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_program_without_a_display_says_so_and_ends() {
@@ -421,6 +473,15 @@ mod on_screen {
     #[test]
     fn the_examples_open_their_windows() {
         let screen = Screen::new(1280, 720);
+        // A picture with its scene: yellow pears, brown and white stripes, bands of blue.
+        let shows = |name| {
+            let mut running = screen.start_with(|config| program(name, config));
+            running.until("the scene of the example", |picture: &Picture| {
+                picture.colours(220..900, 60..600) > 60
+            });
+            assert!(!running.said().contains("ERROR"), "{name}: {}", running.said());
+        };
+        ["light", "shading_model", "shape"].into_iter().for_each(shows);
         for (name, logged) in [("window", "objects"), ("panel", "")] {
             let mut running = screen.start_with(|config| program(name, config));
             running.until("the panel of the example", has_section);

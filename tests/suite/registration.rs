@@ -5,7 +5,7 @@ use glam::Vec3;
 use lights_camera_models::{
     light::{self, Incident, LightRecord, LightType, ies},
     optics::{Frame, Terms},
-    parameter::{BASE_COLOUR, Parameter, Values},
+    parameter::{BASE_COLOUR, K_D, Parameter, Values},
     parameters, reflection,
     reflection::ReflectionModel,
     registry::{Register, RegistrationError, Registry},
@@ -84,13 +84,19 @@ const LAMP: light::Declaration = light::Declaration::new("lamp", "Lamp", lamp!("
 /// A shading model, but for its declaration.
 macro_rules! shading {
     ($name:ident, $declaration:expr) => {
-        struct $name;
+        shading!($name, $declaration, {});
+    };
+    ($name:ident, $declaration:expr, { $($field:ident: $kind:ident = $parameter:expr),* }) => {
+        parameters! {
+            /// Interpolated normals.
+            struct $name { $( $field: $kind = $parameter ),* }
+        }
         impl ShadingModel for $name {
             const DECLARATION: shading::Declaration = $declaration;
-            fn vertex(_: &dyn Lighting, corner: &Corner) -> Varying {
+            fn vertex(&self, _: &dyn Lighting, corner: &Corner) -> Varying {
                 Varying { position: corner.position, normal: corner.normal, ..Varying::default() }
             }
-            fn pixel(lighting: &dyn Lighting, varying: &Varying, _: Vec3) -> Vec3 {
+            fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, _: Vec3) -> Vec3 {
                 lighting.colour(varying.position, varying.normal.normalize_or_zero(), Vec3::ZERO)
             }
         }
@@ -259,7 +265,7 @@ fn parameters_have_names_ranges_and_defaults_that_work() {
     model!(KeyOfObject, MODEL, { size: number = Parameter::number("size", 0.0..=1.0, 0.5) });
     model_refused::<KeyOfObject>(&["parameter `size`: the name is that of another key of an object"]);
     model!(OtherKind, MODEL, { base_colour: number = Parameter::number("base_colour", 0.0..=1.0, 0.5) });
-    model_refused::<OtherKind>(&["parameter `base_colour`: is number, but that of `lambert` is colour"]);
+    model_refused::<OtherKind>(&["parameter `base_colour`: is a number, but that of `lambert` is a colour"]);
     model!(When, MODEL, {
         bands: number = Parameter::number("bands", 0.0..=1.0, 0.5).used_when("sort", &["a"])
     });
@@ -295,7 +301,7 @@ fn parameters_of_light_types_fit_and_their_cone_is_a_number() {
     light_refused::<Coneless>(&["its cone is parameter `cone_angle`, but must be one of its numbers"]);
     light!(OtherCone, LAMP, { cone_angle: colour = Parameter::colour("cone_angle", [0; 3]) });
     light_refused::<OtherCone>(&[
-        "parameter `cone_angle`: is colour, but that of `spot` is number; light types share parameters by name",
+        "parameter `cone_angle`: is a colour, but that of `spot` is a number; light types share parameters by name",
     ]);
     light!(KeyOfLight, LAMP, { intensity: number = Parameter::number("intensity", 0.0..=1.0, 0.5) });
     light_refused::<KeyOfLight>(&["parameter `intensity`: the name is that of another key of a light"]);
@@ -353,6 +359,52 @@ fn shading_models_have_a_key_of_their_own() {
     let said = shading_refused::<OfWindow>(&["its key is 'H', which has another use in the window"]).what;
     let free = said.rsplit("free are ").next().unwrap_or_default();
     assert!(free.contains('N') && !free.contains(['P', 'H', 'T', 'D']), "{said}");
+}
+
+#[test]
+fn parameters_of_shading_models_fit_and_agree_with_those_of_reflection_models() {
+    const STEPS: Parameter = Parameter::integer("steps", 1..=8, 4);
+    const WITH_STEPS: &str = "fn shade_vertex(corner: Corner) -> Varying {
+    return Varying(corner.position, corner.normal, corner.tangent, vec3(shading_parameters().steps), vec3(0.0));
+}
+fn shade_pixel(passed: Varying) -> vec3<f32> {
+    return passed.colour;
+}
+";
+    const MISSPELT: &str = "fn shade_vertex(corner: Corner) -> Varying {
+    return Varying(corner.position, corner.normal, corner.tangent, vec3(0.0), vec3(0.0));
+}
+fn shade_pixel(passed: Varying) -> vec3<f32> {
+    return passed.colour * shading_parameters().stpes;
+}
+";
+    const fn with(text: &'static str) -> shading::Declaration {
+        shading::Declaration::new("plain", "Plain", Stage::Pixel, 'N', Source::new("plain.wgsl", text))
+    }
+    shading!(Right, with(WITH_STEPS), { steps: number = STEPS });
+    let mut registry = Registry::builtin();
+    assert!(registry.try_add_shading_model::<Right>().is_ok());
+    assert!(registry.material_parameter("steps").is_some());
+    shading!(Misspelt, with(MISSPELT), { steps: number = STEPS });
+    shading_refused::<Misspelt>(&["plain.wgsl:5:", "stpes"]);
+    const COLOUR_AS_NUMBER: Parameter = Parameter::number("base_colour", 0.0..=1.0, 0.5);
+    shading!(Clash, with(STAGES), { base_colour: number = COLOUR_AS_NUMBER });
+    shading_refused::<Clash>(&["parameter `base_colour`: is a number, but that of `lambert` is a colour"]);
+    const POSITION: Parameter = Parameter::number("position", 0.0..=1.0, 0.5);
+    shading!(Reserved, with(STAGES), { position: number = POSITION });
+    shading_refused::<Reserved>(&["parameter `position`", "that of another key of an object"]);
+    const A: Parameter = Parameter::colour("a", [0; 3]);
+    const B: Parameter = Parameter::colour("b", [0; 3]);
+    const C: Parameter = Parameter::colour("c", [0; 3]);
+    const D: Parameter = Parameter::colour("d", [0; 3]);
+    const E: Parameter = Parameter::colour("e", [0; 3]);
+    shading!(Many, with(STAGES), { a: colour = A, b: colour = B, c: colour = C, d: colour = D, e: colour = E, steps: number = STEPS, k_d: number = K_D });
+    shading_refused::<Many>(&["its parameters take 17 numbers, at most 16 fit; a colour takes three"]);
+    // The other way round: a reflection model that uses the name otherwise.
+    const STEPS_AS_COLOUR: Parameter = Parameter::colour("steps", [0; 3]);
+    model!(Later, MODEL, { steps: colour = STEPS_AS_COLOUR });
+    let said = registry.try_add_reflection_model::<Later>().map(drop).expect_err("another type");
+    assert!(said.to_string().contains("that of `plain` is"), "{said}");
 }
 
 #[test]

@@ -398,7 +398,7 @@ fn paths_keep_both_ends_where_there_is_little_room() {
     bench.session.shaders.troubles = vec![broken_lambert()];
     bench.settle();
     let shown = texts(&mut bench);
-    for file in ["gouraud.wgsl", "…/point.wgsl"] {
+    for file in ["…/gouraud.wgsl", "…/point.wgsl"] {
         assert!(shown.iter().any(|text| text == file), "{file}: {shown:?}");
     }
     bench.session.shaders.troubles.clear();

@@ -18,6 +18,7 @@ use crate::{
     reflection::{ModelEntry, usage},
     registry::Registry,
     scene::{Object, limits},
+    shading::ShadingEntry,
 };
 
 pub(super) fn object(
@@ -75,7 +76,7 @@ impl Shown<'_> {
 
     /// The knobs of the parameters of the model, and the parameters that it does not use.
     fn material(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
-        let Self { registry, object, model, .. } = *self;
+        let Self { session, registry, object, model } = *self;
         let Some(model) = model else {
             ui.label(theme::small(ui, "The parameters come back with the model."));
             return;
@@ -92,10 +93,15 @@ impl Shown<'_> {
         if model.parameters.is_empty() {
             ui.label(theme::small(ui, "This model has no knobs."));
         }
+        let shading = registry.shading_model(session.document.shading_model_of(object));
+        if let Some(shading) = shading {
+            self.shading(ui, model, shading, fields);
+        }
         self.readouts(ui, model);
         let unused: Vec<_> = registry
             .material_parameters()
             .filter(|p| model.parameter(p.name).is_none() && object.material.0.contains_key(p.name))
+            .filter(|p| shading.is_none_or(|s| s.parameter(p.name).is_none()))
             .collect();
         if !unused.is_empty() {
             let reason = format!("Not used by {}", model.declaration.name);
@@ -104,6 +110,29 @@ impl Shown<'_> {
             ui.add_space(2.0);
             for p in unused {
                 knob::parameter_knob(ui, p.name, p, &object.material.get(p), Some(&reason));
+            }
+        }
+    }
+
+    /// The knobs of the parameters that only the shading model has.
+    fn shading(
+        &self,
+        ui: &mut Ui,
+        model: &ModelEntry,
+        shading: &ShadingEntry,
+        fields: &mut Vec<ObjectField>,
+    ) {
+        let Self { object, .. } = *self;
+        let own: Vec<_> = shading.parameters.iter().filter(|p| model.parameter(p.name).is_none()).collect();
+        if own.is_empty() {
+            return;
+        }
+        ui.add_space(4.0);
+        ui.label(theme::small(ui, format!("{} shading", shading.declaration.name)));
+        for p in own {
+            let unused = usage::unused(shading.parameters, p, &object.material);
+            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref()) {
+                fields.push(ObjectField::Material(p.name, v));
             }
         }
     }

@@ -22,7 +22,12 @@ impl Session {
             Edit::ShadingModel(_) => Some("shading model"),
             _ => None,
         };
-        let other_model = matches!(edit, Edit::Model(_) | Edit::Object(_, ObjectField::Model(_)));
+        let other_model = matches!(
+            edit,
+            Edit::Model(_)
+                | Edit::ShadingModel(_)
+                | Edit::Object(_, ObjectField::Model(_) | ObjectField::ShadingModel(_))
+        );
         let before = self.document.revision();
         let named =
             matches!(edit, Edit::Light(_, LightField::Name(_)) | Edit::Object(_, ObjectField::Name(_)));

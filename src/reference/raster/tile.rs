@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec4};
 
 use super::{SUBPIXEL, Screen, Triangle};
-use crate::shading::{Lighting, ShadingEntry};
+use crate::shading::{Lighting, Shading};
 
 /// Edge of a tile in pixels.
 pub(in crate::reference) const TILE: usize = 32;
@@ -40,7 +40,7 @@ impl<const S: usize> Tile<S> {
     pub(in crate::reference) fn draw(
         &mut self,
         triangle: &Triangle,
-        shading: &ShadingEntry,
+        shading: &dyn Shading,
         lighting: &dyn Lighting,
         origin: [usize; 2],
         screen: &Screen,
@@ -120,7 +120,7 @@ impl<const S: usize> Tile<S> {
                 }
                 if visible {
                     let varying = triangle.varying(here.map(|e| (e as f64 * per_area) as f32));
-                    let colour = (shading.pixel)(lighting, &varying, triangle.face_normal);
+                    let colour = shading.pixel(lighting, &varying, triangle.face_normal);
                     for (sample, _) in self.colour[pixel].iter_mut().zip(covered).filter(|(_, c)| *c) {
                         *sample = colour;
                     }
@@ -175,8 +175,8 @@ mod tests {
         }
     }
 
-    fn shading() -> ShadingEntry {
-        ShadingEntry::of::<crate::shading::Flat>()
+    fn shading() -> crate::shading::Flat {
+        crate::shading::Flat::default()
     }
 
     /// The number of hits of each sample of the first tiles.

@@ -8,12 +8,16 @@ use std::collections::HashSet;
 use super::{LIGHT_KEYS, MODELS, OBJECT_KEYS, Registry, WINDOW_KEYS, light_set::MAX_LIGHT_TYPES};
 use crate::{
     light::LightEntry,
+    optics::colour::Encoding,
     parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, layout},
     reflection::{ModelEntry, usage},
     shader::{Source, definitions::allowed_in_wgsl},
-    shading::ShadingEntry,
+    shading::{PARAMETER_WORDS, ShadingEntry},
     shape::ShapeEntry,
-    text::identifier::{as_identifier, identifier},
+    text::{
+        identifier::{as_identifier, identifier},
+        with_article,
+    },
 };
 
 type Check = Result<(), String>;
@@ -146,8 +150,8 @@ fn shared(
                 "parameter `{}`: is {}, but that of `{id}` is {}; {sort} share parameters by name, so they must have \
                  one type: use that, or another name",
                 p.name,
-                p.kind.name(),
-                other.kind.name()
+                with_article(p.kind.name()),
+                with_article(other.kind.name())
             ));
         }
     }
@@ -159,8 +163,9 @@ pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check
     let d = entry.declaration;
     identity(d.id, d.name)?;
     parameters(entry.parameters, OBJECT_KEYS, "an object")?;
-    let others = registry.models().iter().filter(|m| m.declaration.id != d.id);
-    shared(entry.parameters, "models", others.map(|m| (m.declaration.id, m.parameters)))?;
+    let models = registry.models().iter().filter(|m| m.declaration.id != d.id);
+    let shadings = registry.shading_models().iter().map(|s| (s.declaration.id, s.parameters));
+    shared(entry.parameters, "models", models.map(|m| (m.declaration.id, m.parameters)).chain(shadings))?;
     path(registry, &d.wgsl, registry.model(d.id).map(|m| m.declaration.id))
 }
 
@@ -168,6 +173,14 @@ pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check
 pub(super) fn shading_model(registry: &Registry, entry: &ShadingEntry) -> Check {
     let d = entry.declaration;
     identity(d.id, d.name)?;
+    parameters(entry.parameters, OBJECT_KEYS, "an object")?;
+    let models = registry.models().iter().map(|m| (m.declaration.id, m.parameters));
+    let shadings = registry.shading_models().iter().filter(|s| s.declaration.id != d.id);
+    shared(entry.parameters, "models", models.chain(shadings.map(|s| (s.declaration.id, s.parameters))))?;
+    let words = crate::parameter::words(entry.parameters, &Values::default(), Encoding::default()).len();
+    ensure(words <= PARAMETER_WORDS, || {
+        format!("its parameters take {words} numbers, at most {PARAMETER_WORDS} fit; a colour takes three")
+    })?;
     let is = |what: String| format!("its key is '{}', {what}", d.key);
     ensure(d.key.is_ascii_uppercase(), || is("but must be a letter from A to Z".to_owned()))?;
     ensure(!WINDOW_KEYS.contains(&d.key), || {

@@ -1,5 +1,7 @@
 //! The shaders that are ready to be drawn with: composed when first needed, and let rest when they are not.
 
+use std::collections::HashSet;
+
 use bevy::{
     asset::{Assets, Handle},
     ecs::prelude::*,
@@ -127,8 +129,12 @@ impl LiveShaders {
         let mut idle: Vec<_> =
             self.shaders.iter().filter(idle).map(|(key, live)| (live.seen, *key)).collect();
         idle.sort_unstable();
-        let many = idle.len().saturating_sub(SPARE);
-        for (_, key) in idle.into_iter().take(many) {
+        // Those of other light types rest at once, or each set of these would have its own spare ones.
+        let lights: HashSet<_> = visible.0.iter().map(|(.., lights)| *lights).collect();
+        let (spare, other): (Vec<_>, Vec<_>) =
+            idle.into_iter().partition(|(_, key)| lights.is_empty() || lights.contains(&key.2));
+        let many = spare.len().saturating_sub(SPARE);
+        for (_, key) in other.into_iter().chain(spare.into_iter().take(many)) {
             let Some(live) = self.shaders.remove(&key) else { continue };
             let asset = Shader::from_wgsl(RESTING, path_of_asset(key));
             // The asset is there as long as its handle.

@@ -12,7 +12,12 @@ use super::{
     MAX_DIMENSION, Observer, Scene, SceneSize,
     error::{Path, Problem},
 };
-use crate::{light::LightEntry, parameter::Value, registry::Registry, text::quoted};
+use crate::{
+    light::LightEntry,
+    parameter::Value,
+    registry::Registry,
+    text::{quoted, with_article},
+};
 
 mod rule;
 pub use rule::*;
@@ -301,9 +306,8 @@ impl Check<'_> {
         if let Some(id) = &object.shading_model {
             self.rule(shading_model(registry, id), || (path("shading_model"), quoted(id)));
         }
-        let model = self.scene.model_of(object);
         for (name, value) in &object.material.0 {
-            self.rule(material_parameter(registry, model, name, value), || {
+            self.rule(material_parameter(registry, self.scene, object, name, value), || {
                 (path("material").key(name.clone()), written(value))
             });
         }
@@ -331,12 +335,6 @@ fn presence(type_id: &str, field: &str, needed: bool) -> String {
     } else {
         format!("is given, but {light} light has no {field}")
     }
-}
-
-/// "a sphere", "an icosahedron".
-fn with_article(id: &str) -> String {
-    let article = if id.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-    format!("{article} {id}")
 }
 
 /// A parameter as in scene files.

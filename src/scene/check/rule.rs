@@ -12,7 +12,7 @@ use crate::{
     },
     parameter::{Parameter, ParameterKind, Value},
     registry::Registry,
-    scene::{MAX_DIMENSION, MAX_OBJECTS, SceneSize, limits},
+    scene::{MAX_DIMENSION, MAX_OBJECTS, Object, Scene, SceneSize, limits},
     shape::ShapeEntry,
     text::{self, detailed, did_you_mean},
 };
@@ -166,20 +166,86 @@ fn unit(parameter: &Parameter) -> String {
     }
 }
 
-/// A parameter in the material of an object: if the object's reflection model declares it, its range there applies, and
-/// otherwise the range of some model that declares it.
-pub fn material_parameter(registry: &Registry, model: &str, name: &str, value: &Value) -> Rule {
-    if let Some(own) = registry.model(model).and_then(|m| m.parameter(name)) {
-        return parameter(own, value);
+/// A parameter in the material of an object: the ranges that its reflection model and its shading model declare apply,
+/// and if neither does, the range of some other that declares it.
+pub fn material_parameter(
+    registry: &Registry,
+    scene: &Scene,
+    object: &Object,
+    name: &str,
+    value: &Value,
+) -> Rule {
+    match Declared::of(registry, scene, object, name).refusing(value) {
+        Ok(()) => Ok(()),
+        Err(Some(declared)) => parameter(declared, value),
+        Err(None) => Err(unknown_material_parameter(registry, name)),
     }
-    let mut rule = None;
-    for declared in registry.models().iter().filter_map(|m| m.parameter(name)) {
-        match parameter(declared, value) {
-            Ok(()) => return Ok(()),
-            Err(broken) => rule = rule.or(Some(broken)),
+}
+
+/// The declarations that a value in the material of an object is held against.
+#[derive(Clone, Debug)]
+pub enum Declared {
+    /// Those of its reflection model and its shading model: both must allow it.
+    Own(Vec<&'static Parameter>),
+    /// Those of others, since it uses none of that name: one must allow it. None for unknown names.
+    Others(Vec<&'static Parameter>),
+}
+
+impl Declared {
+    /// Those of a name for an object of a scene.
+    #[must_use]
+    pub fn of(registry: &Registry, scene: &Scene, object: &Object, name: &str) -> Self {
+        let model = registry.model(scene.model_of(object)).and_then(|m| m.parameter(name));
+        let shading = registry.shading_model(scene.shading_model_of(object)).and_then(|s| s.parameter(name));
+        let own: Vec<_> = model.into_iter().chain(shading).collect();
+        if !own.is_empty() {
+            return Self::Own(own);
+        }
+        Self::Others(registry.material_users().flat_map(|(_, all)| all).filter(|p| p.name == name).collect())
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn all(&self) -> &[&'static Parameter] {
+        match self {
+            Self::Own(all) | Self::Others(all) => all,
         }
     }
-    Err(rule.unwrap_or_else(|| unknown_material_parameter(registry, name)))
+
+    /// `Ok` for a value that is allowed.
+    ///
+    /// # Errors
+    /// The declaration whose rule the value breaks; `None` if there is none at all.
+    pub fn refusing(&self, value: &Value) -> Result<(), Option<&'static Parameter>> {
+        let refuses = |p: &&&'static Parameter| !p.allows(value);
+        match self {
+            Self::Own(all) => all.iter().find(refuses).map_or(Ok(()), |p| Err(Some(*p))),
+            Self::Others(all) if all.iter().any(|p| p.allows(value)) => Ok(()),
+            Self::Others(all) => Err(all.first().copied()),
+        }
+    }
+
+    /// The value itself if it is allowed, else the nearest one that is; none where the type is another one, or the
+    /// ranges exclude each other.
+    #[must_use]
+    pub fn nearest(&self, value: &Value) -> Option<Value> {
+        if self.refusing(value).is_ok() {
+            return Some(value.clone());
+        }
+        match self {
+            Self::Own(all) => {
+                let brought = |value: Value, p: &&'static Parameter| {
+                    if p.allows(&value) { Some(value) } else { p.nearest(&value) }
+                };
+                let nearest = all.iter().try_fold(value.clone(), brought)?;
+                self.refusing(&nearest).is_ok().then_some(nearest)
+            }
+            Self::Others(all) => {
+                let nearest = all.iter().filter_map(|p| p.nearest(value));
+                nearest.min_by(|a, b| a.distance(value).total_cmp(&b.distance(value)))
+            }
+        }
+    }
 }
 
 /// The rule for a material parameter that no model declares, with a suggestion.
@@ -187,7 +253,7 @@ fn unknown_material_parameter(registry: &Registry, name: &str) -> String {
     let declared: Vec<_> = registry.material_parameters().collect();
     let also = declared.iter().flat_map(|p| [(p.label, p.name), (p.symbol, p.name)]);
     let known = declared.iter().map(|p| (p.name, p.name)).chain(also);
-    format!("no reflection model has a parameter of that name{}", did_you_mean(name, known))
+    format!("no model has a parameter of that name{}", did_you_mean(name, known))
 }
 
 /// The id of a reflection model.
