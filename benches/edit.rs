@@ -3,7 +3,7 @@
 
 use std::{path::Path, time::Instant};
 
-use bevy::ecs::prelude::*;
+use bevy::{ecs::prelude::*, prelude::Transform};
 use glam::Vec3;
 use lights_camera_models::{
     custom,
@@ -13,7 +13,8 @@ use lights_camera_models::{
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
-        entities::{CurrentScene, LitObject, SceneEntities},
+        entities::{CurrentScene, SceneEntities},
+        parts::{Animated, Surface},
         schedule::LabFrame,
     },
     scene::{Object, Scene},
@@ -74,10 +75,22 @@ fn main() {
     report("one object brought back", |_| change(world, &|document| drop(document.undo().expect("a step"))));
     report("a component of one object", |i| {
         let object = world.resource::<SceneEntities>().objects[17];
-        let mut object = world.get_mut::<LitObject>(object).expect("it is an object");
-        object.0.material.set("k_d", Value::Number(0.5 + 0.5 * i as f32 / ROUNDS as f32));
+        let mut surface = world.get_mut::<Surface>(object).expect("it is an object");
+        surface.material.set("k_d", Value::Number(0.5 + 0.5 * i as f32 / ROUNDS as f32));
         world.run_schedule(LabFrame);
     });
+    let turn = |world: &mut World| {
+        let objects = world.resource::<SceneEntities>().objects.clone();
+        objects.iter().for_each(|object| {
+            world.get_mut::<Transform>(*object).expect("objects have a place").rotate_y(0.01);
+        });
+        world.run_schedule(LabFrame);
+    };
+    report("all objects turned", |_| turn(world));
+    let objects = world.resource::<SceneEntities>().objects.clone();
+    objects.iter().for_each(|object| _ = world.entity_mut(*object).insert(Animated));
+    report("all objects animated", |_| turn(world));
+    objects.iter().for_each(|object| _ = world.entity_mut(*object).remove::<Animated>());
     report("anything, by others", |i| {
         world.resource_mut::<CurrentScene>().0.objects[OBJECTS / 2].size = 0.1 + i as f32 * 1e-4;
         world.run_schedule(LabFrame);

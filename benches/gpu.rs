@@ -2,8 +2,10 @@
 //! nothing in the room, over objects and lights, by model, and against Bevy's own material.
 
 use bevy::{
+    app::Update,
     asset::Assets,
     color::Color,
+    ecs::prelude::*,
     light::{GlobalAmbientLight, PointLight},
     mesh::{Mesh, Mesh3d},
     pbr::{MeshMaterial3d, StandardMaterial},
@@ -16,7 +18,9 @@ use lights_camera_models::{
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
+        entities::SceneEntities,
         meshes::shared_mesh,
+        parts::Animated,
     },
     scene::{Light, Object, Observer, Scene},
 };
@@ -174,5 +178,43 @@ fn models(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, models, frames);
+/// Turned by a system in every frame.
+#[derive(Component)]
+struct Turns;
+
+fn turn(mut objects: Query<&mut Transform, With<Turns>>) {
+    objects.iter_mut().for_each(|mut place| place.rotate_y(0.01));
+}
+
+/// Ten thousand objects at rest, and turned in every frame by a system: shown only, and stored in the scene.
+fn moved(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("10 000 objects");
+    group.sample_size(20);
+    let mut renderer = GpuRenderer::extended(1280, 720, 1, Output::Display, |app| {
+        app.add_systems(Update, turn);
+    })
+    .expect("a Vulkan driver, software will do");
+    // Simple ones, so that drawing them hides nothing.
+    let mut scene = grid(10_000);
+    for object in &mut scene.objects {
+        (object.object_type, object.tessellation) = ("cube".to_owned(), Some(1));
+    }
+    renderer.set_scene(scene);
+    renderer.settle().expect("the GPU draws");
+    let objects = renderer.app().world().resource::<SceneEntities>().objects.clone();
+    for what in ["at rest", "animated", "stored"] {
+        for object in &objects {
+            let mut entity = renderer.app().world_mut().entity_mut(*object);
+            match what {
+                "animated" => entity.insert((Turns, Animated)),
+                "stored" => entity.remove::<Animated>(),
+                _ => &mut entity,
+            };
+        }
+        group.bench_function(what, |b| b.iter(|| frame(&mut renderer)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, models, frames, moved);
 criterion_main!(benches);

@@ -36,7 +36,7 @@ impl Panel for Dimmer {
         let lights = &context.document().lights;
         // The world can be read …
         let world = context.world();
-        let objects = world.try_query::<&LitObject>().map_or(0, |mut query| query.iter(world).count());
+        let objects = world.try_query::<&SceneObject>().map_or(0, |mut query| query.iter(world).count());
         ui.label(format!("Lights: {} · Objects: {objects}", lights.len()));
         ui.add(Slider::new(&mut self.0, 1.0..=200.0).suffix(" %"));
         ui.horizontal(|ui| {
@@ -50,7 +50,7 @@ impl Panel for Dimmer {
             if ui.button("Turn objects").clicked() {
                 // … and changed once all panels are shown.
                 context.queue(|world| {
-                    let mut objects = world.query_filtered::<&mut Transform, With<LitObject>>();
+                    let mut objects = world.query_filtered::<&mut Transform, With<SceneObject>>();
                     objects.iter_mut(world).for_each(|mut place| place.rotate_y(1.0));
                 });
             }

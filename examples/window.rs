@@ -22,7 +22,7 @@ pub fn main() -> AppExit {
 }
 
 /// Logs how many objects there are, whenever that changes.
-fn count(objects: Query<(), With<LitObject>>, mut known: Local<usize>) {
+fn count(objects: Query<(), With<SceneObject>>, mut known: Local<usize>) {
     if std::mem::replace(&mut *known, objects.count()) != *known {
         warn!("{} objects", *known);
     }

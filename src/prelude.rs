@@ -2,7 +2,7 @@
 //! of models, lights and shapes, which share a name, stay in their modules.
 
 pub use crate::{
-    document::{Edit, Selection},
+    document::{Edit, PartId, Selection},
     light::{self, Incident, LightRecord, LightType},
     optics::{Frame, Terms},
     panel::{
@@ -14,7 +14,9 @@ pub use crate::{
     reflection::{self, ReflectionModel},
     registry::{Register, Registry},
     render::{
-        entities::{Eye, LightSource, LitObject},
+        parts::{
+            Animated, LightColour, LightPower, SceneLight, SceneObject, SceneObserver, Surface, Tessellation,
+        },
         schedule::{LabFrame, LabSystems},
     },
     scene::{Light, Object, Scene},
@@ -39,8 +41,17 @@ mod tests {
         known::<(App, Transform)>();
         known::<(Edit, Selection, Incident, LightRecord, Frame, Terms, PanelContext, Panels, Place, Action)>(
         );
-        known::<(Session, Parameter, ParameterKind, Value, Registry, Eye, LightSource, LitObject, LabFrame)>(
-        );
+        known::<(PartId, Session, Parameter, ParameterKind, Value, Registry, LabFrame)>();
+        known::<(
+            Animated,
+            LightColour,
+            LightPower,
+            SceneLight,
+            SceneObject,
+            SceneObserver,
+            Surface,
+            Tessellation,
+        )>();
         known::<(LabSystems, Light, Object, Scene, Source, PolygonMesh, LabPlugins, dyn Panel)>();
         fn registers<R: Register, M: ReflectionModel, S: ShadingModel, L: LightType, T: ObjectType>() {}
         registers::<Registry, reflection::Lambert, shading::Flat, light::Point, shape::Sphere>();

@@ -12,8 +12,7 @@ use std::{
 
 use crate::{
     registry::Registry,
-    scene::{Object, Observer, Scene, check, error::Problem},
-    text::sentence,
+    scene::{Object, Scene},
 };
 
 mod edit;
@@ -22,14 +21,13 @@ mod index;
 mod matching;
 pub mod names;
 mod rules;
+mod submit;
 
 pub use edit::{Edit, LightField, ObjectField};
 pub(crate) use history::difference;
 use history::{History, Label, Labels, Patch, rest_of};
 use index::{Index, Visits};
 
-/// The gesture of all that systems change.
-const SYSTEMS: u64 = u64::MAX;
 /// The most changes that [`Document::changes_since`] looks back.
 const RECENT: usize = 64;
 
@@ -162,7 +160,7 @@ impl Document {
             revision: Revision::next(),
             recent: VecDeque::new(),
         };
-        document.label_parts();
+        document.label_parts(None);
         document
     }
 
@@ -349,7 +347,7 @@ impl Document {
             Extent::All => {
                 let (old, labels) = (self.scene.clone(), self.labels.clone());
                 change(self);
-                self.label_parts();
+                self.label_parts(registry);
                 (Patch::between((&old, &labels), (&self.scene, &self.labels)), true)
             }
         };
@@ -360,7 +358,7 @@ impl Document {
     }
 
     /// Every part has a label, whatever a change did to the lists.
-    fn label_parts(&mut self) {
+    fn label_parts(&mut self, registry: Option<&Registry>) {
         let (lights, objects) = (self.scene.lights.len(), self.scene.objects.len());
         self.labels.lights.truncate(lights);
         self.labels.objects.truncate(objects);
@@ -372,7 +370,7 @@ impl Document {
             let label = self.next_label();
             self.labels.objects.push(label);
         }
-        self.number_parts(None);
+        self.number_parts(registry);
     }
 
     /// Changes an object as a consequence of the last step, which undoes it too.
@@ -385,68 +383,8 @@ impl Document {
     /// Changes values without a step, as models that come and go require.
     pub fn amend(&mut self, change: impl FnOnce(&mut Scene)) {
         change(&mut self.scene);
-        self.label_parts();
+        self.label_parts(None);
         self.touch(Extent::All, true);
-    }
-
-    /// Adopts what a system changed in these parts, if the rules of scenes allow it. All such changes that follow each
-    /// other are one step: a system may change something in every frame.
-    ///
-    /// # Errors
-    /// Why it is refused; the scene stays as it is.
-    pub fn submit(
-        &mut self,
-        scene: &Scene,
-        parts: &[Extent],
-        selection: Selection,
-        registry: &Registry,
-    ) -> Result<(), String> {
-        if let Some(problem) = self.problem_in(scene, parts, registry) {
-            return Err(sentence(&format!("A change of a component was refused: {problem}")));
-        }
-        const NAME: &str = "Change by a system";
-        let gesture = std::mem::replace(&mut self.gesture, SYSTEMS);
-        if parts.contains(&Extent::All) {
-            self.replace(NAME, selection, scene.clone(), registry);
-        } else {
-            let mut all = Patch::default();
-            for part in parts {
-                // A part that is changed twice is one of one place.
-                let _ = all.join(
-                    self.patch(*part, Some(registry), |document| part.copy(scene, &mut document.scene)),
-                );
-            }
-            self.history.record(NAME.to_owned(), self.gesture, all, selection);
-        }
-        self.gesture = gesture;
-        Ok(())
-    }
-
-    /// The first problem of the parts in which a scene may differ from this one.
-    fn problem_in(&self, scene: &Scene, parts: &[Extent], registry: &Registry) -> Option<Problem> {
-        if (scene.lights.len(), scene.objects.len()) != (self.lights.len(), self.objects.len()) {
-            return check::scene(scene, registry).into_iter().next();
-        }
-        let rest = |scene: &Scene| Scene { observer: Observer::default(), ..rest_of(scene) };
-        if parts.iter().any(|part| matches!(part, Extent::All | Extent::Rest)) && rest(scene) != rest(self) {
-            // Room and models have a say in everything.
-            return check::scene(scene, registry).into_iter().next();
-        }
-        let problems = |part: &Extent| match *part {
-            Extent::Rest if scene.observer == self.observer => Vec::new(),
-            Extent::Rest => check::observer(scene, registry),
-            Extent::Light(i) if scene.lights.get(i) == self.lights.get(i) => Vec::new(),
-            Extent::Light(i) => check::light(scene, i, registry),
-            Extent::Object(i) if scene.objects.get(i) == self.objects.get(i) => Vec::new(),
-            Extent::Object(i) => check::object(scene, i, registry),
-            Extent::All => Vec::new(),
-        };
-        if !parts.contains(&Extent::All) {
-            return parts.iter().flat_map(problems).next();
-        }
-        let lights = (0..scene.lights.len()).map(Extent::Light);
-        let objects = (0..scene.objects.len()).map(Extent::Object);
-        lights.chain(objects).chain([Extent::Rest]).flat_map(|part| problems(&part)).next()
     }
 
     // ── steps ──

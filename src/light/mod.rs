@@ -5,12 +5,12 @@
 
 use std::fmt;
 
-use bevy::ecs::{component::Component, system::EntityCommands};
+use bevy::{ecs::component::Component, reflect::Reflectable};
 use glam::Vec3;
 
 use crate::{
     optics::colour::Encoding,
-    parameter::{Parameter, ParameterSet, Table, Values, words},
+    parameter::{Parameter, ParameterSet, Table, TypeComponent, Values, words},
     shader::Source,
 };
 
@@ -114,7 +114,7 @@ pub enum Incident {
 
 /// A light type. The implementing struct holds its parameters (see [`parameters!`](crate::parameters)), and is a
 /// component of the entities of the type.
-pub trait LightType: ParameterSet + Component {
+pub trait LightType: ParameterSet + Component + Reflectable {
     /// Name, properties, shader.
     const DECLARATION: Declaration;
 
@@ -151,11 +151,9 @@ pub struct LightEntry {
     pub index: u32,
     /// The type with the parameters of one light.
     pub instantiate: fn(&Values, Encoding) -> Box<dyn Emitter>,
+    /// Its component.
+    pub component: TypeComponent,
     solid_angle: fn(&Values) -> Option<f64>,
-    /// Adds the component of the type to an entity.
-    pub mark: fn(&mut EntityCommands, &Values),
-    /// Removes the component of the type from an entity.
-    pub unmark: fn(&mut EntityCommands),
 }
 
 impl LightEntry {
@@ -167,13 +165,8 @@ impl LightEntry {
             parameters: L::PARAMETERS,
             index: 0,
             instantiate: |values, encoding| Box::new(L::from_values(values, encoding)),
+            component: TypeComponent::of::<L>(),
             solid_angle: |values| L::from_values(values, Encoding::default()).solid_angle(),
-            mark: |entity, values| {
-                entity.insert(L::from_values(values, Encoding::default()));
-            },
-            unmark: |entity| {
-                entity.remove::<L>();
-            },
         }
     }
 

@@ -39,7 +39,7 @@ impl KnownTerms {
     /// The terms that are not 0 everywhere in the picture of a scene.
     pub(super) fn present(&self, scene: &Scene, registry: &Registry) -> Vec<TermSelection> {
         let mut present = [false; 3];
-        let everywhere = shines_from_everywhere(scene, registry);
+        let everywhere = shines_from_everywhere(scene.shining(), scene.display.encoding, registry);
         let mut last = None;
         for object in scene.shown().take(OBJECTS) {
             let key = (scene.model_of(object), &object.material);

@@ -8,6 +8,7 @@ use std::{
     sync::{Arc, LazyLock, Mutex, PoisonError, RwLock, Weak},
 };
 
+use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use serde::{Serialize, Serializer};
 
 use crate::files;
@@ -48,7 +49,9 @@ impl fmt::Debug for FileFormat {
 }
 
 /// A file that a scene names.
-#[derive(Clone)]
+#[derive(Clone, Reflect)]
+#[reflect(opaque)]
+#[reflect(Clone, Debug, PartialEq)]
 pub struct NamedFile {
     /// The name as in the scene file, relative to its folder.
     name: Cow<'static, str>,
@@ -219,7 +222,9 @@ impl Serialize for NamedFile {
 }
 
 /// A file with its numbers, for calculation.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Reflect)]
+#[reflect(opaque)]
+#[reflect(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     /// The file.
     pub file: Option<NamedFile>,

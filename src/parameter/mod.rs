@@ -5,13 +5,16 @@
 //! are declared here once.
 
 mod builder;
+mod component;
 mod declaration;
 mod file;
 mod layout;
+mod reflect;
 mod set;
 mod shared;
 mod value;
 
+pub use component::{TypeComponent, Watch};
 pub use declaration::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen};
 pub use file::{FileFormat, FileProblem, NamedFile, Table};
 pub use layout::{BLOCK_BYTES, layout, pack, stride, words};

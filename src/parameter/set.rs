@@ -17,7 +17,7 @@ pub trait ParameterSet: Sized + Send + Sync + 'static {
 
 /// Declares a struct whose fields are the parameters of a model, a light type or an object type, each with its
 /// declaration. A block `derived { field: Type = function }` after it adds fields calculated once from the others. Its
-/// default has the declared defaults. The struct is also a component of Bevy's.
+/// default has the declared defaults. The struct is also a component of Bevy's, and known to its reflection.
 ///
 /// ```
 /// use lights_camera_models::{parameters, parameter::{BASE_COLOUR, K_D, ParameterSet}};
@@ -50,6 +50,12 @@ macro_rules! parameters {
         }
 
         $crate::parameters!(@copy $name $($kind)*);
+
+        $crate::reflect_parameters!($name {
+            $( $field: $crate::parameters!(@type $kind) ),*
+        } derived {
+            $( $( $derived = $derive ),* )?
+        });
 
         impl ::core::default::Default for $name {
             fn default() -> Self {

@@ -2,6 +2,7 @@
 
 use std::{borrow::Cow, collections::BTreeMap, fmt};
 
+use bevy::reflect::Reflect;
 use glam::Vec3;
 use serde::Serialize;
 
@@ -12,7 +13,7 @@ use super::{
 use crate::optics::colour::Encoding;
 
 /// The value of a parameter, as in a scene file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Reflect, Serialize)]
 #[serde(untagged)]
 pub enum Value {
     /// A real number.
@@ -59,7 +60,7 @@ impl fmt::Display for Value {
 
 /// The parameters given by a scene for one object, by name. Absent ones have their defaults; those not used by the
 /// current model are kept.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Reflect, Serialize)]
 #[serde(transparent)]
 pub struct Values(pub BTreeMap<Cow<'static, str>, Value>);
 

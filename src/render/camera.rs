@@ -3,6 +3,7 @@
 use super::{
     entities::CurrentScene,
     overrides::Overrides,
+    shown::Shown,
     stage::{GIZMO_LAYER, SCENE_LAYER},
     view::View,
 };
@@ -85,6 +86,7 @@ pub fn tonemapping(tone: ToneMapping) -> Tonemapping {
 /// tone mapping at the scene's or its own.
 pub fn follow_scene(
     scene: Res<CurrentScene>,
+    shown: Res<Shown>,
     mut cameras: Query<(
         &PictureCamera,
         Option<&Overrides>,
@@ -95,7 +97,7 @@ pub fn follow_scene(
         Has<Hdr>,
     )>,
 ) {
-    let observer = &scene.0.observer;
+    let observer = &shown.observer;
     for (camera, overrides, view, mut transform, mut lens, mut tone, hdr) in &mut cameras {
         if camera.follows_observer {
             let wanted =

@@ -11,8 +11,8 @@ use bevy::{
 use rayon::prelude::*;
 
 use super::{
-    entities::LitObject,
     material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
+    shown::ShownObject,
 };
 use crate::{
     registry::Registry,
@@ -132,7 +132,7 @@ pub(super) fn forget_unused_meshes(world: &mut World, registry: &Registry) {
     if !std::mem::take(&mut world.resource_mut::<ShapeMeshes>().grown) {
         return;
     }
-    let mut query = world.query::<&LitObject>();
+    let mut query = world.query::<&ShownObject>();
     let used: HashSet<_> = query
         .iter(world)
         .filter_map(|object| {

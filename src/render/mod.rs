@@ -1,22 +1,27 @@
 //! Everything of Bevy that draws: the scene as entities, materials, lights in a buffer, live shaders, views, and
 //! pictures without a window.
 
+pub(crate) mod absorb;
 pub mod camera;
 pub mod capture;
 pub mod drawn;
 pub mod entities;
-mod exchange;
+pub(crate) mod exchange;
 pub mod illumination;
 pub mod live;
 pub mod material;
 pub mod meshes;
+mod mirror;
 pub mod overrides;
+pub mod parts;
 pub mod plugin;
 mod register;
 pub mod schedule;
 pub mod show;
+mod shown;
 pub mod stage;
 pub mod swap;
 pub mod tables;
 pub mod trial;
+pub(crate) mod typed;
 pub mod view;

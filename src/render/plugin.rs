@@ -8,20 +8,27 @@ use bevy::{
 };
 
 use super::{
+    absorb::absorb,
     camera::follow_scene,
-    entities::{CurrentScene, SceneEntities, absorb, reconcile},
+    entities::{CurrentScene, SceneEntities, reconcile},
     illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{LiveShadersPlugin, exchange},
     material::MaterialApp as _,
     meshes::ShapeMeshes,
     overrides::Overrides,
+    parts,
     schedule::{LabFrame, LabSystems, detect},
+    shown::{Shown, show_lights},
     stage::{Stage, set_stages},
     swap::swap,
     tables::TablesPlugin,
+    typed::know_types,
     view::ViewPlugin,
 };
-use crate::registry::{Registry, register_builtin};
+use crate::{
+    document::PartId,
+    registry::{Registry, register_builtin},
+};
 
 /// A scene as entities, lit and shaded: everything but windows, panels and cameras. Needs Bevy's
 /// renderer and PBR plugins.
@@ -35,6 +42,14 @@ impl Plugin for ScenePlugin {
         app.world_mut().resource_mut::<MainScheduleOrder>().insert_after(Update, LabFrame);
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()
+            .init_resource::<Shown>()
+            .register_type::<PartId>()
+            .register_type::<parts::SceneLight>()
+            .register_type::<parts::SceneObject>()
+            .register_type::<parts::Surface>()
+            .register_type::<parts::Tessellation>()
+            .register_type::<parts::SceneObserver>()
+            .register_type::<parts::Animated>()
             .init_resource::<ShapeMeshes>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
@@ -54,9 +69,15 @@ impl Plugin for ScenePlugin {
             .add_systems(
                 LabFrame,
                 (
-                    reconcile.in_set(LabSystems::Spawn).run_if(resource_changed::<CurrentScene>),
-                    set_stages.in_set(LabSystems::Spawn),
+                    (
+                        know_types.run_if(resource_changed::<Registry>),
+                        reconcile.run_if(resource_changed::<CurrentScene>),
+                        set_stages,
+                    )
+                        .chain()
+                        .in_set(LabSystems::Spawn),
                     absorb.in_set(LabSystems::Edit),
+                    show_lights.in_set(LabSystems::Swap).before(exchange),
                     swap.in_set(LabSystems::Swap).after(exchange),
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
@@ -70,13 +91,14 @@ impl Plugin for ScenePlugin {
 /// Writes lights and display settings into the buffers of the views when any of them changed.
 fn upload_lights(
     scene: Res<CurrentScene>,
+    shown: Res<Shown>,
     terms: Res<ShownTerms>,
     registry: Res<Registry>,
     shared: Res<IlluminationBuffer>,
     stages: Query<(Ref<Stage>, Ref<Overrides>)>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
 ) {
-    let changed = scene.is_changed() || terms.is_changed();
+    let changed = scene.is_changed() || shown.is_changed() || terms.is_changed();
     let none = Overrides::default();
     let changed_stages = stages
         .iter()
@@ -84,7 +106,7 @@ fn upload_lights(
         .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
     for (handle, overrides) in changed.then_some((&shared.handle, &none)).into_iter().chain(changed_stages) {
         let display = overrides.display_of(&scene.0);
-        let lights: Vec<_> = scene.0.shining().map(|l| Lit::new(l, &registry, display.encoding)).collect();
+        let lights: Vec<_> = shown.shining().map(|l| Lit::new(l, &registry, display.encoding)).collect();
         let mut bytes = illumination_bytes(&lights, overrides.terms.unwrap_or(terms.0), &display);
         let Some(known) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
         // Materials would not notice a buffer of another size.

@@ -1,10 +1,11 @@
-//! Registering in an app: the registry learns of it, and the renderer gets a material for each reflection model.
+//! Registering in an app: the registry learns of it, and the renderer gets a material for each reflection model,
+//! and a component for each type.
 
 use std::path::PathBuf;
 
 use bevy::{app::App, ecs::change_detection::Mut};
 
-use super::material::MaterialApp as _;
+use super::{material::MaterialApp as _, typed::know_types};
 use crate::{
     light::LightType,
     reflection::ReflectionModel,
@@ -42,10 +43,14 @@ impl Register for App {
     }
 
     fn admit_light_type<L: LightType>(&mut self, admission: Admission) -> Result<(), RegistrationError> {
-        registry(self).admit_light_type::<L>(admission)
+        registry(self).admit_light_type::<L>(admission)?;
+        know_types(self.world_mut());
+        Ok(())
     }
 
     fn admit_object_type<T: ObjectType>(&mut self, admission: Admission) -> Result<(), RegistrationError> {
-        registry(self).admit_object_type::<T>(admission)
+        registry(self).admit_object_type::<T>(admission)?;
+        know_types(self.world_mut());
+        Ok(())
     }
 }

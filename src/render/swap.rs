@@ -13,12 +13,13 @@ use rayon::prelude::*;
 
 use super::{
     drawn::Drawn,
-    entities::{CurrentScene, LitObject, SceneEntities},
+    entities::{CurrentScene, SceneEntities},
     illumination::{IlluminationBuffer, Lit, word_count},
     live::LiveShaders,
     material::{Attachments, MaterialInputs},
     meshes::{ShapeMeshes, forget_unused_meshes},
     overrides::Overrides,
+    shown::{Shown, ShownObject},
     stage::{Stage, ViewCopy, copies},
     tables::{ParameterTables, Row},
 };
@@ -58,7 +59,7 @@ pub struct Common {
 }
 
 /// Drawables that have never been drawn, or that wait for their shader.
-type Unfinished = (Or<(With<LitObject>, With<ViewCopy>)>, Or<(Without<Drawn>, With<AwaitsShader>)>);
+type Unfinished = (Or<(With<ShownObject>, With<ViewCopy>)>, Or<(Without<Drawn>, With<AwaitsShader>)>);
 
 /// The objects that a frame visits.
 enum Suspects {
@@ -75,7 +76,7 @@ enum Suspects {
 pub fn swap(
     world: &mut World,
     mut last: Local<Option<Common>>,
-    changed: &mut QueryState<Entity, Changed<LitObject>>,
+    changed: &mut QueryState<Entity, Changed<ShownObject>>,
     unfinished: &mut QueryState<(Entity, Option<(&'static ViewCopy, &'static ChildOf)>), Unfinished>,
     views: &mut QueryState<Entity, (With<Stage>, With<Overrides>)>,
 ) {
@@ -84,8 +85,10 @@ pub fn swap(
     let views: Vec<_> = views.iter(world).collect();
     let models_changed = world.is_resource_changed::<Registry>();
     let mut different = models_changed;
-    if models_changed || world.is_resource_changed::<CurrentScene>() || last.is_none() {
-        let now = common(&world.resource::<CurrentScene>().0, world.resource::<Registry>());
+    let scene_changed = world.is_resource_changed::<CurrentScene>() || world.is_resource_changed::<Shown>();
+    if models_changed || scene_changed || last.is_none() {
+        let (scene, shown) = (&world.resource::<CurrentScene>().0, world.resource::<Shown>());
+        let now = common(scene, shown, world.resource::<Registry>());
         different |= last.as_ref() != Some(&now);
         *last = Some(now);
         all |= hold_lights(world, &views);
@@ -144,7 +147,7 @@ pub fn swap(
 /// Makes room for the parameters of all lights. True if the buffers are others than before.
 fn hold_lights(world: &mut World, views: &[Entity]) -> bool {
     let registry = world.resource::<Registry>();
-    let shining = world.resource::<CurrentScene>().0.shining().take(MAX_LIGHTS);
+    let shining = world.resource::<Shown>().shining().take(MAX_LIGHTS);
     let lights: Vec<_> = shining.map(|light| Lit::new(light, registry, Encoding::default())).collect();
     let words = word_count(&lights);
     world.resource_scope(|world, mut shared: Mut<IlluminationBuffer>| {
@@ -166,13 +169,13 @@ fn hold_lights(world: &mut World, views: &[Entity]) -> bool {
     })
 }
 
-fn common(scene: &Scene, registry: &Registry) -> Common {
+fn common(scene: &Scene, shown: &Shown, registry: &Registry) -> Common {
     Common {
         model: scene.reflection_model.clone(),
         shading: scene.shading_model.clone(),
         encoding: scene.display.encoding,
-        everywhere: shines_from_everywhere(scene, registry),
-        lights: scene.light_types(registry),
+        everywhere: shines_from_everywhere(shown.shining(), scene.display.encoding, registry),
+        lights: shown.light_types(registry),
     }
 }
 
@@ -207,7 +210,7 @@ fn find(
         let drawable = stage.map_or(Some(entity), |stage| stage.copy(entity));
         let Some(drawable) = drawable.and_then(|d| world.get_entity(d).ok()) else { continue };
         let (drawn, waits) = (drawable.get::<Drawn>(), drawable.contains::<AwaitsShader>());
-        let Some(object) = world.get_entity(entity).ok().and_then(|e| e.get_ref::<LitObject>()) else {
+        let Some(object) = world.get_entity(entity).ok().and_then(|e| e.get_ref::<ShownObject>()) else {
             continue;
         };
         let (model, shading) = overrides.map_or_else(

@@ -8,7 +8,7 @@ use bevy::{
     asset::{AssetEvent, AssetEventSystems, Assets, Handle, RenderAssetUsages},
     camera::{
         Camera, CameraUpdateSystems, ClearColorConfig, Projection, RenderTarget, SubCameraView,
-        primitives::Frustum, visibility::VisibilitySystems,
+        primitives::Frustum, visibility::Visibility, visibility::VisibilitySystems,
     },
     color::Color,
     core_pipeline::tonemapping::Tonemapping,
@@ -31,6 +31,7 @@ use super::{
     entities::CurrentScene,
     illumination::{IlluminationBuffer, ShownTerms},
     overrides::Overrides,
+    parts::Animated,
     stage::{Stage, ViewCopy},
     tables::ParameterTables,
 };
@@ -198,6 +199,8 @@ struct Changes<'w, 's> {
     tables: Res<'w, ParameterTables>,
     stages: Query<'w, 's, (Entity, &'static Stage)>,
     drawn: Query<'w, 's, Option<&'static ViewCopy>, Changed<Drawn>>,
+    animated: Query<'w, 's, (), (With<Animated>, Or<(Changed<Transform>, Changed<Visibility>)>)>,
+    rested: RemovedComponents<'w, 's, Animated>,
     shaders: MessageReader<'w, 's, AssetEvent<Shader>>,
     meshes: MessageReader<'w, 's, AssetEvent<Mesh>>,
     buffers: MessageReader<'w, 's, AssetEvent<ShaderBuffer>>,
@@ -210,6 +213,7 @@ impl Changes<'_, '_> {
         let told = [self.shaders.read().count(), self.meshes.read().count()];
         let mut all =
             told.iter().any(|count| *count > 0) || self.scene.is_changed() || self.registry.is_changed();
+        all |= self.rested.read().count() > 0 || !self.animated.is_empty();
         let mut some: HashSet<_> = self.drawn.iter().map(|s| s.map(|s| s.view)).collect();
         if self.terms.is_changed() {
             some.insert(None);
@@ -340,8 +344,14 @@ mod tests {
         let mut app = app(1);
         assert!(drawn(&mut app)[0] && drawn(&mut app)[0]);
         rest_all(&mut app);
-        let changes: [(&str, fn(&mut World)); 10] = [
+        let changes: [(&str, fn(&mut World)); 12] = [
             ("an object", |w| w.resource_mut::<CurrentScene>().0.objects[3].size = 1.0),
+            ("what is animated", |w| _ = w.spawn((Animated, Transform::default()))),
+            ("what is animated no more", |w| {
+                let mut animated = w.query_filtered::<Entity, With<Animated>>();
+                let entity = animated.iter(w).next().expect("there is one");
+                w.entity_mut(entity).remove::<Animated>();
+            }),
             ("the terms", |w| w.resource_mut::<ShownTerms>().set_changed()),
             ("the models", |w| w.resource_mut::<Registry>().set_changed()),
             ("the camera", |w| one::<Transform>(w).translation.x += 1.0),

@@ -354,13 +354,17 @@ pub fn record(light: &Light, registry: &Registry, encoding: Encoding) -> LightRe
     }
 }
 
-/// True if some light of a scene is uniform, so that albedos are needed.
+/// True if some of the lights that shine is uniform, so that albedos are needed.
 #[must_use]
-pub fn shines_from_everywhere(scene: &Scene, registry: &Registry) -> bool {
-    scene.shining().any(|light| {
+pub fn shines_from_everywhere<'a>(
+    shining: impl IntoIterator<Item = &'a Light>,
+    encoding: Encoding,
+    registry: &Registry,
+) -> bool {
+    shining.into_iter().any(|light| {
         registry.light(&light.light_type).is_some_and(|entry| {
-            let record = record(light, registry, scene.display.encoding);
-            let emitter = (entry.instantiate)(&light.parameters, scene.display.encoding);
+            let record = record(light, registry, encoding);
+            let emitter = (entry.instantiate)(&light.parameters, encoding);
             matches!(emitter.incident(&record, Vec3::ZERO), Incident::Uniform { .. })
         })
     })

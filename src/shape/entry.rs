@@ -11,7 +11,7 @@ use glam::Vec3;
 use super::{Declaration, ObjectType, PolygonMesh};
 use crate::{
     optics::colour::Encoding,
-    parameter::{Parameter, Values, words},
+    parameter::{Parameter, TypeComponent, Values, words},
 };
 
 /// A tessellation fine enough to tell the space that a shape takes.
@@ -26,6 +26,8 @@ pub struct ShapeEntry {
     pub declaration: &'static Declaration,
     /// Its parameters.
     pub parameters: &'static [Parameter],
+    /// Its component.
+    pub component: TypeComponent,
     mesh: fn(&Values, u32) -> PolygonMesh,
     /// Bounds by parameters: many objects are asked for theirs in every frame.
     bounds: Arc<Mutex<HashMap<Vec<u32>, Bounds>>>,
@@ -55,6 +57,7 @@ impl ShapeEntry {
         Self {
             declaration: const { &T::DECLARATION },
             parameters: T::PARAMETERS,
+            component: TypeComponent::of::<T>(),
             mesh: |values, tessellation| T::from_values(values, Encoding::Srgb).mesh(tessellation),
             bounds: Arc::default(),
         }

@@ -4,6 +4,8 @@
 
 use std::ops::RangeInclusive;
 
+use bevy::{ecs::component::Component, reflect::Reflectable};
+
 use crate::parameter::ParameterSet;
 
 mod entry;
@@ -60,8 +62,8 @@ pub struct Declaration {
 }
 
 /// An object type: a struct of parameters, written by [`parameters!`](crate::parameters), that creates a mesh of
-/// polygons whose largest extent is 1, centred on the origin.
-pub trait ObjectType: ParameterSet {
+/// polygons whose largest extent is 1, centred on the origin. It is a component of the entities of the type.
+pub trait ObjectType: ParameterSet + Component + Reflectable {
     /// Name and tessellation.
     const DECLARATION: Declaration;
 

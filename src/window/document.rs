@@ -29,9 +29,12 @@ use crate::{
     },
     registry::Registry,
     render::{
-        entities::{CurrentScene, SceneEntities, absorb},
+        absorb::absorb,
+        entities::{CurrentScene, SceneEntities},
+        exchange::Changes,
         illumination::ShownTerms,
         schedule::{LabFrame, LabSystems},
+        typed::know_types,
     },
     scene::load::{self, Defaults},
 };
@@ -115,6 +118,8 @@ impl Plugin for DocumentPlugin {
                 world.write_message_batch(effects.into_iter().map(LabEffect));
             }
         });
+        // Systems spawn parts before the first frame.
+        know_types(world);
     }
 }
 
@@ -179,13 +184,16 @@ fn take_over(
     registry: Res<Registry>,
     mut session: ResMut<Session>,
 ) {
-    let parts = entities.changed_by_others(&session.document, &scene);
-    if parts.is_empty() {
-        return;
+    for refused in entities.refused() {
+        session.say(Severity::Warning, refused.clone());
     }
-    if let Err(why) = session.submit(&scene.0, &parts, &registry) {
+    let Some(changes) = entities.changed_by_others(&session.document, &mut scene) else { return };
+    let answer = match &changes {
+        Changes::Values(parts) => session.submit(&scene.0, parts, &registry),
+        Changes::Lists(removed) => session.submit_lists(&scene.0, removed, &registry),
+    };
+    entities.settle(&changes, answer.is_ok(), &session.document, &mut scene);
+    if let Err(why) = answer {
         session.say(Severity::Warning, why);
-        scene.0.clone_from(session.document.scene());
     }
-    entities.agree(&session.document, &scene);
 }

@@ -26,7 +26,8 @@ use crate::{
     },
     registry::Registry,
     render::{
-        entities::{CurrentScene, LitObject, SceneEntities},
+        entities::{CurrentScene, SceneEntities},
+        parts::SceneObject,
         schedule::LabFrame,
     },
 };
@@ -55,7 +56,7 @@ fn pick(
     cameras: Query<(&Camera, &GlobalTransform), With<WindowView>>,
     scene: Res<CurrentScene>,
     entities: Res<SceneEntities>,
-    objects: Query<(), With<LitObject>>,
+    objects: Query<(), With<SceneObject>>,
     registry: Res<Registry>,
     area: Option<Res<PictureArea>>,
     mut session: ResMut<Session>,

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use bevy::ecs::{prelude::*, system::RunSystemOnce as _};
+use bevy::{
+    ecs::{prelude::*, system::RunSystemOnce as _},
+    prelude::Transform,
+};
 use glam::Vec3;
 use lights_camera_models::{
     custom,
@@ -13,8 +16,9 @@ use lights_camera_models::{
     render::{
         camera::picture_camera,
         capture::gpu::{GpuRenderer, Output},
-        entities::{CurrentScene, LitObject, SceneEntities},
+        entities::{CurrentScene, SceneEntities},
         overrides::Overrides,
+        parts::{Animated, Surface},
         tables::ParameterTables,
         view::View,
     },
@@ -99,8 +103,8 @@ fn a_change_of_one_object_of_thousands_is_work_for_that_one() {
         };
         let costs = cost(&mut renderer, |world| {
             let object = world.resource::<SceneEntities>().objects[17];
-            let mut object = world.get_mut::<LitObject>(object).expect("it is an object");
-            object.0.material.set("base_colour", Value::Colour([1, 2, views as u8]));
+            let mut surface = world.get_mut::<Surface>(object).expect("it is an object");
+            surface.material.set("base_colour", Value::Colour([1, 2, views as u8]));
         });
         one("a component", true, costs);
         // The document learns of it.
@@ -129,6 +133,41 @@ fn a_change_of_one_object_of_thousands_is_work_for_that_one() {
     let picture = renderer.read().expect("the picture can be read");
     let mut alone = self::renderer(&document);
     assert!(picture == alone.read().expect("the picture can be read"), "what is drawn is the document");
+}
+
+#[test]
+fn animating_thousands_is_no_work_for_the_scene() {
+    let mut renderer = renderer(&scene(OBJECTS));
+    renderer.draw_on_demand();
+    renderer.settle().expect("the GPU draws");
+    cost(&mut renderer, |_| {});
+    let stored = renderer.app().world().resource::<CurrentScene>().0.clone();
+    let before = renderer.read().expect("the picture can be read");
+    let objects = renderer.app().world().resource::<SceneEntities>().objects.clone();
+    let turn = |world: &mut World| {
+        for object in &objects {
+            world.get_mut::<Transform>(*object).expect("objects have a place").rotate_y(0.5);
+        }
+    };
+    let animate = |world: &mut World| {
+        objects.iter().for_each(|object| _ = world.entity_mut(*object).insert(Animated));
+        turn(world);
+    };
+    assert_eq!(cost(&mut renderer, animate), [(0, 0); 2]);
+    assert_eq!(cost(&mut renderer, turn), [(0, 0); 2]);
+    let picture = renderer.read().expect("the picture can be read");
+    assert!(before != picture, "the animation shows, in a view that is drawn on demand");
+    assert!(renderer.app().world().resource::<CurrentScene>().0 == stored);
+    // The wrong twin: without the marker it is a change of every object.
+    let rest = |world: &mut World| {
+        objects.iter().for_each(|object| _ = world.entity_mut(*object).remove::<Animated>());
+    };
+    cost(&mut renderer, rest);
+    assert!(before == renderer.read().expect("the picture can be read"), "they are back");
+    let [now, later] = cost(&mut renderer, turn);
+    assert!(now.0 == OBJECTS as u64 && now.1 == 0 && later == (0, 0), "{now:?} {later:?}");
+    let scene = &renderer.app().world().resource::<CurrentScene>().0;
+    assert!(scene.objects.iter().all(|object| object.rotation.y != 0.0));
 }
 
 #[test]

@@ -3,13 +3,15 @@
 use glam::Vec3;
 use lights_camera_models::{
     optics::colour::BACKGROUND,
-    parameter::{Value, Values},
+    parameter::Value,
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
-        entities::{LightSource, LitObject, SceneEntities},
+        entities::SceneEntities,
+        parts::{LightColour, SceneLight, SceneObject, Surface},
     },
     scene::{Light, Object, Scene},
+    shape::{Cube, Sphere, Torus},
 };
 
 use crate::pictures::close_up;
@@ -198,7 +200,8 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
 
     let world = renderer.app().world_mut();
     let light = world.resource::<SceneEntities>().lights[0];
-    world.get_mut::<LightSource>(light).expect("the light is an entity").0.colour = [0, 0, 255];
+    world.get_mut::<SceneLight>(light).expect("the light is an entity").colour =
+        LightColour::Rgb([0, 0, 255]);
     let blue = frame(&mut renderer);
     assert!(before != blue, "the colour shows");
 
@@ -209,43 +212,39 @@ fn changing_a_component_changes_the_next_frame_and_the_scene() {
 
     let world = renderer.app().world_mut();
     let object = world.resource::<SceneEntities>().objects[0];
-    world.get_mut::<LitObject>(object).expect("the object is an entity").0.object_type = "cube".to_owned();
+    world.entity_mut(object).remove::<Sphere>().insert(Cube {});
     let cube = frame(&mut renderer);
     assert!(moved != cube, "the shape shows");
 
     // So does a parameter of its shape, which gets meshes of its own.
     let world = renderer.app().world_mut();
-    let mut lit = world.get_mut::<LitObject>(object).expect("the object is an entity");
-    lit.0.object_type = "torus".to_owned();
-    lit.0.shape.set("tube_radius", Value::Number(0.05));
+    world.entity_mut(object).remove::<Cube>().insert(Torus { tube_radius: 0.05 });
     let thin = frame(&mut renderer);
     let world = renderer.app().world_mut();
-    let mut lit = world.get_mut::<LitObject>(object).expect("the object is an entity");
-    lit.0.shape.set("tube_radius", Value::Number(0.24));
+    world.get_mut::<Torus>(object).expect("it is a torus").tube_radius = 0.24;
     assert!(thin != frame(&mut renderer), "the parameter shows");
     let world = renderer.app().world_mut();
-    let mut lit = world.get_mut::<LitObject>(object).expect("the object is an entity");
-    (lit.0.object_type, lit.0.shape) = ("cube".to_owned(), Values::default());
+    world.entity_mut(object).remove::<Torus>().insert(Cube {});
     assert!(cube == frame(&mut renderer));
 
-    // The position of a part is in its component and in its transform: either can be changed, and the other follows.
+    // So does its surface.
     let world = renderer.app().world_mut();
-    world.get_mut::<LitObject>(object).expect("the object is an entity").0.position.x += 0.5;
-    let aside = frame(&mut renderer);
-    assert!(cube != aside, "the component's place shows");
+    let mut surface = world.get_mut::<Surface>(object).expect("objects have a surface");
+    surface.material.set("base_colour", Value::Colour([255, 0, 200]));
+    let pink = frame(&mut renderer);
+    assert!(cube != pink, "the surface shows");
     let world = renderer.app().world_mut();
-    world.get_mut::<bevy::prelude::Transform>(object).expect("objects have a place").translation.y = 4.5;
-    world.get_mut::<LightSource>(light).expect("the light is an entity").0.position =
-        Some(Vec3::new(4.0, 7.0, 8.0));
+    world.get_mut::<bevy::prelude::Transform>(object).expect("objects have a place").translation =
+        Vec3::new(5.5, 4.5, 5.0);
+    world.get_mut::<bevy::prelude::Transform>(light).expect("lights have a place").translation =
+        Vec3::new(4.0, 7.0, 8.0);
     let lower = frame(&mut renderer);
-    assert!(aside != lower, "the transform's place shows");
-    renderer.step();
+    assert!(pink != lower, "the transform's place shows");
+    let scene = &renderer.app().world().resource::<lights_camera_models::render::entities::CurrentScene>().0;
+    assert_eq!(scene.objects[0].position, Vec3::new(5.5, 4.5, 5.0));
+    assert_eq!(scene.lights[0].position, Some(Vec3::new(4.0, 7.0, 8.0)));
     let world = renderer.app().world_mut();
-    assert_eq!(world.get::<LitObject>(object).map(|o| o.0.position), Some(Vec3::new(5.5, 4.5, 5.0)));
-    let place = world.get::<bevy::prelude::Transform>(light).map(|t| t.translation);
-    assert_eq!(place, Some(Vec3::new(4.0, 7.0, 8.0)));
-    world.get_mut::<LightSource>(light).expect("the light is an entity").0.position =
-        Some(Vec3::new(3.0, 7.0, 8.0));
+    world.get_mut::<bevy::prelude::Transform>(light).expect("lights have a place").translation.x = 3.0;
     renderer.step();
 
     let scene = &renderer.app().world().resource::<lights_camera_models::render::entities::CurrentScene>().0;
@@ -278,9 +277,9 @@ fn loading_another_scene_respawns_what_differs_and_keeps_the_rest() {
     renderer.step();
     let world = renderer.app().world_mut();
     assert_eq!(world.resource::<SceneEntities>().objects, [first], "the sphere stays the same entity");
-    assert_eq!(world.query::<&LitObject>().iter(world).count(), 1);
-    assert_eq!(world.query::<&LightSource>().iter(world).count(), 2);
+    assert_eq!(world.query::<&SceneObject>().iter(world).count(), 1);
+    assert_eq!(world.query::<&SceneLight>().iter(world).count(), 2);
     let ambient =
-        world.query_filtered::<&LightSource, bevy::prelude::With<lights_camera_models::light::Ambient>>();
-    assert_eq!({ ambient }.iter(world).count(), 1, "each type has its marker component");
+        world.query_filtered::<&SceneLight, bevy::prelude::With<lights_camera_models::light::Ambient>>();
+    assert_eq!({ ambient }.iter(world).count(), 1, "each type has its component");
 }

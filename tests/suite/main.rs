@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 mod albedo;
+mod animation;
 mod assets;
 mod clipping;
 mod command_line;

@@ -23,7 +23,7 @@ use lights_camera_models::{
     registry::{Register, Registry},
     render::{
         drawn::Drawn,
-        entities::LitObject,
+        parts::{LightColour, LightPower, SceneLight, SceneObject},
         schedule::{LabFrame, LabSystems, strict},
         view::Drawing,
     },
@@ -56,7 +56,7 @@ use window::{panel, toon};
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/shapes_and_lights.json");
 
 /// An app that can be driven frame by frame.
-fn app(plugins: PluginGroupBuilder, extend: impl FnOnce(&mut App)) -> App {
+pub fn app(plugins: PluginGroupBuilder, extend: impl FnOnce(&mut App)) -> App {
     let mut app = App::new();
     app.add_plugins(plugins.disable::<LogPlugin>());
     extend(&mut app);
@@ -83,7 +83,7 @@ fn count<T: Component>(app: &mut App) -> usize {
 }
 
 /// Frames until the picture is drawn.
-fn draw(app: &mut App) {
+pub fn draw(app: &mut App) {
     let done = |app: &mut App| {
         let mut views = app.world_mut().query::<&Drawing>();
         views.iter(app.world()).next().is_some_and(Drawing::is_done)
@@ -111,7 +111,7 @@ fn each_part_can_be_left_out_and_the_rest_runs() {
         let mut app = app(less(LabPlugins::default().scene(SCENE).size(64, 36).headless().build()), |_| ());
         draw(&mut app);
         assert_eq!(app.world().resource::<Session>().title(), "Shapes and lights", "without {part}");
-        assert_eq!(count::<LitObject>(&mut app), count::<Drawn>(&mut app), "without {part}");
+        assert_eq!(count::<SceneObject>(&mut app), count::<Drawn>(&mut app), "without {part}");
         assert!(count::<Drawn>(&mut app) > 2, "without {part}");
     }
 }
@@ -132,7 +132,7 @@ fn each_part_of_the_window_can_be_left_out_and_the_rest_runs() {
     for (part, less) in parts {
         let mut app = app(less(whole()), |_| ());
         (0..6).for_each(|_| app.update());
-        assert_eq!(count::<LitObject>(&mut app), 1, "without {part}");
+        assert_eq!(count::<SceneObject>(&mut app), 1, "without {part}");
         assert_eq!(app.world().contains_resource::<Panels>(), !["panels", "egui"].contains(&part), "{part}");
     }
 }
@@ -199,6 +199,14 @@ fn other(mut shared: ResMut<Shared>) {
     shared.0 *= 2;
 }
 
+fn dim(mut lights: Query<&mut SceneLight>) {
+    lights.iter_mut().for_each(|mut light| light.power = LightPower::Intensity(1.0));
+}
+
+fn tint(mut lights: Query<&mut SceneLight>) {
+    lights.iter_mut().for_each(|mut light| light.colour = LightColour::Rgb([9; 3]));
+}
+
 /// Builds the schedule of the lab anew.
 fn built(app: &mut App) -> Result<(), String> {
     let mut schedule =
@@ -252,9 +260,9 @@ fn systems_of_others_run_before_and_after_the_sets_of_the_lab() {
             LabFrame,
             (
                 // There are no entities yet before the first spawning.
-                (|objects: Query<&LitObject>, mut s: ResMut<Shared>| s.0 = objects.iter().count() as u32)
+                (|objects: Query<&SceneObject>, mut s: ResMut<Shared>| s.0 = objects.iter().count() as u32)
                     .before(LabSystems::Spawn),
-                (|objects: Query<&LitObject>, mut s: ResMut<Shared>| {
+                (|objects: Query<&SceneObject>, mut s: ResMut<Shared>| {
                     s.0 = 10 * s.0 + objects.iter().count() as u32;
                 })
                 .after(LabSystems::Spawn)
@@ -300,7 +308,7 @@ fn stage() {
         "open order" => {
             let plugins = LabPlugins::default().size(64, 36).exit_after(3).headless();
             let mut app = App::new();
-            app.add_plugins(plugins).init_resource::<Shared>().add_systems(LabFrame, (one, other));
+            app.add_plugins(plugins).init_resource::<Shared>().add_systems(LabFrame, (one, other, dim, tint));
             assert_eq!(app.run(), AppExit::Success);
         }
         "command line" => {
@@ -350,6 +358,8 @@ fn a_warning_names_the_systems_of_others_whose_order_is_open() {
             && said.contains("Shared"),
         "{said}"
     );
+    let lights = said.contains("dim and tint") || said.contains("tint and dim");
+    assert!(lights && said.contains("SceneLight"), "{said}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::{Session, Severity, messages::Step};
 use crate::{
-    document::{Edit, Extent, LightField, ObjectField, Selection},
+    document::{Document, Edit, Extent, LightField, ObjectField, Selection},
     panel::follow::{follow_model, follow_registry},
     registry::Registry,
     scene::{Object, Scene},
@@ -67,13 +67,34 @@ impl Session {
     /// # Errors
     /// The reason for a refusal; the document stays as it is.
     pub fn submit(&mut self, scene: &Scene, parts: &[Extent], registry: &Registry) -> Result<(), String> {
+        self.by_system(|document, selection| document.submit(scene, parts, selection, registry))
+    }
+
+    /// Adopts a scene in which systems removed, added or retyped parts: see [`Document::submit_lists`].
+    ///
+    /// # Errors
+    /// The reason for a refusal; the document stays as it is.
+    pub fn submit_lists(
+        &mut self,
+        scene: &Scene,
+        removed: &[Extent],
+        registry: &Registry,
+    ) -> Result<(), String> {
+        self.by_system(|document, selection| document.submit_lists(scene, removed, selection, registry))
+    }
+
+    /// Makes a change by a system; what is selected stays so.
+    fn by_system(
+        &mut self,
+        change: impl FnOnce(&mut Document, Selection) -> Result<(), String>,
+    ) -> Result<(), String> {
         let selected = match self.selection {
             Selection::Light(i) => self.document.light_id(i),
             Selection::Object(i) => self.document.object_id(i),
             Selection::Room | Selection::Observer => None,
         };
         let before = (self.document.revision(), self.selection);
-        self.document.submit(scene, parts, self.selection, registry)?;
+        change(&mut self.document, self.selection)?;
         if let Some(id) = selected {
             let light = self.document.light(id).map(Selection::Light);
             self.selection =

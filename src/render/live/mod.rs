@@ -33,6 +33,7 @@ use super::{
     entities::CurrentScene,
     overrides::Overrides,
     schedule::{LabFrame, LabSystems},
+    shown::Shown,
     trial::{Bench, TrialPlugin},
 };
 use crate::{
@@ -79,10 +80,10 @@ fn composed(sources: &Sources, (model, shading, lights): Parts, registry: &Regis
     compose(sources, model, shading, &registry.lights_in(lights))
 }
 
-/// The light types of the scene, all where there is none.
+/// The light types that are shown, all where nothing is.
 fn lights_of(world: &World, registry: &Registry) -> LightSet {
-    let scene = world.get_resource::<CurrentScene>();
-    scene.map_or_else(|| registry.lights().iter().collect(), |scene| scene.0.light_types(registry))
+    let shown = world.get_resource::<Shown>();
+    shown.map_or_else(|| registry.lights().iter().collect(), |shown| shown.light_types(registry))
 }
 
 /// One shader.

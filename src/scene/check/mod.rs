@@ -54,29 +54,56 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
 /// Everything that is wrong with one light, including conflicts with other parts; empty if there is no such light.
 #[must_use]
 pub fn light(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
-    found(scene, registry, |check| {
-        check.light(index);
-        if let Some(p) = scene.lights.get(index).and_then(|light| light.position) {
-            check.meets(p, object_there(scene, p), "a light", "an object", || light_path(index));
-        }
-    })
+    Parts::of(scene, registry).light(index)
 }
 
 /// Everything that is wrong with one object, including conflicts with other parts; empty if there is no such object.
 #[must_use]
 pub fn object(scene: &Scene, index: usize, registry: &Registry) -> Vec<Problem> {
-    found(scene, registry, |check| check.object(index))
+    Parts::of(scene, registry).object(index)
 }
 
 /// Everything that is wrong with the observer, including conflicts with other parts.
 #[must_use]
 pub fn observer(scene: &Scene, registry: &Registry) -> Vec<Problem> {
-    let p = scene.observer.position;
-    found(scene, registry, |check| {
+    Parts::of(scene, registry).observer()
+}
+
+/// Checks part after part, as [`light`], [`object`] and [`observer`] do, without looking at all lights each time.
+pub struct Parts<'a>(Check<'a>);
+
+impl<'a> Parts<'a> {
+    /// Begins to check the parts of a scene.
+    #[must_use]
+    pub fn of(scene: &'a Scene, registry: &'a Registry) -> Self {
+        Self(Check::of(scene, registry))
+    }
+
+    /// Everything that is wrong with one light.
+    pub fn light(&mut self, index: usize) -> Vec<Problem> {
+        let check = &mut self.0;
+        check.light(index);
+        if let Some(p) = check.scene.lights.get(index).and_then(|light| light.position) {
+            check.meets(p, object_there(check.scene, p), "a light", "an object", || light_path(index));
+        }
+        std::mem::take(&mut check.problems)
+    }
+
+    /// Everything that is wrong with one object.
+    pub fn object(&mut self, index: usize) -> Vec<Problem> {
+        self.0.object(index);
+        std::mem::take(&mut self.0.problems)
+    }
+
+    /// Everything that is wrong with the observer.
+    pub fn observer(&mut self) -> Vec<Problem> {
+        let check = &mut self.0;
+        let p = check.scene.observer.position;
         check.observer();
         check.meets(p, check.light_there(p), "the observer", "a light", observer_path);
-        check.meets(p, object_there(scene, p), "the observer", "an object", observer_path);
-    })
+        check.meets(p, object_there(check.scene, p), "the observer", "an object", observer_path);
+        std::mem::take(&mut check.problems)
+    }
 }
 
 /// Everything that is wrong with the room, including parts outside it.
@@ -161,16 +188,21 @@ struct Check<'a> {
 
 /// The problems that some checks find.
 fn found(scene: &Scene, registry: &Registry, checks: impl FnOnce(&mut Check)) -> Vec<Problem> {
-    let mut lights = HashMap::new();
-    for (i, light) in scene.lights.iter().enumerate() {
-        if let Some(key) = light.position.and_then(place) {
-            lights.entry(key).or_insert(i);
-        }
-    }
-    let room = plausible(scene.scene_size);
-    let mut check = Check { scene, registry, room, lights, problems: Vec::new() };
+    let mut check = Check::of(scene, registry);
     checks(&mut check);
     check.problems
+}
+
+impl<'a> Check<'a> {
+    fn of(scene: &'a Scene, registry: &'a Registry) -> Self {
+        let mut lights = HashMap::new();
+        for (i, light) in scene.lights.iter().enumerate() {
+            if let Some(key) = light.position.and_then(place) {
+                lights.entry(key).or_insert(i);
+            }
+        }
+        Self { scene, registry, room: plausible(scene.scene_size), lights, problems: Vec::new() }
+    }
 }
 
 impl Check<'_> {

@@ -1,0 +1,94 @@
+//! The parts as they are shown: those of the scene, or as systems animate them.
+
+use bevy::ecs::prelude::*;
+
+use super::{
+    entities::{CurrentScene, SceneEntities},
+    mirror::{read_light, read_object, read_observer},
+    parts::{Animated, SceneLight, SceneObserver},
+    typed::PartTypes,
+};
+use crate::{
+    registry::{LightSet, Registry},
+    scene::{Light, Object, Observer},
+};
+
+/// The look of an object as it is shown: everything but its place, which is its transform.
+#[derive(Clone, Component, Debug, PartialEq)]
+pub struct ShownObject(pub(super) Object);
+
+/// The lights and the observer as they are shown.
+#[derive(Clone, Debug, Default, PartialEq, Resource)]
+pub struct Shown {
+    pub(super) lights: Vec<Light>,
+    pub(super) observer: Observer,
+}
+
+impl Shown {
+    /// The lights that are on.
+    pub(super) fn shining(&self) -> impl Iterator<Item = &Light> {
+        self.lights.iter().filter(|light| light.enabled)
+    }
+
+    /// The types of all of them, switched off or not: what shaders are composed of.
+    pub(super) fn light_types(&self, registry: &Registry) -> LightSet {
+        registry.light_set(self.lights.iter().map(|light| light.light_type.as_str()))
+    }
+}
+
+/// The look of an object.
+fn look(object: &Object) -> ShownObject {
+    let Object { position, size, rotation, .. } = Object::default();
+    ShownObject(Object { position, size, rotation, name: None, ..object.clone() })
+}
+
+/// Shows objects whose components changed. One that is animated and has, for now, no type or two, stays as it was.
+pub(super) fn show_objects(world: &mut World, changed: &[Entity]) {
+    for entity in changed {
+        let entities = world.resource::<SceneEntities>();
+        let Some(known) =
+            entities.place_of(*entity).and_then(|i| world.resource::<CurrentScene>().0.objects.get(i))
+        else {
+            continue;
+        };
+        let Ok(components) = world.get_entity(*entity) else { continue };
+        let now = if components.contains::<Animated>() {
+            let (types, registry) = (world.resource::<PartTypes>(), world.resource::<Registry>());
+            match read_object(components, Some(known), types, registry) {
+                Ok(object) => look(&object),
+                Err(_) => continue,
+            }
+        } else {
+            look(known)
+        };
+        if components.get::<ShownObject>() != Some(&now) {
+            world.entity_mut(*entity).insert(now);
+        }
+    }
+}
+
+/// Shows lights and the observer. Exclusive, since their types may be any.
+pub(super) fn show_lights(
+    world: &mut World,
+    animated: &mut QueryState<(), (With<Animated>, Or<(With<SceneLight>, With<SceneObserver>)>)>,
+    mut was_animated: Local<bool>,
+) {
+    let is_animated = animated.iter(world).next().is_some();
+    if !world.is_resource_changed::<CurrentScene>() && !is_animated && !*was_animated {
+        return;
+    }
+    *was_animated = is_animated;
+    let (known, entities) = (&world.resource::<CurrentScene>().0, world.resource::<SceneEntities>());
+    let (types, registry) = (world.resource::<PartTypes>(), world.resource::<Registry>());
+    let components = |entity: Option<Entity>| {
+        world.get_entity(entity?).ok().filter(|components| components.contains::<Animated>())
+    };
+    let lights = known.lights.iter().enumerate().map(|(i, light)| {
+        let now = components(entities.lights.get(i).copied())
+            .map(|entity| read_light(entity, Some(light), types, registry, known.scene_size));
+        now.and_then(Result::ok).unwrap_or_else(|| light.clone())
+    });
+    let eye = components(entities.observer).and_then(|entity| read_observer(entity, &known.observer).ok());
+    let now = Shown { lights: lights.collect(), observer: eye.unwrap_or(known.observer) };
+    world.resource_mut::<Shown>().set_if_neq(now);
+}
