@@ -251,7 +251,7 @@ const GLOW: Source = Source {
 
 impl LightType for Glow {
     const DECLARATION: light::Declaration =
-        light::Declaration { id: "glow", default_intensity: 7.0, wgsl: GLOW, ..Point::DECLARATION };
+        light::Declaration::new("glow", "Glow", GLOW).at_position().candela(7.0, 200.0);
 
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         Point::default().incident(light, p)

@@ -8,17 +8,19 @@ use std::{
 };
 
 use bevy::{
-    app::{App, AppExit, PluginGroup as _, PluginGroupBuilder, PluginsState},
+    app::{App, AppExit, PluginGroup as _, PluginGroupBuilder, PluginsState, Update},
     ecs::{
         prelude::*,
         schedule::{ScheduleBuildError, Schedules},
     },
     log::LogPlugin,
+    transform::components::Transform,
     winit::WinitPlugin,
 };
 use bevy_egui::EguiPlugin;
 use lights_camera_models::{
     cli,
+    light::Spot,
     panel::{PanelApp as _, PanelPlugin, Panels, state::Session},
     registry::{Register, Registry},
     render::{
@@ -38,6 +40,9 @@ use crate::{
     screen::{Picture, Screen, alone},
 };
 
+#[path = "../../examples/extension/src/main.rs"]
+#[allow(dead_code)]
+pub mod extension;
 #[path = "../../examples/light.rs"]
 #[allow(dead_code)]
 pub mod light;
@@ -315,9 +320,11 @@ fn stage() {
             let arguments = env::var(ARGUMENTS).expect("arguments");
             let arguments = ["lcm"].into_iter().chain(arguments.split('\n')).map(Into::into);
             let types = |registry: &mut Registry| {
+                extension::types(registry);
                 registry.add_reflection_model::<toon::Toon>();
             };
             let code = cli::run_with(arguments, types, |app| {
+                extension::window(app);
                 app.add_panel(panel::Dimmer::default());
             });
             assert_eq!(code, ExitCode::SUCCESS);
@@ -386,6 +393,28 @@ fn every_command_knows_what_an_extended_program_registers() {
     }
     let unknown = Command::new(env!("CARGO_BIN_EXE_lcm")).args(["check", &file]).output().expect("it runs");
     assert!(!unknown.status.success() && said(&unknown).contains("toon"), "{}", said(&unknown));
+}
+
+const EXTENSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/extension/scene.json");
+
+#[test]
+fn the_crate_of_the_example_swings_its_spotlight_and_leaves_the_scene_as_it_is() {
+    let mut app = app(LabPlugins::default().scene(EXTENSION).size(64, 36).headless().build(), |app| {
+        app.world_mut().init_resource::<Registry>();
+        extension::types(&mut app.world_mut().resource_mut::<Registry>());
+        app.add_systems(Update, extension::swing);
+    });
+    draw(&mut app);
+    let direction = |app: &mut App| {
+        let mut spots = app.world_mut().query_filtered::<&Transform, With<Spot>>();
+        *spots.single(app.world()).expect("one spotlight").forward()
+    };
+    let before = direction(&mut app);
+    (0..40).for_each(|_| app.update());
+    assert!(direction(&mut app).distance(before) > 1e-4, "it turns");
+    let session = app.world().resource::<Session>();
+    assert!(!session.document.differs(), "nothing is stored");
+    assert_eq!(session.document.lights[1].direction.map(|d| d.x), Some(0.0));
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use lights_camera_models::{bevy::prelude::*, light::Declaration, prelude::*};
 
-const BELOW: Parameter = Parameter::colour("below", [255, 120, 40]).symbol("B").help("Its light straight down.");
-const BLEND: Parameter = Parameter::number("blend", 0.5..=8.0, 1.0).symbol("b").help("Higher is a harder edge.");
+const BELOW: Parameter = Parameter::colour("below", [255, 120, 40]).symbol("B").help("Its light downwards.");
+const BLEND: Parameter = Parameter::number("blend", 0.5..=8.0, 1.0).symbol("b").help("Edge sharpness.");
 
 parameters! {
     pub struct Beacon {
@@ -14,7 +14,7 @@ parameters! {
 
 impl LightType for Beacon {
     const DECLARATION: Declaration =
-        Declaration::new("beacon", "Beacon", Source::new("beacon.wgsl", include_str!("../shaders/beacon.wgsl")))
+        Declaration::new("beacon", "Beacon", Source::new("beacon.wgsl", include_str!("beacon.wgsl")))
             .summary("A point light that shines in another colour downwards.")
             .at_position()
             .candela(20.0, 200.0);

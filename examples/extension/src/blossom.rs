@@ -5,7 +5,8 @@ use std::f32::consts::{PI, TAU};
 use lights_camera_models::{bevy::prelude::*, prelude::*, shape::Declaration};
 
 const PETALS: Parameter = Parameter::integer("petals", 2..=12, 5).symbol("n").help("The number of petals.");
-const DEPTH: Parameter = Parameter::number("depth", 0.0..=0.6, 0.3).symbol("d").help("How deep they are cut.");
+const DEPTH: Parameter =
+    Parameter::number("depth", 0.0..=0.6, 0.3).symbol("d").help("How deep they are cut.");
 
 parameters! {
     pub struct Blossom {

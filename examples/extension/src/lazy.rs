@@ -1,11 +1,8 @@
 //! A shading model: Phong shading that brings interpolated normals back to length 1 in part only.
 
-use lights_camera_models::{
-    bevy::prelude::*,
-    prelude::*,
-    shading::{Corner, Declaration, Lighting, Stage, Varying},
-};
+use lights_camera_models::{bevy::prelude::*, prelude::*, shading::*};
 
+const WGSL: Source = Source::new("lazy.wgsl", include_str!("lazy.wgsl"));
 const SHARE: Parameter = Parameter::number("share", 0.0..=1.0, 0.0).symbol("s").help("1 is Phong shading.");
 
 parameters! {
@@ -15,9 +12,8 @@ parameters! {
 }
 
 impl ShadingModel for Lazy {
-    const DECLARATION: Declaration =
-        Declaration::new("lazy", "Lazy", Stage::Pixel, 'L', Source::new("lazy.wgsl", include_str!("../shaders/lazy.wgsl")))
-            .summary("Normals interpolated and renormalised in part: polygons darken in their middle.");
+    const DECLARATION: Declaration = Declaration::new("lazy", "Lazy", Stage::Pixel, 'L', WGSL)
+        .summary("Normals interpolated and renormalised in part: polygons darken in their middle.");
 
     fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
         let Corner { position, normal, tangent, .. } = *corner;

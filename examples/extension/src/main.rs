@@ -7,22 +7,20 @@ mod lazy;
 mod meter;
 mod sheen;
 
-use std::process::ExitCode;
-
 use lights_camera_models::{bevy::prelude::*, cli, light::Spot, prelude::*};
 
 /// What scenes may name. The shaders are followed while they are edited.
-fn types(registry: &mut Registry) {
+pub fn types(registry: &mut Registry) {
     registry
         .add_reflection_model::<sheen::Sheen>()
         .add_shading_model::<lazy::Lazy>()
         .add_light_type::<beacon::Beacon>()
         .add_object_type::<blossom::Blossom>()
-        .add_shader_folder(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders"));
+        .add_shader_folder(concat!(env!("CARGO_MANIFEST_DIR"), "/src"));
 }
 
 /// Swings every spotlight. `Animated` keeps the motion out of the scene: it is shown and not stored.
-fn swing(
+pub fn swing(
     mut spots: Query<(Entity, &mut Transform, Has<Animated>), With<Spot>>,
     time: Res<Time>,
     mut commands: Commands,
@@ -36,8 +34,20 @@ fn swing(
     }
 }
 
-fn main() -> ExitCode {
-    cli::main_with(types, |app| {
-        app.add_panel(meter::Meter::default()).add_systems(Update, swing);
-    })
+/// More in the window.
+pub fn window(app: &mut App) {
+    app.add_panel(meter::Meter::default()).add_systems(Update, swing);
+}
+
+fn main() -> std::process::ExitCode {
+    cli::main_with(types, window)
+}
+
+#[test]
+fn all_of_it_is_right() {
+    use lights_camera_models::testing;
+    testing::assert_laws::<sheen::Sheen>();
+    testing::assert_parity::<sheen::Sheen>();
+    testing::assert_light::<beacon::Beacon>();
+    testing::assert_mesh::<blossom::Blossom>();
 }

@@ -2,7 +2,8 @@
 
 use lights_camera_models::{bevy::prelude::*, parameter::BASE_COLOUR, prelude::*, reflection::Declaration};
 
-const FALLOFF: Parameter = Parameter::number("falloff", 1.0..=8.0, 3.0).symbol("p").help("Higher is a thinner rim.");
+const FALLOFF: Parameter =
+    Parameter::number("falloff", 1.0..=8.0, 3.0).symbol("p").help("Thinness of the rim.");
 
 parameters! {
     pub struct Sheen {
@@ -13,7 +14,7 @@ parameters! {
 
 impl ReflectionModel for Sheen {
     const DECLARATION: Declaration =
-        Declaration::new("sheen", "Sheen", Source::new("sheen.wgsl", include_str!("../shaders/sheen.wgsl")))
+        Declaration::new("sheen", "Sheen", Source::new("sheen.wgsl", include_str!("sheen.wgsl")))
             .summary("Cloth whose fibres shine at the rim.")
             .non_negative()
             .energy_conserving()
