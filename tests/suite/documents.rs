@@ -114,6 +114,8 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("shading_model.rs", example("shading_model.rs", "rust")),
                 ("shading_model.wgsl", example("shading_model.wgsl", "wgsl")),
                 ("panel.rs", example("panel.rs", "rust")),
+                ("extension", extension()),
+                ("extension/src/main.rs", example("extension/src/main.rs", "rust")),
                 ("parts", parts()),
                 ("sets", sets()),
             ],
@@ -122,6 +124,29 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
         ("docs/README.md", vec![("window.rs", example("window.rs", "rust"))]),
         ("docs/architecture.md", vec![("modules", modules())]),
     ]
+}
+
+/// The additions of the crate of the example, with what each takes.
+fn extension() -> String {
+    let row = |(what, files): (&str, &[&str])| {
+        let lines = |file: &&str| {
+            let path = root().join("examples/extension").join(file);
+            fs::read_to_string(path).expect("the example is there").lines().count()
+        };
+        let names: Vec<_> =
+            files.iter().map(|file| format!("[{file}](../examples/extension/{file})")).collect();
+        vec![what.to_owned(), names.join(", "), files.iter().map(lines).sum::<usize>().to_string()]
+    };
+    let rows = [
+        ("a reflection model", &["src/sheen.rs", "src/sheen.wgsl"][..]),
+        ("a shading model with a parameter", &["src/lazy.rs", "src/lazy.wgsl"]),
+        ("a light type with a colour and a number", &["src/beacon.rs", "src/beacon.wgsl"]),
+        ("an object type with two parameters", &["src/blossom.rs"]),
+        ("a panel with state", &["src/meter.rs"]),
+        ("the program, a system that swings spotlights, tests", &["src/main.rs"]),
+        ("the rest", &["Cargo.toml", "scene.json"]),
+    ];
+    table(&["addition", "files", "lines"], rows.into_iter().map(row))
 }
 
 /// The parts of the window, from the documentation of the group.
