@@ -19,7 +19,10 @@ pub use crate::{
         },
         schedule::{LabFrame, LabSystems},
     },
-    scene::{Light, Object, Scene},
+    scene::{
+        Light, Object, Scene,
+        formats::{SceneFormat, SceneFormats},
+    },
     shader::Source,
     shading::{self, ShadingModel},
     shape::{self, ObjectType, PolygonMesh},

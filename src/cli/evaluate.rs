@@ -2,7 +2,6 @@
 
 use std::{
     io::{self, BufWriter, Write as _},
-    path::Path,
     str::FromStr,
     sync::Arc,
 };
@@ -18,7 +17,7 @@ use super::{
 use crate::{
     failure::Failure,
     optics::{Frame, colour::Encoding, geometry::direction},
-    parameter::{NamedFile, Parameter, ParameterKind, Value, Values},
+    parameter::{Value, Values},
     reflection::{ModelEntry, Surface, brdf, brdf_of},
     registry::Registry,
     render::capture::evaluate::Evaluator,
@@ -234,33 +233,9 @@ fn setting(model: &ModelEntry, name: &str, written: &str) -> Result<(&'static st
             model.declaration.id
         ));
     };
-    parse(parameter, written)
-        .ok_or_else(|| check::parameter_rule(parameter))
-        .and_then(|value| check::parameter(parameter, &value).map(|()| (parameter.name, value)))
-        .map_err(|rule| format!("--set {name}={written}: {name} is {written}, but {rule}"))
-}
-
-/// A value in the syntax of the command line.
-fn parse(parameter: &Parameter, written: &str) -> Option<Value> {
-    match parameter.kind {
-        ParameterKind::Number { .. } => written.parse().ok().map(Value::Number),
-        ParameterKind::Integer { .. } => written.parse().ok().map(Value::Integer),
-        ParameterKind::Colour { .. } => {
-            let channels: Option<Vec<u8>> = written.split(',').map(|c| c.trim().parse().ok()).collect();
-            channels?.try_into().ok().map(Value::Colour)
-        }
-        ParameterKind::Triple { .. } => {
-            let numbers: Option<Vec<f32>> = written.split(',').map(|c| c.trim().parse().ok()).collect();
-            match numbers?[..] {
-                [all] => Some(Value::Triple([all; 3])),
-                [r, g, b] => Some(Value::Triple([r, g, b])),
-                _ => None,
-            }
-        }
-        ParameterKind::Choice { .. } => Some(Value::Choice(written.to_owned().into())),
-        ParameterKind::File { format, .. } => {
-            Some(Value::File(NamedFile::named(written, Path::new(""), format)))
-        }
+    match parameter.parse(written) {
+        Ok(value) => Ok((parameter.name, value)),
+        Err(error) => Err(format!("--set {name}={written}: {name} {error}")),
     }
 }
 

@@ -76,7 +76,8 @@ impl Source {
                 workshop.load(&load::all_of(io::stdin().lock(), load::STDIN)?, load::STDIN, defaults)
             }
             Self::File(path) => {
-                workshop.load(&load::input_bytes(path)?, &path.display().to_string(), defaults)
+                let bytes = load::input_bytes(path, &workshop.registry)?;
+                workshop.load(&bytes, &path.display().to_string(), defaults)
             }
         }
     }

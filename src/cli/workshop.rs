@@ -129,7 +129,7 @@ impl Workshop {
             let named: BTreeSet<String> = match &loaded {
                 Ok(loaded) => loaded.scene.models().into_iter().map(str::to_owned).collect(),
                 Err(LoadError::Invalid { .. } | LoadError::Missing { .. }) => {
-                    load::models_named(bytes, &self.registry)
+                    load::models_named(bytes, name, &self.registry)
                 }
                 Err(_) => return loaded,
             };

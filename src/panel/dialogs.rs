@@ -1,6 +1,9 @@
 //! The dialogs that choose files.
 
-use std::ops::DerefMut;
+use std::{
+    ops::DerefMut,
+    path::{Path, PathBuf},
+};
 
 use bevy_egui::egui::{
     self, Align2, Color32, Context, Event, Id, Key, Label, LayerId, Modifiers, Order, Rect, Sense, Shape,
@@ -16,6 +19,10 @@ use super::{
 use crate::{
     parameter::{FileFormat, Parameter, ParameterKind},
     registry::Registry,
+    scene::{
+        formats::{self, SceneFormat},
+        save::as_json,
+    },
 };
 
 /// Their share of the window.
@@ -58,11 +65,6 @@ impl Default for Dialogs {
             FileDialog::new()
                 .title(title)
                 .id(id)
-                .add_file_filter_extensions("Scenes (*.json)", vec!["json"])
-                .default_file_filter("Scenes (*.json)")
-                // The dialog names the extension itself.
-                .add_save_extension("Scene", "json")
-                .default_save_extension("Scene")
                 .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
                 .default_file_name("scene.json")
         };
@@ -86,6 +88,30 @@ impl Default for Dialogs {
             blank: 0,
         }
     }
+}
+
+/// Lets a dialog offer the formats of scenes, first that of a file, which may not exist yet.
+fn offer(dialog: &mut FileDialog, file: &Path, registry: &Registry) {
+    let extensions = formats::extensions(registry);
+    let all: Vec<_> = extensions.iter().map(|extension| format!("*.{extension}")).collect();
+    let filter = format!("Scenes ({})", all.join(", "));
+    let place = dialog.config_mut();
+    place.file_filters.clear();
+    place.save_extensions.clear();
+    let mut config = std::mem::take(place).add_file_filter_extensions(&filter, extensions);
+    // The dialog names the extension itself, and gives it to what is typed.
+    let name = |format: &dyn SceneFormat| match format.name() {
+        "JSON" => "Scene".to_owned(),
+        other => format!("Scene as {other}"),
+    };
+    for format in formats::all(registry).filter(|format| format.writer().is_some()) {
+        for extension in format.extensions().iter().take(1) {
+            config = config.add_save_extension(&name(format), extension);
+        }
+    }
+    config.default_file_filter = Some(filter);
+    config.default_save_extension = formats::of_path(file, registry).ok().map(name);
+    *place = config;
 }
 
 /// The dialog that chooses a file for a parameter.
@@ -113,7 +139,13 @@ impl Dialogs {
     }
 
     /// Opens the dialog that is asked for; false if it is none.
-    pub(super) fn start(&mut self, ctx: &Context, effect: &Effect, session: &Session) -> bool {
+    pub(super) fn start(
+        &mut self,
+        ctx: &Context,
+        effect: &Effect,
+        session: &Session,
+        registry: &Registry,
+    ) -> bool {
         let folder = session.path.as_ref().and_then(|p| p.parent()).filter(|p| p.is_dir());
         let (dialog, save) = match effect {
             Effect::PickOpen => {
@@ -137,11 +169,19 @@ impl Dialogs {
         if let Some(folder) = folder {
             dialog.config_mut().initial_directory = folder.to_owned();
         }
+        let unnamed = || PathBuf::from(format!("{}.json", file_name(&session.title())));
+        // A format that can only be read gives way to JSON.
+        let file = match session.path.as_deref() {
+            Some(path) if formats::can_write(path, registry) => path.to_owned(),
+            Some(path) => as_json(path),
+            None => unnamed(),
+        };
+        if !matches!(effect, Effect::PickFile(..)) {
+            offer(dialog, &file, registry);
+        }
         if save {
-            let name =
-                session.path.as_ref().and_then(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned());
-            dialog.config_mut().default_file_name =
-                name.unwrap_or_else(|| format!("{}.json", file_name(&session.title())));
+            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            dialog.config_mut().default_file_name = name;
             dialog.save_file();
         } else {
             dialog.pick_file();

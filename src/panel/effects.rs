@@ -41,6 +41,11 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                     session.questions.ask(Question::ChangedOnDisk { path });
                     Vec::new()
                 }
+                Saved::OtherFormat(why) => {
+                    // What waits for saving goes on waiting: the dialog offers a file that can be written.
+                    session.say(Severity::Warning, why);
+                    vec![Effect::PickSave]
+                }
                 Saved::Failed(why) => {
                     session.questions.not_saved();
                     session.say(Severity::Error, why);

@@ -62,6 +62,8 @@ pub enum Saved {
     Done,
     /// Somebody else changed it; it was left alone.
     ChangedOnDisk,
+    /// The reason why it could not be written in its format. Another one can hold the scene.
+    OtherFormat(String),
     /// The reason why it could not be written.
     Failed(String),
 }

@@ -235,7 +235,7 @@ pub fn show(
     if session.wanted_dialog.is_some() {
         effects.extend(session.wanted_dialog.take());
     }
-    effects.retain(|effect| !dialogs.start(&ctx, effect, &session));
+    effects.retain(|effect| !dialogs.start(&ctx, effect, &session, registry));
     for effect in &effects {
         if let Effect::CopyText(text) = effect {
             ctx.copy_text(text.clone());

@@ -137,7 +137,8 @@ fn repeats(title: &str, file: &str) -> bool {
         text.to_lowercase().split(|c: char| !c.is_alphanumeric()).map(str::to_owned).collect()
     };
     let known = words(title);
-    words(file.trim_end_matches(".json")).iter().all(|word| word.is_empty() || known.contains(word))
+    let file = std::path::Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+    words(&file).iter().all(|word| word.is_empty() || known.contains(word))
 }
 
 /// Room for the longest entry and its key, points.

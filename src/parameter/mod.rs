@@ -9,6 +9,7 @@ mod component;
 mod declaration;
 mod file;
 mod layout;
+mod parse;
 mod reflect;
 mod set;
 mod shared;
@@ -18,6 +19,7 @@ pub use component::{TypeComponent, Watch};
 pub use declaration::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen};
 pub use file::{FileFormat, FileProblem, NamedFile, Table};
 pub use layout::{BLOCK_BYTES, layout, pack, stride, words};
+pub use parse::ParseError;
 pub use set::ParameterSet;
 pub use shared::{
     ALPHA, ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, K_A, K_D, K_S, METALLIC, REFLECTANCE, ROUGHNESS,

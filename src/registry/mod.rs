@@ -1,5 +1,5 @@
 //! Everything that is known, looked up by id: reflection models, shading models, light types and object types; with the
-//! texts of shaders and the folders that they are read from.
+//! formats of scene files from outside, the texts of shaders and the folders that they are read from.
 //!
 //! The registry is a value. The command line and the CPU renderer use it as it is; in the Bevy app it
 //! is a resource, and `App` offers the same calls, so that a plugin outside this crate registers
@@ -17,6 +17,7 @@ pub mod compose;
 mod error;
 mod files;
 mod folders;
+mod formats;
 mod light_set;
 
 use std::{collections::HashSet, path::PathBuf, sync::Arc};
@@ -29,6 +30,7 @@ use files::Files;
 pub use files::{CustomModel, Extent};
 pub use folders::Folders;
 pub(crate) use folders::MODELS;
+pub use formats::FormatEntry;
 pub use light_set::{LightSet, MAX_LIGHT_TYPES};
 
 use crate::{
@@ -208,6 +210,7 @@ pub struct Registry {
     shadings: Vec<ShadingEntry>,
     lights: Vec<LightEntry>,
     shapes: Vec<ShapeEntry>,
+    formats: Vec<FormatEntry>,
     sources: Sources,
     /// Shared by copies of the registry, of which the window makes many.
     files: Arc<Files>,
@@ -308,6 +311,7 @@ impl Registry {
                 files.folders.extensions.push(folder.clone());
             }
         }
+        extend(&mut self.formats, &other.formats, |f| f.name);
     }
 
     /// Every parameter that some reflection or shading model declares, each name once, in order of first declaration.

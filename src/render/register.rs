@@ -10,6 +10,7 @@ use crate::{
     light::LightType,
     reflection::ReflectionModel,
     registry::{Admission, Register, RegistrationError, Registry},
+    scene::formats::{FormatError, SceneFormat, SceneFormats},
     shading::ShadingModel,
     shape::ObjectType,
 };
@@ -18,6 +19,13 @@ use crate::{
 fn registry(app: &mut App) -> Mut<'_, Registry> {
     app.init_resource::<Registry>();
     app.world_mut().resource_mut::<Registry>()
+}
+
+impl SceneFormats for App {
+    fn try_add_scene_format(&mut self, format: impl SceneFormat) -> Result<&mut Self, FormatError> {
+        registry(self).try_add_scene_format(format)?;
+        Ok(self)
+    }
 }
 
 impl Register for App {

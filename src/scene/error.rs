@@ -4,11 +4,17 @@ use std::{fmt, io, path::Path as FilePath};
 
 use serde::{Serialize, Serializer};
 
-use super::load::{MAX_FILE_BYTES, Missing};
-use crate::files::{FileError, Kind};
+use super::{
+    formats::{self, UnknownExtension},
+    load::{MAX_FILE_BYTES, Missing},
+};
 pub use crate::text::{
     path::{Path, Segment},
     place::Place,
+};
+use crate::{
+    files::{FileError, Kind},
+    registry::Registry,
 };
 
 /// One problem of a scene.
@@ -96,7 +102,7 @@ pub enum LoadError {
         hint: Option<String>,
     },
     /// The path leads to a folder.
-    #[error("{name} is a folder; a scene is a single JSON file{}", .hint.as_deref().unwrap_or(""))]
+    #[error("{name} is a folder; a scene is a single file{}", .hint.as_deref().unwrap_or(""))]
     Folder {
         /// The folder.
         name: String,
@@ -104,7 +110,7 @@ pub enum LoadError {
         hint: Option<String>,
     },
     /// The path leads to something other than a file or folder.
-    #[error("{name} is {kind}; a scene is a single JSON file, or comes from standard input with -")]
+    #[error("{name} is {kind}; a scene is a single file, or comes from standard input with -")]
     NoFile {
         /// The name given.
         name: String,
@@ -147,9 +153,19 @@ pub enum LoadError {
         /// Its probable cause.
         what: String,
     },
-    /// Not JSON.
-    #[error("{name}:{place}: not JSON: {what}")]
+    /// Its extension belongs to no format.
+    #[error("{name}: {unknown}")]
+    UnknownExtension {
+        /// The file.
+        name: String,
+        /// The extension, and those that are known.
+        unknown: UnknownExtension,
+    },
+    /// Not in its format.
+    #[error("{name}:{place}: not {format}: {what}")]
     Syntax {
+        /// The name of the format.
+        format: &'static str,
         /// The file.
         name: String,
         /// The position where reading stopped.
@@ -157,7 +173,7 @@ pub enum LoadError {
         /// The expectation there.
         what: String,
     },
-    /// JSON, but not a valid scene. With every problem, in the order of the file.
+    /// Readable, but not a valid scene. With every problem, in the order of the file.
     #[error("{}", lines(.name, .problems))]
     Invalid {
         /// The file.
@@ -178,25 +194,25 @@ pub enum LoadError {
 impl LoadError {
     /// An error of the operating system on opening or reading a file.
     #[must_use]
-    pub fn from_io(path: &FilePath, name: &str, source: io::Error) -> Self {
+    pub fn from_io(path: &FilePath, name: &str, source: io::Error, registry: &Registry) -> Self {
         let name = name.to_owned();
         match source.kind() {
             io::ErrorKind::NotFound => Self::NotFound { hint: similar_file(path), name },
             io::ErrorKind::PermissionDenied => Self::PermissionDenied { name },
-            io::ErrorKind::IsADirectory => Self::Folder { hint: scenes_within(path), name },
+            io::ErrorKind::IsADirectory => Self::Folder { hint: scenes_within(path, registry), name },
             _ => Self::Io { name, source },
         }
     }
 
     /// The error for a file that could not be read.
     #[must_use]
-    pub fn from_file(path: &FilePath, error: FileError) -> Self {
+    pub fn from_file(path: &FilePath, error: FileError, registry: &Registry) -> Self {
         let name = path.display().to_string();
         match error {
-            FileError::Kind(Kind::Folder) => Self::Folder { hint: scenes_within(path), name },
+            FileError::Kind(Kind::Folder) => Self::Folder { hint: scenes_within(path, registry), name },
             FileError::Kind(kind) => Self::NoFile { name, kind },
             FileError::TooLarge(_) => Self::TooLarge { name },
-            error => Self::from_io(path, &name, error.into()),
+            error => Self::from_io(path, &name, error.into(), registry),
         }
     }
 
@@ -207,7 +223,8 @@ impl LoadError {
             Self::Invalid { problems, .. } => return problems.clone(),
             Self::Missing { missing, .. } => return missing.iter().map(Missing::problem).collect(),
             Self::NotUtf8 { place, what, .. } => (Some(*place), format!("is not UTF-8 text: {what}")),
-            Self::Syntax { place, what, .. } => (Some(*place), format!("is not JSON: {what}")),
+            Self::Syntax { format, place, what, .. } => (Some(*place), format!("is not {format}: {what}")),
+            Self::UnknownExtension { unknown, .. } => (None, format!("could not be read: {unknown}")),
             Self::NotFound { .. } => (None, "could not be read: file not found".to_owned()),
             Self::Folder { .. } => (None, "could not be read: it is a folder".to_owned()),
             Self::NoFile { kind, .. } => (None, format!("could not be read: it is {kind}")),
@@ -255,12 +272,12 @@ fn similar_file(path: &FilePath) -> Option<String> {
 }
 
 /// "; it holds a.json, b.json".
-fn scenes_within(path: &FilePath) -> Option<String> {
+fn scenes_within(path: &FilePath, registry: &Registry) -> Option<String> {
     let mut names: Vec<_> = std::fs::read_dir(path)
         .ok()?
         .take(1000)
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| name.ends_with(".json") && !name.ends_with(".schema.json"))
+        .filter(|name| formats::is_scene_file(FilePath::new(name), registry))
         .collect();
     names.sort();
     let more = if names.len() > 5 { " and more" } else { "" };

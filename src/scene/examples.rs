@@ -2,8 +2,6 @@
 
 use std::sync::LazyLock;
 
-use serde::Deserialize;
-
 use super::{
     Scene,
     error::LoadError,
@@ -31,13 +29,14 @@ macro_rules! texts {
 }
 
 /// From the simplest to those that measure something.
-const TEXTS: [(&str, &str); 13] = texts![
+const TEXTS: [(&str, &str); 14] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
     "gouraud_misses_highlight.json",
     "half_lambert.json",
     "photometric_lamps.json",
+    "colour_wheel.csv",
     "portrait.json",
     "lobe_shape.json",
     "fresnel_effect.json",
@@ -49,20 +48,32 @@ const TEXTS: [(&str, &str); 13] = texts![
 
 /// All of them, in the order of lists.
 pub static EXAMPLES: LazyLock<Vec<Example>> = LazyLock::new(|| {
-    #[derive(Default, Deserialize)]
-    #[serde(default)]
-    struct Head {
-        name: String,
-        description: String,
-    }
+    let registry = Registry::builtin();
     TEXTS
         .into_iter()
         .map(|(file, text)| {
-            let Head { name, description } = serde_json::from_str(text).unwrap_or_default();
+            let (name, description) = head(file, text, &registry);
             Example { file, text, name, description }
         })
         .collect()
 });
+
+/// The name and the description of a scene. JSON is not read as a whole for them, since some scenes are large.
+fn head(file: &str, text: &str, registry: &Registry) -> (String, String) {
+    #[derive(serde::Deserialize)]
+    struct Head {
+        name: String,
+        description: String,
+    }
+    if let Ok(Head { name, description }) = serde_json::from_str(text) {
+        return (name, description);
+    }
+    let scene = load::from_text(text, file, registry, Defaults::Use).map(|loaded| loaded.scene);
+    scene.map_or_else(
+        |_| Default::default(),
+        |s| (s.name.unwrap_or_default(), s.description.unwrap_or_default()),
+    )
+}
 
 impl Example {
     /// The scene itself.
@@ -77,6 +88,7 @@ impl Example {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::formats;
 
     #[test]
     fn every_shipped_scene_is_an_example_with_a_name_and_a_description() {
@@ -84,7 +96,7 @@ mod tests {
         let mut files: Vec<_> = std::fs::read_dir(folder)
             .expect("the folder is there")
             .map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned())
-            .filter(|name| name.ends_with(".json") && !name.ends_with(".schema.json"))
+            .filter(|name| formats::is_scene_file(name.as_ref(), &Registry::builtin()))
             .collect();
         let mut known: Vec<_> = EXAMPLES.iter().map(|e| e.file.to_owned()).collect();
         files.sort();

@@ -46,7 +46,7 @@ pub(super) struct SceneFile<'a> {
 /// Extent of the room in metres.
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct SizeFile {
+pub(super) struct SizeFile {
     /// Limit of y, metres.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100, "default" = 10))]
     height: f32,
@@ -61,7 +61,7 @@ struct SizeFile {
 /// A light.
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct LightFile<'a> {
+pub(super) struct LightFile<'a> {
     /// Light type.
     #[serde(rename = "type")]
     light_type: &'a str,
@@ -104,7 +104,7 @@ struct LightFile<'a> {
 /// The observer: the camera of the scene.
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct ObserverFile {
+pub(super) struct ObserverFile {
     /// Position: [x, y, z] in metres, inside the room, not at the position of a light or an object.
     position: [f32; 3],
     /// Direction of view: [x, y, z], of any length.
@@ -118,7 +118,7 @@ struct ObserverFile {
 /// An object.
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct ObjectFile<'a> {
+pub(super) struct ObjectFile<'a> {
     /// Object type.
     #[serde(rename = "type")]
     object_type: &'a str,
@@ -162,7 +162,7 @@ struct ObjectFile<'a> {
 /// Conversion of light to the picture on the display.
 #[derive(Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct DisplayFile {
+pub(super) struct DisplayFile {
     /// Tone mapping: the curve from light to display.
     #[schemars(extend("default" = "none"))]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -215,13 +215,12 @@ impl<'a> SceneFile<'a> {
     /// The file of a scene. Fields that every scene has are always written; absent fields and fields equal to the
     /// default are not.
     pub(super) fn new(scene: &'a Scene, schema: Option<&'a str>, registry: &Registry) -> Self {
-        let SceneSize { height, width, depth } = scene.scene_size;
         let declared: Vec<_> = registry.material_parameters().collect();
         Self {
             schema,
             name: scene.name.as_deref(),
             description: scene.description.as_deref(),
-            scene_size: SizeFile { height, width, depth },
+            scene_size: SizeFile::new(scene.scene_size),
             reflection_model: &scene.reflection_model,
             shading_model: &scene.shading_model,
             lights: scene.lights.iter().map(|l| LightFile::new(l, registry)).collect(),
@@ -232,8 +231,14 @@ impl<'a> SceneFile<'a> {
     }
 }
 
+impl SizeFile {
+    pub(super) fn new(SceneSize { height, width, depth }: SceneSize) -> Self {
+        Self { height, width, depth }
+    }
+}
+
 impl<'a> LightFile<'a> {
-    fn new(light: &'a Light, registry: &Registry) -> Self {
+    pub(super) fn new(light: &'a Light, registry: &Registry) -> Self {
         let declared = registry.light(&light.light_type).map_or(&[][..], |l| l.parameters);
         Self {
             light_type: &light.light_type,
@@ -251,7 +256,7 @@ impl<'a> LightFile<'a> {
 }
 
 impl ObserverFile {
-    fn new(observer: &Observer) -> Self {
+    pub(super) fn new(observer: &Observer) -> Self {
         Self {
             position: observer.position.into(),
             direction: observer.direction.into(),
@@ -261,7 +266,7 @@ impl ObserverFile {
 }
 
 impl<'a> ObjectFile<'a> {
-    fn new(object: &'a Object, declared: &[&'static Parameter], registry: &Registry) -> Self {
+    pub(super) fn new(object: &'a Object, declared: &[&'static Parameter], registry: &Registry) -> Self {
         let of_type = registry.shape(&object.object_type).map_or(&[][..], |shape| shape.parameters);
         Self {
             object_type: &object.object_type,
@@ -280,7 +285,7 @@ impl<'a> ObjectFile<'a> {
 }
 
 impl DisplayFile {
-    fn new(display: &Display) -> Self {
+    pub(super) fn new(display: &Display) -> Self {
         Self {
             tone_mapping: Some(display.tone_mapping.id()),
             exposure: Some(display.exposure),

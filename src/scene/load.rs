@@ -11,12 +11,10 @@ use std::{
 
 use super::{
     Scene,
-    encoding::decode,
     error::{LoadError, Path, Place, Problem},
-    read,
-    syntax::check_syntax,
+    formats::{self, Source},
 };
-use crate::{files, registry::Registry, text::place::Lines};
+use crate::{files, registry::Registry};
 
 /// Larger files are refused before they are read. The largest legal scene, with every parameter of 10 000 objects
 /// given, is less than a tenth of this.
@@ -96,23 +94,23 @@ pub struct Loaded {
 /// [`LoadError`]; its text names the file as `path` does.
 pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
     let folder = path.parent().unwrap_or(FilePath::new(""));
-    in_folder(&bytes(path)?, (&path.display().to_string(), folder), registry, defaults)
+    in_folder(&bytes(path, registry)?, (&path.display().to_string(), folder), registry, defaults)
 }
 
 /// Reads the content of a path from the command line: a file, or a stream such as `/dev/stdin`.
 ///
 /// # Errors
 /// [`LoadError`]; its text names it as `path` does.
-pub fn input_bytes(path: &FilePath) -> Result<Vec<u8>, LoadError> {
-    files::read_input(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e))
+pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
+    files::read_input(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads the content of a scene file, valid or not.
 ///
 /// # Errors
 /// [`LoadError`] if it is not a regular file, too large, or cannot be read.
-pub fn bytes(path: &FilePath) -> Result<Vec<u8>, LoadError> {
-    files::read(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e))
+pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
+    files::read(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads a scene from a stream, for example [standard input](STDIN).
@@ -128,11 +126,14 @@ pub fn reader(
     from_bytes(&all_of(from, name)?, name, registry, defaults)
 }
 
-/// The ids of the reflection models that a scene names, known or not, even in an invalid scene; none if it is not JSON.
+/// The ids of the reflection models that a scene names, known or not, even in an invalid scene; none if the content is
+/// not in its format.
 #[must_use]
-pub fn models_named(bytes: &[u8], registry: &Registry) -> BTreeSet<String> {
-    let text = decode(bytes, "").ok().filter(|text| check_syntax(text).is_ok());
-    text.map_or_else(BTreeSet::new, |text| read::models_named(text, registry))
+pub fn models_named(bytes: &[u8], name: &str, registry: &Registry) -> BTreeSet<String> {
+    let source = Source::new(bytes, (name, FilePath::new("")));
+    let parsed = formats::of_source(&source, registry).ok().map(|format| format.read(&source, registry));
+    let Some(Ok(parsed)) = parsed else { return BTreeSet::new() };
+    parsed.scene.models().into_iter().map(str::to_owned).collect()
 }
 
 /// Reads the content of a stream, which can be read once.
@@ -150,8 +151,8 @@ pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
     Ok(bytes)
 }
 
-/// Reads a scene from the content of a file; `name` is its name in messages, and its folder that of the files that the
-/// scene names.
+/// Reads a scene from the content of a file; `name` is its name in messages, its folder that of the files that the
+/// scene names, and its extension decides on the [format](super::formats).
 ///
 /// # Errors
 /// [`LoadError`].
@@ -175,16 +176,10 @@ pub fn in_folder(
     registry: &Registry,
     defaults: Defaults,
 ) -> Result<Loaded, LoadError> {
-    let text = decode(bytes, name)?;
-    if text.trim().is_empty() {
-        return Err(LoadError::Empty { name: name.to_owned() });
-    }
-    check_syntax(text).map_err(|(at, what)| LoadError::Syntax {
-        name: name.to_owned(),
-        place: Lines::new(text).place(at),
-        what,
-    })?;
-    let (scene, missing) = read::scene(text, (name, folder), registry, defaults)?;
+    let source = Source::new(bytes, (name, folder));
+    let format = formats::of_source(&source, registry)
+        .map_err(|unknown| LoadError::UnknownExtension { name: name.to_owned(), unknown })?;
+    let (scene, missing) = formats::checked(format.read(&source, registry)?, name, registry, defaults)?;
     if defaults == Defaults::Refuse && !missing.is_empty() {
         return Err(LoadError::Missing { name: name.to_owned(), missing });
     }

@@ -25,6 +25,7 @@ mod encoding;
 pub mod error;
 pub mod examples;
 mod format;
+pub mod formats;
 mod layout;
 pub mod limits;
 pub mod load;
@@ -33,7 +34,10 @@ mod read;
 pub mod rotation;
 pub mod save;
 pub mod schema;
+mod serialise;
 mod syntax;
+
+pub use serialise::{SceneIn, SceneOf};
 
 /// Largest legal extent of a scene in any direction, metres (CA `MAX_HEIGHT`, `MAX_WIDTH`, `MAX_DEPTH`).
 pub const MAX_DIMENSION: f32 = 100.0;

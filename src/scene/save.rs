@@ -10,11 +10,11 @@ use serde::Serialize;
 
 use super::{
     Scene, check,
-    error::Problem,
+    error::{Path as ScenePath, Problem},
     format::SceneFile,
+    formats::{self, Target, UnknownExtension},
     layout::{ShortNumbers, pretty},
-    load::{MAX_FILE_BYTES, Stamp},
-    schema,
+    load::{self, Defaults, MAX_FILE_BYTES, Stamp},
 };
 use crate::{
     files::{self, Draft, FileError, Kind},
@@ -42,6 +42,30 @@ pub enum SaveError {
         path: PathBuf,
         /// At least one.
         problems: Vec<Problem>,
+    },
+    /// Its extension belongs to no format.
+    #[error("{} was not written: {unknown}", .path.display())]
+    UnknownExtension {
+        /// The file.
+        path: PathBuf,
+        /// The extension, and those that are known.
+        unknown: UnknownExtension,
+    },
+    /// Its format can only be read.
+    #[error("{} was not written: files of the format {format} can only be read; save the scene as JSON, for example as {}", .path.display(), as_json(.path).display())]
+    CannotWrite {
+        /// The file.
+        path: PathBuf,
+        /// The name of the format.
+        format: &'static str,
+    },
+    /// Its format cannot hold all of the scene.
+    #[error("{} was not written: {why}; save the scene as JSON, for example as {}", .path.display(), as_json(.path).display())]
+    Lossy {
+        /// The file.
+        path: PathBuf,
+        /// The part that would be lost.
+        why: String,
     },
     /// A new file was requested, but one exists.
     #[error("{} already exists; it was not overwritten", .path.display())]
@@ -99,6 +123,12 @@ pub enum SaveError {
     },
 }
 
+/// The name of a file with the extension of JSON, which holds every scene.
+#[must_use]
+pub fn as_json(path: &Path) -> PathBuf {
+    path.with_extension("json")
+}
+
 fn lines(problems: &[Problem]) -> String {
     problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
@@ -117,8 +147,8 @@ pub fn to_json(scene: &Scene, schema: Option<&str>, registry: &Registry) -> Stri
     pretty(&compact).unwrap_or_else(|| compact.into_owned())
 }
 
-/// Writes a scene, all or nothing, as [`files::write`](fn@files::write) does. The `$schema` of the old file is kept;
-/// a new file refers to [`schema::FILE_NAME`] if that is in its folder. Returns the stamp to expect next time.
+/// Writes a scene, all or nothing, as [`files::write`](fn@files::write) does, in the [format](super::formats) of the
+/// file's extension. Returns the stamp to expect next time.
 ///
 /// # Errors
 /// [`SaveError`]; the old file is then untouched.
@@ -133,6 +163,10 @@ pub fn write(
     if !problems.is_empty() {
         return Err(SaveError::Invalid { path: shown(), problems });
     }
+    let format = formats::of_path(path, registry)
+        .map_err(|unknown| SaveError::UnknownExtension { path: shown(), unknown })?;
+    let writer =
+        format.writer().ok_or_else(|| SaveError::CannotWrite { path: shown(), format: format.name() })?;
     let failed = |error| SaveError::from_file(path, error);
     let target = files::follow(path).map_err(|e| failed(e.into()))?;
     let folder = files::folder_of(&target);
@@ -140,15 +174,14 @@ pub fn write(
         return Err(SaveError::NoFolder { path: shown(), folder: folder.to_owned() });
     }
     let old = on_disk(&target, path, expected)?;
-    let beside = folder.join(schema::FILE_NAME).is_file().then(|| format!("./{}", schema::FILE_NAME));
-    let reference = match &old {
-        Some(old) => old.schema.clone(),
-        None => beside,
-    };
-    let text = to_json(scene, reference.as_deref(), registry);
+    let lossy = |why| SaveError::Lossy { path: shown(), why };
+    let bytes = writer.write(scene, &Target::new(folder, old.as_deref()), registry).map_err(lossy)?;
+    if !formats::is_lossless(format) {
+        comes_back(&bytes, scene, (path, folder), registry).map_err(lossy)?;
+    }
 
     let mut draft = Draft::new(&target).map_err(failed)?;
-    draft.write_all(text.as_bytes()).map_err(|e| failed(e.into()))?;
+    draft.write_all(&bytes).map_err(|e| failed(e.into()))?;
     if expected == Expected::Nothing {
         draft.create().map_err(failed)?;
     } else {
@@ -156,10 +189,57 @@ pub fn write(
         on_disk(&target, path, expected)?;
         draft.replace().map_err(failed)?;
     }
-    Ok(Stamp::of(text.as_bytes()))
+    Ok(Stamp::of(&bytes))
+}
+
+/// `Ok` if the content of a file gives the scene that was written; otherwise the first part that is lost.
+fn comes_back(
+    bytes: &[u8],
+    scene: &Scene,
+    (path, folder): (&Path, &Path),
+    registry: &Registry,
+) -> Result<(), String> {
+    let name = path.display().to_string();
+    let back = load::in_folder(bytes, (&name, folder), registry, Defaults::Refuse)
+        .map_err(|error| format!("what was written could not be read again: {error}"))?;
+    if back.scene == *scene {
+        return Ok(());
+    }
+    let json = |scene: &Scene| {
+        serde_json::from_str(&to_json(scene, None, registry)).unwrap_or(serde_json::Value::Null)
+    };
+    let lost = difference(&json(scene), &json(&back.scene), &ScenePath::root());
+    let what = lost.map_or_else(|| "a part of the scene".to_owned(), |path| path.to_string());
+    Err(format!("its format would lose {what}"))
+}
+
+/// The way to the first value that differs.
+fn difference(a: &serde_json::Value, b: &serde_json::Value, at: &ScenePath) -> Option<ScenePath> {
+    use serde_json::Value::{Array, Object};
+    match (a, b) {
+        _ if a == b => None,
+        (Object(a), Object(b)) => {
+            let mut keys = a.keys().chain(b.keys());
+            let key = keys.find(|key| a.get(*key) != b.get(*key))?;
+            let at = at.key(key.clone());
+            a.get(key).zip(b.get(key)).map_or(Some(at.clone()), |(a, b)| difference(a, b, &at))
+        }
+        (Array(a), Array(b)) => {
+            let i = (0..a.len().max(b.len())).find(|i| a.get(*i) != b.get(*i))?;
+            let at = at.index(i);
+            a.get(i).zip(b.get(i)).map_or(Some(at.clone()), |(a, b)| difference(a, b, &at))
+        }
+        _ => Some(at.clone()),
+    }
 }
 
 impl SaveError {
+    /// True if the scene can be saved in another format.
+    #[must_use]
+    pub fn is_about_format(&self) -> bool {
+        matches!(self, Self::UnknownExtension { .. } | Self::CannotWrite { .. } | Self::Lossy { .. })
+    }
+
     fn from_file(path: &Path, error: FileError) -> Self {
         let path = path.to_owned();
         match error {
@@ -173,13 +253,8 @@ impl SaveError {
     }
 }
 
-/// The parts of an existing file to keep, beside those that any file has.
-struct Old {
-    schema: Option<String>,
-}
-
-/// Examines the destination and compares it with the expectation.
-fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Old>, SaveError> {
+/// Examines the destination and compares it with the expectation. Returns its content, if there is any.
+fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Vec<u8>>, SaveError> {
     let shown = || path.to_owned();
     let io = |source| SaveError::Io { path: shown(), source };
     let metadata = match fs::metadata(target) {
@@ -213,18 +288,7 @@ fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Old>
     {
         return Err(SaveError::Changed { path: shown() });
     }
-    Ok(Some(Old { schema: schema_of(&bytes) }))
-}
-
-/// The `$schema` of a scene file.
-fn schema_of(bytes: &[u8]) -> Option<String> {
-    /// The only key needed here.
-    #[derive(serde::Deserialize)]
-    struct Head {
-        #[serde(rename = "$schema")]
-        schema: Option<String>,
-    }
-    serde_json::from_slice::<Head>(bytes).ok()?.schema
+    Ok(Some(bytes))
 }
 
 #[cfg(test)]

@@ -15,6 +15,8 @@ use serde_json::{Map, Value as Json, json};
 
 /// The file name of the schema beside the shipped scenes, as in their `$schema`.
 pub const FILE_NAME: &str = "scene.schema.json";
+/// The end of the names of schemas.
+pub(super) const EXTENSION: &str = ".schema.json";
 
 /// The JSON Schema (draft 2020-12) of scene files.
 ///

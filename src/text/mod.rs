@@ -2,10 +2,12 @@
 
 pub mod identifier;
 pub mod json;
+mod list;
 pub mod path;
 pub mod place;
 mod words;
 
+pub use list::items;
 pub use words::{
     detailed, did_you_mean, listed, nearest, number, one_of, plural, quoted, sentence, shortened,
     with_article,

@@ -45,6 +45,15 @@ impl Path {
         self.clone().then(Segment::Index(index))
     }
 
+    /// The index in a list at the outermost level: 3 for `objects[3].size` in `objects`.
+    #[must_use]
+    pub fn index_in(&self, list: &str) -> Option<usize> {
+        match self.0.as_slice() {
+            [Segment::Key(key), Segment::Index(index), ..] if key == list => Some(*index),
+            _ => None,
+        }
+    }
+
     /// The steps from the outermost value.
     #[must_use]
     pub fn segments(&self) -> &[Segment] {

@@ -75,6 +75,7 @@ impl Files for DiskFiles {
             Err(SaveError::Changed { .. } | SaveError::Exists { .. } | SaveError::Gone { .. }) => {
                 Saved::ChangedOnDisk
             }
+            Err(error) if error.is_about_format() => Saved::OtherFormat(error.to_string()),
             Err(error) => Saved::Failed(error.to_string()),
         }
     }
@@ -86,7 +87,7 @@ impl Files for DiskFiles {
             // Anything else in its place is an error like any other.
             _ => {}
         }
-        let bytes = match load::bytes(path) {
+        let bytes = match load::bytes(path, registry) {
             Ok(bytes) => bytes,
             Err(error) => {
                 let version = Stamp::of(error.to_string().as_bytes());

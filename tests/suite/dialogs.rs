@@ -13,6 +13,8 @@ use lights_camera_models::{
         state::{Action, Effect, Session, ThemeChoice, ViewChange},
         theme::Palette,
     },
+    registry::Registry,
+    scene::formats::SceneFormats as _,
 };
 
 use crate::{examples::until, panels::Bench, support::root};
@@ -150,6 +152,46 @@ fn the_type_of_the_file_is_named_once() {
     bench.key(Key::Escape, Modifiers::NONE);
     bench.key(Key::S, Modifiers::SHIFT | Modifiers::COMMAND | Modifiers::CTRL);
     assert!(texts(&mut bench).iter().any(|text| text == "Scene (.json)"));
+}
+
+#[test]
+fn the_dialogs_list_the_scenes_of_every_format() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["room.json", "table.csv", "balls.spheres", "notes.txt"] {
+        fs::write(folder.path().join(name), "").expect("written");
+    }
+    let save = Modifiers::SHIFT | Modifiers::COMMAND | Modifiers::CTRL;
+    let opened = |spheres: bool, file: &str, key: Key, modifiers: Modifiers| {
+        let mut session = Session::default();
+        session.path = Some(folder.path().join(file));
+        let mut registry = Registry::builtin();
+        if spheres {
+            registry.add_scene_format(crate::formats::example::Spheres);
+        }
+        let mut bench = Bench::with_registry(session, registry);
+        bench.size = vec2(1280.0, 720.0);
+        bench.key(key, modifiers | Modifiers::COMMAND | Modifiers::CTRL);
+        until(&mut bench, "the list", |b: &mut Bench| {
+            b.tree.iter().any(|s| s.label.contains("room.json") || s.label.contains("table.csv"))
+        });
+        bench.settle();
+        bench
+    };
+    let bench = opened(false, "room.json", Key::O, Modifiers::NONE);
+    assert!(bench.says("room.json") && bench.says("table.csv"));
+    assert!(!bench.says("balls.spheres") && !bench.says("notes.txt"));
+    let bench = opened(true, "room.json", Key::O, Modifiers::NONE);
+    assert!(bench.says("balls.spheres") && !bench.says("notes.txt"));
+    // Saving proposes the format of the file, and JSON for one that can only be read.
+    let mut bench = opened(true, "table.csv", Key::S, save);
+    assert!(texts(&mut bench).iter().any(|text| text == "Scene as CSV (.csv)"));
+    assert!(texts(&mut bench).iter().any(|text| text == "table.csv"));
+    let mut bench = opened(true, "balls.spheres", Key::S, save);
+    let texts = texts(&mut bench);
+    assert!(
+        texts.iter().any(|text| text == "Scene (.json)") && texts.iter().any(|text| text == "balls.json"),
+        "{texts:?}"
+    );
 }
 
 #[test]

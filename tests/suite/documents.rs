@@ -14,6 +14,7 @@ use lights_camera_models::{
     scene::{
         Scene,
         examples::EXAMPLES,
+        formats::column_table,
         load::{self, Defaults},
         save, schema,
     },
@@ -82,6 +83,11 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
             vec![
                 ("default.json", format!("```json\n{}\n```\n", default.trim_end())),
                 ("fields", fields(&schema::schema(&registry))),
+                ("colour_wheel.csv", {
+                    let text = fs::read_to_string(root().join("scenes/colour_wheel.csv")).expect("there");
+                    format!("```csv\n{text}```\n")
+                }),
+                ("columns", column_table(&registry)),
                 ("tone mapping", tone_mapping(&schema::schema(&registry))),
                 ("scenes", scenes()),
             ],
@@ -116,6 +122,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("panel.rs", example("panel.rs", "rust")),
                 ("extension", extension()),
                 ("extension/src/main.rs", example("extension/src/main.rs", "rust")),
+                ("format.rs", example("format.rs", "rust")),
                 ("parts", parts()),
                 ("sets", sets()),
             ],
@@ -316,7 +323,8 @@ fn tone_mapping(schema: &Json) -> String {
 
 fn scenes() -> String {
     let rows = EXAMPLES.iter().map(|e| {
-        let link = format!("[{}](../scenes/{})", e.file.trim_end_matches(".json"), e.file);
+        let (name, _) = e.file.split_once('.').expect("an extension");
+        let link = format!("[{name}](../scenes/{})", e.file);
         vec![link, e.description.clone()]
     });
     table(&["scene", "description"], rows)

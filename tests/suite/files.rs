@@ -280,7 +280,7 @@ fn a_command_reads_streams_but_waits_for_nobody() {
     let at = folder.path();
     pipe(&at.join("pipe"));
     fs::write(at.join("a.json"), full_scene().to_string()).expect("written");
-    refused(&run(&mut lcm(at, ["check", "pipe"])), 1, "pipe is a named pipe; a scene is a single JSON file");
+    refused(&run(&mut lcm(at, ["check", "pipe"])), 1, "pipe is a named pipe; a scene is a single file");
     refused(&run(&mut lcm(at, ["render", "pipe", "-o", "x.png"])), 1, "a named pipe");
     refused(&run(&mut lcm(at, ["view", "pipe"])), 1, "a named pipe");
     refused(&run(&mut lcm(at, ["check", "/dev/zero"])), 1, "/dev/zero is larger than 64 MiB");

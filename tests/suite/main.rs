@@ -21,6 +21,7 @@ mod features;
 mod files;
 mod focus;
 mod foreign;
+mod formats;
 mod golden;
 mod gpu_parity;
 mod guests;
@@ -62,6 +63,7 @@ mod signals;
 mod study;
 mod support;
 mod swallowed;
+mod table;
 mod tangents;
 mod testing;
 #[cfg(unix)]

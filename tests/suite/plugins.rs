@@ -29,6 +29,7 @@ use lights_camera_models::{
         schedule::{LabFrame, LabSystems, strict},
         view::Drawing,
     },
+    scene::formats::SceneFormats as _,
     window::{
         CameraPlugin, CapturePlugin, ClippingPlugin, DocumentPlugin, GizmosPlugin, LabPlugins, PickingPlugin,
         PicturePlugin, RecoveryPlugin, RequirementsPlugin, ShaderFilesPlugin, ShellPlugin, WatchingPlugin,
@@ -322,6 +323,7 @@ fn stage() {
             let types = |registry: &mut Registry| {
                 extension::types(registry);
                 registry.add_reflection_model::<toon::Toon>();
+                registry.add_scene_format(crate::formats::example::Spheres);
             };
             let code = cli::run_with(arguments, types, |app| {
                 extension::window(app);
@@ -400,11 +402,11 @@ const EXTENSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/extension
 #[test]
 fn the_crate_of_the_example_swings_its_spotlight_and_leaves_the_scene_as_it_is() {
     let mut app = app(LabPlugins::default().scene(EXTENSION).size(64, 36).headless().build(), |app| {
-        app.world_mut().init_resource::<Registry>();
-        extension::types(&mut app.world_mut().resource_mut::<Registry>());
+        extension::types(app);
         app.add_systems(Update, extension::swing);
     });
-    draw(&mut app);
+    (0..10).for_each(|_| app.update());
+    assert_eq!(count::<Drawn>(&mut app), 2, "its objects are drawn");
     let direction = |app: &mut App| {
         let mut spots = app.world_mut().query_filtered::<&Transform, With<Spot>>();
         *spots.single(app.world()).expect("one spotlight").forward()
@@ -452,6 +454,35 @@ fn the_examples_pass_the_public_tests_and_draw_alike_without_a_window() {
         // At the edge of a stripe or band a rounded number decides.
         assert!(d.covered > 800 && d.wrong * 100 <= d.covered, "{name}: {d:?}");
     }
+}
+
+#[test]
+fn every_command_reads_the_scene_format_of_an_extended_program() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, picture) = (folder.path().join("balls.spheres"), folder.path().join("balls.png"));
+    fs::write(&file, "4 5 5 2\n6 5 5 2\n").expect("writable");
+    let (balls, written) = (file.to_string_lossy(), picture.to_string_lossy());
+    for arguments in [&["check", &*balls][..], &["render", &balls, "--size", "64x36", "-o", &written]] {
+        let output = extended(arguments, folder.path()).output().expect("it runs");
+        assert!(output.status.success(), "{arguments:?}: {}", said(&output));
+    }
+    assert!(picture.exists());
+    fs::write(&file, "4 5 5 2\n6 5 55 2\n").expect("writable");
+    let output = extended(&["check", &*balls], folder.path()).output().expect("it runs");
+    assert!(
+        said(&output).contains("balls.spheres:2:1: objects[1].position is [6, 5, 55]"),
+        "{}",
+        said(&output)
+    );
+    let unknown = Command::new(env!("CARGO_BIN_EXE_lcm")).args(["check", &*balls]).output().expect("it runs");
+    assert!(said(&unknown).contains(".spheres is not the extension of a scene"), "{}", said(&unknown));
+    // The window's plugins, too, in whatever order.
+    fs::write(&file, "4 5 5 2\n6 5 5 2\n").expect("writable");
+    let mut app = app(LabPlugins::default().scene(&file).size(64, 36).headless().build(), |app| {
+        app.add_scene_format(crate::formats::example::Spheres);
+    });
+    draw(&mut app);
+    assert_eq!(count::<SceneObject>(&mut app), 2);
 }
 
 #[cfg(target_os = "linux")]

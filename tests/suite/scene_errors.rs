@@ -648,7 +648,7 @@ fn files_that_cannot_be_read_say_why() {
     for (file, expected) in [
         ("scenes/rom.json", "scenes/rom.json: file not found. Did you mean scenes/room.json?"),
         ("nowhere/x.json", "nowhere/x.json: file not found"),
-        ("scenes", "scenes is a folder; a scene is a single JSON file; this one holds room.json"),
+        ("scenes", "scenes is a folder; a scene is a single file; this one holds room.json"),
         ("empty.json", "empty.json is empty. Load the default scene?"),
         ("huge.json", "huge.json is larger than 64 MiB, the most allowed for a scene; it was not read"),
         ("broken.json", "broken.json:1:13: not JSON: the file ends within a list; it seems to be truncated"),

@@ -208,7 +208,8 @@ fn object() -> impl Strategy<Value = Object> {
 }
 
 prop_compose! {
-    fn scene()(
+    /// A valid scene of any kind.
+    pub fn scene()(
         name in prop::option::of("[\\PC\\n\\t\\\\\"]{0,20}"),
         description in prop::option::of(any::<String>()),
         size in (number(9.0, 100.0), number(9.0, 100.0), number(9.0, 100.0)),

@@ -104,6 +104,41 @@ fn an_open_window_shows_what_is_edited_elsewhere() {
     assert!(!shows(2)(&picture));
 }
 
+/// The same scene as a table.
+fn table([r, g, b]: [u8; 3]) -> String {
+    format!(
+        "part,type,position,direction,intensity,size,material.base_colour,reflection_model,shading_model,scene_size.height,scene_size.width,scene_size.depth,field_of_view
+scene,,,,,,,lambert,phong,10,10,10,
+light,point,7.5 8 9,,60
+observer,,5 5 9.5,0 0 -1,,,,,,,,,45
+object,sphere,5 5 5,,,2,{r} {g} {b}
+"
+    )
+}
+
+#[test]
+fn an_open_window_follows_a_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("room.csv");
+    fs::write(&file, table([255, 0, 0])).expect("writable");
+    let screen = Screen::new(1280, 720);
+    let mut window = screen.start(&["view", &file.to_string_lossy(), "--size", "1280x720"]);
+    window.until("a red sphere", shows(0));
+    save_by_renaming(&file, &table([0, 255, 0]));
+    let picture = window.until("a green sphere", shows(1));
+    assert!(!shows(0)(&picture));
+    save_in_place(&file, &table([0, 0, 255]));
+    window.until("a blue sphere", shows(2));
+    assert_eq!(window.said(), "", "an empty file for a moment is no error");
+    save_by_renaming(&file, &table([255, 0, 0]).replace(",,,2,", ",,,-2,"));
+    let picture = window.until("a badge", error_badge);
+    assert!(shows(2)(&picture), "the last good version stays");
+    let said = window.said();
+    assert!(said.starts_with(&format!("{}:5:", file.display())) && said.contains("size is -2"), "{said}");
+    save_in_place(&file, &table([0, 255, 0]));
+    window.until("a green sphere again", |p| shows(1)(p) && !error_badge(p));
+}
+
 #[test]
 fn an_open_window_follows_the_file_of_a_lamp() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -10,9 +10,8 @@ mod sheen;
 use lights_camera_models::{bevy::prelude::*, cli, light::Spot, prelude::*};
 
 /// What scenes may name. The shaders are followed while they are edited.
-pub fn types(registry: &mut Registry) {
-    registry
-        .add_reflection_model::<sheen::Sheen>()
+pub fn types(to: &mut impl Register) {
+    to.add_reflection_model::<sheen::Sheen>()
         .add_shading_model::<lazy::Lazy>()
         .add_light_type::<beacon::Beacon>()
         .add_object_type::<blossom::Blossom>()

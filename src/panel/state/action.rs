@@ -184,7 +184,7 @@ impl Session {
             }
             Action::SaveAsDialog => return vec![Effect::PickSave],
             Action::FileDialog(light, parameter) => return vec![Effect::PickFile(light, parameter)],
-            Action::SaveAs(path) => return self.save_as(&path),
+            Action::SaveAs(path) => return self.save_as(&path, registry),
             Action::ClearRecent => {
                 self.recent_files.clear();
                 return vec![Effect::SaveSettings];

@@ -8,23 +8,24 @@ use crate::{
     optics::TermSelection,
     parameter::{NamedFile, Parameter, ParameterKind, Value},
     registry::Registry,
-    scene::{Scene, examples::EXAMPLES},
+    scene::{Scene, examples::EXAMPLES, formats},
 };
 
 /// The most files that the list of recent files holds.
 pub const RECENT_FILES: usize = 10;
 
-/// The file meant by a name typed for a scene: it ends in `.json`, once.
-fn scene_file(typed: &Path) -> PathBuf {
-    let json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    match (json(typed), typed.file_stem().map(Path::new)) {
+/// The file meant by a name typed for a scene: it ends in the extension of a format that can be written, once, and in
+/// that of JSON if it has none.
+fn scene_file(typed: &Path, registry: &Registry) -> PathBuf {
+    let known = |path: &Path| formats::can_write(path, registry);
+    match (known(typed), typed.file_stem().map(Path::new)) {
         (false, _) => {
             let mut name = typed.as_os_str().to_owned();
             name.push(".json");
             name.into()
         }
         // Some dialogs add an extension to whatever is typed.
-        (true, Some(stem)) if json(stem) => typed.with_file_name(stem),
+        (true, Some(stem)) if known(stem) => typed.with_file_name(stem),
         _ => typed.to_owned(),
     }
 }
@@ -45,7 +46,7 @@ impl Session {
     }
 
     /// The document goes into a file with the name that was typed.
-    pub(super) fn save_as(&mut self, typed: &Path) -> Vec<Effect> {
+    pub(super) fn save_as(&mut self, typed: &Path, registry: &Registry) -> Vec<Effect> {
         // The default scene and examples are called as their file from now on.
         let shipped = |name: &String| EXAMPLES.iter().any(|example| example.name == *name);
         if self.path.is_none() && self.document.name.as_ref().is_some_and(shipped) {
@@ -53,7 +54,7 @@ impl Session {
                 .change("Name of the scene", Extent::Rest, self.selection, |scene| scene.name = None);
         }
         // The dialog asked about the file that was typed, and about no other.
-        let path = scene_file(typed);
+        let path = scene_file(typed, registry);
         let overwrite = path == typed;
         self.keep_files(&path);
         vec![Effect::SaveFile { path, overwrite }]

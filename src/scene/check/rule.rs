@@ -10,7 +10,7 @@ use crate::{
         temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
         tone::ToneMapping,
     },
-    parameter::{Parameter, ParameterKind, Value},
+    parameter::{Parameter, Value},
     registry::Registry,
     scene::{MAX_DIMENSION, MAX_OBJECTS, Object, Scene, SceneSize, limits},
     shape::ShapeEntry,
@@ -137,33 +137,7 @@ pub fn exposure(ev: f32) -> Rule {
 
 /// The value of a declared parameter of a model, a light or an object type.
 pub fn parameter(parameter: &Parameter, value: &Value) -> Rule {
-    must(parameter.allows(value), || {
-        let hint = match (&parameter.kind, value) {
-            (ParameterKind::Choice { options, .. }, Value::Choice(id)) => did_you_mean(
-                id,
-                options.iter().map(|(id, name)| (*name, *id)).chain(options.iter().map(|(id, _)| (*id, *id))),
-            ),
-            (ParameterKind::File { .. }, Value::File(file)) => {
-                file.problem().map_or_else(String::new, |problem| format!(": {problem}"))
-            }
-            _ => String::new(),
-        };
-        parameter_rule(parameter) + &hint
-    })
-}
-
-/// The rule of [`parameter`].
-pub(crate) fn parameter_rule(parameter: &Parameter) -> String {
-    format!("the {} must be {}{}", parameter.label, parameter.rule(), unit(parameter))
-}
-
-/// The unit of a parameter after its range.
-fn unit(parameter: &Parameter) -> String {
-    match (parameter.unit, &parameter.kind) {
-        ("", _) | (_, ParameterKind::Colour { .. } | ParameterKind::Choice { .. }) => String::new(),
-        ("°", _) => " degrees".to_owned(),
-        (unit, _) => format!(" {unit}"),
-    }
+    parameter.check(value)
 }
 
 /// A parameter in the material of an object: the ranges that its reflection model and its shading model declare apply,

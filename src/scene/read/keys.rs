@@ -27,7 +27,7 @@ pub(in crate::scene) const OBSERVER_KEYS: &[&str] = &["position", "direction", "
 pub(in crate::scene) const DISPLAY_KEYS: &[&str] = &["tone_mapping", "exposure", "encoding"];
 
 /// Other words for keys, for suggestions only: the names in other programs.
-pub(super) const OTHER_WORDS: &[(&str, &str)] = &[
+pub(in crate::scene) const OTHER_WORDS: &[(&str, &str)] = &[
     ("camera", "observer"),
     ("eye", "observer"),
     ("viewer", "observer"),

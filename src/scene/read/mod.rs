@@ -1,15 +1,12 @@
-//! From JSON to a [`Scene`]: types, unknown, missing and repeated keys are found here; ranges and relations are
-//! [`check`]'s. Every problem gets the place of its value.
+//! From JSON to a [`Scene`](super::Scene): types, unknown, missing and repeated keys are found here; ranges and relations
+//! are [`check`](super::check)'s. Every problem gets the place of its value.
 
-use std::{
-    collections::{BTreeSet, HashSet},
-    path::Path as FilePath,
-};
+use std::{collections::HashSet, path::Path as FilePath};
 
 use super::{
-    Scene, beyond_room, check,
-    error::{LoadError, Path, Problem},
-    load::{Defaults, Missing},
+    error::{Path, Problem},
+    formats::{Located, Parsed},
+    load::Missing,
 };
 use crate::{
     registry::Registry,
@@ -29,61 +26,48 @@ const MAX_SUGGESTIONS: usize = 200;
 
 /// The most problems listed. A scene within the limits of lights and objects with errors in every field has fewer; a
 /// hostile file could have millions.
-const MAX_PROBLEMS: usize = 200_000;
+pub(super) const MAX_PROBLEMS: usize = 200_000;
 
-/// Reads a scene from JSON with checked syntax.
-pub(super) fn scene(
-    text: &str,
-    (name, folder): (&str, &FilePath),
-    registry: &Registry,
-    defaults: Defaults,
-) -> Result<(Scene, Vec<Missing>), LoadError> {
-    // The two parsers agree except for half surrogate pairs, which only this one refuses.
-    let root = json::parse(text, &STRICT)
-        .map_err(|(at, what)| LoadError::Syntax {
-            name: name.to_owned(),
-            place: Lines::new(text).place(at),
-            what: what.to_lowercase(),
-        })?
-        .ok_or_else(|| LoadError::Empty { name: name.to_owned() })?;
-
+/// The scene in a tree of values: that of JSON, or one that another format made of a text. `before` are problems that
+/// were found when the tree was made, each with its byte.
+pub(super) fn parsed<'a>(
+    text: &'a str,
+    root: Ast<'a>,
+    folder: &'a FilePath,
+    registry: &'a Registry,
+    before: Vec<(usize, Problem)>,
+) -> Parsed<'a> {
     let mut reader = Reader::new(text, folder, registry);
+    reader.problems = before;
     let scene = reader.scene(Cursor::root(&root));
-    reader.check(&scene, &root);
-    let Reader { mut problems, missing, unlisted, lines, .. } = reader;
-    if problems.is_empty() {
-        return Ok((scene, missing));
-    }
-    if defaults == Defaults::Refuse {
-        // A missing size may be reported already.
-        let reported = |m: &&Missing| problems.iter().any(|(_, p)| p.path == m.path);
-        let more: Vec<_> = missing.iter().filter(|m| !reported(m)).map(|m| (0, m.problem())).collect();
-        problems.extend(more);
-    }
-    problems.sort_by_key(|(at, _)| *at);
-    if unlisted > 0 {
-        let more = format!("has {unlisted} more problems, which are not listed");
-        problems.push((text.len(), Problem::about(Path::root(), more)));
-    }
-    let problems = problems
-        .into_iter()
-        .map(|(at, problem)| Problem {
-            place: Some(problem.place.unwrap_or_else(|| lines.place(at))),
-            ..problem
-        })
-        .collect();
-    Err(LoadError::Invalid { name: name.to_owned(), problems })
+    let Reader { problems, reported, missing, unlisted, lines, .. } = reader;
+    let placed = |(at, problem): (usize, Problem)| Problem { place: Some(lines.place(at)), ..problem };
+    let mut parsed = Parsed::new(scene).with_missing(missing);
+    parsed.problems = problems.into_iter().map(placed).collect();
+    (parsed.unread, parsed.unlisted, parsed.end) = (reported, unlisted, Some(lines.place(text.len())));
+    parsed.located(move |path| {
+        let (at, value) = json::locate(&root, path);
+        let found = value.map(|value| json::describe(value, text));
+        Located { place: Some(lines.place(at)), found }
+    })
 }
 
-/// The reflection models that a scene names, from JSON with checked syntax.
-pub(super) fn models_named(text: &str, registry: &Registry) -> BTreeSet<String> {
+/// One part of a scene, alone, from JSON with checked syntax; only types and keys are checked.
+pub(super) fn alone<T>(
+    text: &str,
+    registry: &Registry,
+    read: impl FnOnce(&mut Reader, Cursor) -> T,
+) -> Result<T, Vec<Problem>> {
     let root = json::parse(text, &STRICT).ok().flatten();
-    let scene = root.map(|root| Reader::new(text, FilePath::new(""), registry).scene(Cursor::root(&root)));
-    scene.map_or_else(BTreeSet::new, |scene| scene.models().into_iter().map(str::to_owned).collect())
+    let root = root.ok_or_else(|| vec![Problem::about(Path::root(), "is not JSON")])?;
+    let mut reader = Reader::new(text, FilePath::new(""), registry);
+    let part = read(&mut reader, Cursor::root(&root));
+    let problems: Vec<_> = reader.problems.into_iter().map(|(_, problem)| problem).collect();
+    if problems.is_empty() { Ok(part) } else { Err(problems) }
 }
 
 /// The state of reading.
-struct Reader<'a> {
+pub(super) struct Reader<'a> {
     text: &'a str,
     /// The folder in which files are that the scene names.
     folder: &'a FilePath,
@@ -131,21 +115,6 @@ impl<'a> Reader<'a> {
     /// Notes a missing part with a default.
     fn missing(&mut self, path: Path, at: usize, default: String) {
         self.missing.push(Missing { path, default, place: Some(self.lines.place(at)) });
-    }
-
-    /// Applies [`check`] and locates its findings.
-    fn check(&mut self, scene: &Scene, root: &Ast) {
-        let mut problems = check::scene(scene, self.registry);
-        if !self.reported.is_empty() {
-            problems.retain(|problem| !problem.path.ancestors().any(|p| self.reported.contains(&p)));
-        }
-        for mut problem in beyond_room::explain(problems, scene, &self.missing) {
-            let (at, value) = json::locate(root, &problem.path);
-            if let (Some(value), Some(found)) = (value, &mut problem.found) {
-                *found = json::describe(value, self.text);
-            }
-            self.add(at, problem);
-        }
     }
 }
 

@@ -56,12 +56,17 @@ impl Reader<'_> {
     }
 
     fn scene_size(&mut self, scene: &Fields) -> SceneSize {
-        let mut size = SceneSize::default();
         let Some(value) = scene.get("scene_size") else {
             let d = DEFAULT_DIMENSION;
             self.missing(scene.path("scene_size"), scene.of.start(), format!("{d} × {d} × {d} m"));
-            return size;
+            return SceneSize::default();
         };
+        self.size(value)
+    }
+
+    /// The size of the room.
+    pub(in crate::scene) fn size(&mut self, value: Cursor) -> SceneSize {
+        let mut size = SceneSize::default();
         // While its size is unknown, the room counts as large as possible, so that positions do not seem to be outside.
         let unknown = SceneSize { height: MAX_DIMENSION, width: MAX_DIMENSION, depth: MAX_DIMENSION };
         let Some(fields) = self.fields(value, SIZE_KEYS, "scene_size") else { return unknown };
@@ -78,7 +83,7 @@ impl Reader<'_> {
         size
     }
 
-    fn light(&mut self, value: Cursor) -> Light {
+    pub(in crate::scene) fn light(&mut self, value: Cursor) -> Light {
         let mut light = Light { position: None, ..Light::default() };
         let keys = self.light_keys.clone();
         let Some(fields) = self.fields(value, &keys, "a light") else { return light };
@@ -120,7 +125,7 @@ impl Reader<'_> {
         light
     }
 
-    fn observer(&mut self, value: Cursor) -> Observer {
+    pub(in crate::scene) fn observer(&mut self, value: Cursor) -> Observer {
         let mut observer = Observer { position: Vec3::NAN, ..Observer::default() };
         let Some(fields) = self.fields(value, OBSERVER_KEYS, "the observer") else { return observer };
         for (key, what, to) in [
@@ -137,7 +142,7 @@ impl Reader<'_> {
         observer
     }
 
-    fn object(&mut self, value: Cursor) -> Object {
+    pub(in crate::scene) fn object(&mut self, value: Cursor) -> Object {
         let mut object = Object { position: Vec3::NAN, ..Object::default() };
         let keys = std::mem::take(&mut self.object_keys);
         let fields = self.fields(value, &keys, "an object");
@@ -198,7 +203,7 @@ impl Reader<'_> {
         values
     }
 
-    fn display(&mut self, value: Cursor) -> Display {
+    pub(in crate::scene) fn display(&mut self, value: Cursor) -> Display {
         let mut display = Display::default();
         let Some(fields) = self.fields(value, DISPLAY_KEYS, "display") else { return display };
         if let Some(id) = self.choice(&fields, "tone_mapping", check::tone_mapping) {

@@ -17,7 +17,7 @@ pub(super) const COLOUR_RULE: &str = "a colour must be three whole numbers from 
 impl Reader<'_> {
     /// A declared parameter, if the value has its type. Its range is checked later.
     pub(super) fn parameter(&mut self, value: Cursor, parameter: &'static Parameter) -> Option<Value> {
-        let rule = check::parameter_rule(parameter);
+        let rule = parameter.clause();
         match parameter.kind {
             ParameterKind::Number { .. } => self.number(value, &rule).map(Value::Number),
             ParameterKind::Integer { .. } => self.integer(value, &rule).map(Value::Integer),

@@ -1,0 +1,167 @@
+//! A value from text, as typed on the command line, and the rule that a value breaks.
+
+use std::{borrow::Cow, fmt, path::Path};
+
+use super::{
+    declaration::{Parameter, ParameterKind},
+    file::NamedFile,
+    value::Value,
+};
+use crate::text::{did_you_mean, items, shortened};
+
+/// The reason why a text is no legal value of a parameter. Shown as the end of a sentence: "is 0.2, but the diffuse
+/// coefficient must be between 0.5 and 1".
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ParseError {
+    /// The text.
+    pub found: String,
+    /// The broken rule: "the diffuse coefficient must be between 0.5 and 1".
+    pub rule: String,
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let found = if self.found.trim().is_empty() { "empty".into() } else { shortened(&self.found) };
+        write!(f, "is {found}, but {}", self.rule)
+    }
+}
+
+impl std::error::Error for ParseError {}
+
+impl Parameter {
+    /// The value written as text: a number, three numbers such as `255,128,0` or `255 128 0`, the name of a choice, or
+    /// the name of a file. One number serves for all three of a [triple](ParameterKind::Triple).
+    ///
+    /// ```
+    /// use lights_camera_models::parameter::{ALPHA, BASE_COLOUR, K_D, Value};
+    ///
+    /// assert_eq!(BASE_COLOUR.parse("255, 128, 0"), Ok(Value::Colour([255, 128, 0])));
+    /// assert_eq!(ALPHA.parse("8"), Ok(Value::Integer(8)));
+    /// let error = K_D.parse("0.2").unwrap_err();
+    /// assert_eq!(error.to_string(), "is 0.2, but the diffuse coefficient must be between 0.5 and 1");
+    /// ```
+    ///
+    /// # Errors
+    /// [`ParseError`] if the text is no value of the parameter's kind, or one outside its range.
+    pub fn parse(&self, text: &str) -> Result<Value, ParseError> {
+        self.parse_in(text, Path::new(""))
+    }
+
+    /// As [`parse`](Self::parse), with the folder of the files that the text may name.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse).
+    pub fn parse_in(&self, text: &str, folder: &Path) -> Result<Value, ParseError> {
+        let broken = |rule| ParseError { found: text.to_owned(), rule };
+        let value = self.typed(text, folder).ok_or_else(|| broken(self.clause()))?;
+        self.check(&value).map(|()| value).map_err(broken)
+    }
+
+    /// A value of the right kind, whatever its range.
+    fn typed(&self, written: &str, folder: &Path) -> Option<Value> {
+        let text = written.trim();
+        match self.kind {
+            ParameterKind::Number { .. } => text.parse().ok().map(Value::Number),
+            ParameterKind::Integer { .. } => text.parse().ok().map(Value::Integer),
+            ParameterKind::Colour { .. } => all(text)?.try_into().ok().map(Value::Colour),
+            ParameterKind::Triple { .. } => match all(text)?[..] {
+                [all] => Some(Value::Triple([all; 3])),
+                [r, g, b] => Some(Value::Triple([r, g, b])),
+                _ => None,
+            },
+            ParameterKind::Choice { options, .. } => {
+                let known = options.iter().map(|(id, _)| *id).find(|id| *id == text);
+                Some(Value::Choice(known.map_or_else(|| Cow::Owned(text.to_owned()), Cow::Borrowed)))
+            }
+            ParameterKind::File { format, .. } => {
+                Some(Value::File(NamedFile::named(written, folder, format)))
+            }
+        }
+    }
+
+    /// `Ok` for a legal value, or the rule that it breaks, with a hint: "the Fresnel term must be one of …; did you
+    /// mean …?"
+    ///
+    /// # Errors
+    /// The broken rule as a clause.
+    pub fn check(&self, value: &Value) -> Result<(), String> {
+        if self.allows(value) {
+            return Ok(());
+        }
+        let hint = match (&self.kind, value) {
+            (ParameterKind::Choice { options, .. }, Value::Choice(id)) => did_you_mean(
+                id,
+                options.iter().map(|(id, name)| (*name, *id)).chain(options.iter().map(|(id, _)| (*id, *id))),
+            ),
+            (ParameterKind::File { .. }, Value::File(file)) => {
+                file.problem().map_or_else(String::new, |problem| format!(": {problem}"))
+            }
+            _ => String::new(),
+        };
+        Err(self.clause() + &hint)
+    }
+
+    /// Its [rule](Self::rule) as a clause with its name and unit: "the slope deviation must be between 0 and 35
+    /// degrees".
+    #[must_use]
+    pub fn clause(&self) -> String {
+        let unit = match (self.unit, &self.kind) {
+            ("", _) | (_, ParameterKind::Colour { .. } | ParameterKind::Choice { .. }) => String::new(),
+            ("°", _) => " degrees".to_owned(),
+            (unit, _) => format!(" {unit}"),
+        };
+        format!("the {} must be {}{unit}", self.label, self.rule())
+    }
+}
+
+/// Every item of a list as a number.
+fn all<T: std::str::FromStr>(text: &str) -> Option<Vec<T>> {
+    items(text).into_iter().map(|(_, item)| item.parse().ok()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        parameter::{BASE_COLOUR, IOR, K_D},
+        registry::Registry,
+    };
+
+    #[test]
+    fn every_legal_value_is_read_from_its_own_text() {
+        let registry = Registry::builtin();
+        let lights = registry.lights().iter().flat_map(|l| l.parameters);
+        let shapes = registry.shapes().iter().flat_map(|s| s.parameters);
+        let mut values = 0;
+        for p in registry.material_parameters().chain(lights).chain(shapes) {
+            for value in p.ends() {
+                assert_eq!(p.parse(&value.to_string()), Ok(value), "{}", p.name);
+                values += 1;
+            }
+        }
+        assert!(values > 100);
+        assert_eq!(IOR.parse("1.5"), Ok(Value::Triple([1.5; 3])), "one number for all");
+        assert_eq!(BASE_COLOUR.parse("[1 2 3]"), Ok(Value::Colour([1, 2, 3])));
+    }
+
+    #[test]
+    fn other_text_is_refused_with_the_rule() {
+        for (p, text, rule) in [
+            (K_D, "0.2", "is 0.2, but the diffuse coefficient must be between 0.5 and 1"),
+            (K_D, "nan", "is nan, but the diffuse coefficient must be between 0.5 and 1"),
+            (K_D, " ", "is empty, but the diffuse coefficient must be"),
+            (BASE_COLOUR, "1,2", "three whole numbers from 0 to 255"),
+            (BASE_COLOUR, "1,2,256", "three whole numbers from 0 to 255"),
+            (BASE_COLOUR, "1,,2,3", "three whole numbers from 0 to 255"),
+            (IOR, "1 2", "must be three numbers between 0.01 and 6"),
+        ] {
+            let said = p.parse(text).expect_err("refused").to_string();
+            assert!(said.contains(rule), "{text}: {said}");
+        }
+        let registry = Registry::builtin();
+        let fresnel = registry.material_parameter("fresnel").expect("declared");
+        let said = fresnel.parse("conducter").expect_err("refused").to_string();
+        assert!(said.contains("did you mean \"conductor\"?"), "{said}");
+    }
+}

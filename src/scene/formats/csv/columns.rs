@@ -1,0 +1,260 @@
+//! The columns of a table: every field of every part of a scene, by its path.
+
+use std::fmt::Write as _;
+
+use super::grid::{Cell, Grid, Row};
+use crate::{
+    parameter::{Parameter, ParameterKind},
+    registry::Registry,
+    scene::{
+        error::{Path, Problem},
+        read::keys::{
+            DISPLAY_KEYS, LIGHT_KEYS, OBJECT_KEYS, OBSERVER_KEYS, OTHER_WORDS, SCENE_KEYS, SIZE_KEYS,
+        },
+    },
+    text::{did_you_mean, json::canonical, shortened},
+};
+
+/// The name of the first column.
+pub(super) const PART: &str = "part";
+
+/// The kinds of rows, by the names in the first column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Scene,
+    Light,
+    Observer,
+    Object,
+}
+
+impl Part {
+    pub(super) const ALL: [Self; 4] = [Self::Scene, Self::Light, Self::Observer, Self::Object];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Scene => "scene",
+            Self::Light => "light",
+            Self::Observer => "observer",
+            Self::Object => "object",
+        }
+    }
+}
+
+/// The components of vectors and of colours in the names of columns.
+const AXES: [&str; 3] = ["x", "y", "z"];
+const CHANNELS: [&str; 3] = ["r", "g", "b"];
+/// The keys of vectors.
+const VECTORS: [&str; 3] = ["position", "direction", "rotation"];
+/// The keys of texts that are no parameters.
+const TEXTS: [&str; 7] =
+    ["type", "name", "description", "reflection_model", "shading_model", "tone_mapping", "encoding"];
+
+/// A column that a table may have.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Column {
+    /// Its name.
+    pub(super) name: String,
+    /// The way to the field, from the part on: `material`, `k_d`.
+    pub(super) keys: Vec<&'static str>,
+    /// The index in the list if the column is one component of it.
+    pub(super) component: Option<usize>,
+    /// The parts whose field of that name is a text.
+    texts: Vec<Part>,
+    /// The parts that have the field.
+    pub(super) of: Vec<Part>,
+}
+
+impl Column {
+    /// True if a cell of this column is a text, whatever it looks like.
+    pub(super) fn is_text(&self, part: Part) -> bool {
+        self.texts.contains(&part)
+    }
+}
+
+/// The names of the components of a list.
+pub(super) fn components(key: &str) -> [&'static str; 3] {
+    if VECTORS.contains(&key) { AXES } else { CHANNELS }
+}
+
+/// True if the components of a list have a column each in a new table.
+pub(super) fn is_spread(key: &str) -> bool {
+    VECTORS.contains(&key)
+}
+
+/// All columns that a table may have, in the order of a new one.
+pub(super) fn all(registry: &Registry) -> Vec<Column> {
+    let mut all = All(Vec::new());
+    for key in ["type", "name"] {
+        for part in Part::ALL {
+            if keys(part).contains(&key) {
+                all.field(part, &[key], false);
+            }
+        }
+    }
+    for part in [Part::Observer, Part::Light, Part::Object] {
+        for key in keys(part).iter().filter(|key| **key != "material") {
+            all.field(part, &[key], VECTORS.contains(key) || *key == "colour");
+        }
+        match part {
+            Part::Light => registry.lights().iter().for_each(|l| all.parameters(part, &[], l.parameters)),
+            Part::Object => registry.shapes().iter().for_each(|s| all.parameters(part, &[], s.parameters)),
+            _ => {}
+        }
+    }
+    for key in ["reflection_model", "shading_model"] {
+        all.field(Part::Scene, &[key], false);
+    }
+    registry.models().iter().for_each(|m| all.parameters(Part::Object, &["material"], m.parameters));
+    SIZE_KEYS.iter().for_each(|key| all.field(Part::Scene, &["scene_size", key], false));
+    DISPLAY_KEYS.iter().for_each(|key| all.field(Part::Scene, &["display", key], false));
+    all.field(Part::Scene, &["description"], false);
+    all.0
+}
+
+/// The keys of a part that hold a value.
+fn keys(part: Part) -> &'static [&'static str] {
+    match part {
+        Part::Scene => SCENE_KEYS,
+        Part::Light => LIGHT_KEYS,
+        Part::Observer => OBSERVER_KEYS,
+        Part::Object => OBJECT_KEYS,
+    }
+}
+
+/// The columns so far.
+struct All(Vec<Column>);
+
+impl All {
+    fn parameters(&mut self, part: Part, before: &[&'static str], parameters: &'static [Parameter]) {
+        for p in parameters {
+            let keys: Vec<_> = before.iter().copied().chain([p.name]).collect();
+            let is_list = matches!(p.kind, ParameterKind::Colour { .. } | ParameterKind::Triple { .. });
+            let is_text = matches!(p.kind, ParameterKind::Choice { .. } | ParameterKind::File { .. });
+            self.add(part, keys, is_list, is_text);
+        }
+    }
+
+    fn field(&mut self, part: Part, keys: &[&'static str], is_list: bool) {
+        let is_text = keys.last().is_some_and(|key| TEXTS.contains(key));
+        self.add(part, keys.to_vec(), is_list, is_text);
+    }
+
+    fn add(&mut self, part: Part, keys: Vec<&'static str>, is_list: bool, is_text: bool) {
+        let names = components(keys.last().copied().unwrap_or_default());
+        for component in [None].into_iter().chain((0..3).map(Some)) {
+            if component.is_some() && !is_list {
+                break;
+            }
+            let mut name = keys.join(".");
+            if let Some(i) = component {
+                name = format!("{name}.{}", names[i]);
+            }
+            let at = self.0.iter().position(|column| column.name == name).unwrap_or_else(|| {
+                let column =
+                    Column { name, keys: keys.clone(), component, texts: Vec::new(), of: Vec::new() };
+                self.0.push(column);
+                self.0.len() - 1
+            });
+            let column = &mut self.0[at];
+            if is_text && !column.texts.contains(&part) {
+                column.texts.push(part);
+            }
+            if !column.of.contains(&part) {
+                column.of.push(part);
+            }
+        }
+    }
+}
+
+/// The columns of a table.
+pub(super) struct Columns {
+    /// After the first; `None` for those that are not known.
+    pub(super) list: Vec<Option<Column>>,
+    /// The row of the heading among those of the grid.
+    pub(super) heading: usize,
+    /// The byte at which the heading begins.
+    pub(super) start: usize,
+    /// Names that are not known, and those given twice.
+    pub(super) problems: Vec<(usize, Problem)>,
+}
+
+impl Columns {
+    /// The columns in the heading of a table; the byte and the reason if it has none.
+    pub(super) fn of(grid: &Grid, registry: &Registry) -> Result<Self, (usize, String)> {
+        let rows = grid.rows.iter().enumerate();
+        let heading = rows
+            .filter_map(|(i, row)| if let Row::Cells(cells) = row { Some((i, cells)) } else { None })
+            .next();
+        let expected = "the first line must name the columns, the first of them part: \
+                        part,type,position.x,position.y,position.z";
+        let Some((heading, cells)) = heading else { return Err((0, expected.to_owned())) };
+        let start = cells.first().map_or(0, |cell| cell.range.start);
+        if cells.first().is_none_or(|cell| grid.content(cell) != PART) {
+            return Err((start, expected.to_owned()));
+        }
+        let known = all(registry);
+        let names: Vec<_> = known.iter().map(|column| column.name.as_str()).collect();
+        let mut columns = Self { list: Vec::new(), heading, start, problems: Vec::new() };
+        let mut seen: Vec<&str> = Vec::new();
+        for cell in &cells[1..] {
+            let written = grid.content(cell);
+            let found = canonical(&written, &names).and_then(|name| known.iter().find(|c| c.name == name));
+            let column = found.filter(|column| !seen.contains(&column.name.as_str()));
+            if let Some(again) = found.filter(|_| column.is_none()) {
+                columns.report(
+                    cell,
+                    &written,
+                    format!("is given twice: there is another column {}", again.name),
+                );
+            } else if column.is_none() && !written.is_empty() {
+                columns.report(cell, &written, format!("is not a column{}", hint(&written, &known)));
+            }
+            seen.extend(column.map(|column| column.name.as_str()));
+            columns.list.push(column.cloned());
+        }
+        Ok(columns)
+    }
+
+    fn report(&mut self, cell: &Cell, written: &str, predicate: String) {
+        let path = Path::root().key(shortened(written));
+        self.problems.push((cell.range.start, Problem::about(path, predicate)));
+    }
+}
+
+/// The nearest name of a column, by its last word or by what other programs call it.
+fn hint(written: &str, known: &[Column]) -> String {
+    let names = known.iter().map(|column| (column.name.as_str(), column.name.as_str()));
+    let last = |column: &Column| column.name.rsplit_once('.').map_or(0, |(before, _)| before.len() + 1);
+    let short = known.iter().map(|column| (&column.name[last(column)..], column.name.as_str()));
+    let others = OTHER_WORDS.iter().filter_map(|(word, key)| {
+        known.iter().find(|column| column.name == *key).map(|column| (*word, column.name.as_str()))
+    });
+    match did_you_mean(&written.replace("color", "colour"), names.chain(short).chain(others)) {
+        none if none.is_empty() => "; columns have the names of fields in scene files".to_owned(),
+        hint => hint,
+    }
+}
+
+/// The columns of the built-in parts as a table in Markdown, without those of parameters.
+#[must_use]
+pub fn table(registry: &Registry) -> String {
+    let mut text = "| column | rows |\n|---|---|\n".to_owned();
+    let parameters = |column: &Column| {
+        let key = column.keys.last().copied().unwrap_or_default();
+        let lights = registry.lights().iter().any(|l| l.parameter(key).is_some());
+        let shapes = registry.shapes().iter().any(|s| s.parameter(key).is_some());
+        column.keys[0] == "material" || (lights || shapes) && !VECTORS.contains(&key)
+    };
+    for column in all(registry).iter().filter(|column| column.component.is_none() && !parameters(column)) {
+        let key = column.keys.last().copied().unwrap_or_default();
+        let is_list = VECTORS.contains(&key) || key == "colour";
+        let spread = match components(key) {
+            names if is_list => names.map(|name| format!(", `{}.{name}`", column.name)).join(""),
+            _ => String::new(),
+        };
+        let rows: Vec<_> = column.of.iter().map(|part| part.name()).collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "| `{}`{spread} | {} |", column.name, rows.join(", "));
+    }
+    text
+}

@@ -1,0 +1,82 @@
+//! Scenes as tables (CSV, RFC 4180): one row per part, for scenes that are made in a spreadsheet or by a script.
+//!
+//! The first column, `part`, says what a row is: `scene`, `light`, `observer` or `object`. The other columns have the
+//! names of the fields of scene files in JSON, from the part on: `type`, `size`, `material.k_d`. Of lists, each component
+//! may have a column: `position.x`. Empty cells count as not given. Rows whose first cell begins with `#` are comments.
+//!
+//! A table becomes the same tree of values that JSON does, with the places of its cells, and is read from there by the
+//! same code; and it is written from what would be written as JSON. So all rules, all parameters and all messages are
+//! those of JSON.
+//!
+//! As spreadsheets in some countries write tables, columns may be separated by semicolons or tabs; numbers may have a
+//! decimal comma then. A table that is written again keeps its separators, the order of its columns, and its comments.
+
+use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
+use crate::{
+    registry::Registry,
+    scene::{Scene, error::LoadError, read, save::to_json},
+    text::place::Lines,
+};
+
+mod columns;
+mod grid;
+mod rows;
+mod write;
+
+pub use columns::table as column_table;
+
+use columns::Columns;
+use grid::Grid;
+
+/// Scenes in CSV: `docs/scenes.md` describes the columns.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Csv;
+
+impl SceneFormat for Csv {
+    fn name(&self) -> &'static str {
+        "CSV"
+    }
+
+    fn extensions(&self) -> &'static [&'static str] {
+        &["csv"]
+    }
+
+    /// True if the first line that is no comment begins with the name of the first column.
+    fn recognises(&self, content: &[u8]) -> bool {
+        let text = content.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(content);
+        let mut lines = text.split(|b| *b == b'\n').map(<[u8]>::trim_ascii);
+        let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();
+        let first = first.split(|b| b",;\t".contains(b)).next().unwrap_or_default().trim_ascii();
+        [columns::PART.as_bytes(), b"\"part\""].contains(&first)
+    }
+
+    fn read<'a>(&self, source: &'a Source<'_>, registry: &'a Registry) -> Result<Parsed<'a>, LoadError> {
+        let text = source.text_after_mark()?;
+        let syntax =
+            |(at, what): (usize, String)| source.syntax_error(self.name(), Lines::new(text).place(at), what);
+        let grid = Grid::of(text).map_err(syntax)?;
+        let columns = Columns::of(&grid, registry).map_err(syntax)?;
+        // Decimal commas become points, at the same byte.
+        let text = match rows::decimal_commas(&grid, &columns) {
+            commas if commas.is_empty() => text,
+            commas => source.derived(|| rows::with_points(text, &commas)),
+        };
+        let (root, problems) = rows::tree(text, &grid, columns);
+        Ok(read::parsed(text, root, source.folder, registry, problems))
+    }
+
+    fn writer(&self) -> Option<&dyn SceneWriter> {
+        Some(self)
+    }
+}
+
+impl SceneWriter for Csv {
+    fn write(&self, scene: &Scene, target: &Target<'_>, registry: &Registry) -> Result<Vec<u8>, String> {
+        let old = target.old.map(String::from_utf8_lossy);
+        let text = write::table(&to_json(scene, None, registry), old.as_deref(), registry);
+        if text.contains('\0') {
+            return Err("a text in it has a zero character, which no table can hold".to_owned());
+        }
+        Ok(text.into_bytes())
+    }
+}

@@ -1,0 +1,65 @@
+//! JSON, the format of scene files that holds everything and that editors check by a schema.
+
+use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
+use crate::{
+    registry::Registry,
+    scene::{Scene, error::LoadError, read, save::to_json, schema, syntax::check_syntax},
+    text::{
+        json::{self, STRICT},
+        place::Lines,
+    },
+};
+
+/// Scenes in JSON: `docs/scenes.md` describes the fields.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Json;
+
+impl SceneFormat for Json {
+    fn name(&self) -> &'static str {
+        "JSON"
+    }
+
+    fn extensions(&self) -> &'static [&'static str] {
+        &["json"]
+    }
+
+    fn read<'a>(&self, source: &'a Source<'_>, registry: &'a Registry) -> Result<Parsed<'a>, LoadError> {
+        let text = source.text()?;
+        let syntax = |(at, what)| source.syntax_error(self.name(), Lines::new(text).place(at), what);
+        check_syntax(text).map_err(syntax)?;
+        // The two parsers agree except for half surrogate pairs, which only this one refuses.
+        let root = json::parse(text, &STRICT)
+            .map_err(|(at, what)| syntax((at, what.to_lowercase())))?
+            .ok_or_else(|| LoadError::Empty { name: source.name.to_owned() })?;
+        Ok(read::parsed(text, root, source.folder, registry, Vec::new()))
+    }
+
+    fn writer(&self) -> Option<&dyn SceneWriter> {
+        Some(self)
+    }
+}
+
+impl SceneWriter for Json {
+    /// The `$schema` of the old file is kept; a new file refers to [`schema::FILE_NAME`] if that is in its folder.
+    fn write(&self, scene: &Scene, target: &Target<'_>, registry: &Registry) -> Result<Vec<u8>, String> {
+        let reference = match target.old {
+            Some(old) => schema_of(old),
+            None => {
+                let beside = target.folder.join(schema::FILE_NAME).is_file();
+                beside.then(|| format!("./{}", schema::FILE_NAME))
+            }
+        };
+        Ok(to_json(scene, reference.as_deref(), registry).into_bytes())
+    }
+}
+
+/// The `$schema` of a scene file.
+fn schema_of(bytes: &[u8]) -> Option<String> {
+    /// The only key needed here.
+    #[derive(serde::Deserialize)]
+    struct Head {
+        #[serde(rename = "$schema")]
+        schema: Option<String>,
+    }
+    serde_json::from_slice::<Head>(bytes).ok()?.schema
+}

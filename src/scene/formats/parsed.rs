@@ -1,0 +1,135 @@
+//! A scene as a format read it, and the checks that follow.
+
+use std::collections::HashSet;
+
+use crate::{
+    registry::Registry,
+    scene::{
+        Scene, beyond_room, check,
+        error::{LoadError, Path, Problem},
+        load::{Defaults, Missing},
+        read::MAX_PROBLEMS,
+    },
+    text::place::Place,
+};
+
+/// A scene as it was read, before its values are checked.
+#[non_exhaustive]
+pub struct Parsed<'a> {
+    /// The scene, with stand-ins for what could not be read.
+    pub scene: Scene,
+    /// Parts that are missing and have defaults, which are in the scene already.
+    pub missing: Vec<Missing>,
+    /// Problems found on reading.
+    pub(in crate::scene) problems: Vec<Problem>,
+    /// Paths of values that could not be read, and are not checked.
+    pub(in crate::scene) unread: HashSet<Path>,
+    /// The number of problems that are not listed.
+    pub(in crate::scene) unlisted: usize,
+    /// The end of the file.
+    pub(in crate::scene) end: Option<Place>,
+    locate: Box<dyn Fn(&Path) -> Located + 'a>,
+}
+
+/// The place of a value, and the value as written.
+#[derive(Clone, Debug, Default)]
+pub(in crate::scene) struct Located {
+    /// The place; that of the part that lacks it if the value is missing.
+    pub(in crate::scene) place: Option<Place>,
+    /// The value as written.
+    pub(in crate::scene) found: Option<String>,
+}
+
+impl<'a> Parsed<'a> {
+    /// A scene without places and problems.
+    #[must_use]
+    pub fn new(scene: Scene) -> Self {
+        Self {
+            scene,
+            missing: Vec::new(),
+            problems: Vec::new(),
+            unread: HashSet::new(),
+            unlisted: 0,
+            end: None,
+            locate: Box::new(|_| Located::default()),
+        }
+    }
+
+    /// The same with the places of its values: `places` gives that of a path such as `objects[0].material.k_d`. Where it
+    /// knows none, that of the part around it counts: of `objects[0].material`, then of `objects[0]`.
+    #[must_use]
+    pub fn with_places(self, places: impl Fn(&Path) -> Option<Place> + 'a) -> Self {
+        self.located(move |path| {
+            let around: Vec<_> = path.ancestors().collect();
+            Located { place: around.iter().rev().find_map(&places), found: None }
+        })
+    }
+
+    /// The same with problems found on reading. Values at their paths are not checked again.
+    #[must_use]
+    pub fn with_problems(mut self, problems: Vec<Problem>) -> Self {
+        self.unread = problems.iter().map(|problem| problem.path.clone()).collect();
+        self.problems = problems;
+        self
+    }
+
+    /// The same with parts that are missing.
+    #[must_use]
+    pub fn with_missing(mut self, missing: Vec<Missing>) -> Self {
+        self.missing = missing;
+        self
+    }
+
+    /// The same with the places of its values, and the values as written.
+    pub(in crate::scene) fn located(mut self, locate: impl Fn(&Path) -> Located + 'a) -> Self {
+        self.locate = Box::new(locate);
+        self
+    }
+}
+
+/// Checks a scene that was read: the scene, or everything that is wrong with it.
+pub(in crate::scene) fn checked(
+    parsed: Parsed,
+    name: &str,
+    registry: &Registry,
+    defaults: Defaults,
+) -> Result<(Scene, Vec<Missing>), LoadError> {
+    let Parsed { scene, missing, problems, unread, mut unlisted, end, locate } = parsed;
+    // Each with the place in whose order it is listed.
+    let mut all: Vec<_> = Vec::with_capacity(problems.len());
+    let mut found = check::scene(&scene, registry);
+    if !unread.is_empty() {
+        found.retain(|problem| !problem.path.ancestors().any(|path| unread.contains(&path)));
+    }
+    let found = beyond_room::explain(found, &scene, &missing);
+    all.extend(problems.into_iter().map(|problem| (problem.place, problem)));
+    for mut problem in found {
+        if all.len() >= MAX_PROBLEMS {
+            unlisted += 1;
+            continue;
+        }
+        let located = locate(&problem.path);
+        if let (Some(written), Some(found)) = (located.found, &mut problem.found) {
+            *found = written;
+        }
+        problem.place = problem.place.or(located.place);
+        all.push((located.place, problem));
+    }
+    if all.is_empty() {
+        return Ok((scene, missing));
+    }
+    if defaults == Defaults::Refuse {
+        // A missing size may be reported already.
+        let reported = |m: &&Missing| all.iter().any(|(_, p)| p.path == m.path);
+        let start = Some(Place { line: 1, column: 1 });
+        let more: Vec<_> = missing.iter().filter(|m| !reported(m)).map(|m| (start, m.problem())).collect();
+        all.extend(more);
+    }
+    all.sort_by_key(|(place, _)| *place);
+    let mut problems: Vec<_> = all.into_iter().map(|(_, problem)| problem).collect();
+    if unlisted > 0 {
+        let more = format!("has {unlisted} more problems, which are not listed");
+        problems.push(Problem { place: end, ..Problem::about(Path::root(), more) });
+    }
+    Err(LoadError::Invalid { name: name.to_owned(), problems })
+}

@@ -1,0 +1,63 @@
+//! The content of a file to be read.
+
+use std::{cell::OnceCell, path::Path as FilePath};
+
+use crate::{
+    scene::{encoding::decode, error::LoadError},
+    text::place::Place,
+};
+
+/// The content of a file to be read.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Source<'a> {
+    /// The content.
+    pub bytes: &'a [u8],
+    /// Its name in messages: the path of the file, or that of a stream.
+    pub name: &'a str,
+    /// The folder of the files that a scene may name.
+    pub folder: &'a FilePath,
+    derived: OnceCell<String>,
+}
+
+impl<'a> Source<'a> {
+    pub(in crate::scene) fn new(bytes: &'a [u8], (name, folder): (&'a str, &'a FilePath)) -> Self {
+        Self { bytes, name, folder, derived: OnceCell::new() }
+    }
+
+    /// The content as text.
+    ///
+    /// # Errors
+    /// [`LoadError`] if it is not UTF-8, with a guess at what it is instead, or nothing but white space.
+    pub fn text(&self) -> Result<&str, LoadError> {
+        self.text_of(self.bytes)
+    }
+
+    /// The content as text, after the byte order mark with which spreadsheets begin.
+    ///
+    /// # Errors
+    /// As [`text`](Self::text).
+    pub fn text_after_mark(&self) -> Result<&str, LoadError> {
+        self.text_of(self.bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(self.bytes))
+    }
+
+    fn text_of<'b>(&self, bytes: &'b [u8]) -> Result<&'b str, LoadError> {
+        let text = decode(bytes, self.name)?;
+        if text.trim().is_empty() {
+            return Err(LoadError::Empty { name: self.name.to_owned() });
+        }
+        Ok(text)
+    }
+
+    /// A text made from the content, once, that lives as long as this.
+    pub(super) fn derived(&self, make: impl FnOnce() -> String) -> &str {
+        self.derived.get_or_init(make)
+    }
+
+    /// The error for content that is not in the format of that name: the place where reading stopped, and what was
+    /// expected there.
+    #[must_use]
+    pub fn syntax_error(&self, format: &'static str, place: Place, what: impl Into<String>) -> LoadError {
+        LoadError::Syntax { format, name: self.name.to_owned(), place, what: what.into() }
+    }
+}

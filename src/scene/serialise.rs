@@ -1,0 +1,140 @@
+//! Scenes and their parts for [serde], in the shape of scene files in JSON and by the same reader and writer: whoever
+//! keeps a scene in another format, or sends it, has the same keys and the same messages.
+//!
+//! `Serialize` and `Deserialize` know what is built in. With more types, [`SceneIn`] and [`SceneOf`] take a registry.
+//! A whole scene is checked when it is read; of a [part](Light) alone, only keys and types are, since a scene decides
+//! whether a position is in its room.
+
+use std::{fmt::Display as Shown, path::Path as FilePath, sync::LazyLock};
+
+use serde::{
+    Deserialize, Deserializer, Serialize, Serializer,
+    de::{DeserializeSeed, Error as _},
+};
+
+use super::{
+    Display, Light, Object, Observer, Scene, SceneSize,
+    error::Problem,
+    format::{DisplayFile, LightFile, ObjectFile, ObserverFile, SceneFile, SizeFile},
+    load::{self, Defaults},
+    read,
+};
+use crate::{
+    parameter::{Parameter, ParameterKind, Value},
+    registry::Registry,
+    text::listed,
+};
+
+/// What is built in.
+static BUILT_IN: LazyLock<Registry> = LazyLock::new(Registry::builtin);
+
+/// A scene to be written with the types of a registry.
+///
+/// ```
+/// use lights_camera_models::{registry::Registry, scene::{Scene, SceneIn, SceneOf}};
+/// use serde::de::DeserializeSeed as _;
+///
+/// let registry = Registry::builtin();
+/// let text = serde_json::to_string(&SceneIn(&Scene::default(), &registry))?;
+/// let back = SceneOf(&registry).deserialize(&mut serde_json::Deserializer::from_str(&text))?;
+/// assert_eq!(back, Scene::default());
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct SceneIn<'a>(pub &'a Scene, pub &'a Registry);
+
+/// Reads a scene with the types of a registry. Files that it names are looked for in the current folder.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneOf<'a>(pub &'a Registry);
+
+impl Serialize for SceneIn<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        SceneFile::new(self.0, None, self.1).serialize(serializer)
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for SceneOf<'_> {
+    type Value = Scene;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Scene, D::Error> {
+        let text = text(deserializer)?;
+        match load::from_text(&text, "", self.0, Defaults::Use) {
+            Ok(loaded) => Ok(loaded.scene),
+            Err(error) => Err(of(error.problems())),
+        }
+    }
+}
+
+impl Serialize for Scene {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        SceneIn(self, &BUILT_IN).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Scene {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        SceneOf(&BUILT_IN).deserialize(deserializer)
+    }
+}
+
+/// A part of a scene, by the type that writes it and the method that reads it.
+macro_rules! part {
+    ($Part:ty, |$part:ident| $file:expr, $read:ident) => {
+        impl Serialize for $Part {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                let $part = self;
+                $file.serialize(serializer)
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $Part {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let text = text(deserializer)?;
+                read::alone(&text, &BUILT_IN, |reader, value| reader.$read(value)).map_err(of)
+            }
+        }
+    };
+}
+
+part!(SceneSize, |size| SizeFile::new(*size), size);
+part!(Light, |light| LightFile::new(light, &BUILT_IN), light);
+part!(Observer, |observer| ObserverFile::new(observer), observer);
+part!(
+    Object,
+    |object| ObjectFile::new(object, &BUILT_IN.material_parameters().collect::<Vec<_>>(), &BUILT_IN),
+    object
+);
+part!(Display, |display| DisplayFile::new(display), display);
+
+/// Reads a value of this parameter: what a number or a list means is up to its declaration.
+impl<'de> DeserializeSeed<'de> for &Parameter {
+    type Value = Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
+        use serde_json::Value as Json;
+        let json = Json::deserialize(deserializer)?;
+        let is_text = matches!(self.kind, ParameterKind::Choice { .. } | ParameterKind::File { .. });
+        let written = match &json {
+            Json::String(text) if is_text => Some(text.clone()),
+            Json::Number(_) if !is_text => Some(json.to_string()),
+            Json::Array(list) if !is_text && list.iter().all(Json::is_number) => Some(json.to_string()),
+            _ => None,
+        };
+        let found = |rule: &dyn Shown| D::Error::custom(format!("{} {rule}", self.name));
+        match written {
+            Some(text) => self.parse_in(&text, FilePath::new("")).map_err(|error| found(&error)),
+            None => Err(found(&format!("is {json}, but {}", self.clause()))),
+        }
+    }
+}
+
+/// What a deserializer holds as JSON, which the reader takes.
+fn text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    Ok(serde_json::Value::deserialize(deserializer)?.to_string())
+}
+
+/// Problems as the error of a deserializer. Places would be those of a text that nobody wrote.
+fn of<E: serde::de::Error>(problems: Vec<Problem>) -> E {
+    let each: Vec<_> = problems.into_iter().map(|p| Problem { place: None, ..p }.to_string()).collect();
+    E::custom(listed(&each, "and"))
+}
