@@ -21,8 +21,8 @@ const GUESTS: f32 = 0.5;
 const TITLE: f32 = 26.0;
 /// The room below what a section shows, points.
 const END: f32 = 8.0;
-/// The least height of what a section may show, points.
-const LEAST: f32 = 64.0;
+/// The least height of a section that is unfolded, points.
+const LEAST: f32 = TITLE + 64.0 + END;
 
 /// Shows the panels at a side; `ui` is all of it.
 pub(super) fn side(
@@ -33,21 +33,18 @@ pub(super) fn side(
     context: &mut PanelContext<'_>,
 ) {
     let (guests, own): (Vec<_>, Vec<_>) = panels.at(place, session).partition(|(info, _)| info.guest);
-    let wanted = |info: &PanelInfo| {
-        let shown = ui.data(|data| data.get_temp(Id::new(("section", info.id))));
-        shown.unwrap_or(LEAST)
+    let wanted = |ui: &Ui, info: &PanelInfo| match session.view.folds(info.id) {
+        true => TITLE,
+        false => ui.data(|data| data.get_temp(Id::new(("section", info.id)))).unwrap_or(LEAST),
     };
-    let unfolded = guests.iter().filter(|(info, _)| !session.view.folds(info.id));
-    let all: Vec<_> = unfolded.map(|(info, _)| wanted(info) + END).collect();
-    let titles = guests.len() as f32 * TITLE;
-    let share = (shared(&all, GUESTS * ui.available_height() - titles) - END).max(LEAST);
+    let all: Vec<_> = guests.iter().map(|(info, _)| wanted(ui, info)).collect();
+    let share = shared(&all, GUESTS * ui.available_height()).max(LEAST);
     // From the bottom up, so that the first is the highest.
     for (info, panel) in guests.into_iter().rev() {
         // As high as what it showed last, up to its share.
         let id = Id::new(("section", info.id));
-        let wanted = ui.data(|data| data.get_temp(id)).unwrap_or(LEAST);
-        let height = if session.view.folds(info.id) { TITLE } else { TITLE + END + wanted.min(share) };
-        let strip = egui::Panel::bottom(id).frame(Frame::NONE).resizable(false).exact_size(height);
+        let wanted = wanted(ui, &info);
+        let strip = egui::Panel::bottom(id).frame(Frame::NONE).resizable(false).exact_size(wanted.min(share));
         let shown = strip.show(ui, |ui| section(ui, info, panel, context)).inner;
         if let Some(shown) = shown.filter(|shown| *shown != wanted) {
             ui.data_mut(|data| data.insert_temp(id, shown));
@@ -59,7 +56,7 @@ pub(super) fn side(
     }
 }
 
-/// A panel of others: its title, which folds it, and what it shows. Returns the height of that.
+/// A panel of others: its title, which folds it, and what it shows. Returns the height of all of it, if it is unfolded.
 fn section(
     ui: &mut Ui,
     info: PanelInfo,
@@ -67,11 +64,13 @@ fn section(
     context: &mut PanelContext<'_>,
 ) -> Option<f32> {
     ui.spacing_mut().item_spacing.y = 0.0;
+    let top = ui.cursor().top();
     let folded = context.session().view.folds(info.id);
     title(ui, info, folded, context);
     if folded {
         return None;
     }
+    let title = ui.cursor().top() - top;
     // The tree's rows reach from edge to edge; text does not.
     let left = if info.place == Place::Left { 12 } else { 0 };
     let frame = Frame::new().inner_margin(Margin { left, right: 0, top: 0, bottom: END as i8 });
@@ -85,7 +84,7 @@ fn section(
             ui.push_id(info.id, |ui| panel.show(ui, context));
         })
     });
-    Some(output.inner.content_size.y.ceil())
+    Some((title + output.inner.content_size.y + END).ceil())
 }
 
 fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<'_>) {

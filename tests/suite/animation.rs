@@ -25,7 +25,7 @@ use crate::{
 };
 
 #[path = "../../examples/animate.rs"]
-mod animate;
+pub mod animate;
 
 fn renderer(scene: Scene) -> GpuRenderer {
     let mut renderer = GpuRenderer::new(48, 48, 1, Output::Display).expect("software Vulkan is installed");
@@ -41,8 +41,15 @@ fn frame(renderer: &mut GpuRenderer) -> Vec<u8> {
 
 #[test]
 fn the_example_swings_a_light_and_leaves_the_scene_alone() {
-    let (pictures, scene) = animate::pictures(4).expect("it draws");
+    let mut renderer = GpuRenderer::extended(96, 64, 1, Output::Display, animate::swinging)
+        .expect("software Vulkan is installed");
+    let mut scene = Scene { shading_model: "phong".to_owned(), ..Scene::default() };
+    scene.lights[0].intensity = 4.0;
+    renderer.set_scene(scene);
+    (0..4).for_each(|_| renderer.step());
+    let pictures: Vec<_> = (0..4).map(|_| frame(&mut renderer)).collect();
     assert!(pictures.windows(2).all(|pair| pair[0] != pair[1]), "the light stands still");
+    let scene = &renderer.app().world().resource::<CurrentScene>().0;
     assert_eq!(scene.lights.len(), 2);
     assert_eq!(scene.lights[1].light_type, "spot");
 }

@@ -120,6 +120,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("shading_model.rs", example("shading_model.rs", "rust")),
                 ("shading_model.wgsl", example("shading_model.wgsl", "wgsl")),
                 ("panel.rs", example("panel.rs", "rust")),
+                ("animate.rs", example("animate.rs", "rust")),
                 ("extension", extension()),
                 ("extension/src/main.rs", example("extension/src/main.rs", "rust")),
                 ("format.rs", example("format.rs", "rust")),

@@ -141,6 +141,20 @@ fn a_long_section_has_the_room_that_short_ones_leave() {
 }
 
 #[test]
+fn what_a_short_section_shows_ends_above_the_next_title() {
+    for scale in [100, 150] {
+        let short = |id, title| guest(id, title, Place::Right, 0);
+        let bench = bench(scale, vec![short("one", "One"), short("two", "Two")]);
+        // The first of two equal buttons; both are in view.
+        let buttons = bench.tree.iter().filter(|seen| seen.label == "Everything").map(|seen| seen.rect);
+        let button = buttons.min_by(|a, b| a.top().total_cmp(&b.top())).expect("a button");
+        let next = bench.find("Two").expect("a title").rect.top();
+        assert!(scale > 100 || button.bottom() + 7.0 <= next, "{scale} %: {button:?} {next}");
+        assert!(button.bottom() + 0.5 <= next, "{scale} %: {button:?} {next}");
+    }
+}
+
+#[test]
 fn a_section_folds_hides_and_comes_back_from_the_menu_and_settings_keep_it() {
     let mut bench = bench(100, vec![guest("guest", "Guest", Place::Left, 0)]);
     bench.click("Guest");

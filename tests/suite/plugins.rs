@@ -2,6 +2,7 @@
 //! is checked. What needs a window runs in a process of its own, on a virtual screen: [`stage`].
 
 use std::{
+    collections::BTreeSet,
     env, fs,
     path::Path,
     process::{Command, ExitCode, Output},
@@ -300,6 +301,7 @@ fn stage() {
     match &*program {
         "window" => drop(window::main()),
         "panel" => drop(panel::main()),
+        "animate" => drop(crate::animation::animate::main()),
         "light" => drop(light::main()),
         "shading_model" => drop(shading_model::main()),
         "shape" => drop(shape::main()),
@@ -552,6 +554,13 @@ mod on_screen {
             assert!(!running.said().contains("ERROR"), "{name}: {}", running.said());
         };
         ["light", "shading_model", "shape"].into_iter().for_each(shows);
+        let mut running = screen.start_with(|config| program("animate", config));
+        let mut seen = BTreeSet::new();
+        running.until("the light that swings", |picture: &Picture| {
+            let lit = picture.count(220..900, 60..600, |[r, g, b]| r > 200 && g > 200 && b > 200);
+            seen.insert(lit);
+            seen.len() > 3
+        });
         for (name, logged) in [("window", "objects"), ("panel", "")] {
             let mut running = screen.start_with(|config| program(name, config));
             running.until("the panel of the example", has_section);

@@ -151,7 +151,7 @@ impl Running<'_> {
     }
 
     /// Waits until the screen shows what is asked for.
-    pub fn until(&mut self, what: &str, shows: impl Fn(&Picture) -> bool) -> Picture {
+    pub fn until(&mut self, what: &str, mut shows: impl FnMut(&Picture) -> bool) -> Picture {
         let begin = Instant::now();
         loop {
             let picture = self.screen.look();

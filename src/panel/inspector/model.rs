@@ -143,7 +143,9 @@ pub(super) fn stage(ui: &mut Ui, shading: &ShadingEntry) {
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 1.0;
             ui.label(theme::strong(ui, format!("computed {}", d.stage.phrase())));
-            ui.label(theme::small(ui, format!("{} shading · {}", d.name, d.author)));
+            // Those of other crates need not name one.
+            let author = if d.author.is_empty() { String::new() } else { format!(" · {}", d.author) };
+            ui.label(theme::small(ui, format!("{} shading{author}", d.name)));
         });
     })
     .response
