@@ -330,6 +330,9 @@ fn a_new_model_is_named_in_whole_before_the_window_rests() {
     let mut keyboard = Keyboard::new(screen.display());
     keyboard.point_at(560, 600);
     window.rest();
+    let name = |picture: &Picture| -> Vec<_> {
+        (2..34).flat_map(|y| (470..900).map(move |x| (x, y))).map(|(x, y)| picture.at(x, y)).collect()
+    };
     // Letters that nothing else on the screen has.
     for (i, letter) in [Key::Q, Key::X, Key::W, Key::Z].into_iter().enumerate() {
         keyboard.press(&[Key::Control, Key::Shift, Key::D]);
@@ -338,6 +341,7 @@ fn a_new_model_is_named_in_whole_before_the_window_rests() {
             keyboard.press(&[letter]);
         }
         window.rest();
+        let before = name(&window.rest());
         keyboard.press(&[Key::Return]);
         let begin = Instant::now();
         while fs::read_dir(folder.path()).expect("there").count() < i + 2 {
@@ -345,6 +349,7 @@ fn a_new_model_is_named_in_whole_before_the_window_rests() {
             thread::sleep(Duration::from_millis(20));
         }
         // The file is noticed, read and tried.
+        window.until("another name", |picture| name(picture) != before);
         for _ in 0..4 {
             window.rest();
         }
@@ -352,9 +357,6 @@ fn a_new_model_is_named_in_whole_before_the_window_rests() {
         keyboard.move_by(1, 0);
         window.rest();
         let moved = window.rest();
-        let name = |picture: &Picture| -> Vec<_> {
-            (2..34).flat_map(|y| (470..900).map(move |x| (x, y))).map(|(x, y)| picture.at(x, y)).collect()
-        };
         assert!(name(&rested) == name(&moved), "what was drawn last was not what there is: model {i}");
     }
 }
