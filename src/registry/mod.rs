@@ -92,6 +92,7 @@ macro_rules! calls {
         /// # Panics
         #[doc = concat!("With the message of [`", stringify!($try_add), "`](Self::", stringify!($try_add), ") if anything else is wrong:")]
         /// a mistake of its author, found at the first start.
+        #[track_caller]
         fn $add<T: $Trait>(&mut self) -> &mut Self {
             match self.$admit::<T>(Admission::New) {
                 Ok(()) => self,

@@ -176,7 +176,7 @@ pub fn write(
     let old = on_disk(&target, path, expected)?;
     let lossy = |why| SaveError::Lossy { path: shown(), why };
     let bytes = writer.write(scene, &Target::new(folder, old.as_deref()), registry).map_err(lossy)?;
-    if !formats::is_lossless(format) {
+    if !formats::is_json(format) {
         comes_back(&bytes, scene, (path, folder), registry).map_err(lossy)?;
     }
 

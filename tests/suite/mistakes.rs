@@ -299,6 +299,7 @@ fn helper(x : f32) -> {⏎  return x;⏎}⏎¦¦{¦the type of the result is mis
 fn helper(x : f32) f32 {⏎  return x;⏎}⏎¦¦f32¦the type of a result comes after ->: `-> f32`
 func helper(x : f32) -> f32 {⏎  return x;⏎}⏎¦¦func¦a function begins with fn: `fn helper(x: f32) -> f32 { … }`
 ¦let x = 1,5;¦,5;¦a comma cannot stand here; decimals have a point, as in `1.5`
+¦let x = vec2(1.0), 2.0);¦, 2.0);¦a comma cannot stand here; is there one `)` too many before it?
 ¦let x := 1.0;¦= 1.0;¦write = instead of :=
 ¦let x == 1.0;¦== 1.0;¦a value is set with a single =
 ¦cos_l == 1.0;¦== 1.0;¦this is not a statement: a statement sets a var or calls a function

@@ -1,10 +1,15 @@
 //! Scenes as tables: every scene comes back, every mistake has its line and column, and a table that is written again
 //! keeps what its author gave it.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::Path,
+    time::{Duration, Instant},
+};
 
 use lights_camera_models::{
-    registry::Registry,
+    parameter::Value,
+    registry::{Register as _, Registry},
     scene::{
         Scene,
         formats::{Csv, SceneFormat as _, Target},
@@ -15,6 +20,7 @@ use lights_camera_models::{
 use proptest::prelude::*;
 
 use crate::{
+    plugins::shading_model,
     scene_roundtrip::scene,
     support::{check_wording, full_scene, lcm_in, read, root},
 };
@@ -177,6 +183,14 @@ fn every_mistake_has_its_line_and_column() {
         (with(",0 0 -1,,,", ",0 0 -1,,,,5"), "room.csv:7:36: row has 17 cells, but the heading has 16"),
         // The heading.
         (with(",size,", ",siez,"), "room.csv:2:66: siez is not a column; did you mean \"size\"?"),
+        (
+            with("material.k_d", "material.k_dd"),
+            "material.k_dd is not a column; did you mean \"material.k_d\"?",
+        ),
+        (
+            with(",size,", ",,"),
+            "room.csv:8:41: row has \"2\" in a column without a name; name it in the heading, or empty the cell",
+        ),
         (with("material.k_d", "k_d"), "k_d is not a column; did you mean \"material.k_d\"?"),
         (with(",size,", ",radius,"), "radius is not a column; did you mean \"size\"?"),
         (
@@ -383,4 +397,33 @@ fn a_cell_is_read_as_the_command_line_reads_a_value() {
         }
     }
     assert!(cells > 80, "{cells}");
+}
+
+#[test]
+fn a_heap_of_mistakes_is_told_in_part_and_counted() {
+    let rows = 250_000;
+    let table = format!("{ROOM}{}", "x\n".repeat(rows));
+    let said = said(&table);
+    assert!(said.contains("part is \"x\", but the part of the scene in a row must be"), "{}", &said[..200]);
+    assert!(said.contains("has 50000 more problems, which are not listed"), "{}", &said[said.len() - 200..]);
+    let heading = format!("part,{}\n", "nothing_of_the_kind,".repeat(20_000));
+    let begin = Instant::now();
+    assert!(self::said(&heading).lines().count() >= 20_000);
+    // A suggestion for each would take a minute.
+    assert!(begin.elapsed() < Duration::from_secs(10), "{:?}", begin.elapsed());
+}
+
+#[test]
+fn parameters_of_shading_models_have_columns_and_come_back() {
+    let mut registry = Registry::builtin();
+    registry.add_shading_model::<shading_model::Banded>();
+    let read = |text: &str| load::from_text(text, "room.csv", &registry, Defaults::Refuse).map(|l| l.scene);
+    let mut scene = from_table(ROOM);
+    scene.objects[0].material.set("steps", Value::Integer(9));
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("room.csv");
+    save::write(&file, &scene, &registry, Expected::Nothing).expect("saved");
+    let text = fs::read_to_string(&file).expect("there");
+    assert!(text.contains("material.steps"), "{text}");
+    assert_eq!(read(&text).ok(), Some(scene));
 }

@@ -31,7 +31,7 @@ impl SceneFormat for Json {
         let root = json::parse(text, &STRICT)
             .map_err(|(at, what)| syntax((at, what.to_lowercase())))?
             .ok_or_else(|| LoadError::Empty { name: source.name.to_owned() })?;
-        Ok(read::parsed(text, root, source.folder, registry, Vec::new()))
+        Ok(read::parsed(text, root, source.folder, registry, Default::default()))
     }
 
     fn writer(&self) -> Option<&dyn SceneWriter> {

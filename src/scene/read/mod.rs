@@ -22,7 +22,7 @@ mod parts;
 mod values;
 
 /// The number of unknown keys with a suggestion; more would take long in a hostile file.
-const MAX_SUGGESTIONS: usize = 200;
+pub(super) const MAX_SUGGESTIONS: usize = 200;
 
 /// The most problems listed. A scene within the limits of lights and objects with errors in every field has fewer; a
 /// hostile file could have millions.
@@ -35,10 +35,10 @@ pub(super) fn parsed<'a>(
     root: Ast<'a>,
     folder: &'a FilePath,
     registry: &'a Registry,
-    before: Vec<(usize, Problem)>,
+    before: (Vec<(usize, Problem)>, usize),
 ) -> Parsed<'a> {
     let mut reader = Reader::new(text, folder, registry);
-    reader.problems = before;
+    (reader.problems, reader.unlisted) = before;
     let scene = reader.scene(Cursor::root(&root));
     let Reader { problems, reported, missing, unlisted, lines, .. } = reader;
     let placed = |(at, problem): (usize, Problem)| Problem { place: Some(lines.place(at)), ..problem };

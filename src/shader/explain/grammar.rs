@@ -130,6 +130,7 @@ const UNEXPECTED: &[(&str, &str, &str, &str)] = &[
     ("`;`", "WORD", "(", "WGSL has no methods; write `{before}(…)` with the value in the brackets"),
     ("`;`", "WORD", "{", "a struct is made with round brackets: `{before}(…)`"),
     ("`;`", "", "as", "a value changes its type by the name of the type: `f32(x)`"),
+    ("`;`", ")", ",", "a comma cannot stand here; is there one `)` too many before it?"),
     ("`;`", "", ",", "a comma cannot stand here; decimals have a point, as in `1.5`"),
     ("`;`", "TYPE", "WORD", "the type comes after the name: `{earlier} {found}: {type} = …;`"),
     ("operation (`=`)", "TYPE", "WORD", "the type comes after the name: `{earlier} {found}: {type} = …;`"),

@@ -1,8 +1,11 @@
 //! The columns of a table: every field of every part of a scene, by its path.
 
-use std::fmt::Write as _;
+use std::{collections::HashSet, fmt::Write as _};
 
-use super::grid::{Cell, Grid, Row};
+use super::{
+    grid::{Cell, Grid, Row},
+    problems::Problems,
+};
 use crate::{
     parameter::{Parameter, ParameterKind},
     registry::Registry,
@@ -104,7 +107,7 @@ pub(super) fn all(registry: &Registry) -> Vec<Column> {
     for key in ["reflection_model", "shading_model"] {
         all.field(Part::Scene, &[key], false);
     }
-    registry.models().iter().for_each(|m| all.parameters(Part::Object, &["material"], m.parameters));
+    registry.material_users().for_each(|(_, p)| all.parameters(Part::Object, &["material"], p));
     SIZE_KEYS.iter().for_each(|key| all.field(Part::Scene, &["scene_size", key], false));
     DISPLAY_KEYS.iter().for_each(|key| all.field(Part::Scene, &["display", key], false));
     all.field(Part::Scene, &["description"], false);
@@ -170,12 +173,14 @@ impl All {
 pub(super) struct Columns {
     /// After the first; `None` for those that are not known.
     pub(super) list: Vec<Option<Column>>,
+    /// Those of the list without a name.
+    pub(super) unnamed: HashSet<usize>,
     /// The row of the heading among those of the grid.
     pub(super) heading: usize,
     /// The byte at which the heading begins.
     pub(super) start: usize,
     /// Names that are not known, and those given twice.
-    pub(super) problems: Vec<(usize, Problem)>,
+    pub(super) problems: Problems,
 }
 
 impl Columns {
@@ -194,20 +199,21 @@ impl Columns {
         }
         let known = all(registry);
         let names: Vec<_> = known.iter().map(|column| column.name.as_str()).collect();
-        let mut columns = Self { list: Vec::new(), heading, start, problems: Vec::new() };
+        let (list, unnamed, problems) = (Vec::new(), HashSet::new(), Problems::default());
+        let mut columns = Self { list, unnamed, heading, start, problems };
         let mut seen: Vec<&str> = Vec::new();
         for cell in &cells[1..] {
             let written = grid.content(cell);
             let found = canonical(&written, &names).and_then(|name| known.iter().find(|c| c.name == name));
             let column = found.filter(|column| !seen.contains(&column.name.as_str()));
             if let Some(again) = found.filter(|_| column.is_none()) {
-                columns.report(
-                    cell,
-                    &written,
-                    format!("is given twice: there is another column {}", again.name),
-                );
-            } else if column.is_none() && !written.is_empty() {
-                columns.report(cell, &written, format!("is not a column{}", hint(&written, &known)));
+                let twice = format!("is given twice: there is another column {}", again.name);
+                columns.report(cell, &written, |_| twice);
+            } else if written.is_empty() {
+                columns.unnamed.insert(columns.list.len());
+            } else if column.is_none() {
+                let hint = |hints| if hints { hint(&written, &known) } else { String::new() };
+                columns.report(cell, &written, |hints| format!("is not a column{}", hint(hints)));
             }
             seen.extend(column.map(|column| column.name.as_str()));
             columns.list.push(column.cloned());
@@ -215,9 +221,12 @@ impl Columns {
         Ok(columns)
     }
 
-    fn report(&mut self, cell: &Cell, written: &str, predicate: String) {
-        let path = Path::root().key(shortened(written));
-        self.problems.push((cell.range.start, Problem::about(path, predicate)));
+    fn report(&mut self, cell: &Cell, written: &str, predicate: impl FnOnce(bool) -> String) {
+        self.problems.add(cell.range.start, |hints| {
+            let written = shortened(written);
+            let path = written.split('.').fold(Path::root(), |path, key| path.key(key.to_owned()));
+            Problem::about(path, predicate(hints))
+        });
     }
 }
 

@@ -20,6 +20,7 @@ use crate::{
 
 mod columns;
 mod grid;
+mod problems;
 mod rows;
 mod write;
 
@@ -62,7 +63,7 @@ impl SceneFormat for Csv {
             commas => source.derived(|| rows::with_points(text, &commas)),
         };
         let (root, problems) = rows::tree(text, &grid, columns);
-        Ok(read::parsed(text, root, source.folder, registry, problems))
+        Ok(read::parsed(text, root, source.folder, registry, problems.into_parts()))
     }
 
     fn writer(&self) -> Option<&dyn SceneWriter> {

@@ -10,18 +10,16 @@ use jsonc_parser::{
 use super::{
     columns::{Column, Columns, Part},
     grid::{Cell, Grid, Row, content},
+    problems::Problems,
 };
 use crate::{
     scene::error::{Path, Problem},
     text::{
         did_you_mean, items,
         json::{Ast, ObjectProp},
-        one_of, quoted,
+        one_of, quoted, shortened,
     },
 };
-
-/// Problems, each with its byte.
-type Problems = Vec<(usize, Problem)>;
 
 /// The rows below the heading, with their parts; `None` for those of no part.
 fn parts<'g>(grid: &'g Grid, columns: &Columns) -> impl Iterator<Item = (&'g [Cell], Option<Part>)> {
@@ -73,14 +71,14 @@ pub(super) fn with_points(text: &str, commas: &[usize]) -> String {
 }
 
 /// The scene in the rows of a table, and their problems.
-pub(super) fn tree<'a>(text: &'a str, grid: &Grid, columns: Columns) -> (Ast<'a>, Problems) {
-    let mut problems = Vec::new();
+pub(super) fn tree<'a>(text: &'a str, grid: &Grid, mut columns: Columns) -> (Ast<'a>, Problems) {
+    let mut problems = std::mem::take(&mut columns.problems);
     let mut scene: Option<Vec<ObjectProp>> = None;
     let [mut lights, mut observers, mut objects] = [const { Vec::new() }; 3];
     for (cells, part) in parts(grid, &columns) {
         let at = cells.first().map_or(0, |cell| cell.range.start);
         let Some(part) = part else {
-            problems.push((at, unknown_part(&content(text, &cells[0]))));
+            problems.add(at, |hints| unknown_part(&content(text, &cells[0]), hints));
             continue;
         };
         let fields = fields(text, cells, &columns, part, &mut problems);
@@ -89,7 +87,7 @@ pub(super) fn tree<'a>(text: &'a str, grid: &Grid, columns: Columns) -> (Ast<'a>
         match part {
             Part::Scene if scene.is_some() => {
                 let predicate = "is \"scene\", but there is a row for the scene above; a table has one";
-                problems.push((at, Problem::about(Path::root().key("part"), predicate)));
+                problems.add(at, |_| Problem::about(Path::root().key("part"), predicate));
             }
             Part::Scene => scene = Some(fields),
             Part::Light => lights.push(Ast::Object(Object { properties: fields, ..row() })),
@@ -113,19 +111,19 @@ pub(super) fn tree<'a>(text: &'a str, grid: &Grid, columns: Columns) -> (Ast<'a>
             properties.push(property(&place, key, list));
         }
     }
-    problems.splice(0..0, columns.problems);
     let root = Object { range: range(&(columns.start..text.len())), properties };
     (Ast::Object(root), problems)
 }
 
-fn unknown_part(written: &str) -> Problem {
+fn unknown_part(written: &str, hints: bool) -> Problem {
     let names = Part::ALL.map(Part::name);
     let rule = one_of("the part of the scene in a row", names.into_iter());
-    let hint = did_you_mean(written, names.into_iter().map(|name| (name, name)));
+    let hint = || did_you_mean(written, names.into_iter().map(|name| (name, name)));
     let path = Path::root().key("part");
     match written {
         "" => Problem::about(path, format!("is missing; {rule}")),
-        _ => Problem::value(path, quoted(written), rule + &hint),
+        _ if !hints => Problem::value(path, quoted(written), rule),
+        _ => Problem::value(path, quoted(written), rule + &hint()),
     }
 }
 
@@ -142,13 +140,22 @@ fn fields<'a>(
     let mut spread: Vec<(&[&'static str], [Option<Ast>; 3], Range<usize>)> = Vec::new();
     for (i, cell) in cells[1..].iter().enumerate().filter(|(_, cell)| !cell.range.is_empty()) {
         let Some(column) = columns.list.get(i) else {
-            let beyond = Problem::about(
-                Path::root().key("row"),
-                format!("has {} cells, but the heading has {}", cells.len(), columns.list.len() + 1),
-            );
-            problems.push((cell.range.start, beyond));
+            problems.add(cell.range.start, |_| {
+                let counts = (cells.len(), columns.list.len() + 1);
+                let what = format!("has {} cells, but the heading has {}", counts.0, counts.1);
+                Problem::about(Path::root().key("row"), what)
+            });
             break;
         };
+        if columns.unnamed.contains(&i) {
+            problems.add(cell.range.start, |_| {
+                let written = quoted(&shortened(&content(text, cell)));
+                let what = format!(
+                    "has {written} in a column without a name; name it in the heading, or empty the cell"
+                );
+                Problem::about(Path::root().key("row"), what)
+            });
+        }
         let Some(column) = column else { continue };
         let value = value(text, cell, column, part);
         match column.component {

@@ -1,0 +1,28 @@
+//! The problems that are found before the values of a table are read: as many as are listed, and the number of the rest.
+
+use crate::scene::{
+    error::Problem,
+    read::{MAX_PROBLEMS, MAX_SUGGESTIONS},
+};
+
+/// Problems, each with its byte.
+#[derive(Debug, Default)]
+pub(super) struct Problems {
+    list: Vec<(usize, Problem)>,
+    unlisted: usize,
+}
+
+impl Problems {
+    /// Adds one. It is told if it should look for what was meant, which takes time.
+    pub(super) fn add(&mut self, at: usize, problem: impl FnOnce(bool) -> Problem) {
+        match self.list.len() {
+            MAX_PROBLEMS.. => self.unlisted += 1,
+            listed => self.list.push((at, problem(listed < MAX_SUGGESTIONS))),
+        }
+    }
+
+    /// Those that are listed, and the number of the rest.
+    pub(super) fn into_parts(self) -> (Vec<(usize, Problem)>, usize) {
+        (self.list, self.unlisted)
+    }
+}
