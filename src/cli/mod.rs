@@ -169,7 +169,8 @@ pub fn main() -> ExitCode {
 }
 
 /// Runs the command line of this process with more types than are built in, known to every command, and with more in the
-/// window: panels, systems, plugins.
+/// window: panels, systems, plugins. Types belong in the first function: what the second one registers is known to the
+/// window alone, and replaces nothing of an id that is known already.
 ///
 /// ```no_run
 /// use lights_camera_models::{bevy::prelude::*, cli, prelude::*};

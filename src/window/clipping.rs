@@ -82,6 +82,9 @@ impl Plugin for ClippingPlugin {
     }
 }
 
+/// While the picture moves, one in so many is asked about.
+const MOVING: u64 = 10;
+
 /// The question to the GPU.
 #[derive(Clone, Resource)]
 struct Question {
@@ -124,7 +127,10 @@ fn ask(
     mut requests: MessageWriter<RequestRedraw>,
     mut commands: Commands,
 ) {
-    if let Some((_, overrides)) = views.iter().find(|(drawing, _)| drawing.draws() && drawing.is_done()) {
+    // A picture that moves is never done.
+    let moves = |drawing: &Drawing| !question.open && drawing.drawn().is_multiple_of(MOVING);
+    let asks = |drawing: &Drawing| drawing.draws() && (drawing.is_done() || moves(drawing));
+    if let Some((_, overrides)) = views.iter().find(|(drawing, _)| asks(drawing)) {
         *patience = PATIENCE;
         question.number = question.number.wrapping_add(1);
         question.open = true;

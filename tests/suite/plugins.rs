@@ -561,6 +561,9 @@ mod on_screen {
             seen.insert(lit);
             seen.len() > 3
         });
+        // Its light is clipped, which is told although the picture never rests.
+        let badge = |picture: &Picture| picture.count(210..480, 40..75, |c| c == [0xf0, 0xc0, 0x50]) > 60;
+        running.until("the badge of clipping", badge);
         for (name, logged) in [("window", "objects"), ("panel", "")] {
             let mut running = screen.start_with(|config| program(name, config));
             running.until("the panel of the example", has_section);
