@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use crate::{registry::Folders, shader::check::ShaderProblem};
+use crate::{registry::Folders, shader::check::ShaderProblem, text::listed};
 
 /// The folders of the shaders, and their problems. Made anew by the renderer when something changed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,4 +47,30 @@ pub struct Reloaded {
     pub file: String,
     /// The time from the news of the change to the new shader, milliseconds.
     pub milliseconds: f32,
+}
+
+/// Behind the name of a model of which there is no good version: grey Lambert is drawn instead.
+pub const STAND_IN: &str = " (a grey stand-in)";
+
+/// What the picture shows instead of these models: "the last good version of A and B", "a grey stand-in for A".
+#[must_use]
+pub fn shown_instead(names: &[impl AsRef<str>]) -> String {
+    let bare: Option<Vec<_>> = names.iter().map(|name| name.as_ref().strip_suffix(STAND_IN)).collect();
+    match bare {
+        Some(bare) => format!("a grey stand-in for {}", listed(&bare, "and")),
+        None => format!("the last good version of {}", listed(names, "and")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stand_in_is_no_last_good_version() {
+        let said = |names: &[&str]| shown_instead(names);
+        assert_eq!(said(&["A", "B"]), "the last good version of A and B");
+        assert_eq!(said(&["A (a grey stand-in)"]), "a grey stand-in for A");
+        assert_eq!(said(&["A (a grey stand-in)", "B"]), "the last good version of A (a grey stand-in) and B");
+    }
 }

@@ -14,11 +14,11 @@ use super::{
     theme::{self, Palette},
 };
 use crate::{
-    library::status::ShaderStatus,
+    library::status::{ShaderStatus, shown_instead},
     optics::TermSelection,
     reflection::Term,
     registry::Registry,
-    text::{listed, plural},
+    text::plural,
 };
 
 /// The least width of a picture with axes: in a narrower one they would hide more than they say.
@@ -92,9 +92,9 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
     let few = |all: Vec<&str>| {
         let more = format!("{} more", all.len().saturating_sub(MOST));
         let shown: Vec<_> = all.iter().take(MOST).copied().collect();
-        listed(&if all.len() > MOST { [shown, vec![more.as_str()]].concat() } else { shown }, "and")
+        shown_instead(&if all.len() > MOST { [shown, vec![more.as_str()]].concat() } else { shown })
     };
-    let heading = format!("Showing the last good version of {}", few(names));
+    let heading = format!("Showing {}", few(names));
     let causes: Vec<_> = status.troubles.iter().filter(|t| !t.stale.is_empty()).collect();
     let mut lines: Vec<_> = causes.iter().take(MOST).map(|t| t.problem.to_string()).collect();
     if causes.len() > MOST {

@@ -19,7 +19,7 @@ use crate::{
     custom,
     library::{
         assets::{self, Folders},
-        status::Trouble,
+        status::{Trouble, shown_instead},
     },
     panel::state::{Session, Severity},
     registry::Registry,
@@ -150,7 +150,7 @@ fn tell(live: Res<LiveShaders>, mut session: ResMut<Session>, mut troubled: Loca
             complain(&annotated(&trouble.problem, &file));
         }
         if !trouble.stale.is_empty() {
-            complain(&format!("The picture shows the last good version of {}.", trouble.stale.join(", ")));
+            complain(&format!("The picture shows {}.", shown_instead(&trouble.stale)));
         }
     }
     session.shaders = status.clone();

@@ -5,24 +5,22 @@ use bevy_egui::egui::{
 };
 
 use crate::{
-    library::status::Trouble,
+    library::status::{Trouble, shown_instead},
     panel::{
         icon,
         state::{Action, ModelCommand, Session, Severity},
         theme::{self, Palette},
     },
     shader::report::annotated,
-    text::listed,
 };
 
 /// The consequence of a problem for the picture.
 #[must_use]
 pub fn consequence(trouble: &Trouble) -> String {
-    let names: Vec<_> = trouble.stale.iter().map(String::as_str).collect();
-    if names.is_empty() {
+    if trouble.stale.is_empty() {
         return "Nothing on the picture depends on it.".to_owned();
     }
-    format!("The picture shows the last good version of {} until this is corrected.", listed(&names, "and"))
+    format!("The picture shows {} until this is corrected.", shown_instead(&trouble.stale))
 }
 
 /// The width of a tab, in characters.

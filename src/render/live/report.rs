@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::{Key, LiveShaders, Registry, Visible};
 use crate::{
-    library::status::{ShaderStatus, Trouble},
+    library::status::{STAND_IN, ShaderStatus, Trouble},
     shader::check::ShaderProblem,
 };
 
@@ -32,14 +32,14 @@ impl LiveShaders {
                 if registry.custom_file(key.0).is_some()
                     && registry.sources().get(m.declaration.wgsl.path).is_none() =>
             {
-                format!("{} (a grey stand-in)", m.declaration.name)
+                format!("{}{STAND_IN}", m.declaration.name)
             }
             Some(model) => {
                 let (name, replaced) = (model.declaration.name, &self.shaders[key].replaced);
                 match replaced.as_slice() {
                     [] => name.to_owned(),
                     paths if paths.contains(&model.declaration.wgsl.path) => {
-                        format!("{name} (a grey stand-in)")
+                        format!("{name}{STAND_IN}")
                     }
                     paths => format!("{name} (without {})", crate::text::listed(paths, "and")),
                 }
