@@ -21,6 +21,8 @@ const GUESTS: f32 = 0.5;
 const TITLE: f32 = 26.0;
 /// The room below what a section shows, points.
 const END: f32 = 8.0;
+/// The line above a section, and the borders of what stands last in it, points.
+const LINE: f32 = 2.0;
 /// The least height of a section that is unfolded, points.
 const LEAST: f32 = TITLE + 64.0 + END;
 
@@ -84,7 +86,7 @@ fn section(
             ui.push_id(info.id, |ui| panel.show(ui, context));
         })
     });
-    Some((title + output.inner.content_size.y + END).ceil())
+    Some((LINE + title + output.inner.content_size.y + END).ceil())
 }
 
 fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<'_>) {
