@@ -79,6 +79,11 @@ impl<T: Clone + PartialEq> Splice<T> {
         self.old.len() + self.new.len()
     }
 
+    /// True if the list has another length after it.
+    fn resizes(&self) -> bool {
+        self.old.len() != self.new.len()
+    }
+
     /// True if it gives one part another value, but not another type.
     fn is_of_one_by(&self, type_of: impl Fn(&T) -> &str) -> bool {
         matches!((&self.old[..], &self.new[..]), ([old], [new]) if type_of(&old.1) == type_of(&new.1))
@@ -115,8 +120,8 @@ pub(super) fn copy_rest(from: &Scene, to: &mut Scene) {
     (to.lights, to.objects) = lists;
 }
 
-/// The difference between two versions of a scene: of lights and objects one stretch each, or single ones in the order
-/// of the scene.
+/// The difference between two versions of a scene: stretches of lights and of objects that do not overlap, in the order
+/// of the scene. Their places are those in the old version.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Patch {
     rest: Option<Box<[Scene; 2]>>,
@@ -167,8 +172,8 @@ impl Patch {
         if let Some(versions) = &self.rest {
             copy_rest(&versions[usize::from(!back)], scene);
         }
-        self.lights.iter().for_each(|splice| splice.put(&mut scene.lights, &mut labels.lights, back));
-        self.objects.iter().for_each(|splice| splice.put(&mut scene.objects, &mut labels.objects, back));
+        put(&self.lights, &mut scene.lights, &mut labels.lights, back);
+        put(&self.objects, &mut scene.objects, &mut labels.objects, back);
     }
 
     /// The part that it changes. Another type of one changes the numbers that a file gives to others.
@@ -186,12 +191,8 @@ impl Patch {
             + self.objects.iter().map(Splice::parts).sum::<usize>()
     }
 
-    /// Makes this change and a later one a single change, which may be none. Hands the later one back if that is
-    /// impossible: both move parts, to different places.
-    pub(super) fn join(&mut self, later: Self) -> Result<(), Self> {
-        if !(joinable(&self.lights, &later.lights) && joinable(&self.objects, &later.objects)) {
-            return Err(later);
-        }
+    /// Makes this change and a later one a single change, which may be none.
+    pub(super) fn join(&mut self, later: Self) {
         self.rest = match (self.rest.take(), later.rest) {
             (Some(a), Some(b)) => {
                 let ([old, _], [_, new]) = (*a, *b);
@@ -201,19 +202,21 @@ impl Patch {
         };
         join(&mut self.lights, later.lights);
         join(&mut self.objects, later.objects);
-        Ok(())
     }
 }
 
-fn joinable<T: Clone + PartialEq>(a: &[Splice<T>], b: &[Splice<T>]) -> bool {
-    match (a, b) {
-        ([], _) | (_, []) => true,
-        ([a], [b]) if a.at == b.at && a.new.len() == b.old.len() => true,
-        _ => a.iter().chain(b).all(Splice::is_of_one),
-    }
+/// Puts stretches into a list. Their places are those in the old list, in which what is before a stretch must be old.
+fn put<T: Clone + PartialEq>(splices: &[Splice<T>], parts: &mut Vec<T>, labels: &mut Vec<Label>, back: bool) {
+    let put = |splice: &Splice<T>| splice.put(parts, labels, back);
+    if back { splices.iter().for_each(put) } else { splices.iter().rev().for_each(put) }
 }
 
+/// Makes two changes of a list a single one.
 fn join<T: Clone + PartialEq>(a: &mut Vec<Splice<T>>, b: Vec<Splice<T>>) {
+    if !a.iter().chain(&b).all(Splice::is_of_one) {
+        *a = composed(std::mem::take(a), b);
+        return;
+    }
     for later in b {
         match a.binary_search_by_key(&later.at, |splice| splice.at) {
             Ok(i) if a[i].old == later.new => drop(a.remove(i)),
@@ -221,6 +224,94 @@ fn join<T: Clone + PartialEq>(a: &mut Vec<Splice<T>>, b: Vec<Splice<T>>) {
             Err(i) => a.insert(i, later),
         }
     }
+}
+
+/// A change from an old list to one in between, and one from there to a new list, as a single change. Stretches that
+/// share parts of the list in between, or between which a part came or went, become one.
+fn composed<T: Clone + PartialEq>(a: Vec<Splice<T>>, b: Vec<Splice<T>>) -> Vec<Splice<T>> {
+    let (mut a, mut b) = (a.into_iter().peekable(), b.into_iter().peekable());
+    let mut all = Vec::with_capacity(a.len().max(b.len()));
+    // The lengths of all old and new stretches of the first change so far: by them the list in between is longer.
+    let (mut gone, mut come) = (0, 0);
+    loop {
+        let before = (gone, come);
+        // Stretches with their places in between.
+        let (mut first, mut later): (Vec<(usize, Splice<T>)>, Vec<Splice<T>>) = (Vec::new(), Vec::new());
+        let mut range = None;
+        let mut resized = false;
+        loop {
+            let place_a = a.peek().map(|splice| splice.at + come - gone);
+            let place_b = b.peek().map(|splice| splice.at);
+            let is_a = place_a.is_some_and(|place| place_b.is_none_or(|other| place <= other));
+            let Some((place, resizes)) = (if is_a {
+                place_a.zip(a.peek().map(Splice::resizes))
+            } else {
+                place_b.zip(b.peek().map(Splice::resizes))
+            }) else {
+                break;
+            };
+            let Range { start, end } = *range.get_or_insert(place..place);
+            let is_empty = first.is_empty() && later.is_empty();
+            if !is_empty && (place > end || place == end && !(resized || resizes)) {
+                break;
+            }
+            resized |= resizes;
+            let length = if is_a {
+                a.next().map_or(0, |splice| {
+                    (gone, come) = (gone + splice.old.len(), come + splice.new.len());
+                    let length = splice.new.len();
+                    first.push((place, splice));
+                    length
+                })
+            } else {
+                b.next().map_or(0, |splice| {
+                    let length = splice.old.len();
+                    later.push(splice);
+                    length
+                })
+            };
+            range = Some(start..end.max(place + length));
+        }
+        let Some(range) = range else { return all };
+        let splice = merged(range.start + before.0 - before.1, &range, first, later);
+        if splice.old != splice.new {
+            all.push(splice);
+        }
+    }
+}
+
+/// Stretches of two changes that cover a range of the list in between, as one stretch at this place of the old list.
+fn merged<T: Clone>(
+    at: usize,
+    range: &Range<usize>,
+    first: Vec<(usize, Splice<T>)>,
+    later: Vec<Splice<T>>,
+) -> Splice<T> {
+    let mut between = vec![None; range.len()];
+    let (mut befores, mut afters) = (Vec::new(), Vec::new());
+    for (place, Splice { old, new, .. }) in first {
+        befores.push((place - range.start, new.len(), old));
+        between.splice(place - range.start..place - range.start + new.len(), new.into_iter().map(Some));
+    }
+    for Splice { at: place, old, new } in later {
+        let place = place - range.start;
+        afters.push((place, old.len(), new));
+        for (slot, part) in between[place..].iter_mut().zip(old) {
+            slot.get_or_insert(part);
+        }
+    }
+    // What only one of the changes has is the same before or after it; no part is both.
+    let mut side = |stretches: Vec<(usize, usize, Vec<(Label, T)>)>| {
+        let (mut all, mut next) = (Vec::new(), 0);
+        for (place, length, parts) in stretches {
+            all.extend(between[next..place].iter_mut().filter_map(Option::take));
+            all.extend(parts);
+            next = place + length;
+        }
+        all.extend(between[next..].iter_mut().filter_map(Option::take));
+        all
+    };
+    Splice { at, old: side(befores), new: side(afters) }
 }
 
 /// One step.
@@ -248,16 +339,15 @@ impl History {
             return;
         }
         self.steps.truncate(self.done);
-        let joined = match self.steps.last_mut() {
+        match self.steps.last_mut() {
             Some(last) if last.name == name && last.gesture == gesture => {
-                last.patch.join(patch).map(|()| last.after = selection)
+                last.patch.join(patch);
+                last.after = selection;
+                if last.patch.is_empty() {
+                    self.steps.pop();
+                }
             }
-            _ => Err(patch),
-        };
-        match joined {
-            Ok(()) if self.steps.last().is_some_and(|step| step.patch.is_empty()) => drop(self.steps.pop()),
-            Ok(()) => {}
-            Err(patch) => self.steps.push(Step { name, gesture, patch, before: selection, after: selection }),
+            _ => self.steps.push(Step { name, gesture, patch, before: selection, after: selection }),
         }
         let mut parts: usize = self.steps.iter().map(|step| step.patch.parts()).sum();
         while self.steps.len() > 1 && (self.steps.len() > MOST_STEPS || parts > MOST_PARTS) {
@@ -317,5 +407,96 @@ impl History {
 
     pub(super) fn done(&self) -> usize {
         self.done
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::{document::Document, registry::Registry};
+
+    /// A generator of numbers that are the same in each run.
+    struct Dice(u64);
+
+    impl Dice {
+        fn below(&mut self, end: usize) -> usize {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 33) as usize % end
+        }
+    }
+
+    #[test]
+    fn parts_that_systems_add_in_each_frame_are_one_step() {
+        let registry = Registry::builtin();
+        let start = Scene::default();
+        let mut document = Document::new(start.clone());
+        for i in 0..20 {
+            let mut scene = document.scene().clone();
+            // The first object moves, too.
+            scene.objects[0].position.x += 0.01;
+            document.submit(&scene, &[Extent::Object(0)], Selection::Room, &registry).expect("it may move");
+            let mut object = scene.objects[0].clone();
+            object.position = Vec3::new(1.0 + 0.1 * i as f32, 2.0, 2.0);
+            scene.objects.push(object);
+            document.submit_lists(&scene, &[], Selection::Room, &registry).expect("it may come");
+        }
+        let end = document.scene().clone();
+        let id = document.object_id(20);
+        assert_eq!(document.steps().len(), 1, "{:?}", document.steps().collect::<Vec<_>>());
+        document.undo();
+        assert!(*document.scene() == start);
+        document.redo();
+        assert!(*document.scene() == end);
+        assert_eq!(document.object_id(20), id);
+        // All that came goes again.
+        let removed: Vec<_> = (1..=20).map(Extent::Object).collect();
+        document.submit_lists(&start, &removed, Selection::Room, &registry).expect("they may go");
+        assert_eq!(document.steps().len(), 0, "together that changes nothing");
+    }
+
+    #[test]
+    fn joined_changes_are_undone_and_redone_exactly() {
+        let mut dice = Dice(1);
+        let mut id = PartId(1000);
+        let mut label = || {
+            id = PartId(id.0 + 1);
+            Label { id, number: 0 }
+        };
+        for _ in 0..2000 {
+            let start: Vec<(Label, usize)> = (0..dice.below(8)).map(|i| (label(), i)).collect();
+            let mut now = start.clone();
+            let mut joined = Vec::new();
+            for _ in 0..1 + dice.below(8) {
+                let mut next = now.clone();
+                for _ in 0..1 + dice.below(3) {
+                    let i = dice.below(next.len() + 1);
+                    match dice.below(3) {
+                        0 => next.insert(i, (label(), dice.below(4))),
+                        1 if i < next.len() => drop(next.remove(i)),
+                        _ => next.iter_mut().skip(i).take(2).for_each(|part| part.1 = dice.below(4)),
+                    }
+                }
+                let split = |list: &[(Label, usize)]| -> (Vec<usize>, Vec<Label>) {
+                    list.iter().map(|(label, part)| (*part, *label)).unzip()
+                };
+                let (old, new) = (split(&now), split(&next));
+                let change = Splice::between((&old.0, &old.1), (&new.0, &new.1));
+                let ones = now.iter().zip(&next).enumerate();
+                let ones = ones.filter_map(|(at, (old, new))| Splice::of_one(at, *old, *new));
+                let same_parts = old.1 == new.1;
+                join(&mut joined, if same_parts { ones.collect() } else { change.into_iter().collect() });
+                let check = |from: &[(Label, usize)], to: &[(Label, usize)], back| {
+                    let (mut parts, mut labels) = split(from);
+                    put(&joined, &mut parts, &mut labels, back);
+                    assert_eq!((parts, labels), split(to), "{start:?} → {next:?}: {joined:?}");
+                };
+                check(&start, &next, false);
+                check(&next, &start, true);
+                assert!(joined.iter().all(|splice| splice.old != splice.new));
+                now = next;
+            }
+        }
     }
 }

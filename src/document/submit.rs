@@ -35,8 +35,7 @@ impl Document {
             }
             let mut all = Patch::default();
             for part in parts {
-                // A part that is changed twice is one of one place.
-                let _ = all.join(
+                all.join(
                     document.patch(*part, Some(registry), |document| part.copy(scene, &mut document.scene)),
                 );
             }
