@@ -21,7 +21,7 @@ use super::{
     overrides::Overrides,
     shown::{Shown, ShownObject},
     stage::{Stage, ViewCopy, copies},
-    tables::{ParameterTables, Row},
+    tables::{ParameterTables, Row, row},
 };
 use crate::{
     light::MAX_LIGHTS,
@@ -123,10 +123,7 @@ pub fn swap(
         .par_iter()
         .map(|Pending { shown, now, .. }| {
             let (model, shading) = (registry.model(&now.model)?, registry.shading_model(&now.shading)?);
-            let mut row = model.row(&shown.material, now.encoding, now.everywhere);
-            row.resize(row.len().next_multiple_of(16), 0);
-            row.extend(shading.row(&shown.material, now.encoding));
-            Some(row)
+            Some(row(model, shading, &shown.material, now.encoding, now.everywhere))
         })
         .collect();
     world.resource_scope(|world, mut meshes: Mut<ShapeMeshes>| {

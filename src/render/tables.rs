@@ -14,7 +14,24 @@ use bevy::{
     },
 };
 
-use crate::{reflection::ModelEntry, scene::MAX_OBJECTS};
+use crate::{
+    optics::colour::Encoding, parameter::Values, reflection::ModelEntry, scene::MAX_OBJECTS,
+    shading::ShadingEntry,
+};
+
+/// The parameters of an object as bytes of its row: those of its model, then those of its shading model.
+pub(super) fn row(
+    model: &ModelEntry,
+    shading: &ShadingEntry,
+    values: &Values,
+    encoding: Encoding,
+    everywhere: bool,
+) -> Vec<u8> {
+    let mut row = model.row(values, encoding, everywhere);
+    row.resize(row.len().next_multiple_of(16), 0);
+    row.extend(shading.row(values, encoding));
+    row
+}
 
 /// The row of an object, the same in every table, as long as the object exists. Then another object may have it.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,7 +13,10 @@ use bevy::{
 };
 
 use super::{
-    super::trial::{Bench, Tools, Verdict},
+    super::{
+        tables::row,
+        trial::{Bench, Tools, Verdict},
+    },
     Key, LiveShaders, ModelEntry, Parts, Refused, Registry, ShadingEntry, Visible, composed, lights_of,
     ready::path_of_asset,
 };
@@ -188,9 +191,14 @@ fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, shading: 
     };
     world.resource_scope(|world, mut bench: Mut<Bench>| {
         let tools = Tools { device: &device, adapter: &adapter, shaders: world.resource::<Assets<Shader>>() };
-        let row = || model.row(&Values::default(), Encoding::Srgb, false);
+        let row = || sample(model, shading);
         bench.try_out(composed, shading.declaration.stage == Stage::Polygon, row, tools)
     })
+}
+
+/// The row of the object with which a shader is tried: its parameters are the defaults.
+fn sample(model: &ModelEntry, shading: &ShadingEntry) -> Vec<u8> {
+    row(model, shading, &Values::default(), Encoding::Srgb, false)
 }
 
 /// The renderer failed all the same: goes back to what was drawn with before. Where nothing was exchanged, the
@@ -226,4 +234,23 @@ pub(super) fn take_back(error: &RenderError, main: &mut World, render: &mut Worl
         live.stale_status |= taken_back;
     });
     if taken_back { RenderErrorPolicy::Ignore } else { usual(error, main, render) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shaders_are_tried_with_the_defaults_of_model_and_shading_model() {
+        let registry = Registry::builtin();
+        for (model, shading) in registry.models().iter().zip(registry.shading_models().iter().cycle()) {
+            let row = sample(model, shading);
+            let (values, encoding) = (Values::default(), Encoding::Srgb);
+            let (of_model, of_shading) =
+                (model.row(&values, encoding, false), shading.row(&values, encoding));
+            let place = of_model.len().next_multiple_of(16);
+            assert_eq!(row[..of_model.len()], of_model);
+            assert_eq!(row[place..], of_shading, "{}", shading.declaration.id);
+        }
+    }
 }
