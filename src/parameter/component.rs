@@ -13,7 +13,11 @@ use bevy::{
     reflect::GetTypeRegistration,
 };
 
-use super::{declaration::Parameter, set::ParameterSet, value::Values};
+use super::{
+    declaration::{Parameter, ParameterKind},
+    set::ParameterSet,
+    value::{Value, Values},
+};
 use crate::optics::colour::Encoding;
 
 /// The encoding of colours in components: they are linear, however a scene is displayed.
@@ -72,18 +76,96 @@ impl TypeComponent {
     }
 
     /// Puts the parameters of an entity's component into others. Where both mean the same, the others stay as written.
-    pub fn read(&self, entity: &EntityRef, into: &mut Values) {
-        let Some(Values(values)) = (self.read)(entity) else { return };
+    ///
+    /// # Errors
+    /// A colour is none, or an index is that of no choice: the others have the nearest colour, and the default choice.
+    pub fn read(&self, entity: &EntityRef, into: &mut Values) -> Result<(), String> {
+        let Some(Values(mut values)) = (self.read)(entity) else { return Ok(()) };
+        let mut refused = Ok(());
         for p in self.parameters {
-            if let Some(value) = values.get(p.name).filter(|value| into.get(p) != **value) {
-                into.set(p.name, value.clone());
+            let Some(value) = values.remove(p.name) else { continue };
+            let (value, rule) = match (&p.kind, value) {
+                (ParameterKind::Colour { .. }, Value::Triple(numbers)) => {
+                    let nearest = Value::Colour(ENCODING.encode(numbers.into()));
+                    let [r, g, b] = numbers;
+                    (nearest, Some(format!("({r}, {g}, {b}), but a linear colour has numbers from 0 to 1")))
+                }
+                (ParameterKind::Choice { options, .. }, Value::Integer(i)) => {
+                    let last = options.len().saturating_sub(1);
+                    (p.default_value(), Some(format!("{i}, but the last choice is {last}")))
+                }
+                (_, value) => (value, None),
+            };
+            if let Some(rule) = rule.filter(|_| refused.is_ok()) {
+                refused = Err(format!("the {} of `{}` is {rule}", p.label, self.name));
+            }
+            if into.get(p) != value {
+                into.set(p.name, value);
             }
         }
+        refused
     }
 }
 
 impl fmt::Debug for TypeComponent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("TypeComponent").field(&self.name).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::{parameter::BASE_COLOUR, parameters};
+
+    const FORM: Parameter = Parameter::choice("form", &[("flat", "Flat"), ("round", "Round")], 1);
+
+    parameters! {
+        /// A lamp with a filter.
+        struct Lamp {
+            /// The colour of the filter.
+            tint: colour = BASE_COLOUR,
+            /// The form.
+            form: choice = FORM,
+        }
+    }
+
+    #[test]
+    fn what_is_no_colour_or_no_choice_is_refused_and_written_back() {
+        let of = TypeComponent::of::<Lamp>();
+        let mut world = World::new();
+        let good = Lamp { tint: Vec3::new(1.0, 0.5, 0.0), form: 0 };
+        let entity = world.spawn(good).id();
+        let read = |world: &World| {
+            let mut values = Values::default();
+            let read = of.read(&world.entity(entity), &mut values);
+            (values, read)
+        };
+        let (known, answer) = read(&world);
+        assert_eq!(answer, Ok(()));
+        // Rounding is none of their business.
+        for v in [1.001, -1e-5] {
+            *world.get_mut(entity).expect("there") = Lamp { tint: Vec3::splat(v), ..good };
+            assert_eq!(read(&world).1, Ok(()), "{v}");
+        }
+        for (wrong, text) in [
+            (
+                Lamp { tint: Vec3::new(5.0, 0.5, 0.0), ..good },
+                "the base colour of `Lamp` is (5, 0.5, 0), but",
+            ),
+            (Lamp { tint: Vec3::splat(-0.1), ..good }, "(-0.1, -0.1, -0.1), but a linear colour"),
+            (Lamp { tint: Vec3::splat(f32::NAN), ..good }, "is (NaN, NaN, NaN), but"),
+            (Lamp { form: 7, ..good }, "of `Lamp` is 7, but the last choice is 1"),
+        ] {
+            *world.get_mut(entity).expect("there") = wrong;
+            let (values, answer) = read(&world);
+            let why = answer.expect_err("it is refused");
+            assert!(why.contains(text), "{why}");
+            assert!(Lamp::PARAMETERS.iter().all(|p| values.0.get(p.name).is_none_or(|v| p.allows(v))));
+            (of.insert)(&mut world.entity_mut(entity), &known);
+            assert_eq!(read(&world), (known.clone(), Ok(())), "it goes back");
+        }
     }
 }

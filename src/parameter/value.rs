@@ -1,6 +1,6 @@
 //! Values of parameters, by name.
 
-use std::{borrow::Cow, collections::BTreeMap, fmt};
+use std::{borrow::Cow, collections::BTreeMap, fmt, ops::RangeInclusive};
 
 use bevy::reflect::Reflect;
 use glam::Vec3;
@@ -11,6 +11,9 @@ use super::{
     file::{NamedFile, Table},
 };
 use crate::optics::colour::Encoding;
+
+/// The components of a linear colour, which may be beyond their range by as much as 8 bits round it away.
+const LINEAR: RangeInclusive<f32> = -0.5 / 255.0 / 12.92..=1.0 + 0.5 / 255.0;
 
 /// The value of a parameter, as in a scene file.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize)]
@@ -89,17 +92,21 @@ impl Values {
     }
 
     /// Sets a parameter from the numbers for calculation: a linear colour is encoded to 8 bits, the index of a choice
-    /// becomes its name. All but colours and triples read the first number.
+    /// becomes its name. All but colours and triples read the first number. Numbers that are no colour become a triple, an
+    /// index of no choice stays a number: neither is a legal value.
     pub fn put(&mut self, parameter: &Parameter, numbers: [f32; 3], encoding: Encoding) {
         let [first, ..] = numbers;
         let value = match &parameter.kind {
             ParameterKind::Number { .. } => Value::Number(first),
             ParameterKind::Integer { .. } => Value::Integer(first.round() as i64),
-            ParameterKind::Colour { .. } => Value::Colour(encoding.encode(numbers.into())),
+            ParameterKind::Colour { .. } if numbers.iter().all(|v| LINEAR.contains(v)) => {
+                Value::Colour(encoding.encode(numbers.into()))
+            }
+            ParameterKind::Colour { .. } => Value::Triple(numbers),
             ParameterKind::Triple { .. } => Value::Triple(numbers),
             ParameterKind::Choice { options, .. } => match options.get(first as usize) {
                 Some((id, _)) => Value::Choice((*id).into()),
-                None => parameter.default_value(),
+                None => Value::Integer(first as i64),
             },
             ParameterKind::File { .. } => parameter.default_value(),
         };

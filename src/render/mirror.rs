@@ -260,10 +260,11 @@ pub(super) fn read_object(
     if retyped && let Some(entry) = registry.shape(of_type.id) {
         object.set_type(entry);
     }
-    of_type.read(&entity, &mut object.shape);
+    let parameters = of_type.read(&entity, &mut object.shape);
     let place = read_place(needed(&entity)?, known.is_some(), &mut object);
-    // What is animated may be stretched.
+    // What is animated may be stretched, and its colours may swing beyond their range.
     if !entity.contains::<Animated>() || known.is_none() {
+        parameters?;
         place?;
     }
     let Tessellation(tessellation) = *needed::<Tessellation>(&entity)?;
@@ -304,7 +305,11 @@ pub(super) fn read_light(
     if light.light_type != of_type.id {
         light.set_type(entry, registry, room);
     }
-    of_type.read(&entity, &mut light.parameters);
+    let parameters = of_type.read(&entity, &mut light.parameters);
+    // Colours of what is animated may swing beyond their range.
+    if !entity.contains::<Animated>() || known.is_none() {
+        parameters?;
+    }
     let transform = needed::<Transform>(&entity)?;
     let old = known.map(light_transform);
     if entry.declaration.has_position && old.is_none_or(|old| old.translation != transform.translation) {

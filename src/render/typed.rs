@@ -27,8 +27,11 @@ pub(super) struct PartType {
 
 impl PartType {
     /// Puts the parameters of the component into those of a part.
-    pub(super) fn read(&self, entity: &EntityRef, into: &mut Values) {
-        self.of.read(entity, into);
+    ///
+    /// # Errors
+    /// The component has a colour that is none, or a choice that is none.
+    pub(super) fn read(&self, entity: &EntityRef, into: &mut Values) -> Result<(), String> {
+        self.of.read(entity, into)
     }
 }
 
