@@ -1,8 +1,14 @@
 //! Changes of entities go into the scene, if the rules of scenes allow it; those that are refused go back.
 
+use std::mem::discriminant;
+
 use bevy::{
     camera::visibility::Visibility,
-    ecs::{entity::EntityHashMap, prelude::*},
+    ecs::{
+        change_detection::Tick,
+        entity::{EntityHashMap, EntityHashSet},
+        prelude::*,
+    },
     log::warn,
     transform::components::Transform,
 };
@@ -40,9 +46,18 @@ type OfPart = (
     )>,
 );
 
-/// Refusals that were reported, by entity. Each is reported again only after a change that was accepted.
+/// What was refused.
 #[derive(Default)]
-pub struct Reported(EntityHashMap<Vec<String>>);
+pub struct Reported {
+    /// Refusals that were reported, by entity. Each is reported again only after a change that was accepted.
+    changes: EntityHashMap<Vec<String>>,
+    /// Last parts that could not go, likewise: each time they get another entity.
+    last: Vec<Extent>,
+    /// New entities that are no parts. Another scene may have room for them.
+    waiting: EntityHashSet,
+    /// The tick of the last change of the scene for which these were tried.
+    tried: Option<Tick>,
+}
 
 /// Adopts what others changed in the entities of parts, spawned and despawned. What [`reconcile`] wrote itself reads as
 /// what the scene has, and changes nothing. Exclusive, since each type has a component of its own.
@@ -80,6 +95,12 @@ pub fn absorb(
         *world.resource_mut::<Touched>() = Touched { entities: touched, rested };
         return;
     }
+    let before = Some(world.resource_ref::<CurrentScene>().last_changed());
+    if std::mem::replace(&mut reported.tried, before) != before && !reported.waiting.is_empty() {
+        touched.extend(&reported.waiting);
+        touched.sort_unstable();
+        touched.dedup();
+    }
     // Without a window, nothing else reads it.
     world.resource_mut::<SceneEntities>().bypass_change_detection().absorbed = Absorbed::default();
     if touched.is_empty() && places.is_empty() {
@@ -90,7 +111,6 @@ pub fn absorb(
     let (types, registry) = (world.resource::<PartTypes>().clone(), world.resource::<Registry>().clone());
     let mut entities = std::mem::take(world.resource_mut::<SceneEntities>().bypass_change_detection());
     let mut current = world.resource_mut::<CurrentScene>();
-    let before = Some(current.last_changed());
     let mut scene = std::mem::take(&mut current.bypass_change_detection().0);
     let mut change = Change {
         world,
@@ -109,8 +129,11 @@ pub fn absorb(
     touched.iter().for_each(|entity| change.try_part(*entity));
     change.judge();
     change.adopt();
+    // Those that go make room for others, but a last one may go only if another came.
+    change.remove();
     change.add();
     change.remove();
+    change.keep();
     let back = change.back;
     let Absorbed { parts, relisted, refused, .. } = &entities.absorbed;
     if entities.shown.is_none() {
@@ -196,7 +219,10 @@ impl Change<'_> {
         let Ok(now) = self.world.get_entity(entity) else {
             match part {
                 Some(part) => self.lost.push((entity, part)),
-                None => _ = self.reported.0.remove(&entity),
+                None => {
+                    self.reported.changes.remove(&entity);
+                    self.reported.waiting.remove(&entity);
+                }
             }
             return;
         };
@@ -328,7 +354,7 @@ impl Change<'_> {
     /// Reports something once, whatever the numbers in it.
     fn report(&mut self, entity: Entity, text: &str) {
         let words: String = text.chars().filter(|c| c.is_alphabetic()).collect();
-        let known = self.reported.0.entry(entity).or_default();
+        let known = self.reported.changes.entry(entity).or_default();
         if !known.contains(&words) {
             known.push(words);
             self.entities.absorbed.refused.push(sentence(text));
@@ -339,7 +365,7 @@ impl Change<'_> {
     fn adopt(&mut self) {
         let mut retyped = Vec::new();
         for (entity, part, before) in std::mem::take(&mut self.tried) {
-            self.reported.0.remove(&entity);
+            self.reported.changes.remove(&entity);
             let mirrored = self.entities.mirrored.as_mut();
             match (part, before) {
                 (Extent::Object(i), Before::Place(..)) => {
@@ -378,9 +404,11 @@ impl Change<'_> {
         // In the order of spawning; an `Entity` with a greater index is the lesser one.
         self.new.sort_unstable_by_key(|entity| entity.index_u32());
         for entity in std::mem::take(&mut self.new) {
+            self.reported.waiting.remove(&entity);
             match self.admit(entity) {
                 Ok(part) => part.into_iter().for_each(|part| self.come(entity, part)),
                 Err(why) => {
+                    self.reported.waiting.insert(entity);
                     let name = self.world.get::<Name>(entity).map(|name| format!("“{name}”"));
                     let name = name.unwrap_or_else(|| entity.to_string());
                     self.report(entity, &format!("The entity {name} is not added to the scene: {why}"));
@@ -421,7 +449,7 @@ impl Change<'_> {
 
     /// An entity is now the last part of its list.
     fn come(&mut self, entity: Entity, part: Extent) {
-        self.reported.0.remove(&entity);
+        self.reported.changes.remove(&entity);
         if let Some(mirrored) = &mut self.entities.mirrored {
             match part {
                 Extent::Light(i) => mirrored.lights.push(self.scene.lights[i].clone()),
@@ -435,7 +463,7 @@ impl Change<'_> {
         self.write_back(entity, part);
     }
 
-    /// Parts go with their entities, but for the last ones.
+    /// Parts go with their entities, but for the last ones, which are still lost after it.
     fn remove(&mut self) {
         let mut lost = std::mem::take(&mut self.lost);
         // From the end, so that places stay what they are; of all that go, the first one stays if one must.
@@ -445,7 +473,6 @@ impl Change<'_> {
         });
         let mut first = None;
         for (entity, part) in lost {
-            self.reported.0.remove(&entity);
             match part {
                 Extent::Light(i) if self.scene.lights.len() > 1 => {
                     self.scene.lights.remove(i);
@@ -460,10 +487,12 @@ impl Change<'_> {
                     first = Some(i);
                 }
                 part => {
-                    self.come_back(entity, part);
+                    self.lost.push((entity, part));
                     continue;
                 }
             }
+            self.reported.changes.remove(&entity);
+            self.reported.last.retain(|last| discriminant(last) != discriminant(&part));
             let absorbed = &mut self.entities.absorbed;
             // One that changed before it went is gone.
             absorbed.parts.retain(|changed| *changed != part);
@@ -473,6 +502,14 @@ impl Change<'_> {
         }
         if let Some(first) = first {
             self.entities.place(first);
+        }
+    }
+
+    /// Parts that cannot go stay.
+    fn keep(&mut self) {
+        for (entity, part) in std::mem::take(&mut self.lost) {
+            self.reported.changes.remove(&entity);
+            self.come_back(entity, part);
         }
     }
 
@@ -507,7 +544,10 @@ impl Change<'_> {
             self.world.entity_mut(entity).insert(id);
         }
         self.back.push(entity);
-        self.report(lost, &format!("Can’t delete {what}"));
+        if !self.reported.last.contains(&part) {
+            self.reported.last.push(part);
+            self.entities.absorbed.refused.push(sentence(&format!("Can’t delete {what}")));
+        }
     }
 }
 

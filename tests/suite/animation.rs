@@ -3,7 +3,7 @@
 use bevy::{ecs::reflect::AppTypeRegistry, prelude::*};
 use lights_camera_models::{
     document::PartId,
-    light::{self, Incident, LightRecord, LightType, Point, Spot},
+    light::{self, Incident, LightRecord, LightType, MAX_LIGHTS, Point, Spot},
     panel::state::{Action, Session},
     parameter::Value,
     parameters,
@@ -13,7 +13,7 @@ use lights_camera_models::{
         entities::{CurrentScene, SceneEntities},
         parts::{Animated, LightPower, SceneLight, SceneObject, SceneObserver, Surface, Tessellation},
     },
-    scene::Scene,
+    scene::{Light, Object, Scene},
     shader::Source,
     shape::{Sphere, Torus},
     window::{DocumentPlugin, LabPlugins, ViewOptions},
@@ -143,6 +143,80 @@ fn without_a_window_changes_are_checked_too() {
     world.despawn(spot);
     assert!(frame(&mut renderer) == before);
     assert!(renderer.app().world().resource::<CurrentScene>().0 == scene);
+}
+
+#[test]
+fn what_goes_makes_room_for_what_comes() {
+    let mut scene = close_up("sphere", "point");
+    scene.objects.push(Object { position: Vec3::new(2.0, 2.0, 2.0), ..scene.objects[0].clone() });
+    let lamp = Light { enabled: false, ..scene.lights[0].clone() };
+    for i in 1..MAX_LIGHTS {
+        let place = Vec3::new(0.5 + (i % 16) as f32 * 0.25, 9.5, 0.5 + (i / 16) as f32 * 0.25);
+        scene.lights.push(Light { position: Some(place), ..lamp.clone() });
+    }
+    let mut renderer = renderer(scene);
+    let step = |renderer: &mut GpuRenderer| {
+        renderer.step();
+        renderer.app().world().resource::<SceneEntities>().refused().to_vec()
+    };
+    let light =
+        |renderer: &mut GpuRenderer, i: usize| renderer.app().world().resource::<SceneEntities>().lights[i];
+    let spawn = |renderer: &mut GpuRenderer, place: Vec3| {
+        let spot = (Spot::default(), Transform::from_translation(place));
+        renderer.app().world_mut().spawn(spot).id()
+    };
+    // In the same frame.
+    let gone = light(&mut renderer, 5);
+    renderer.app().world_mut().despawn(gone);
+    let spot = spawn(&mut renderer, Vec3::new(6.0, 8.0, 6.0));
+    assert_eq!(step(&mut renderer), [""; 0]);
+    assert_eq!(light(&mut renderer, MAX_LIGHTS - 1), spot);
+    // Where an object was.
+    let object = renderer.app().world().resource::<SceneEntities>().objects[1];
+    let gone = light(&mut renderer, 6);
+    renderer.app().world_mut().despawn(object);
+    renderer.app().world_mut().despawn(gone);
+    let spot = spawn(&mut renderer, Vec3::new(2.0, 2.0, 2.0));
+    assert_eq!(step(&mut renderer), [""; 0]);
+    assert_eq!(light(&mut renderer, MAX_LIGHTS - 1), spot);
+    // Later.
+    let spot = spawn(&mut renderer, Vec3::new(7.0, 8.0, 6.0));
+    let why = step(&mut renderer);
+    assert!(matches!(&why[..], [one] if one.contains("is not added to the scene")), "{why:?}");
+    assert_eq!(step(&mut renderer), [""; 0], "it is said once");
+    let gone = light(&mut renderer, 7);
+    renderer.app().world_mut().despawn(gone);
+    (0..2).for_each(|_| assert_eq!(step(&mut renderer), [""; 0]));
+    assert_eq!(light(&mut renderer, MAX_LIGHTS - 1), spot);
+    assert_eq!(renderer.app().world().resource::<CurrentScene>().0.lights.len(), MAX_LIGHTS);
+}
+
+#[test]
+fn last_parts_that_a_system_deletes_in_each_frame_give_one_message() {
+    let mut renderer = renderer(close_up("sphere", "point"));
+    let delete = |renderer: &mut GpuRenderer| {
+        let entities = renderer.app().world().resource::<SceneEntities>();
+        let gone = [Some(entities.lights[0]), Some(entities.objects[0]), entities.observer];
+        gone.into_iter().flatten().for_each(|entity| _ = renderer.app().world_mut().despawn(entity));
+    };
+    let mut said = Vec::new();
+    for _ in 0..5 {
+        delete(&mut renderer);
+        renderer.step();
+        said.extend_from_slice(renderer.app().world().resource::<SceneEntities>().refused());
+    }
+    assert_eq!(said.len(), 3, "{said:?}");
+    // One that goes, since another comes, is no last one.
+    delete(&mut renderer);
+    let spot = (Spot::default(), Transform::from_xyz(6.0, 8.0, 6.0));
+    let spot = renderer.app().world_mut().spawn(spot).id();
+    renderer.step();
+    let entities = renderer.app().world().resource::<SceneEntities>();
+    assert_eq!((&entities.lights[..], entities.refused()), (&[spot][..], &[][..]));
+    delete(&mut renderer);
+    renderer.step();
+    let refused = renderer.app().world().resource::<SceneEntities>().refused();
+    assert!(matches!(refused, [one] if one.contains("last light")), "{refused:?}");
 }
 
 #[test]
