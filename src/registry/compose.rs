@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use crate::{
     light::LightEntry,
     optics::albedo::NODES,
-    parameter::Values,
+    parameter::{Parameter, Values},
     reflection::{Ambient, Family, ModelEntry},
     shader::{
         Source,
@@ -72,29 +72,37 @@ const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parame
 }
 ";
 
+/// The values of a struct of parameters in WGSL, from its [`words`](crate::parameter::words): `word` reads the one of an index as a
+/// type.
+fn values(parameters: &[Parameter], word: impl Fn(usize, &str) -> String) -> String {
+    let mut at = 0;
+    let mut next = |kind: &str| {
+        at += 1;
+        word(at - 1, kind)
+    };
+    let fields: Vec<_> = parameters
+        .iter()
+        .map(|p| match p.wgsl_type() {
+            "vec3<f32>" => format!("vec3({})", [(); 3].map(|()| next("f32")).join(", ")),
+            kind => next(kind),
+        })
+        .collect();
+    fields.join(", ")
+}
+
 /// A shading model, after the struct of its parameters and the function that reads them.
 fn push_shading(c: &mut Composer, shading: &ShadingEntry) {
     let all = shading.parameters;
     if !all.is_empty() {
-        let mut at = 0;
-        let mut next = |kind: &str| {
-            let number =
-                format!("parameter_table[object_row].shading[{}u].{}", at / 4, ["x", "y", "z", "w"][at % 4]);
-            at += 1;
-            format!("bitcast<{kind}>({number})")
+        let word = |i: usize, kind: &str| {
+            let component = ["x", "y", "z", "w"][i % 4];
+            format!("bitcast<{kind}>(parameter_table[object_row].shading[{}u].{component})", i / 4)
         };
-        let fields: Vec<_> = all
-            .iter()
-            .map(|p| match p.wgsl_type() {
-                "vec3<f32>" => format!("vec3({})", [(); 3].map(|()| next("f32")).join(", ")),
-                kind => next(kind),
-            })
-            .collect();
         let name = shading::PARAMETERS;
         let text = format!(
             "{}fn shading_parameters() -> {name} {{\n    return {name}({});\n}}\n",
             parameter_struct(name, all),
-            fields.join(", ")
+            values(all, word)
         );
         c.push("(parameters of the shading model)", &text);
     }
@@ -129,23 +137,13 @@ fn incident(light: Light, p: vec3<f32>) -> Incident {
 ",
     );
     for light in lights {
-        let mut at = 0;
-        let mut next = |function: &str| {
-            at += 1;
-            format!("{function}(light, {}u)", at - 1)
+        let word = |i: usize, kind: &str| match kind {
+            "u32" => format!("light_word(light, {i}u)"),
+            _ => format!("light_number(light, {i}u)"),
         };
-        let fields: Vec<_> = light
-            .parameters
-            .iter()
-            .map(|p| match p.wgsl_type() {
-                "u32" => next("light_word"),
-                "vec3<f32>" => format!("vec3({})", [(); 3].map(|()| next("light_number")).join(", ")),
-                _ => next("light_number"),
-            })
-            .collect();
-        let parameters = match fields.as_slice() {
+        let parameters = match light.parameters {
             [] => String::new(),
-            _ => format!("{}({}), ", light.parameter_struct(), fields.join(", ")),
+            all => format!("{}({}), ", light.parameter_struct(), values(all, word)),
         };
         let (index, id) = (light.index, light.declaration.id);
         let _ = writeln!(text, "        case {index}u: {{ return incident_{id}(light, {parameters}p); }}");

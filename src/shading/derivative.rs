@@ -10,7 +10,6 @@ parameters! {
     /// On the GPU the normal is `normalize(dpdy(P) × dpdx(P))`; within a plane triangle that is the exact triangle normal,
     /// which the CPU renderer uses. Needs no normals in the mesh; tangents are interpolated. Looks faceted like flat
     /// shading, but the light varies within each facet.
-    /// flat shading, but the light varies within each facet.
     pub struct Derivative {}
 }
 

@@ -78,8 +78,8 @@ pub trait SceneFormat: Send + Sync + 'static {
     }
 }
 
-/// The writer of a format of scene files. Formats from outside need not be lossless: what they write is read again
-/// before it replaces a file, and refused if it is another scene.
+/// The writer of a format of scene files. It need not be lossless: but for JSON, what is written is read again before it
+/// replaces a file, and refused if it is another scene.
 pub trait SceneWriter {
     /// The content of a file with a valid scene.
     ///
