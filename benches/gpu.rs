@@ -58,6 +58,15 @@ fn grid(count: usize) -> Scene {
     Scene { objects, observer, ..Scene::default() }
 }
 
+/// Eight spheres that have about as many triangles together, 2.1 million, as ten thousand of [`grid`].
+fn fine() -> Scene {
+    let mut scene = grid(8);
+    for object in &mut scene.objects {
+        object.tessellation = Some(256);
+    }
+    scene
+}
+
 fn lit(count: usize) -> Scene {
     let lights = (0..count)
         .map(|i| Light {
@@ -82,6 +91,9 @@ fn frames(criterion: &mut Criterion) {
         let mut renderer = renderer(grid(count));
         group.bench_function(BenchmarkId::new("objects", count), |b| b.iter(|| frame(&mut renderer)));
     }
+    let mut few = renderer(fine());
+    group.bench_function("triangles of 10000 objects in 8", |b| b.iter(|| frame(&mut few)));
+    drop(few);
     for count in [1, 16, 256] {
         let mut renderer = renderer(lit(count));
         group.bench_function(BenchmarkId::new("lights, Phong shading", count), |b| {

@@ -26,7 +26,8 @@ fn default_scene(c: &mut Criterion) {
     group.bench_function("png", |b| {
         b.iter(|| {
             let mut file = Vec::new();
-            png::encode(&mut file, settings.width, settings.height, black_box(&rgb), &[]).unwrap();
+            png::encode(&mut file, settings.width, settings.height, black_box(&rgb), &png::About::default())
+                .unwrap();
             file
         });
     });

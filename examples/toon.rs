@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let settings = Settings { width: 640, height: 360, ..Settings::default() };
     let picture = reference::render_rgb8(&scene, &registry, &settings);
     let path = Path::new("renders/toon.png");
-    png::write(path, settings.width, settings.height, &picture, &[])?;
+    png::write(path, settings.width, settings.height, &picture, &png::About::default())?;
     println!("wrote {}", path.display());
     Ok(())
 }

@@ -13,8 +13,10 @@
 //! The outside of the program:
 //!
 //! - [`text`]: words for messages, and JSON whose values know their place.
+//! - [`lettering`]: text in pictures.
 //! - [`files`]: every read and write: size limits, atomic replacement.
 //! - [`failure`]: why a command failed, and its exit status.
+//! - [`progress`]: how far some work is, and the wish to stop it.
 //! - [`signals`]: Ctrl+C and termination signals.
 //! - [`watch`]: file watching.
 //!
@@ -32,10 +34,14 @@
 //!
 //! - [`scene`]: the scene as a value; reading, checking and writing JSON.
 //! - [`document`]: the one writer of the scene: edits, checks, undo and redo.
+//! - [`caption`]: pictures in words, and the strip below a picture that says them.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
+//! - [`compare`]: pictures compared: layouts of views, maps of differences, numbers.
+//! - [`matching`]: the parameters of one view that come nearest to another.
 //! - [`library`]: the shader library: the files of all shader texts, and their errors.
 //! - [`recovery`]: crash recovery of unsaved work.
 //! - [`render`]: drawing with Bevy.
+//! - [`export`]: a scene as code: projects, shader files, pages, programs.
 //!
 //! The program:
 //!
@@ -55,8 +61,11 @@ pub use glam;
 
 pub mod text;
 
+pub mod lettering;
+
 pub mod failure;
 pub mod files;
+pub mod progress;
 pub mod signals;
 pub mod watch;
 
@@ -77,10 +86,18 @@ pub mod scene;
 
 pub mod document;
 
+pub mod caption;
+
+pub mod reference;
+
+pub mod compare;
+pub mod matching;
+
 pub mod library;
 pub mod recovery;
-pub mod reference;
 pub mod render;
+
+pub mod export;
 
 pub mod panel;
 pub mod window;

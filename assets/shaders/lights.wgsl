@@ -16,19 +16,17 @@ struct Light {
     direction: vec3<f32>,
     intensity: f32,
     colour: vec3<f32>,
-    // Where its own parameters begin in `Illumination.words`.
+    // Where its own parameters begin in `light_words`.
     first_word: u32,
 }
 
-// All lights of the scene, the display settings, and behind them as words: the parameters of the lights one after the
-// other, and the numbers of the files that they name.
+// All lights of the scene and the display settings, small enough for any uniform buffer: 12 304 of at least 16 384 bytes.
 struct Illumination {
     count: u32,
     terms: u32,
     exposure: f32,
     gamma_naive: u32,
     lights: array<Light, MAX_LIGHTS>,
-    words: array<u32>,
 }
 
 // The light that arrives at a point from one light, for red, green and blue: from the direction l, or, if

@@ -7,7 +7,9 @@ fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec
     let v = eye - 2.0 * min(dot(normal, eye), 0.0) * normal;
     let frame = frame_new(normal, tangent);
     var colour = vec3(0.0);
-    for (var i = 0u; i < min(illumination.count, MAX_LIGHTS); i++) {
+    let count = min(illumination.count, MAX_LIGHTS);
+    let selection = illumination.terms;
+    for (var i = 0u; i < count; i++) {
         let light = illumination.lights[i];
         let arriving = incident(light, position);
         var terms: Terms;
@@ -16,7 +18,7 @@ fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec
         } else {
             terms = response(arriving.l, v, frame, parameters);
         }
-        colour += select_terms(terms, illumination.terms) * arriving.intensity * light.colour;
+        colour += select_terms(terms, selection) * arriving.intensity * light.colour;
     }
     return colour;
 }

@@ -6,10 +6,17 @@
 // The parameters of all objects with the model, and values derived from them; an object's row is its
 // mesh tag.
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> parameter_table: array<Row>;
-@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
+@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> illumination: Illumination;
+// The parameters of the lights one after the other, and behind them the numbers of the files that they name.
+@group(#{MATERIAL_BIND_GROUP}) @binding(2) var<storage, read> light_words: array<u32>;
 
 // The largest half float; the twin of `BRIGHTEST` in src/optics/tone.rs.
 const BRIGHTEST: f32 = 65504.0;
+
+// The opacity of a pixel whose channels ask for more than an 8-bit display can show: 254 of 255, which nobody sees, but
+// which can be counted. Exactly white is not cut off, even if half floats round it.
+const CUT_OFF: f32 = 254.0 / 255.0;
+const WHITE: f32 = 1.0005;
 
 // The parameters of the object being drawn.
 var<private> parameters: Parameters;
@@ -78,10 +85,12 @@ fn fragment(in: Stages) -> @location(0) vec4<f32> {
     let light = shade_pixel(passed) * illumination.exposure;
     // Values beyond the target's half floats would become infinite, and black in tone mapping.
     let linear = clamp(light, vec3(-BRIGHTEST), vec3(BRIGHTEST));
-    if illumination.gamma_naive != 0u {
-        // The display encodes its input; decoding first undoes that, and the numbers stay unchanged.
-        let c = clamp(linear, vec3(0.0), vec3(1.0));
-        return vec4(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b), 1.0);
-    }
-    return vec4(linear, 1.0);
+#ifdef GAMMA_NAIVE
+    // The display encodes its input; decoding first undoes that, and the numbers stay unchanged.
+    let c = clamp(linear, vec3(0.0), vec3(1.0));
+    let opacity = select(1.0, CUT_OFF, any(linear >= vec3(1.0)));
+    return vec4(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b), opacity);
+#else
+    return vec4(linear, select(1.0, CUT_OFF, any(linear > vec3(WHITE))));
+#endif
 }

@@ -61,10 +61,42 @@ look_for_graphics() {
     have_library libXrandr.so.2 || need libxrandr2 "the size of screens"
 }
 
+# True if EGL finds a driver.
+have_egl_driver() {
+    local folder
+    for folder in /usr/share/glvnd/egl_vendor.d /etc/glvnd/egl_vendor.d /run/opengl-driver/share/glvnd/egl_vendor.d; do
+        compgen -G "$folder/*.json" >/dev/null && return 0
+    done
+    return 1
+}
+
+# Looks for the requirements of the OpenGL program that the lab is raced against.
+look_for_opengl() {
+    [[ $(uname -s) == Linux ]] || return 0
+    have_library libEGL.so.1 || need libegl1 "OpenGL without a window, to race against"
+    have_egl_driver || need libegl-mesa0 "the driver for it"
+    compgen -G "/usr/lib/*/dri/swrast_dri.so" >/dev/null || have_library libgallium ||
+        need libgl1-mesa-dri "OpenGL in software"
+}
+
 # Looks for a virtual screen, for the tests of the window.
 look_for_virtual_screen() {
     [[ $(uname -s) == Linux ]] || return 0
     have Xvfb || need xvfb "a virtual screen for the tests of the window"
+}
+
+# Looks for other compilers of shaders, for the tests of exports.
+look_for_shader_compilers() {
+    [[ $(uname -s) == Linux ]] || return 0
+    have glslangValidator || need glslang-tools "a second opinion on exported GLSL and HLSL"
+    have spirv-val || need spirv-tools "a second opinion on exported SPIR-V"
+}
+
+# Looks for a browser, for the tests of web pages.
+look_for_browser() {
+    [[ $(uname -s) == Linux ]] || return 0
+    have chromium || need chromium "a browser for the tests of web pages"
+    have chromedriver || need chromium-driver "the same, driven by tests"
 }
 
 run_or_show() {
@@ -106,13 +138,13 @@ install_missing() {
 say_elsewhere() {
     if have dnf; then
         say "Fedora: sudo dnf install gcc vulkan-loader mesa-vulkan-drivers libxkbcommon-x11 libX11-xcb \\"
-        say "          libXcursor libXi libXrandr xorg-x11-server-Xvfb"
+        say "          libXcursor libXi libXrandr xorg-x11-server-Xvfb glslang spirv-tools chromium chromedriver"
     elif have pacman; then
         say "Arch: sudo pacman -S --needed gcc vulkan-icd-loader vulkan-swrast libxkbcommon-x11 libx11 \\"
-        say "        libxcursor libxi libxrandr xorg-server-xvfb"
+        say "        libxcursor libxi libxrandr xorg-server-xvfb glslang spirv-tools chromium"
     elif have zypper; then
         say "openSUSE: sudo zypper install gcc libvulkan1 libvulkan_lvp libxkbcommon-x11-0 libX11-xcb1 \\"
-        say "            libXcursor1 libXi6 libXrandr2 xorg-x11-server-Xvfb"
+        say "            libXcursor1 libXi6 libXrandr2 xorg-x11-server-Xvfb glslang-devel spirv-tools chromium chromedriver"
     elif [[ $(uname -s) == Darwin ]]; then
         say "macOS: xcode-select --install"
     else

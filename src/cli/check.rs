@@ -39,19 +39,20 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let mut listed = String::new();
     let mut invalid = 0;
     for path in &arguments.scenes {
-        let source = Source::of(Some(path));
+        let source = Source::named(path);
         let mut problems = Vec::new();
         match source.read(workshop, defaults) {
             Ok(loaded) => {
                 let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
                 // Writing to a String cannot fail.
-                let _ = writeln!(
-                    listed,
-                    "{}: valid: {}, {}",
-                    source.name(),
+                let mut counts = vec![
                     counted(loaded.scene.lights.len(), "light"),
                     counted(loaded.scene.objects.len(), "object"),
-                );
+                ];
+                if !loaded.scene.variants.is_empty() {
+                    counts.push(counted(loaded.scene.variants.len(), "variant"));
+                }
+                let _ = writeln!(listed, "{}: valid: {}", source.name(), counts.join(", "));
             }
             Err(error) => {
                 invalid += 1;

@@ -3,7 +3,14 @@
 //! Results go to standard output, errors to standard error, one line each. The exit status gives the kind of error: see
 //! [`Failure`]. Nothing heavy happens here: a command starts the renderer or window that it needs.
 
-use crate::{failure::Failure, files::printable, registry::Registry, scene::load::Defaults};
+use crate::{
+    export::payload,
+    failure::Failure,
+    files::{self, printable},
+    parameter::outside,
+    registry::Registry,
+    scene::load::Defaults,
+};
 use std::{
     ffi::OsString,
     fmt,
@@ -22,11 +29,15 @@ mod albedo;
 mod angles;
 mod assets;
 mod check;
+mod compare;
 mod custom;
 mod evaluate;
+mod export;
+mod matching;
 mod models;
 mod new;
 mod outputs;
+mod pictures;
 mod render;
 #[cfg(target_os = "linux")]
 mod runtime_folder;
@@ -34,6 +45,7 @@ mod scenes;
 mod study;
 mod trial;
 mod view;
+mod views;
 mod workshop;
 
 /// A laboratory for the equations that light a surface: see, compare, edit and test reflection models.
@@ -77,6 +89,9 @@ struct Options {
     /// Reject scenes without scene size, reflection model or shading model, without asking
     #[arg(long, global = true)]
     no_defaults: bool,
+    /// Let scenes read files outside their folders
+    #[arg(long, global = true)]
+    allow_outside: bool,
     /// Print only results and errors
     #[arg(long, short, global = true, conflicts_with = "verbose")]
     quiet: bool,
@@ -92,7 +107,7 @@ impl Options {
     /// The program that tries shaders in a process of its own: this one. None where the arguments are not those of the
     /// process, since such a program may not read them when it is started again.
     fn trial_program(self) -> Option<PathBuf> {
-        trial::program().filter(|_| self.restarts)
+        files::program().filter(|_| self.restarts)
     }
 
     /// The answer of the flags to missing parts, if they give one.
@@ -125,6 +140,10 @@ enum Command {
     View(view::Arguments),
     /// Render scenes to PNG files
     Render(render::Arguments),
+    /// Compare two views of a scene, two scenes or two pictures: numbers as JSON, and a picture
+    ///
+    /// Without B, the scene is compared with its own variant. Prints RMSE, PSNR, SSIM, FLIP and the largest difference.
+    Compare(compare::Arguments),
     /// Check scenes and print every problem
     Check(check::Arguments),
     /// Write the default scene to a new file
@@ -132,6 +151,10 @@ enum Command {
         /// File to write; it must not exist yet
         file: PathBuf,
     },
+    /// Write a scene as code: a project, shaders, a page, a program, a scene for another renderer
+    Export(export::Arguments),
+    /// Find the parameters of a view that come nearest to view A
+    Match(matching::Arguments),
     /// List the reflection models with their laws and parameters; write and check custom models
     Models(models::Arguments),
     /// Copy the built-in shaders and example models to a folder for editing
@@ -216,9 +239,16 @@ pub fn run_with(
         }
     };
     cli.options.restarts = arguments.iter().eq(&std::env::args_os().collect::<Vec<_>>());
+    match payload::inside() {
+        Ok(inside) => cli.places = cli.places.with(inside),
+        Err(error) => return ended(Err(Failure::Invalid(error.to_string()))),
+    }
     #[cfg(target_os = "linux")]
     if cli.may_draw() {
         runtime_folder::provide();
+    }
+    if cli.options.allow_outside {
+        outside::allow_all();
     }
     let mut registry = Registry::builtin();
     types(&mut registry);
@@ -262,8 +292,17 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
         Some(Command::Render(arguments)) => {
             render::run(&arguments, options, &mut places.open(options, known)?)
         }
+        Some(Command::Compare(arguments)) => {
+            compare::run(&arguments, options, &mut places.open(options, known)?)
+        }
         Some(Command::Check(arguments)) => check::run(&arguments, options, &mut places.open(options, known)?),
         Some(Command::New { file }) => new::run(&file, options, &known),
+        Some(Command::Export(arguments)) => {
+            export::run(&arguments, options, &mut places.open(options, known)?)
+        }
+        Some(Command::Match(arguments)) => {
+            matching::run(&arguments, options, &mut places.open(options, known)?)
+        }
         Some(Command::Models(arguments)) => models::run(arguments, options, places, known),
         Some(Command::Assets(command)) => assets::run(&command, options, &known),
         Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &mut places.open(options, known)?),

@@ -7,13 +7,7 @@ use crate::{failure::Failure, files, registry::Registry};
 
 /// The inputs of a command: scenes, and the files from which its registry was read.
 pub(super) fn inputs<'a>(scenes: impl IntoIterator<Item = &'a Path>, registry: &Registry) -> Vec<PathBuf> {
-    let models = registry.custom_models().map(|(_, path)| path.to_owned());
-    // Looking for each of many models' files among all of them would take a while.
-    let shaders = registry.sources().edited().filter_map(|source| match source.strip_prefix("models/") {
-        Some(file) => Some(registry.custom_folder()?.join(file)),
-        None => registry.path_on_disk(source),
-    });
-    scenes.into_iter().map(Path::to_owned).chain(models).chain(shaders).collect()
+    scenes.into_iter().map(Path::to_owned).chain(registry.files_on_disk()).collect()
 }
 
 /// Refuses a picture that would replace an input, or a file that is no picture. Called before anything is drawn.

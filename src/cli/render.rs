@@ -15,9 +15,12 @@ use super::{
     outputs::{self, inputs},
     progress,
     scenes::Source,
+    views::{self, Part, Plan},
     workshop::{Workshop, drawable, invalid, not_followed_on_cpu, not_on_cpu},
 };
 use crate::{
+    caption,
+    compare::{Cell, Shown, compose},
     failure::Failure,
     files::{Kind, is_descriptor, kind as kind_on_disk, printable},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
@@ -27,14 +30,14 @@ use crate::{
     render::{
         capture::{
             gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
-            png,
+            png::{self, About},
         },
         trial::{
             Bench,
             process::{Budget, TrialProcess},
         },
     },
-    scene::{Scene, check},
+    scene::{Comparison, Scene, check, comparison::Layout},
     text::quoted,
 };
 
@@ -76,6 +79,18 @@ pub(super) struct Arguments {
     /// Show only one term of the reflection model's equation
     #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
     term: TermSelection,
+    /// Add a strip below the picture that says what it shows; the height of the strip is added to that of --size
+    #[arg(long)]
+    caption: bool,
+    /// Draw this view alone: A, B, C or D, or the name of a variant
+    #[arg(long, value_name = "VIEW", conflicts_with = "layout")]
+    view: Option<String>,
+    /// Arrange the views so, instead of as the scene says: single, side_by_side, wipe, difference or blink
+    #[arg(long, value_parser = views::layout)]
+    layout: Option<Layout>,
+    /// Leave the scene out of the picture's file: lcm cannot open the picture then
+    #[arg(long)]
+    no_scene: bool,
 }
 
 /// The choice of renderer.
@@ -97,7 +112,7 @@ pub(super) struct Size {
 }
 
 /// The longest side of a picture in pixels: the usual limit of GPUs.
-const MAX_SIDE: u32 = 16_384;
+pub(super) const MAX_SIDE: u32 = 16_384;
 
 impl FromStr for Size {
     type Err = String;
@@ -112,7 +127,7 @@ impl FromStr for Size {
     }
 }
 
-fn samples(text: &str) -> Result<u32, String> {
+pub(super) fn samples(text: &str) -> Result<u32, String> {
     match text {
         "1" => Ok(1),
         "4" => Ok(4),
@@ -121,7 +136,7 @@ fn samples(text: &str) -> Result<u32, String> {
 }
 
 fn term(text: &str) -> Result<TermSelection, String> {
-    TermSelection::ALL.into_iter().find(|t| t.id() == text).ok_or_else(|| {
+    TermSelection::from_id(text).ok_or_else(|| {
         let known = TermSelection::ALL.map(TermSelection::id);
         let hint = crate::text::nearest(text, known.map(|k| (k, k)).into_iter())
             .map_or_else(String::new, |k| format!("; did you mean {k}?"));
@@ -130,20 +145,22 @@ fn term(text: &str) -> Result<TermSelection, String> {
 }
 
 /// One picture to render.
-pub(super) struct Job<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) source: &'a Source,
-    pub(super) file: &'a Path,
-    pub(super) width: u32,
-    pub(super) height: u32,
-    pub(super) samples: u32,
-    pub(super) terms: TermSelection,
+struct Job<'a> {
+    /// The scene that the picture is of.
+    scene: &'a Scene,
+    plan: &'a Plan,
+    source: &'a Source,
+    file: &'a Path,
+    size: [u32; 2],
+    samples: u32,
+    with_scene: bool,
+    with_caption: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     let sources: Vec<_> = match arguments.scenes.as_slice() {
-        [] => vec![Source::Default],
-        scenes => scenes.iter().map(|s| Source::of(Some(s))).collect(),
+        [] => vec![Source::of(None, workshop)],
+        scenes => scenes.iter().map(|s| Source::named(s)).collect(),
     };
     if sources.iter().filter(|s| **s == Source::Stdin).count() > 1 {
         return Err(Failure::Usage("- can be given once: standard input holds one scene".to_owned()));
@@ -169,18 +186,32 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
 
     let registry = &workshop.registry;
+    let size = [arguments.size.width, arguments.size.height];
+    let mut plans = Vec::with_capacity(sources.len());
+    for (scene, source) in scenes.iter_mut().zip(&sources) {
+        match plan(scene, arguments, size, registry) {
+            Ok(plan) => plans.push(plan),
+            Err(why) => problems.push(format!("{}: {why}", source.name())),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(Failure::Invalid(problems.join("\n")));
+    }
     // By now the registry knows the files of models and shaders.
     let read = inputs(sources.iter().filter_map(Source::file), registry);
     files.iter().try_for_each(|file| outputs::picture(file, &read))?;
-    for scene in &scenes {
-        drawable(registry, scene)?;
+    for part in plans.iter().flat_map(|plan| &plan.parts) {
+        drawable(registry, &part.scene)?;
     }
     // All files are in one folder.
     files.first().into_iter().for_each(|file| outputs::tidy_beside(file));
     let bar = progress(scenes.len() as u64, options);
     let mut painter = Painter::new(arguments.renderer, options.trial_program())?;
-    let by_cpu = scenes.iter().filter(|scene| !painter.takes_gpu(scene, registry));
-    let passed: BTreeSet<_> = by_cpu.flat_map(|scene| not_followed_on_cpu(registry, scene)).collect();
+    let by_cpu = plans.iter().filter(|plan| !painter.takes_gpu(plan, registry));
+    let passed: BTreeSet<_> = by_cpu
+        .flat_map(|plan| &plan.parts)
+        .flat_map(|part| not_followed_on_cpu(registry, &part.scene))
+        .collect();
     if !passed.is_empty() {
         let passed: Vec<_> = passed.iter().map(String::as_str).collect();
         options.tell(format_args!(
@@ -188,7 +219,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             crate::text::listed(&passed, "and")
         ));
     }
-    for ((scene, source), file) in scenes.iter().zip(&sources).zip(&files) {
+    for (((scene, plan), source), file) in scenes.iter().zip(&plans).zip(&sources).zip(&files) {
         bar.set_message(printable(&source.name()).into_owned());
         let folder = file.parent().filter(|f| !f.as_os_str().is_empty());
         if let Some(folder) = folder {
@@ -196,11 +227,17 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
                 Failure::Write(format!("the folder {} could not be created: {e}", folder.display()))
             })?;
         }
-        let Size { width, height } = arguments.size;
-        painter.draw(
-            &Job { scene, source, file, width, height, samples: arguments.samples, terms: arguments.term },
-            registry,
-        )?;
+        let job = Job {
+            scene,
+            plan,
+            source,
+            file,
+            size,
+            samples: arguments.samples,
+            with_scene: !arguments.no_scene,
+            with_caption: arguments.caption,
+        };
+        painter.draw(&job, registry)?;
         bar.inc(1);
         if bar.is_hidden() {
             options.tell(format_args!("wrote {}", file.display()));
@@ -237,39 +274,59 @@ impl Painter {
         Ok(Self { renderer, gpu, trial_program, last: None })
     }
 
-    /// True if the GPU renders a scene.
-    fn takes_gpu(&self, scene: &Scene, registry: &Registry) -> bool {
-        self.gpu || self.renderer == Renderer::Auto && cpu_can_draw(scene, registry).is_err()
+    /// True if the GPU renders the views of a picture.
+    fn takes_gpu(&self, plan: &Plan, registry: &Registry) -> bool {
+        match self.renderer {
+            Renderer::Auto => {
+                let cpu = plan.parts.iter().all(|part| cpu_can_draw(&part.scene, registry).is_ok());
+                !cpu || self.gpu && !plan.needs_light()
+            }
+            Renderer::Gpu | Renderer::Cpu => self.gpu,
+        }
     }
 
     /// Renders one picture.
     fn draw(&mut self, job: &Job, registry: &Registry) -> Outcome {
-        let gpu = self.takes_gpu(job.scene, registry);
-        let rgb8 = if gpu { self.on_gpu(job, registry)? } else { on_cpu(job, registry)? };
+        let gpu = self.takes_gpu(job.plan, registry);
+        if gpu && job.plan.needs_light() {
+            return Err(Failure::NoRenderer(format!(
+                "{}: the GPU renderer draws no difference in linear light; use --renderer cpu, or compare codes",
+                job.source.name()
+            )));
+        }
+        let mut shown = Vec::with_capacity(job.plan.parts.len());
+        for part in &job.plan.parts {
+            shown.push(if gpu { self.on_gpu(job, part, registry)? } else { on_cpu(job, part, registry)? });
+        }
+        let rgb8 = match shown.pop() {
+            Some(only) if shown.is_empty() => only.into_rgb8(),
+            last => {
+                shown.extend(last);
+                compose(&job.plan.comparison, job.size, &shown)
+                    .map_err(|error| Failure::Invalid(format!("{}: {error}", job.source.name())))?
+            }
+        };
         let renderer = if gpu { "GPU" } else { "CPU" };
-        let facts = [
-            ("Software", concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION"))),
-            ("Title", job.scene.name.as_deref().unwrap_or_default()),
-            ("Source", &job.source.name()),
-            ("Reflection model", &job.scene.reflection_model),
-            ("Shading model", &job.scene.shading_model),
-            ("Renderer", renderer),
-        ];
-        png::write(job.file, job.width, job.height, &rgb8, &facts).map_err(|e| match e.kind() {
+        let about =
+            About::scene(job.scene, registry).with("Source", job.source.name()).with("Renderer", renderer);
+        let about = if job.with_scene { about } else { about.without_scene() };
+        let (rgb8, [width, height]) = captioned(job, registry, rgb8);
+        png::write(job.file, width, height, &rgb8, &about).map_err(|e| match e.kind() {
             io::ErrorKind::BrokenPipe => Failure::Closed,
             _ => Failure::Write(format!("{} could not be written: {e}", job.file.display())),
         })
     }
 
-    fn on_gpu(&mut self, job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
-        let key = (job.width, job.height, job.samples);
+    fn on_gpu(&mut self, job: &Job, part: &Part, registry: &Registry) -> Result<Shown, Failure> {
+        let Cell { width, height, .. } = part.cell;
+        let key = (width, height, job.samples);
         let failed = |e: GpuError| match e {
             GpuError::Invalid(_) | GpuError::Endless(_) => e.into(),
             e => Failure::NoRenderer(format!("{}: {e}", job.file.display())),
         };
         // Nothing stops an endless loop on a GPU.
-        for object in job.scene.objects.iter().take(MOST_TRIED) {
-            if let Some(model) = registry.model(job.scene.model_of(object)) {
+        for object in part.scene.objects.iter().take(MOST_TRIED) {
+            if let Some(model) = registry.model(part.scene.model_of(object)) {
                 check_that_it_ends(model, &object.material, Encoding::Srgb).map_err(|e| failed(e.into()))?;
             }
         }
@@ -277,23 +334,40 @@ impl Painter {
             Some((last, renderer)) if *last == key => renderer,
             slot => {
                 let samples = if job.samples == 4 { 4 } else { 1 };
-                let renderer =
-                    GpuRenderer::extended(job.width, job.height, samples, gpu::Output::Display, |app| {
-                        try_apart(app, registry, self.trial_program.clone());
-                        app.insert_resource(registry.clone());
-                    })
-                    .map_err(failed)?;
+                let renderer = GpuRenderer::extended(width, height, samples, gpu::Output::Display, |app| {
+                    try_apart(app, registry, self.trial_program.clone());
+                    app.insert_resource(registry.clone());
+                })
+                .map_err(failed)?;
                 &mut slot.insert((key, renderer)).1
             }
         };
-        renderer.set_scene(job.scene.clone());
-        renderer.set_terms(job.terms);
+        renderer.set_scene(part.scene.clone());
+        renderer.set_terms(part.terms);
         renderer.settle().map_err(failed)?;
         if let Some(problem) = renderer.shader_problem() {
             return Err(invalid(registry, &problem));
         }
-        renderer.read_rgb8().map_err(failed)
+        let rgb8 = renderer.read_rgb8().map_err(failed)?;
+        Shown::of_codes(width, height, rgb8).map_err(|e| failed(GpuError::Copy(e.to_string())))
     }
+}
+
+/// The picture and its size, with a caption if there shall be one.
+fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>) -> (Vec<u8>, [u32; 2]) {
+    if !job.with_caption {
+        return (rgb8, job.size);
+    }
+    let caption = match job.plan.parts.as_slice() {
+        [part] => caption::of_scene(&part.scene, part.terms, registry),
+        parts => {
+            let views: Vec<_> = parts.iter().map(|part| part.cell.view).collect();
+            let terms = parts.first().map(|part| part.terms);
+            let terms = terms.filter(|terms| parts.iter().all(|part| part.terms == *terms));
+            caption::of_views(job.scene, &views, terms, registry)
+        }
+    };
+    caption::draw(&caption, rgb8, job.size)
 }
 
 /// Tries the shaders of users and of other crates in another process, since a driver may not survive them.
@@ -306,17 +380,44 @@ fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
     }
 }
 
-fn on_cpu(job: &Job, registry: &Registry) -> Result<Vec<u8>, Failure> {
-    cpu_can_draw(job.scene, registry)?;
-    let settings =
-        reference::Settings { width: job.width, height: job.height, samples: job.samples, terms: job.terms };
-    let rgb8 = reference::render_rgb8(job.scene, registry, &settings);
+fn on_cpu(job: &Job, part: &Part, registry: &Registry) -> Result<Shown, Failure> {
+    cpu_can_draw(&part.scene, registry)?;
+    let Cell { width, height, .. } = part.cell;
+    let settings = reference::Settings { width, height, samples: job.samples, terms: part.terms };
+    let shown = if job.plan.needs_light() {
+        Shown::of_light(reference::render(&part.scene, registry, &settings), &part.scene.display)
+    } else {
+        let rgb8 = reference::render_rgb8(&part.scene, registry, &settings);
+        Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()))?
+    };
     // An endless function shows only when it runs.
-    cpu_can_draw(job.scene, registry).map(|()| rgb8)
+    cpu_can_draw(&part.scene, registry).map(|()| shown)
+}
+
+/// The views that the picture of a scene shows; what the command line says of them is also said by the scene then.
+fn plan(
+    scene: &mut Scene,
+    arguments: &Arguments,
+    size: [u32; 2],
+    registry: &Registry,
+) -> Result<Plan, String> {
+    if let Some(name) = &arguments.view {
+        let plan = Plan::of_view(scene, views::find(scene, name)?, size, arguments.term, registry);
+        *scene =
+            Scene { variants: Vec::new(), comparison: Comparison::default(), ..plan.parts[0].scene.clone() };
+        return Ok(plan);
+    }
+    if let Some(layout) = arguments.layout {
+        if layout != Layout::Single && scene.variants.is_empty() {
+            return Err(format!("there are no variants for --layout {}", layout.id()));
+        }
+        scene.comparison.layout = layout;
+    }
+    Plan::new(scene, scene.comparison, size, arguments.term, registry)
 }
 
 /// Fails if the CPU renderer is known to lack something that a scene's models need.
-fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
+pub(super) fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
     for model in scene.objects.iter().filter_map(|o| registry.model(scene.model_of(o))) {
         if let Some(why) = model.not_on_cpu() {
             return Err(not_on_cpu(model, &why, "--renderer gpu"));
@@ -411,6 +512,19 @@ fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Fail
     Ok(files)
 }
 
+/// Fails unless `-o` is one picture beside the numbers on standard output.
+pub(super) fn one_picture(path: &Path) -> Outcome {
+    let usage = |why: &str| Failure::Usage(format!("-o {}: {why}", path.display()));
+    let stdout = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
+    if stdout.iter().any(|name| path == Path::new(name)) {
+        return Err(usage("standard output is for the numbers; name a PNG file"));
+    }
+    match kind(path)? {
+        Output::File => Ok(()),
+        Output::Folder => Err(usage("name a PNG file")),
+    }
+}
+
 /// The meaning of `-o`.
 #[derive(Debug, PartialEq, Eq)]
 enum Output {
@@ -458,7 +572,7 @@ mod tests {
     use super::*;
 
     fn named(names: &[&str], output: Option<&str>) -> Result<Vec<String>, String> {
-        let sources: Vec<_> = names.iter().map(|n| Source::of(Some(Path::new(n)))).collect();
+        let sources: Vec<_> = names.iter().map(|n| Source::named(Path::new(n))).collect();
         match files(&sources, output.map(Path::new)) {
             Ok(files) => Ok(files.iter().map(|f| f.display().to_string()).collect()),
             Err(Failure::Usage(what)) => Err(what),

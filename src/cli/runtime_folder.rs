@@ -23,7 +23,7 @@ pub(super) fn provide() {
     if env::var_os(VARIABLE).is_some_and(|folder| usable(&folder)) {
         return;
     }
-    let Some((program, user)) = super::trial::program().zip(std::fs::metadata("/proc/self").ok()) else {
+    let Some((program, user)) = crate::files::program().zip(std::fs::metadata("/proc/self").ok()) else {
         return;
     };
     let mut arguments = env::args_os();

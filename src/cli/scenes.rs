@@ -4,10 +4,15 @@
 use std::{
     io,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
-use super::{Options, ask, workshop::Workshop};
+use super::{
+    Options, ask,
+    workshop::{Workshop, files_inside},
+};
 use crate::{
+    export::payload::{Payload, unpacking},
     failure::Failure,
     scene::{
         Scene,
@@ -17,11 +22,16 @@ use crate::{
     text::listed,
 };
 
+/// The name of the scene inside this program, in messages.
+const INSIDE: &str = "the scene inside this program";
+
 /// The source of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     /// No scene on the command line.
     Default,
+    /// The same, in a program that carries a scene.
+    Inside(Arc<Payload>),
     /// `-`.
     Stdin,
     /// A file.
@@ -29,19 +39,24 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// The source named by an argument.
-    pub(super) fn of(argument: Option<&Path>) -> Self {
-        match argument {
-            None => Self::Default,
-            Some(path) if path == Path::new("-") => Self::Stdin,
-            Some(path) => Self::File(path.to_owned()),
+    /// The source named by an argument; without one, the scene inside this program, or the default scene.
+    pub(super) fn of(argument: Option<&Path>, workshop: &Workshop) -> Self {
+        match (argument, &workshop.inside) {
+            (Some(path), _) => Self::named(path),
+            (None, Some(inside)) => Self::Inside(inside.clone()),
+            (None, None) => Self::Default,
         }
+    }
+
+    /// The source of that name.
+    pub(super) fn named(path: &Path) -> Self {
+        if path == Path::new("-") { Self::Stdin } else { Self::File(path.to_owned()) }
     }
 
     /// The file, if it is one.
     pub(super) fn file(&self) -> Option<&Path> {
         match self {
-            Self::Default | Self::Stdin => None,
+            Self::Default | Self::Inside(_) | Self::Stdin => None,
             Self::File(path) => Some(path),
         }
     }
@@ -50,6 +65,7 @@ impl Source {
     pub(super) fn stem(&self) -> String {
         match self {
             Self::Default => "default".to_owned(),
+            Self::Inside(inside) => inside.about.stem.clone(),
             Self::Stdin => "stdin".to_owned(),
             Self::File(path) => path
                 .file_stem()
@@ -61,6 +77,7 @@ impl Source {
     pub(super) fn name(&self) -> String {
         match self {
             Self::Default => "the default scene".to_owned(),
+            Self::Inside(_) => INSIDE.to_owned(),
             Self::Stdin => load::STDIN.to_owned(),
             Self::File(path) => path.display().to_string(),
         }
@@ -71,6 +88,11 @@ impl Source {
         match self {
             Self::Default => {
                 Ok(Loaded { scene: Scene::default(), missing: Vec::new(), stamp: Stamp::of(&[]) })
+            }
+            Self::Inside(inside) => {
+                // Failing to unpack them was reported when the folders were looked for.
+                let folder = files_inside(inside).ok().flatten().unwrap_or_default();
+                workshop.load_in(&inside.scene, (INSIDE, &folder), defaults)
             }
             Self::Stdin => {
                 workshop.load(&load::all_of(io::stdin().lock(), load::STDIN)?, load::STDIN, defaults)
@@ -84,7 +106,7 @@ impl Source {
 
     /// Reads it, with questions where needed.
     pub(super) fn open(&self, workshop: &mut Workshop, options: Options) -> Result<Scene, Failure> {
-        let invalid = |e: LoadError| Failure::Invalid(e.to_string());
+        let invalid = |e: LoadError| Failure::Invalid(self.with_remedy(e.to_string()));
         match self.read(workshop, options.defaults()) {
             Ok(Loaded { scene, missing, .. }) if missing.is_empty() => Ok(scene),
             Ok(Loaded { scene, missing, .. }) => {
@@ -104,6 +126,18 @@ impl Source {
                 Some(true) => Ok(Scene::default()),
             },
             Err(error) => Err(invalid(error)),
+        }
+    }
+
+    /// A message, with what helps if it is about a file that this program unpacked.
+    fn with_remedy(&self, message: String) -> String {
+        let folder = match self {
+            Self::Inside(inside) => files_inside(inside).ok().flatten(),
+            _ => None,
+        };
+        match folder.filter(|folder| message.contains(&*folder.to_string_lossy())) {
+            Some(folder) => format!("{message}; {}", unpacking(&folder)),
+            None => message,
         }
     }
 }

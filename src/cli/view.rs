@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use bevy::app::App;
-use clap::Args;
+use clap::{Args, CommandFactory as _};
 
 use super::{Options, Outcome, outputs, render::Size, scenes::Source, workshop::Places};
 use crate::{
@@ -23,6 +23,9 @@ pub(super) struct Arguments {
     /// Write the whole window, panels included, to a PNG file before it closes
     #[arg(long, value_name = "FILE", requires = "exit_after")]
     capture: Option<PathBuf>,
+    /// Leave the scene out of that file: lcm cannot open it then
+    #[arg(long, requires = "capture")]
+    no_scene: bool,
     /// Size of the window in pixels
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
@@ -46,8 +49,8 @@ pub(super) fn run(
     window: impl FnOnce(&mut App),
 ) -> Outcome {
     let mut workshop = places.open_for_window(options, known)?;
-    let source = Source::of(arguments.scene.as_deref());
-    let Arguments { exit_after, capture, size, .. } = arguments;
+    let source = Source::of(arguments.scene.as_deref(), &workshop);
+    let Arguments { exit_after, capture, no_scene, size, .. } = arguments;
     if let Some(capture) = &capture {
         outputs::picture(capture, &outputs::inputs(source.file(), &workshop.registry))?;
         let _ = files::tidy(files::folder_of(capture));
@@ -58,7 +61,11 @@ pub(super) fn run(
             let target = files::follow(path).unwrap_or_else(|_| path.clone());
             files::tidy(files::folder_of(&target)).iter().map(ToString::to_string).collect()
         }
-        Source::Default | Source::Stdin => Vec::new(),
+        Source::Default | Source::Inside(_) | Source::Stdin => Vec::new(),
+    };
+    let wanted = match &source {
+        Source::Inside(inside) => inside.about.size,
+        _ => None,
     };
     let Options { verbose, quiet, .. } = options;
     let mut view = crate::window::ViewOptions {
@@ -68,9 +75,10 @@ pub(super) fn run(
         open: None,
         examples: source == Source::Default,
         use_defaults: options.defaults() == Defaults::Use,
-        size: size.map(|s| [s.width, s.height]),
+        size: size.map(|s| [s.width, s.height]).or(wanted),
         exit_after,
         capture,
+        no_scene,
         // The scene decides how much of it is read.
         registry: None,
         trial_program: options.trial_program(),
@@ -106,7 +114,9 @@ pub(super) fn run(
                 Err(error) => return Err(Failure::Invalid(error.to_string())),
             }
         }
-        Source::Default | Source::Stdin => view.scene = source.open(&mut workshop, options)?,
+        Source::Default | Source::Inside(_) | Source::Stdin => {
+            view.scene = source.open(&mut workshop, options)?;
+        }
     }
     view.registry = Some(workshop.registry);
     crate::window::view(view, window)
@@ -114,13 +124,14 @@ pub(super) fn run(
 
 /// `lcm rendr room.json` is a misspelt command, not a scene called rendr.
 fn meant_command(path: &Path) -> Outcome {
-    const COMMANDS: [&str; 10] =
-        ["view", "render", "check", "new", "models", "evaluate", "schema", "albedo", "study", "assets"];
     let Some(word) = path.to_str().filter(|w| !w.contains(['.', '/', '\\'])) else { return Ok(()) };
     if path.exists() {
         return Ok(());
     }
-    match crate::text::nearest(word, COMMANDS.map(|c| (c, c)).into_iter()) {
+    let program = super::Cli::command();
+    let commands =
+        program.get_subcommands().filter(|c| !c.is_hide_set()).map(|c| (c.get_name(), c.get_name()));
+    match crate::text::nearest(word, commands) {
         Some(command) => Err(Failure::Usage(format!(
             "there is no command {word}, and no scene file of that name; did you mean lcm {command}?"
         ))),

@@ -3,6 +3,7 @@
 use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use clap::Args;
@@ -10,6 +11,7 @@ use clap::Args;
 use super::{Options, Outcome, complain};
 use crate::{
     custom::folder::{self, Reading},
+    export::payload::{Payload, PayloadError},
     failure::Failure,
     library::assets::{self, Folders},
     reflection::{Family, ModelEntry},
@@ -37,6 +39,9 @@ pub(super) struct Places {
     /// Read custom models from this folder
     #[arg(long, global = true, value_name = "FOLDER")]
     models: Option<PathBuf>,
+    /// The scene inside this program, and what it needs.
+    #[arg(skip)]
+    inside: Option<Arc<Payload>>,
 }
 
 /// A word quoted for a shell.
@@ -53,6 +58,8 @@ fn pasted(word: &str) -> String {
 /// needs.
 pub(super) struct Workshop {
     pub registry: Registry,
+    /// The scene inside this program.
+    pub inside: Option<Arc<Payload>>,
     options: Options,
     /// A window draws broken models as stand-ins, and reports them itself.
     for_window: bool,
@@ -124,8 +131,18 @@ impl Workshop {
     /// Reads a scene from the content of a file, with the custom models that it names. The declarations of others are
     /// read only if there are problems: the scene may have parameters that they declare, and messages list them.
     pub(super) fn load(&mut self, bytes: &[u8], name: &str, defaults: Defaults) -> Result<Loaded, LoadError> {
+        self.load_in(bytes, (name, Path::new(name).parent().unwrap_or(Path::new(""))), defaults)
+    }
+
+    /// The same, with the folder of the files that the scene names.
+    pub(super) fn load_in(
+        &mut self,
+        bytes: &[u8],
+        (name, folder): (&str, &Path),
+        defaults: Defaults,
+    ) -> Result<Loaded, LoadError> {
         loop {
-            let loaded = load::from_bytes(bytes, name, &self.registry, defaults);
+            let loaded = load::in_folder(bytes, (name, folder), &self.registry, defaults);
             let named: BTreeSet<String> = match &loaded {
                 Ok(loaded) => loaded.scene.models().into_iter().map(str::to_owned).collect(),
                 Err(LoadError::Invalid { .. } | LoadError::Missing { .. }) => {
@@ -155,10 +172,24 @@ impl Places {
             .collect()
     }
 
-    /// The folders.
+    /// The same, in a program with a scene inside.
+    pub(super) fn with(self, inside: Option<Payload>) -> Self {
+        Self { inside: inside.map(Arc::new), ..self }
+    }
+
+    /// The folders. Where a program carries a scene, its shaders and models are what `--assets` would name.
     pub(super) fn folders(&self) -> Result<Folders, Failure> {
-        Folders::find(self.assets.as_deref(), self.models.as_deref())
-            .map_err(|e| Failure::Usage(e.to_string()))
+        let find = |assets: Option<&Path>| {
+            Folders::find(assets, self.models.as_deref()).map_err(|e| Failure::Usage(e.to_string()))
+        };
+        let (None, Some(inside)) = (self.assets.as_deref(), &self.inside) else {
+            return find(self.assets.as_deref());
+        };
+        let carried = files_inside(inside)?;
+        let below = |name: &str| carried.as_ref().map(|folder| folder.join(name)).filter(|f| f.is_dir());
+        let usual = || assets::data_folder().map(|data| data.join("models"));
+        let models = self.models.clone().or_else(|| below("models")).or_else(usual);
+        Ok(Folders { shaders: below("shaders"), models, extensions: Vec::new() })
     }
 
     /// Reads the shaders, for a registry that knows all but custom models; one that cannot be read is an error. Custom models are read when they are needed.
@@ -189,7 +220,12 @@ impl Places {
         }
         assets::read_extensions(&mut registry)
             .map_err(|problems| Failure::Invalid(all_annotated(&problems)))?;
-        Ok(Workshop { registry, options, for_window: false, tried: BTreeSet::new() })
+        Ok(self.workshop(registry, options, false))
+    }
+
+    fn workshop(&self, registry: Registry, options: Options, for_window: bool) -> Workshop {
+        let inside = self.inside.clone();
+        Workshop { registry, inside, options, for_window, tried: BTreeSet::new() }
     }
 
     /// Reads what a window needs at the start: the declarations of all custom models, since it lists them. Models that
@@ -208,8 +244,19 @@ impl Places {
             // The window itself reports problems.
             let _ = folder::declare_folder(models, &mut registry);
         }
-        Ok(Workshop { registry, options, for_window: true, tried: BTreeSet::new() })
+        Ok(self.workshop(registry, options, true))
     }
+}
+
+/// The folder of the files that travelled inside this program; none if there are none.
+pub(super) fn files_inside(inside: &Payload) -> Result<Option<PathBuf>, Failure> {
+    let within = assets::data_folder().map_or_else(std::env::temp_dir, |data| data.join("inside"));
+    inside.folder(&within).map_err(|error| match error {
+        PayloadError::Packed { .. } => {
+            Failure::Write(format!("{error}; {} names another folder", assets::DATA_VARIABLE))
+        }
+        error => Failure::Invalid(error.to_string()),
+    })
 }
 
 /// Problems, one below the other.
@@ -316,7 +363,8 @@ mod tests {
     #[test]
     fn folders_are_repeated_so_that_a_shell_takes_them() {
         let flags = |assets: Option<&str>, models: Option<&str>| {
-            Places { assets: assets.map(PathBuf::from), models: models.map(PathBuf::from) }.flags()
+            Places { assets: assets.map(PathBuf::from), models: models.map(PathBuf::from), inside: None }
+                .flags()
         };
         assert_eq!(flags(None, None), "");
         assert_eq!(flags(Some("assets"), None), " --assets assets");

@@ -10,9 +10,12 @@ use super::{
     names::{light_type, object_type},
 };
 use crate::{
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::Value,
     registry::Registry,
-    scene::{Display, Light, Object, Observer, SceneSize, check},
+    scene::{
+        Comparison, Display, Light, Object, Observer, Scene, SceneSize, Variant, check, variant::LETTERS,
+    },
 };
 
 /// A change of the scene.
@@ -36,6 +39,82 @@ pub enum Edit {
     Light(usize, LightField),
     /// A field of an object.
     Object(usize, ObjectField),
+    /// A field of a variant.
+    Variant(usize, VariantField),
+    /// All variants, where some come, go or change places, with the comparison of the views then.
+    Views {
+        /// The variants.
+        variants: Vec<Variant>,
+        /// The comparison.
+        comparison: Comparison,
+        /// The name of the step.
+        step: &'static str,
+    },
+    /// The way in which views are compared.
+    Comparison(Comparison),
+}
+
+/// A field of a variant with its new value; `None` where it is inherited.
+#[derive(Clone, Debug, PartialEq)]
+pub enum VariantField {
+    /// The name; empty for none.
+    Name(String),
+    /// The reflection model of every object.
+    Model(Option<String>),
+    /// The shading model of every object.
+    ShadingModel(Option<String>),
+    /// A parameter of the material of every object.
+    Material(&'static str, Option<Value>),
+    /// Several parameters at once: those of a match, or of a measured material.
+    Materials(Vec<(&'static str, Value)>, &'static str),
+    /// The terms that are shown.
+    Terms(Option<TermSelection>),
+    /// The tone mapping.
+    ToneMapping(Option<ToneMapping>),
+    /// The exposure.
+    Exposure(Option<f32>),
+    /// The encoding.
+    Encoding(Option<Encoding>),
+    /// The tessellation of every object.
+    Tessellation(Option<u32>),
+}
+
+impl VariantField {
+    /// Its name within that of a step.
+    fn label(&self, registry: &Registry) -> String {
+        match self {
+            Self::Name(_) => "Name",
+            Self::Model(_) => "Reflection model",
+            Self::ShadingModel(_) => "Shading model",
+            Self::Material(id, _) => registry.material_parameter(id).map_or(*id, |p| p.label),
+            Self::Materials(_, what) => what,
+            Self::Terms(_) => "Terms",
+            Self::ToneMapping(_) => "Tone mapping",
+            Self::Exposure(_) => "Exposure",
+            Self::Encoding(_) => "Encoding",
+            Self::Tessellation(_) => "Tessellation",
+        }
+        .to_owned()
+    }
+
+    /// Gives a variant this field.
+    pub(super) fn put(self, variant: &mut Variant) {
+        match self {
+            Self::Name(name) => variant.name = named(&name),
+            Self::Model(id) => variant.reflection_model = id,
+            Self::ShadingModel(id) => variant.shading_model = id,
+            Self::Material(name, Some(value)) => variant.material.set(name, value),
+            Self::Material(name, None) => _ = variant.material.0.remove(name),
+            Self::Materials(all, _) => {
+                all.into_iter().for_each(|(name, value)| variant.material.set(name, value));
+            }
+            Self::Terms(terms) => variant.terms = terms,
+            Self::ToneMapping(tone) => variant.tone_mapping = tone,
+            Self::Exposure(ev) => variant.exposure = ev,
+            Self::Encoding(encoding) => variant.encoding = encoding,
+            Self::Tessellation(count) => variant.tessellation = count,
+        }
+    }
 }
 
 /// A field of a light with its new value.
@@ -186,6 +265,19 @@ impl ObjectField {
     }
 }
 
+/// Gives a variant of a scene a field. Variants based on it follow its name.
+pub(super) fn put_in_variant(scene: &mut Scene, i: usize, field: VariantField) {
+    let Some(variant) = scene.variants.get_mut(i) else { return };
+    let before = variant.name.clone();
+    field.put(variant);
+    let after = variant.name.clone();
+    if before != after && before.is_some() {
+        for other in scene.variants.iter_mut().filter(|other| other.based_on == before) {
+            other.based_on.clone_from(&after);
+        }
+    }
+}
+
 /// The name of a step: "Hide Sphere 1", "Size of Sphere 1".
 fn step(label: &str, part: &str) -> String {
     match label {
@@ -205,7 +297,7 @@ impl Document {
     /// Why it is refused; the scene stays as it is.
     pub fn edit(&mut self, edit: Edit, selection: Selection, registry: &Registry) -> Result<(), String> {
         self.check(&edit, registry)?;
-        let rest = |document: &mut Self, name: &str, change: &mut dyn FnMut(&mut crate::scene::Scene)| {
+        let rest = |document: &mut Self, name: &str, change: &mut dyn FnMut(&mut Scene)| {
             document.change(name, Extent::Rest, selection, change);
         };
         match edit {
@@ -236,6 +328,15 @@ impl Document {
                 rest(self, &step, &mut |s| s.shading_model.clone_from(&id));
             }
             Edit::Observer(observer) => rest(self, "Observer", &mut |s| s.observer = observer),
+            Edit::Variant(i, field) => {
+                let name = step(&field.label(registry), &format!("view {}", LETTERS[i + 1]));
+                rest(self, &name, &mut |s| put_in_variant(s, i, field.clone()));
+            }
+            Edit::Views { variants, comparison, step } => rest(self, step, &mut |s| {
+                s.variants.clone_from(&variants);
+                s.comparison = comparison;
+            }),
+            Edit::Comparison(comparison) => rest(self, "Comparison", &mut |s| s.comparison = comparison),
             Edit::Light(i, LightField::Type(id)) => {
                 self.change_light_type(i, &id, None, selection, registry)?;
             }

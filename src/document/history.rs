@@ -98,8 +98,19 @@ impl<T: Clone + PartialEq> Splice<T> {
 
 /// Everything of a scene but its lights and objects.
 pub(super) fn rest_of(scene: &Scene) -> Scene {
-    let Scene { name, description, scene_size, reflection_model, shading_model, observer, display, .. } =
-        scene;
+    let Scene {
+        name,
+        description,
+        scene_size,
+        reflection_model,
+        shading_model,
+        observer,
+        display,
+        variants,
+        comparison,
+        lights: _,
+        objects: _,
+    } = scene;
     Scene {
         name: name.clone(),
         description: description.clone(),
@@ -110,6 +121,8 @@ pub(super) fn rest_of(scene: &Scene) -> Scene {
         observer: *observer,
         objects: Vec::new(),
         display: *display,
+        variants: variants.clone(),
+        comparison: *comparison,
     }
 }
 

@@ -23,7 +23,7 @@ pub mod names;
 mod rules;
 mod submit;
 
-pub use edit::{Edit, LightField, ObjectField};
+pub use edit::{Edit, LightField, ObjectField, VariantField};
 pub(crate) use history::difference;
 use history::{History, Label, Labels, Patch, rest_of};
 use index::{Index, Visits};

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{Document, Edit, LightField, ObjectField, Selection};
+use super::{Document, Edit, LightField, ObjectField, Selection, edit::put_in_variant};
 use crate::{
     parameter::{Parameter, Value},
     registry::Registry,
@@ -17,6 +17,12 @@ impl Document {
     #[must_use]
     pub fn dimension_limits(&self, axis: usize, registry: &Registry) -> Limits {
         dimension(&self.scene, axis, |part| self.name_of(part, registry))
+    }
+
+    /// True if the rules of scenes allow an edit.
+    #[must_use]
+    pub fn allows(&self, edit: &Edit, registry: &Registry) -> bool {
+        self.check(edit, registry).is_ok()
     }
 
     /// Checks an edit against the rules of scenes, with the limits that widgets show.
@@ -84,6 +90,19 @@ impl Document {
                 place(Selection::Observer, o.position)?;
                 direction(Selection::Observer, o.direction)?;
                 legal("The field of view".to_owned(), o.field_of_view, limits::field_of_view())
+            }
+            Edit::Variant(i, _) if *i >= self.scene.variants.len() => {
+                Err("There is no such variant.".to_owned())
+            }
+            Edit::Variant(i, field) => variants(&self.scene, registry, |scene| {
+                put_in_variant(scene, *i, field.clone());
+            }),
+            Edit::Views { variants: all, comparison, .. } => variants(&self.scene, registry, |scene| {
+                scene.variants.clone_from(all);
+                scene.comparison = *comparison;
+            }),
+            Edit::Comparison(comparison) => {
+                variants(&self.scene, registry, |scene| scene.comparison = *comparison)
             }
             Edit::Light(i, field) => {
                 let light = light(*i)?;
@@ -161,6 +180,14 @@ impl Document {
             }
         }
     }
+}
+
+/// `Ok` if the variants of a scene are legal after a change.
+fn variants(scene: &Scene, registry: &Registry, change: impl FnOnce(&mut Scene)) -> Result<(), String> {
+    let mut after = scene.clone();
+    change(&mut after);
+    let problem = check::variants(&after, registry).into_iter().next();
+    problem.map_or(Ok(()), |problem| Err(format!("{problem}.")))
 }
 
 /// The positions of all parts that have one.

@@ -1,7 +1,7 @@
 //! Replacing files, all or nothing.
 
 use std::{
-    fs::{self, File, Metadata, TryLockError},
+    fs::{self, File, Metadata},
     io::{self, Seek as _, Write},
     path::{Path, PathBuf},
 };
@@ -39,6 +39,8 @@ pub struct Draft {
     file: NamedTempFile,
     /// True if it must be on disk before it takes its place.
     synced: bool,
+    /// True if it becomes a program.
+    executable: bool,
 }
 
 impl Draft {
@@ -61,8 +63,6 @@ impl Draft {
     }
 
     fn beside(path: &Path, synced: bool) -> Result<Self, FileError> {
-        /// Another process that tidies up can delete a file between its creation and its lock.
-        const ATTEMPTS: usize = 16;
         let target = follow(path)?;
         let is_new = existing(&target)?.is_none();
         let mut builder = tempfile::Builder::new();
@@ -75,21 +75,18 @@ impl Draft {
         }
         #[cfg(not(unix))]
         let _ = is_new;
-        for _ in 0..ATTEMPTS {
-            let file = builder.tempfile_in(folder_of(&target))?;
-            let locked = match file.as_file().try_lock() {
-                Ok(()) => true,
-                Err(TryLockError::WouldBlock) => false,
-                // Not every file system has locks; there nobody tidies up.
-                Err(TryLockError::Error(_)) => true,
-            };
-            let there = fs::symlink_metadata(file.path());
-            if locked && there.is_ok_and(|there| file.as_file().metadata().is_ok_and(|m| is_same(&m, &there)))
-            {
-                return Ok(Self { target, file, synced });
-            }
-        }
-        Err(io::Error::other("another process keeps deleting temporary files in its folder").into())
+        let file = litter::locked(
+            || builder.tempfile_in(folder_of(&target)),
+            |file| (file.as_file(), file.path().to_owned()),
+        )?;
+        Ok(Self { target, file, synced, executable: false })
+    }
+
+    /// The same draft, of a program.
+    #[must_use]
+    pub fn executable(mut self) -> Self {
+        self.executable = true;
+        self
     }
 
     /// Puts it in its place, if nothing is there yet.
@@ -98,7 +95,7 @@ impl Draft {
     /// [`io::ErrorKind::AlreadyExists`] if there is something, and any error of the system.
     pub fn create(mut self) -> Result<(), FileError> {
         self.sync()?;
-        let Self { target, file, synced } = self;
+        let Self { target, file, synced, .. } = self;
         // The file stays open, and so locked, until its folder is on disk.
         let _file = file.persist_noclobber(&target).map_err(|e| e.error)?;
         sync_folder(&target, synced);
@@ -121,8 +118,11 @@ impl Draft {
                 return self.overwrite(place, old);
             }
         }
+        if self.executable {
+            make_executable(self.file.as_file())?;
+        }
         self.sync()?;
-        let Self { target, file, synced } = self;
+        let Self { target, file, synced, .. } = self;
         let _file = file.persist(&target).map_err(|e| e.error)?;
         sync_folder(&target, synced);
         Ok(())
@@ -133,7 +133,7 @@ impl Draft {
     fn overwrite(mut self, mut place: File, old: &Metadata) -> Result<(), FileError> {
         self.synced = true;
         self.sync()?;
-        let Self { target, file, .. } = self;
+        let Self { target, file, executable, .. } = self;
         let copy = litter::whole(file.path(), old);
         let mut whole = file.persist(&copy).map_err(|e| e.error)?;
         sync_folder(&target, true);
@@ -141,6 +141,9 @@ impl Draft {
             .rewind()
             .and_then(|()| fill(&mut whole, &mut place))
             .map_err(|error| FileError::Unfinished { copy: copy.clone(), error })?;
+        if executable {
+            make_executable(&place)?;
+        }
         // Done; if the copy cannot be removed, the next tidying recognises it as a copy.
         let _ = fs::remove_file(&copy);
         Ok(())
@@ -160,6 +163,18 @@ impl Write for Draft {
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }
+}
+
+/// Lets everyone run a file who may read it.
+#[cfg_attr(not(unix), allow(unused_variables))]
+pub(super) fn make_executable(file: &File) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        let mode = file.metadata()?.permissions().mode();
+        file.set_permissions(fs::Permissions::from_mode(mode | (mode & 0o444) >> 2))?;
+    }
+    Ok(())
 }
 
 /// Makes an open file equal to another, and waits until that is on disk. Until then its content is a prefix of the

@@ -1,8 +1,8 @@
 //! Cleaning up after killed processes.
 
 use std::{
-    fs::{self, File, Metadata},
-    io::Seek as _,
+    fs::{self, File, Metadata, TryLockError},
+    io::{self, Seek as _},
     path::{Path, PathBuf},
     time::{Duration, UNIX_EPOCH},
 };
@@ -13,6 +13,13 @@ use super::{
     is_same, options, read, read_start,
 };
 
+/// The file in the draft of a folder that is locked while its process lives.
+pub(super) const LOCK: &str = "lock";
+/// The new content in the draft of a folder.
+pub(super) const NEW: &str = "new";
+/// The folder in the draft of a folder with what it replaces, under its name.
+pub(super) const OLD: &str = "old";
+
 /// The prefix of all temporary files. The dot hides them from programs that watch the folder.
 pub(super) const PREFIX: &str = ".lcm-";
 /// The suffix of a draft.
@@ -22,7 +29,7 @@ const WHOLE: &str = ".whole";
 /// The length of the random part of a name.
 const RANDOM: usize = 6;
 /// Files named by older versions have no lock; no write takes this long.
-const OLD: Duration = Duration::from_secs(60);
+const LONG: Duration = Duration::from_secs(60);
 /// No document is larger.
 const LARGEST: u64 = 64 << 20;
 
@@ -120,6 +127,7 @@ pub fn tidy(folder: &Path) -> Vec<Unfinished> {
         let Some(name) = name.to_str().and_then(Name::of) else { continue };
         let path = entry.path();
         match name {
+            Name::Draft if entry.file_type().is_ok_and(|kind| kind.is_dir()) => remove_folder_if_left(&path),
             Name::Draft => remove_if_left(&path),
             Name::OldScene => remove_if_old(&path, b"{\n  \""),
             Name::OldPicture => remove_if_old(&path, b"\x89PNG"),
@@ -148,12 +156,53 @@ fn remove_if_left(path: &Path) {
     }
 }
 
+/// Removes the draft of a folder. What it was about to replace is put back first, if nothing has taken its place.
+fn remove_folder_if_left(path: &Path) {
+    // One without a lock is that of a process killed at once, or of somebody else, who may have put something in it.
+    let Some(lock) = left(&path.join(LOCK)) else { return };
+    let old = fs::read_dir(path.join(OLD)).ok().and_then(|mut entries| entries.next());
+    if let Some(old) = old {
+        let Ok(old) = old else { return };
+        let place = path.with_file_name(old.file_name());
+        if fs::symlink_metadata(&place).is_err() && fs::rename(old.path(), &place).is_err() {
+            return;
+        }
+    }
+    // Not every system deletes open files.
+    drop(lock);
+    let _ = fs::remove_dir_all(path);
+}
+
+/// Makes something temporary with a file that is locked while this process lives.
+pub(super) fn locked<T>(
+    mut make: impl FnMut() -> io::Result<T>,
+    lock: impl Fn(&T) -> (&File, PathBuf),
+) -> io::Result<T> {
+    /// Another process that tidies up can delete a file between its creation and its lock.
+    const ATTEMPTS: usize = 16;
+    for _ in 0..ATTEMPTS {
+        let made = make()?;
+        let (file, path) = lock(&made);
+        let locked = match file.try_lock() {
+            Ok(()) => true,
+            Err(TryLockError::WouldBlock) => false,
+            // Not every file system has locks; there nobody tidies up.
+            Err(TryLockError::Error(_)) => true,
+        };
+        let there = fs::symlink_metadata(path);
+        if locked && there.is_ok_and(|there| file.metadata().is_ok_and(|m| is_same(&m, &there))) {
+            return Ok(made);
+        }
+    }
+    Err(io::Error::other("another process keeps deleting temporary files in its folder"))
+}
+
 /// Removes a file of an older version, if it is empty or begins as such a file does.
 fn remove_if_old(path: &Path, beginning: &[u8]) {
     let Some(lock) = left(path) else { return };
     let age = lock.metadata().and_then(|m| m.modified()).ok().and_then(|at| at.elapsed().ok());
     let Ok(start) = read_start(path, beginning.len() as u64) else { return };
-    if age.is_some_and(|age| age > OLD) && (start.is_empty() || start == beginning) {
+    if age.is_some_and(|age| age > LONG) && (start.is_empty() || start == beginning) {
         let _ = fs::remove_file(path);
     }
 }

@@ -4,18 +4,21 @@
 //! To read:
 //! - [`read`]`(path, limit)`: the content of a regular file, links followed. It never waits: pipes, devices,
 //!   sockets and folders are refused before they are opened, and so are files larger than the limit.
-//! - [`read_start`]: its first bytes.
+//! - [`read_start`]: its first bytes; [`read_range`]: some in the middle.
+//! - [`inside`]: tells whether a path leads out of a folder.
 //! - [`read_input`]: a path from the command line, which may also be a stream, such as a shell's `<(…)`.
 //!
 //! To write:
 //! - [`write()`]`(path, bytes)`: a document, all or nothing, on disk when it returns; [`create`]: the same for a new
 //!   file; [`Draft`]: the same in steps. They keep mode, owner, group, links and hard links, and refuse pipes, devices
 //!   and sockets.
+//! - [`FolderDraft`]: a folder of files, all or nothing.
 //! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] is called before it is
 //!   calculated.
 //! - [`tidy`]: removes the leftovers of killed processes from a folder, and finishes their interrupted writes.
 //!
 //! To report:
+//! - [`words()`]: a failure of the system without its number.
 //! - [`printable`]: a text without the characters that a terminal would act on.
 //!
 //! # How a file is replaced
@@ -34,23 +37,31 @@
 //! and the user is informed.
 
 use std::{
-    fmt,
+    env, fmt,
     fs::{self, File, FileType, Metadata, OpenOptions},
-    io::{self, Read as _},
+    io::{self, Read as _, Seek as _, SeekFrom},
     path::{Path, PathBuf},
 };
 
 mod draft;
+mod folder;
 mod input;
+mod inside;
 mod litter;
 mod output;
 mod shown;
+mod stamp;
+mod words;
 
 pub use draft::{Draft, create, write};
+pub use folder::{FolderDraft, in_folder};
 pub use input::{is_descriptor, is_stream, read_input};
+pub use inside::inside;
 pub use litter::{Unfinished, tidy};
 pub use output::{Output, PNG, Refused, Signature, may_overwrite};
 pub use shown::printable;
+pub use stamp::Stamp;
+pub use words::words;
 
 /// The kind of file that a path leads to, or other thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -119,15 +130,18 @@ pub enum FileError {
     #[error("it is larger than {}", size(*.0))]
     TooLarge(u64),
     /// It was only partly overwritten; the new content is complete in another file.
-    #[error("{error}; it is incomplete now; its complete new content is in {}", .copy.display())]
+    #[error("{}; it is incomplete now; its complete new content is in {}", words(.error), .copy.display())]
     Unfinished {
         /// The file that holds the whole content.
         copy: PathBuf,
         /// The failure of the operating system.
         error: io::Error,
     },
+    /// It is not in the folder in which it must be.
+    #[error("it is outside the folder {}", .0.display())]
+    Outside(PathBuf),
     /// A failure of the operating system.
-    #[error("{0}")]
+    #[error("{}", words(.0))]
     Io(#[from] io::Error),
 }
 
@@ -137,6 +151,7 @@ impl From<FileError> for io::Error {
             FileError::Kind(Kind::Folder) => io::ErrorKind::IsADirectory,
             FileError::Kind(_) => io::ErrorKind::InvalidInput,
             FileError::TooLarge(_) => io::ErrorKind::FileTooLarge,
+            FileError::Outside(_) => io::ErrorKind::PermissionDenied,
             FileError::Unfinished { error, .. } => error.kind(),
             FileError::Io(_) => io::ErrorKind::Other,
         };
@@ -180,9 +195,27 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
 /// # Errors
 /// If it is not a regular file or cannot be read.
 pub fn read_start(path: &Path, length: u64) -> Result<Vec<u8>, FileError> {
+    read_range(path, 0, length)
+}
+
+/// Bytes of a regular file from a position on, links followed: as many as requested, or all there are.
+///
+/// # Errors
+/// If it is not a regular file or cannot be read.
+pub fn read_range(path: &Path, from: u64, length: u64) -> Result<Vec<u8>, FileError> {
+    let (mut file, _) = open_to_read(path)?;
+    file.seek(SeekFrom::Start(from))?;
     let mut bytes = Vec::new();
-    open_to_read(path)?.0.take(length).read_to_end(&mut bytes)?;
+    file.take(length).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// The file of the running program, to start it again or to copy it.
+#[must_use]
+pub fn program() -> Option<PathBuf> {
+    // This name stays valid when the file is replaced or removed, as by a new build.
+    let own = PathBuf::from("/proc/self/exe");
+    if cfg!(target_os = "linux") && own.exists() { Some(own) } else { env::current_exe().ok() }
 }
 
 /// Opens a regular file, and returns its claimed length.

@@ -9,7 +9,7 @@ use bevy::{ecs::component::Component, reflect::Reflectable};
 use glam::Vec3;
 
 use crate::{
-    optics::colour::Encoding,
+    optics::{colour::Encoding, radiometry::Arriving},
     parameter::{Parameter, ParameterSet, Table, TypeComponent, Values, words},
     shader::Source,
 };
@@ -140,6 +140,42 @@ impl<L: LightType> Emitter for L {
     }
 }
 
+/// The number of lights that are calculated together.
+pub const AT_ONCE: usize = 8;
+
+/// Lights of one type, calculated together: the type is asked for once, not for each of them.
+pub trait Emitters: Send + Sync {
+    /// The number of lights.
+    fn count(&self) -> usize;
+
+    /// The light that arrives at `p` from the [`AT_ONCE`] lights from `first` on: the number of those that shine there from
+    /// a direction, which are written to `to`, and the sum of the others, which shine equally from all directions.
+    fn arrive(&self, first: usize, p: Vec3, to: &mut [Arriving; AT_ONCE]) -> (usize, Vec3);
+}
+
+impl<L: LightType> Emitters for Vec<(L, LightRecord)> {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn arrive(&self, first: usize, p: Vec3, to: &mut [Arriving; AT_ONCE]) -> (usize, Vec3) {
+        let (mut count, mut uniform) = (0, Vec3::ZERO);
+        for (emitter, light) in self.iter().skip(first).take(AT_ONCE) {
+            match LightType::incident(emitter, light, p) {
+                // Outside a cone there is nothing to calculate.
+                Incident::From { l, intensity } => {
+                    if intensity != Vec3::ZERO {
+                        to[count] = Arriving { l, light: intensity * light.colour };
+                        count += 1;
+                    }
+                }
+                Incident::Uniform { intensity } => uniform += intensity * light.colour,
+            }
+        }
+        (count, uniform)
+    }
+}
+
 /// A registered light type.
 #[derive(Clone, Copy)]
 pub struct LightEntry {
@@ -151,6 +187,8 @@ pub struct LightEntry {
     pub index: u32,
     /// The type with the parameters of one light.
     pub instantiate: fn(&Values, Encoding) -> Box<dyn Emitter>,
+    /// Several lights of the type.
+    pub group: fn(&[(&Values, LightRecord)], Encoding) -> Box<dyn Emitters>,
     /// Its component.
     pub component: TypeComponent,
     solid_angle: fn(&Values) -> Option<f64>,
@@ -165,6 +203,11 @@ impl LightEntry {
             parameters: L::PARAMETERS,
             index: 0,
             instantiate: |values, encoding| Box::new(L::from_values(values, encoding)),
+            group: |lights, encoding| {
+                let light =
+                    |(values, record): &(&Values, LightRecord)| (L::from_values(values, encoding), *record);
+                Box::new(lights.iter().map(light).collect::<Vec<_>>())
+            },
             component: TypeComponent::of::<L>(),
             solid_angle: |values| L::from_values(values, Encoding::default()).solid_angle(),
         }
@@ -188,10 +231,16 @@ impl LightEntry {
         self.parameters.iter().find(|p| p.name == name)
     }
 
+    /// The parameter that is half the angle, in degrees, of the cone that a gizmo should draw.
+    #[must_use]
+    pub fn cone_parameter(&self) -> Option<&'static Parameter> {
+        self.parameter(self.declaration.cone_parameter?)
+    }
+
     /// Half the angle, in degrees, of the cone that a gizmo should draw.
     #[must_use]
     pub fn cone_angle(&self, values: &Values) -> Option<f32> {
-        Some(values.number(self.parameter(self.declaration.cone_parameter?)?))
+        Some(values.number(self.cone_parameter()?))
     }
 
     /// The parameters of a light as the shader reads them, in order and without padding.

@@ -33,6 +33,12 @@ impl Encoding {
         }
     }
 
+    /// The choice with an id.
+    #[must_use]
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|encoding| encoding.id() == id)
+    }
+
     /// The colour for calculation from an 8-bit colour as written by users.
     #[must_use]
     pub fn decode(self, rgb: [u8; 3]) -> Vec3 {

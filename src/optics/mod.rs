@@ -78,6 +78,12 @@ impl TermSelection {
         }
     }
 
+    /// The selection with an id.
+    #[must_use]
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|terms| terms.id() == id)
+    }
+
     /// Its number in shaders (`TERM_…` in `lights.wgsl`).
     #[must_use]
     pub fn code(self) -> u32 {

@@ -55,6 +55,15 @@ pub fn cone_solid_angle(cone_angle: f32, penumbra: f32) -> f64 {
     2.0 * PI * (inner + outer)
 }
 
+/// The light of one light source as it arrives at a point from one direction, its colour included.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Arriving {
+    /// Unit vector from the point to the light.
+    pub l: Vec3,
+    /// Its intensity at the point, times its colour.
+    pub light: Vec3,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -146,6 +146,12 @@ impl ToneMapping {
         self.about().summary
     }
 
+    /// True if it needs a table of colours; the others are formulas.
+    #[must_use]
+    pub fn is_table(self) -> bool {
+        matches!(self, Self::AgX | Self::TonyMcMapface | Self::BlenderFilmic)
+    }
+
     /// Maps one linear colour; the result is within [0, 1] up to clipping by the display.
     #[must_use]
     pub fn map(self, c: Vec3) -> Vec3 {

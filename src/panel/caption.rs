@@ -5,10 +5,10 @@ use std::{collections::BTreeSet, sync::Arc};
 use bevy_egui::egui::{Color32, FontId, Galley, Pos2, Ui, Vec2, pos2, vec2};
 
 use super::{maths, state::Session, theme};
-use crate::scene::limits::number;
+pub use crate::caption::Part;
 use crate::{
-    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    parameter::{Parameter, ParameterKind, Value},
+    caption::{display, line, single, terms_alone, value},
+    parameter::{Parameter, ParameterKind},
     reflection::usage,
     registry::Registry,
     scene::Object,
@@ -21,43 +21,22 @@ const LINES: usize = 2;
 /// Between parts of the caption.
 const DOT: &str = " · ";
 
-/// Part of the caption; a line is never broken within one.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Part {
-    /// The symbol before the words; often empty.
-    pub symbol: &'static str,
-    /// The words or the number.
-    pub text: String,
-    /// The highest goes first where there is little room; 0 stays.
-    pub rank: u8,
-}
-
-impl Part {
-    fn new(rank: u8, text: impl Into<String>) -> Self {
-        Self { symbol: "", text: text.into(), rank }
-    }
-
-    fn words(&self) -> String {
-        format!("{} {}", self.symbol, self.text).trim_start().to_owned()
-    }
-}
-
 /// The models, the shading and the display of the picture; with one object, its key values.
 #[must_use]
 pub fn caption_text(session: &Session, registry: &Registry) -> String {
-    parts(session, registry).iter().map(Part::words).collect::<Vec<_>>().join(DOT)
+    line(&parts(session, registry))
 }
 
 /// Ids of the models that the picture shows.
 #[must_use]
 pub fn models_shown(session: &Session) -> BTreeSet<&str> {
-    session.document.shown().map(|o| session.document.model_of(o)).collect()
+    session.scene().shown().map(|o| session.scene().model_of(o)).collect()
 }
 
 /// The same in parts.
 #[must_use]
 pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
-    let scene = &session.document;
+    let scene = session.scene();
     let models = models_shown(session);
     let shadings: BTreeSet<_> = scene.shown().map(|o| scene.shading_model_of(o)).collect();
     let mut parts = Vec::new();
@@ -82,29 +61,20 @@ pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
     if let (Some(object), None) = (objects.next(), objects.next()) {
         parts.extend(key_values(object, scene.model_of(object), registry));
     }
-    match session.view.terms {
-        TermSelection::All => {}
-        other => parts.push(Part::new(1, format!("{} term alone", other.id()))),
-    }
-    match scene.display.exposure {
-        0.0 => {}
-        ev => {
-            let sign = if ev > 0.0 { "+" } else { "" };
-            parts.push(Part::new(1, format!("{sign}{} EV", number(f64::from(ev)))));
-        }
-    }
-    match scene.display.tone_mapping {
-        ToneMapping::None => {}
-        tone => parts.push(Part::new(1, tone.name())),
-    }
-    if scene.display.encoding == Encoding::Off {
-        parts.push(Part::new(1, "gamma-naive"));
-    }
+    parts.extend(terms_alone(session.terms()));
+    parts.extend(display(scene.display));
     parts
 }
 
-fn single<'a>(all: &BTreeSet<&'a str>) -> Option<&'a str> {
-    all.first().copied().filter(|_| all.len() == 1)
+/// The values that say most of an object's material, in one line.
+pub(super) fn values(object: &Object, model: &str, registry: &Registry, most: usize) -> String {
+    let mut parts = key_values(object, model, registry);
+    while parts.len() > most
+        && let Some(first) = parts.iter().enumerate().max_by_key(|(_, part)| part.rank).map(|(i, _)| i)
+    {
+        parts.remove(first);
+    }
+    line(&parts)
 }
 
 /// The values of the material in the order of their declaration: all of them where they are few, else those that are
@@ -112,23 +82,13 @@ fn single<'a>(all: &BTreeSet<&'a str>) -> Option<&'a str> {
 /// the later ones longer: coefficients are declared before exponents and roughness, which say more.
 fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<Part> {
     let Some(model) = registry.model(model) else { return Vec::new() };
-    let value = |p: &'static Parameter| {
-        let (symbol, text) = match (object.material.get(p), &p.kind) {
-            (Value::Number(v), _) => (p.symbol, number(f64::from(v))),
-            (Value::Integer(v), _) => (p.symbol, v.to_string()),
-            // The name of a distribution needs no letter; “None” alone says nothing.
-            (Value::Choice(id), ParameterKind::Choice { options, .. }) => {
-                let name = options.iter().find(|(o, _)| **o == *id).map_or(&*id, |(_, name)| *name);
-                let name = name.split(" (").next().unwrap_or(name);
-                let none = name.eq_ignore_ascii_case("none");
-                ("", if none { format!("no {}", p.label) } else { name.to_owned() })
-            }
-            _ => return None,
-        };
-        Some((p, Part { symbol, text, rank: 2 }))
+    let part = |p: &'static Parameter| {
+        let wordy = matches!(p.kind, ParameterKind::Colour { .. } | ParameterKind::Triple { .. });
+        let (symbol, text) = value(p, &object.material.get(p)).filter(|_| !wordy)?;
+        Some((p, Part { symbol, ..Part::new(2, text) }))
     };
     let used = |p: &&'static Parameter| usage::unused(model.parameters, p, &object.material).is_none();
-    let mut all: Vec<_> = model.parameters.iter().filter(used).filter_map(value).enumerate().collect();
+    let mut all: Vec<_> = model.parameters.iter().filter(used).filter_map(part).enumerate().collect();
     all.sort_by_key(|(_, (p, _))| object.material.get(p) == p.default_value());
     all.truncate(VALUES);
     all.sort_by_key(|(i, _)| *i);

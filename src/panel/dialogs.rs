@@ -13,10 +13,12 @@ use egui_file_dialog::{DialogState, FileDialog, FileDialogLabels};
 
 use super::{
     preview::{self, Preview, Source},
-    state::{Action, Effect, ModelCommand, Session},
+    state::{Action, Effect, ExportCommand, ModelCommand, Session},
     theme::{self, Palette},
 };
 use crate::{
+    document::Selection,
+    export::form,
     parameter::{FileFormat, Parameter, ParameterKind},
     registry::Registry,
     scene::{
@@ -40,10 +42,14 @@ pub struct Dialogs {
     open: FileDialog,
     save: FileDialog,
     folder: FileDialog,
-    /// Chooses files for parameters of lights.
+    /// Chooses files for parameters of lights and objects.
     file: FileDialog,
-    /// The light and the parameter for which a file is chosen.
-    wanted: Option<(usize, &'static Parameter)>,
+    /// Chooses places for exports.
+    export: FileDialog,
+    /// The form for which a place is chosen.
+    exporting: Option<&'static str>,
+    /// The part and the parameter for which a file is chosen.
+    wanted: Option<(Selection, &'static Parameter)>,
     /// The field of a dialog that had the focus at the end of the frame before.
     typed_into: Option<Field>,
     /// A key that is heard again in the next frame.
@@ -82,6 +88,8 @@ impl Default for Dialogs {
             save: dialog("Save the scene as", "save dialog"),
             folder,
             file: FileDialog::new(),
+            export: FileDialog::new(),
+            exporting: None,
             wanted: None,
             typed_into: None,
             again: None,
@@ -129,11 +137,34 @@ fn file_dialog(format: &FileFormat) -> FileDialog {
     dialog
 }
 
+/// The dialog that chooses a place for an export.
+fn export_dialog(id: &'static str, session: &Session, folder: Option<&Path>) -> FileDialog {
+    let form = form(id);
+    let title = form.map_or_else(String::new, |form| format!("Export as {}", form.name));
+    let stem = session.stem();
+    let name =
+        form.and_then(|form| Some(form.default_path(&stem).file_name()?.to_string_lossy().into_owned()));
+    let mut dialog = FileDialog::new()
+        .title(&title)
+        .id("export dialog")
+        .labels(FileDialogLabels {
+            save_button: "Export".to_owned(),
+            file_name: "Name:".to_owned(),
+            ..FileDialogLabels::default()
+        })
+        .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
+        .default_file_name(&name.unwrap_or(stem));
+    if let Some(folder) = folder {
+        dialog.config_mut().initial_directory = folder.to_owned();
+    }
+    dialog
+}
+
 impl Dialogs {
     /// True if one is open.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        [&self.open, &self.save, &self.folder, &self.file]
+        [&self.open, &self.save, &self.folder, &self.file, &self.export]
             .into_iter()
             .any(|d| *d.state() == DialogState::Open)
     }
@@ -153,12 +184,18 @@ impl Dialogs {
                 (&mut self.open, false)
             }
             Effect::PickSave => (&mut self.save, true),
-            Effect::PickFile(light, parameter) => {
-                self.wanted = Some((*light, *parameter));
+            Effect::PickFile(part, parameter) => {
+                self.wanted = Some((*part, *parameter));
                 if let ParameterKind::File { format, .. } = parameter.kind {
                     self.file = file_dialog(format);
                 }
                 (&mut self.file, false)
+            }
+            Effect::PickExport(id) => {
+                self.exporting = Some(id);
+                self.export = export_dialog(id, session, folder);
+                self.export.save_file();
+                return true;
             }
             Effect::PickShaderFolder => {
                 self.folder.pick_directory();
@@ -169,12 +206,11 @@ impl Dialogs {
         if let Some(folder) = folder {
             dialog.config_mut().initial_directory = folder.to_owned();
         }
-        let unnamed = || PathBuf::from(format!("{}.json", file_name(&session.title())));
         // A format that can only be read gives way to JSON.
         let file = match session.path.as_deref() {
             Some(path) if formats::can_write(path, registry) => path.to_owned(),
             Some(path) => as_json(path),
-            None => unnamed(),
+            None => PathBuf::from(format!("{}.json", session.stem())),
         };
         if !matches!(effect, Effect::PickFile(..)) {
             offer(dialog, &file, registry);
@@ -211,7 +247,7 @@ impl Dialogs {
         let screen = ctx.content_rect().size();
         let narrow = screen.x < NARROW;
         let size = if narrow { ALL } else { SHARE } * screen;
-        for dialog in [&mut self.open, &mut self.save, &mut self.folder, &mut self.file] {
+        for dialog in [&mut self.open, &mut self.save, &mut self.folder, &mut self.file, &mut self.export] {
             let config = dialog.config_mut();
             (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
             // So much that the buttons below the list keep their room.
@@ -240,10 +276,14 @@ impl Dialogs {
         }
         self.folder.update(ctx);
         self.file.update(ctx);
-        if let (Some(path), Some((light, parameter))) = (self.file.take_picked(), self.wanted) {
-            actions.extend(session.file_chosen(light, parameter, &path).map(Action::Edit));
+        if let (Some(path), Some((part, parameter))) = (self.file.take_picked(), self.wanted) {
+            actions.extend(session.file_chosen(part, parameter, &path).map(Action::Edit));
         }
-        for dialog in [&self.open, &self.save, &self.folder, &self.file] {
+        self.export.update(ctx);
+        if let (Some(path), Some(form)) = (self.export.take_picked(), self.exporting) {
+            actions.push(Action::Export(ExportCommand::To { form, path }));
+        }
+        for dialog in [&self.open, &self.save, &self.folder, &self.file, &self.export] {
             let layer = LayerId::new(Order::Middle, dialog.get_window_id());
             lighten(ctx, layer, &palette);
             // It keeps the pointer to itself, but not the keys.
@@ -397,12 +437,4 @@ fn lighten(ctx: &Context, layer: LayerId, palette: &Palette) {
             list.mutate_shape(egui::layers::ShapeIdx(i), |clipped| visit(&mut clipped.shape, palette.field));
         }
     });
-}
-
-/// A title as the name of a file.
-fn file_name(title: &str) -> String {
-    let plain: String =
-        title.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
-    let name = plain.split('-').filter(|s| !s.is_empty()).collect::<Vec<_>>().join("-");
-    if name.is_empty() { "scene".to_owned() } else { name }
 }

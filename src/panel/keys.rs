@@ -1,15 +1,21 @@
 //! The keyboard: one table, which the handler, the menus and the list of keys (F1) all read.
 
 use bevy_egui::egui::{self, Key, Modifiers};
+use glam::Vec3;
 
 use super::{
     focus,
-    state::{Action, ModelCommand, PictureArea, SHADER_TAB, Session, Steer, ViewChange},
+    state::{
+        Action, CompareCommand, HandleChange, ModelCommand, PictureArea, SHADER_TAB, Session, Steer,
+        ViewChange,
+    },
 };
-use crate::registry::Registry;
+use crate::{registry::Registry, scene::Comparison};
 
 /// The heading of the keys that steer the camera; with the focus in a panel they are the panel's.
 const CAMERA: &str = "Camera";
+/// The heading of the keys of the handles in the picture.
+const HANDLES: &str = "Handles";
 /// One press turns by so much, degrees.
 const TURN: f32 = 5.0;
 
@@ -125,6 +131,34 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
         "Open the model in an editor",
         Action::Model(ModelCommand::EditShown),
     );
+    let compare = |command: CompareCommand| Action::Compare(command);
+    add("Comparison", true, false, Key::B, "Add a view", compare(CompareCommand::Add));
+    add("Comparison", true, false, Key::L, "Next layout", compare(CompareCommand::NextLayout));
+    add(
+        "Comparison",
+        false,
+        false,
+        Key::Space,
+        "Blink: the other view while held",
+        compare(CompareCommand::Blink(true)),
+    );
+    let next = (session.active() + 1) % (session.document.variants.len() + 1);
+    add("Comparison", true, false, Key::K, "Next view", compare(CompareCommand::Activate(next)));
+    let comparison = session.document.comparison;
+    for (key, label, step) in [
+        (Key::Comma, "Edge of the wipe left or up", -0.02),
+        (Key::Period, "Edge of the wipe right or down", 0.02),
+    ] {
+        let split = (comparison.split + step).clamp(0.0, 1.0);
+        add(
+            "Comparison",
+            false,
+            false,
+            key,
+            label,
+            compare(CompareCommand::Set(Comparison { split, ..comparison })),
+        );
+    }
     add("Picture", false, false, Key::Tab, "Next object", Action::SelectNext);
     add("Picture", false, true, Key::Tab, "Previous object", Action::SelectPrevious);
     add("Picture", false, false, Key::H, "Home: the observer's view", Action::HomeView);
@@ -144,6 +178,19 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
         (false, Key::PageDown, "Farther", Steer::Zoom(1.0 / 0.9)),
     ] {
         add(CAMERA, false, shift, key, label, Action::Steer(steer));
+    }
+    let mode = HandleChange::Mode(session.view.handles.next());
+    let mode = Action::View(ViewChange::Handles(mode));
+    add(HANDLES, false, false, Key::F3, "Next handles: move, turn, size", mode);
+    for (key, label, way) in [
+        (Key::ArrowLeft, "Nudge the selection along −x, to the left", Vec3::NEG_X),
+        (Key::ArrowRight, "Along x, to the right", Vec3::X),
+        (Key::ArrowUp, "Along −z, into the room", Vec3::NEG_Z),
+        (Key::ArrowDown, "Along z, out of the room", Vec3::Z),
+        (Key::PageUp, "Along y, up", Vec3::Y),
+        (Key::PageDown, "Along −y, down", Vec3::NEG_Y),
+    ] {
+        add(HANDLES, true, false, key, label, Action::Nudge(way));
     }
     let size = [
         (Key::Plus, "Everything larger", ViewChange::Larger),
@@ -188,6 +235,7 @@ pub const ELSEWHERE: &[(&str, &str, &str)] = &[
     ("Mouse in the picture", "right drag", "Move sideways; Shift and left drag does it too"),
     ("Mouse in the picture", "wheel", "Nearer, farther"),
     ("Mouse in the picture", "click", "Select"),
+    ("Mouse in the picture", "drag of a handle", "Move, turn, resize; with Ctrl in steps, Esc takes it back"),
 ];
 
 /// The usual spelling of the key of an action: for menus.
@@ -232,7 +280,7 @@ pub fn pressed(ctx: &egui::Context, session: &Session, registry: &Registry) -> V
             }
             // With the focus in a panel, Delete is the panel's: nobody means to remove the object that
             // a slider belongs to.
-            if (*key == Key::Delete || binding.group == CAMERA) && focused.is_some() {
+            if (matches!(key, Key::Delete | Key::Space) || binding.group == CAMERA) && focused.is_some() {
                 return true;
             }
             // With the focus in a panel, Tab moves it on.

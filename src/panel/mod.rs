@@ -40,22 +40,27 @@ pub mod author;
 pub mod caption;
 pub mod chooser;
 pub mod clipping;
+pub mod compare;
 mod context;
 pub mod dialogs;
 pub mod effects;
+pub mod export;
 pub mod files;
 mod focus;
 pub mod follow;
 pub mod formula;
 mod glyphs;
+mod handles;
 pub mod help;
 pub mod history;
 pub mod icon;
 pub mod inspector;
 pub mod keys;
 pub mod knob;
+mod labels;
 pub mod laws;
 pub mod marks;
+mod matching;
 pub mod maths;
 mod menu;
 pub mod messages;
@@ -121,6 +126,9 @@ pub fn show(
     }
     let style = ctx.global_style();
     ui.set_style(style);
+    if session.is_stale() {
+        session.look(registry);
+    }
     if !session.panels.iter().copied().eq(panels.infos()) {
         let first = session.panels.is_empty();
         session.panels = panels.infos().collect();
@@ -146,6 +154,7 @@ pub fn show(
     actions.extend(welcome::left(&ctx, &session, area));
     actions.extend(help::show(&ctx, &session, registry));
     actions.extend(author::show(&ctx, &session, area, registry));
+    actions.extend(matching::show(&ctx, &session, area, registry));
     let tooltips = theme::tooltips(&ctx);
     let whole = ui.available_rect_before_wrap();
 
@@ -201,14 +210,29 @@ pub fn show(
         actions.extend(welcome::strip(ui, &session, registry));
     }
     let rect = ui.available_rect_before_wrap();
-    let stage = presenting.then(|| presentation::Stage::of(ui, rect, &session, registry));
     focus::region(&ctx, Region::Picture, rect);
+    let arrangement = compare::arrange(&session, rect);
+    let compares = !arrangement.is_single();
+    let rect = if compares { arrangement.picture } else { rect };
+    let stage = (presenting && !compares).then(|| presentation::Stage::of(ui, rect, &session, registry));
     let frame = stage.as_ref().map_or(rect, |stage| stage.picture);
-    let over = picture::overlays(ui, [rect, frame], &area.written, stage.as_ref(), &session, registry);
-    actions.extend(over.actions);
+    let mut over = if compares {
+        picture::views(ui, &arrangement, &area.written, &session, registry)
+    } else {
+        picture::overlays(ui, [rect, frame], &area.written, stage.as_ref(), &session, registry)
+    };
+    let (asked, places) = compare::show(ui, &arrangement, &session, registry);
+    over.places.extend(places);
+    actions.append(&mut over.actions);
+    actions.extend(asked);
     // Nothing behind a window shows its tooltip over it.
-    let windows =
-        [session.view.keys_open, session.view.about_open, session.draft.is_some(), dialogs.is_open()];
+    let windows = [
+        session.view.keys_open,
+        session.view.about_open,
+        session.draft.is_some(),
+        session.match_draft.is_some(),
+        dialogs.is_open(),
+    ];
     if session.questions.open.is_some() {
         theme::hide_tooltips(&ctx, &[]);
     } else if windows.contains(&true) {
@@ -216,7 +240,10 @@ pub fn show(
     }
     actions.extend(question::show(&ctx, &session));
     actions.extend(dialogs.update(&ctx, &mut session, registry));
-    let now = picture_area(&ctx, &session, [rect, frame], over.places, over.written, dialogs.is_open());
+    let mut now = picture_area(&ctx, &session, [rect, frame], over.places, over.written, dialogs.is_open());
+    if compares {
+        (now.cells, now.map) = (arrangement.cells, arrangement.map);
+    }
     if area.written != now.written {
         // The marks keep clear of it from the next frame on.
         ctx.request_repaint();
@@ -305,6 +332,7 @@ fn picture_area(
         // The chooser opens and closes by an action, and is not among egui's.
         popup_open: egui::Popup::is_any_open(ctx) || session.view.chooser_open,
         written,
+        ..PictureArea::default()
     }
 }
 

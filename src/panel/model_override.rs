@@ -44,9 +44,9 @@ pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
             "{name} has its own {what}, so the choice here changes that of {name} alone. At the end of the \
              panel at the right it can be made to follow the scene again."
         ));
-        let model = registry.model(&session.document.reflection_model).map_or("–", |m| m.declaration.name);
+        let model = registry.model(&session.scene().reflection_model).map_or("–", |m| m.declaration.name);
         let shading =
-            registry.shading_model(&session.document.shading_model).map_or("–", |m| m.declaration.name);
+            registry.shading_model(&session.scene().shading_model).map_or("–", |m| m.declaration.name);
         ui.label(theme::small(ui, format!("The scene: {model}, {shading} shading")));
     });
 }
@@ -77,8 +77,8 @@ pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Obj
     });
 
     let id = ui.make_persistent_id("model override");
-    let scene_model = model_name(&session.document.reflection_model);
-    let scene_shading = shading_name(&session.document.shading_model);
+    let scene_model = model_name(&session.scene().reflection_model);
+    let scene_shading = shading_name(&session.scene().shading_model);
     let out = knob::drop_down(&button, id, |ui, list| {
         let mut out = None;
         ui.label(theme::strong(ui, "Override model and shading"));

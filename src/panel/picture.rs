@@ -8,7 +8,9 @@ use glam::Vec3;
 
 use super::{
     caption::{self, Lines, caption_text, models_shown},
-    clipping, icon, marks,
+    clipping,
+    compare::Arrangement,
+    handles, icon, labels, marks,
     presentation::Stage,
     state::{Action, Badge, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
@@ -18,6 +20,7 @@ use crate::{
     optics::TermSelection,
     reflection::Term,
     registry::Registry,
+    scene::comparison::Layout,
     text::plural,
 };
 
@@ -54,10 +57,9 @@ pub fn overlays(
     clipping::paint(&ui.painter_at(whole), whole, session, ui.pixels_per_point());
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
     if stage.is_none() {
-        let (asked, places) = marks::marks(ui, rect, written, session, registry);
-        all.actions.extend(asked);
-        all.places.extend(places);
+        marked(ui, rect, written, session, registry, &mut all);
     }
+    all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
     ui.scope(|ui| {
         let free = stage.map_or(rect, |stage| stage.paint(ui, session));
         let (asked, covered) = stale(ui, free, session, registry);
@@ -74,6 +76,46 @@ pub fn overlays(
         if rect.width() >= AXES && !all.written.iter().any(|place| place.intersects(corner)) {
             all.written.push(axes(ui, rect, session));
         }
+    }
+    all
+}
+
+/// Paints the marks of a view, and over them the handles of what is selected.
+fn marked(ui: &Ui, rect: Rect, written: &[Rect], session: &Session, registry: &Registry, to: &mut Overlaid) {
+    for paint in [marks::marks, handles::handles] {
+        let (asked, places) = paint(ui, rect, written, session, registry);
+        to.actions.extend(asked);
+        to.places.extend(places);
+    }
+}
+
+/// Paints the overlays of a comparison: marks and handles into every view, and what is to be said of the picture into the active one.
+pub fn views(
+    ui: &mut Ui,
+    arrangement: &Arrangement,
+    written: &[Rect],
+    session: &Session,
+    registry: &Registry,
+) -> Overlaid {
+    let mut all = Overlaid::default();
+    let shown = arrangement.cells.iter().filter(|cell| cell.part.is_positive());
+    // One over the other, two views have the same marks.
+    let apart = session.document.comparison.layout == Layout::SideBySide;
+    for cell in shown.take(if apart { usize::MAX } else { 1 }) {
+        ui.push_id(("view", cell.view), |ui| {
+            marked(ui, cell.rect, written, session, registry, &mut all);
+            all.written.extend(labels::labels(ui, cell.rect, cell.view, session, registry));
+        });
+    }
+    let active = arrangement.cells.iter().find(|cell| cell.view == session.active());
+    if let Some(cell) = active.or(arrangement.cells.first()) {
+        ui.scope(|ui| {
+            let (asked, covered) = stale(ui, cell.rect, session, registry);
+            all.actions.extend(asked);
+            all.places.push(covered);
+            all.written.push(covered);
+            hint(ui, cell.rect, session);
+        });
     }
     all
 }
@@ -183,7 +225,7 @@ type Sign = (Badge, Option<Action>);
 
 /// Says that terms of the equation are hidden, and shows them all.
 fn hidden_terms(session: &Session, registry: &Registry) -> Option<Sign> {
-    let shown = match session.view.terms {
+    let shown = match session.terms() {
         TermSelection::All => return None,
         other => other.id(),
     };
@@ -253,7 +295,7 @@ fn badges(
 
 fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect {
     let palette = Palette::here(ui);
-    let term = match session.view.terms {
+    let term = match session.terms() {
         TermSelection::All => None,
         TermSelection::Ambient => Some(Term::Ambient),
         TermSelection::Diffuse => Some(Term::Diffuse),
@@ -309,7 +351,7 @@ fn axes(ui: &Ui, rect: Rect, session: &Session) -> Rect {
 
 /// Advice where there is no picture.
 fn hint(ui: &Ui, rect: Rect, session: &Session) {
-    let text = if session.document.objects.is_empty() {
+    let text = if session.scene().objects.is_empty() {
         "There is nothing to light. Add an object: + beside “Objects”."
     } else if session.document.lights.is_empty() {
         "It is dark. Add a light: + beside “Lights”."

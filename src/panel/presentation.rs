@@ -85,7 +85,7 @@ impl Stage {
         let parts = caption::parts(session, registry);
         // The camera that turns moves nothing: its place at the beginning counts.
         let mut hasher = DefaultHasher::new();
-        let objects: Vec<_> = session.document.shown().map(|o| (o.position, o.size)).collect();
+        let objects: Vec<_> = session.scene().shown().map(|o| (o.position, o.size)).collect();
         format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui).0).hash(&mut hasher);
         let (id, key) = (Id::new("stage of the presentation"), hasher.finish());
         if let Some((_, stage)) = ui.data(|d| d.get_temp::<(u64, Self)>(id)).filter(|(of, _)| *of == key) {
@@ -275,7 +275,7 @@ fn discs(session: &Session, rect: Rect) -> Vec<(Pos2, f32)> {
         let at = lens.project(o.position)?;
         Some((at, lens.project(o.position + radius * right)?.distance(at)))
     };
-    session.document.shown().filter_map(disc).filter(|(at, r)| rect.expand(*r).contains(*at)).collect()
+    session.scene().shown().filter_map(disc).filter(|(at, r)| rect.expand(*r).contains(*at)).collect()
 }
 
 /// True if a rectangle hides part of a disc.

@@ -95,6 +95,12 @@ fn words(session: &Session, question: &Question) -> Words {
                 ("Replace", Answer::Overwrite),
             ],
         ),
+        Question::ReplaceExport { path, .. } => (
+            "Replace it?",
+            format!("{} exists. Replace it with the export?", path.display()),
+            Vec::new(),
+            vec![("Cancel", Answer::Cancel), ("Replace", Answer::Overwrite)],
+        ),
         Question::NewerOnDisk { path, .. } => (
             "Reload from disk?",
             format!(

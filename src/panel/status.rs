@@ -5,8 +5,9 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    Panel, PanelContext, Place,
+    Panel, PanelContext, Place, export,
     icon::{self, Icon},
+    matching,
     state::{Action, MESSAGES_TAB, SHADER_TAB, Session, Severity, ViewChange},
     theme::{self, Palette},
 };
@@ -58,6 +59,8 @@ impl Panel for StatusLine {
                 actions.push(Action::View(session.strip_change()));
             }
             shader_errors(ui, session, actions);
+            export::progress(ui, session, actions);
+            matching::progress(ui, session, actions);
             let selected = format!("{} selected · F1 keys", session.name_of(session.selection, registry));
             latest(ui, session, theme::small_width(ui, &selected), actions);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -7,31 +7,15 @@
 use std::sync::Arc;
 
 use bevy_egui::egui::{
-    self, Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke,
-    TextStyle, Vec2, style::HandleShape, vec2,
+    self, Color32, Context, CornerRadius, FontId, Margin, Stroke, TextStyle, Vec2, style::HandleShape, vec2,
 };
 
 use super::state::{Severity, ThemeChoice, View};
-use crate::reflection::Term;
+pub use crate::lettering::{maths, maths_italic, semibold};
+use crate::{lettering, reflection::Term};
 
 /// The unit of space, points; halves are allowed.
 pub const UNIT: f32 = 8.0;
-
-/// The family of the semibold text font.
-#[must_use]
-pub fn semibold() -> FontFamily {
-    FontFamily::Name("semibold".into())
-}
-/// The family of upright mathematics.
-#[must_use]
-pub fn maths() -> FontFamily {
-    FontFamily::Name("maths".into())
-}
-/// The family of variables in mathematics.
-#[must_use]
-pub fn maths_italic() -> FontFamily {
-    FontFamily::Name("maths italic".into())
-}
 
 /// The colours of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -256,30 +240,6 @@ pub fn swatch(reflectance: glam::Vec3) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// Makes the fonts known to egui. Once per context.
-pub fn install_fonts(ctx: &Context) {
-    let mut fonts = FontDefinitions::default();
-    let bundled: [(&str, &'static [u8]); 4] = [
-        ("lab text", include_bytes!("../../assets/fonts/text-regular.otf")),
-        ("lab semibold", include_bytes!("../../assets/fonts/text-semibold.otf")),
-        ("lab maths", include_bytes!("../../assets/fonts/maths-regular.otf")),
-        ("lab maths italic", include_bytes!("../../assets/fonts/maths-italic.otf")),
-    ];
-    for (name, bytes) in bundled {
-        fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
-    }
-    // egui's own fonts come last: they have pictograms that ours lack.
-    let builtin = fonts.families.get(&FontFamily::Proportional).cloned().unwrap_or_default();
-    let family = |first: &[&str]| -> Vec<String> {
-        first.iter().map(|s| (*s).to_owned()).chain(builtin.iter().cloned()).collect()
-    };
-    fonts.families.insert(FontFamily::Proportional, family(&["lab text", "lab maths"]));
-    fonts.families.insert(semibold(), family(&["lab semibold", "lab maths"]));
-    fonts.families.insert(maths(), family(&["lab maths", "lab text"]));
-    fonts.families.insert(maths_italic(), family(&["lab maths italic", "lab maths", "lab text"]));
-    ctx.set_fonts(fonts);
-}
-
 /// Makes egui look as the view asks. Cheap when nothing changed. The fonts arrive with the next pass:
 /// until then it answers `false`, and nothing can be shown.
 #[must_use]
@@ -293,7 +253,7 @@ pub fn apply(ctx: &Context, view: &View) -> bool {
         return true;
     }
     if before.is_none() {
-        install_fonts(ctx);
+        ctx.set_fonts(lettering::fonts());
         // The keys are ours.
         ctx.options_mut(|o| o.zoom_with_keyboard = false);
     }

@@ -3,12 +3,15 @@
 use bevy_egui::egui::{self, Align, Button, Key, Layout, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
-    Panel, PanelContext, PanelInfo, Place, chooser, glyphs,
+    Panel, PanelContext, PanelInfo, Place, chooser, compare, export, glyphs,
     history::HISTORY_TAB,
     keys::{self, Binding},
-    maths, menu, model_override,
+    labels, maths, menu, model_override,
     segmented::{segment_width, segmented},
-    state::{Action, MESSAGES_TAB, ModelCommand, SHADER_TAB, Session, ThemeChoice, ViewChange},
+    state::{
+        Action, HandleChange, HandleMode, MESSAGES_TAB, ModelCommand, SHADER_TAB, Session, ThemeChoice, View,
+        ViewChange,
+    },
     theme::{self, Palette},
     welcome,
 };
@@ -199,6 +202,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                 item(ui, "Reload from disk", Action::Reload, actions)
             });
             ui.separator();
+            export::menu(ui, session, actions);
+            ui.separator();
             item(ui, "Quit", Action::Quit, actions);
         });
         let edit = ui.menu_button("Edit", |ui| {
@@ -261,18 +266,18 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                     |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView, actions);
                 let place = ui.add_enabled_ui(problem.is_none(), place).response;
                 problem.map(|why| place.on_hover_text(why));
-                ui.separator();
                 menu::submenu(ui, "Terms of the equation", |ui| {
                     for terms in session.offered_terms(registry) {
                         let name = match terms {
                             TermSelection::All => "All terms".to_owned(),
                             other => format!("The {} term alone", other.id()),
                         };
-                        if ui.radio(session.view.terms == terms, name).clicked() {
+                        if ui.radio(session.terms() == terms, name).clicked() {
                             actions.push(Action::View(ViewChange::Terms(terms)));
                         }
                     }
                 });
+                menu::submenu(ui, "Compare", |ui| compare::entries(ui, session, table, actions));
                 ui.separator();
                 let v = &session.view;
                 let view = |c: ViewChange| Action::View(c);
@@ -284,6 +289,21 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                     view(ViewChange::Gizmos(!v.show_gizmos)),
                     actions,
                 );
+                menu::submenu(ui, format!("Handles: {}", handles_word(v)), |ui| {
+                    let show = view(ViewChange::Handles(HandleChange::Show(!v.show_handles)));
+                    check(ui, "Show handles", v.show_handles, "", show, actions);
+                    ui.separator();
+                    for mode in HandleMode::ALL {
+                        let on = v.show_handles && v.handles == mode;
+                        if ui.radio(on, mode.name()).clicked() {
+                            actions.push(view(ViewChange::Handles(HandleChange::Mode(mode))));
+                            ui.close();
+                        }
+                    }
+                    ui.separator();
+                    let next = view(ViewChange::Handles(HandleChange::Mode(v.handles.next())));
+                    item(ui, "Next", next, actions);
+                });
                 check(
                     ui,
                     "Outline of the room",
@@ -292,6 +312,7 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                     view(ViewChange::Room(!v.show_room)),
                     actions,
                 );
+                menu::submenu(ui, "Labels of objects", |ui| labels::entries(ui, session, actions));
                 let clipping = ViewChange::Clipping(!v.show_clipping);
                 check(ui, "Show clipped pixels", v.show_clipping, "", view(clipping), actions);
                 ui.separator();
@@ -358,6 +379,11 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
         let bar = [(Key::F, file), (Key::E, edit), (Key::V, view_menu), (Key::H, help)];
         menu::bar(ui.ctx(), &bar.map(|(key, menu)| (key, menu.response)));
     });
+}
+
+/// What the handles do, in a word.
+fn handles_word(view: &View) -> String {
+    if view.show_handles { view.handles.name().to_lowercase() } else { "hidden".to_owned() }
 }
 
 /// The title of a panel in menus.

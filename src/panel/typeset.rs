@@ -357,13 +357,13 @@ fn times() -> [Node; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panel::{formula::tree, maths, theme};
+    use crate::panel::{formula::tree, maths};
     use bevy_egui::egui;
 
     /// Sets every part of every equation at this width; `see` gets the text and its lines.
     fn set_all(width: f32, shrinks: bool, mut see: impl FnMut(&str, f32, &[Set])) {
         let ctx = egui::Context::default();
-        theme::install_fonts(&ctx);
+        ctx.set_fonts(crate::lettering::fonts());
         let registry = crate::registry::Registry::builtin();
         let models = registry.models().iter().flat_map(|m| maths::definitions(m.declaration.equation));
         let parts = models.map(|(term, text)| (maths::size_of(term, text), text));
@@ -435,7 +435,7 @@ mod tests {
     #[test]
     fn brackets_about_a_fraction_are_as_tall_as_it_is() {
         let ctx = egui::Context::default();
-        theme::install_fonts(&ctx);
+        ctx.set_fonts(crate::lettering::fonts());
         for _ in 0..2 {
             let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
                 let setter = Setter { ui, size: 17.0, colour: Color32::WHITE, stacked: true, shrinks: true };

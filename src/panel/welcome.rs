@@ -24,7 +24,7 @@ const ROW: egui::Vec2 = vec2(96.0, 54.0);
 /// The least height of strip and picture together, points.
 const LEAST: f32 = 320.0;
 /// Width of the menu, at most and at least.
-const MENU: [f32; 2] = [440.0, 260.0];
+const MENU: [f32; 2] = [580.0, 260.0];
 
 /// The strip below the picture.
 pub fn strip(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
@@ -86,40 +86,59 @@ pub fn left(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Acti
     left.then_some(Action::View(ViewChange::Examples(false)))
 }
 
-/// The menu of the examples, beside one that ends at `left`.
+/// The menu of the examples, beside one that ends at `left`: in two columns where one would be too long.
 pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Action>) {
     let [most, least] = MENU;
-    ui.set_width((ui.ctx().content_rect().right() - left - 40.0).clamp(least, most));
+    let room = ui.ctx().content_rect().right() - left - 40.0;
     // The menu moves up where it needs to.
-    let most = ui.ctx().content_rect().height() - 40.0;
-    ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
-        for (i, example) in EXAMPLES.iter().enumerate() {
-            let palette = Palette::here(ui);
-            let left = 4.0 + ROW.x + 10.0;
-            let width = ui.available_width() - left - 12.0;
-            let font = egui::FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-            let name = theme::elided(ui, &example.name, font, palette.text, width);
-            let mut job = maths::prose(ui, &example.description, TextStyle::Small);
-            job.wrap.max_width = width;
-            let words = ui.painter().layout_job(job);
-            let below = name.size().y + 3.0;
-            let height = (below + words.size().y + 2.0).max(ROW.y) + 8.0;
-            let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-            if response.hovered() || response.has_focus() {
-                ui.painter().rect_filled(rect, 4.0, palette.hovered);
+    let height = ui.ctx().content_rect().height() - 40.0;
+    let is_long = EXAMPLES.len() as f32 * (ROW.y + 8.0) > height;
+    let columns = if is_long && room >= 2.0 * 1.4 * least { 2 } else { 1 };
+    let width = (room / columns as f32).clamp(least, most);
+    ui.set_width(columns as f32 * width);
+    ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            let each = EXAMPLES.len().div_ceil(columns);
+            for column in 0..columns {
+                ui.vertical(|ui| {
+                    ui.set_width(width);
+                    for i in (column * each..EXAMPLES.len()).take(each) {
+                        entry(ui, i, registry, actions);
+                    }
+                });
             }
-            let picture = Rect::from_min_size(rect.min + vec2(4.0, 4.0), ROW);
-            face(ui, i, picture, &response, registry);
-            frame(ui, picture, &response);
-            let at = rect.min + vec2(left, 5.0);
-            ui.painter().galley(at + vec2(0.0, below), words, palette.text);
-            ui.painter().galley(at, name, palette.text);
-            if response.clicked() {
-                actions.push(Action::OpenExample(i));
-                ui.close();
-            }
-        }
+        });
     });
+}
+
+/// An example with its picture, its name and its description.
+fn entry(ui: &mut Ui, i: usize, registry: &Registry, actions: &mut Vec<Action>) {
+    let example = &EXAMPLES[i];
+    let palette = Palette::here(ui);
+    let left = 4.0 + ROW.x + 10.0;
+    let width = ui.available_width() - left - 12.0;
+    let font = egui::FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+    let name = theme::elided(ui, &example.name, font, palette.text, width);
+    let mut job = maths::prose(ui, &example.description, TextStyle::Small);
+    job.wrap.max_width = width;
+    let words = ui.painter().layout_job(job);
+    let below = name.size().y + 3.0;
+    let height = (below + words.size().y + 2.0).max(ROW.y) + 8.0;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(rect, 4.0, palette.hovered);
+    }
+    let picture = Rect::from_min_size(rect.min + vec2(4.0, 4.0), ROW);
+    face(ui, i, picture, &response, registry);
+    frame(ui, picture, &response);
+    let at = rect.min + vec2(left, 5.0);
+    ui.painter().galley(at + vec2(0.0, below), words, palette.text);
+    ui.painter().galley(at, name, palette.text);
+    if response.clicked() {
+        actions.push(Action::OpenExample(i));
+        ui.close();
+    }
 }
 
 fn face(ui: &Ui, i: usize, rect: Rect, response: &Response, registry: &Registry) {

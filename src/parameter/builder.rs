@@ -63,7 +63,7 @@ impl Parameter {
         Self::new(name, ParameterKind::Choice { options, default })
     }
 
-    /// A file of numbers, for light types; the default is the name of a file that is shipped with the format.
+    /// A file of numbers, for light types and object types; the default is the name of a file that is shipped with the format.
     #[must_use]
     pub const fn file(name: &'static str, format: &'static FileFormat, default: &'static str) -> Self {
         Self::new(name, ParameterKind::File { format, default })

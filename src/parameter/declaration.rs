@@ -83,7 +83,7 @@ pub enum ParameterKind {
         /// Index of the default.
         default: usize,
     },
-    /// A file of numbers, by its name relative to the folder of the scene file. Light types may have such parameters.
+    /// A file of numbers, by its name relative to the folder of the scene file. Light types and object types may have such parameters.
     File {
         /// The files that are legal.
         format: &'static FileFormat,

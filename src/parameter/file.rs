@@ -5,12 +5,16 @@ use std::{
     collections::HashMap,
     fmt,
     path::{Path, PathBuf},
-    sync::{Arc, LazyLock, Mutex, PoisonError, RwLock, Weak},
+    sync::{
+        Arc, LazyLock, Mutex, PoisonError, RwLock, Weak,
+        atomic::{AtomicU64, Ordering},
+    },
 };
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use serde::{Serialize, Serializer};
 
+use super::outside;
 use crate::files;
 
 /// The files that a parameter may name, and how they are read.
@@ -62,6 +66,8 @@ pub struct NamedFile {
 struct Content {
     /// The file; its bytes if it is part of the program.
     source: Result<PathBuf, &'static [u8]>,
+    /// The folder of the scenes that name it, which it must not be outside of.
+    folder: PathBuf,
     format: &'static FileFormat,
     state: RwLock<State>,
 }
@@ -70,20 +76,32 @@ struct Content {
 struct State {
     /// The numbers of the last version that was legal.
     numbers: Option<Arc<[f32]>>,
+    /// Another one for every change of the numbers of any file.
+    version: u64,
     /// The mistake in the present version.
     problem: Option<String>,
+    /// The present version, if a later one would have another stamp.
+    stamp: Option<files::Stamp>,
 }
 
-/// The contents of files on disk that are in use, by path and format.
-type Contents = HashMap<(PathBuf, &'static str), Weak<Content>>;
+/// The contents of files on disk that are in use, by path, by the folder of the scene and by format.
+type Contents = HashMap<(PathBuf, PathBuf, &'static str), Weak<Content>>;
 /// The contents of shipped files, by name and format.
 type Shipped = HashMap<(&'static str, &'static str), Arc<Content>>;
 
 static CONTENTS: LazyLock<Mutex<Contents>> = LazyLock::new(Mutex::default);
 static SHIPPED: LazyLock<Mutex<Shipped>> = LazyLock::new(Mutex::default);
+static CHANGES: AtomicU64 = AtomicU64::new(0);
+
+/// Counts how often the numbers of any file became others.
+#[must_use]
+pub fn file_changes() -> u64 {
+    CHANGES.load(Ordering::Relaxed)
+}
 
 impl NamedFile {
-    /// The file of that name in a folder. If there is none, a shipped file may have that name.
+    /// The file of that name in the folder of a scene. If there is none, a shipped file may have that name. A file outside
+    /// the folder is not read, unless somebody chose it or all are allowed.
     #[must_use]
     pub fn named(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
         let path = folder.join(name);
@@ -91,17 +109,23 @@ impl NamedFile {
         if let Some((name, _)) = shipped {
             return Self::shipped(name, format);
         }
-        let path = std::path::absolute(&path).unwrap_or(path);
+        // Nothing is the working folder.
+        let [path, folder] = [path, folder.join(".")].map(|p| std::path::absolute(&p).unwrap_or(p));
+        if outside::is_trusted() {
+            outside::allow(&path);
+        }
         let mut contents = CONTENTS.lock().unwrap_or_else(PoisonError::into_inner);
         contents.retain(|_, content| content.strong_count() > 0);
-        let known = contents.entry((path.clone(), format.name)).or_default();
+        let known = contents.entry((path.clone(), folder.clone(), format.name)).or_default();
         let content = match known.upgrade() {
             Some(content) => {
-                // It may have changed since it was read.
-                content.read();
+                // It may have changed since it was read; many parts may name it.
+                if !content.is_as_read() {
+                    content.read();
+                }
                 content
             }
-            None => Content::new(Ok(path), format),
+            None => Content::new(Ok(path), folder, format),
         };
         *known = Arc::downgrade(&content);
         drop(contents);
@@ -113,8 +137,16 @@ impl NamedFile {
         let bytes =
             format.shipped.iter().find(|(shipped, _)| *shipped == name).map_or(&[][..], |(_, bytes)| bytes);
         let mut shipped = SHIPPED.lock().unwrap_or_else(PoisonError::into_inner);
-        let content = shipped.entry((name, format.name)).or_insert_with(|| Content::new(Err(bytes), format));
+        let content = shipped
+            .entry((name, format.name))
+            .or_insert_with(|| Content::new(Err(bytes), PathBuf::new(), format));
         Self { name: Cow::Borrowed(name), content: content.clone() }
+    }
+
+    /// The same, of a file that somebody chose: it may be anywhere.
+    #[must_use]
+    pub fn chosen(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
+        outside::trusting(|| Self::named(name, folder, format))
     }
 
     /// The name as in the scene file.
@@ -123,10 +155,22 @@ impl NamedFile {
         &self.name
     }
 
+    /// The same file by another name.
+    #[must_use]
+    pub fn renamed(&self, name: impl Into<Cow<'static, str>>) -> Self {
+        Self { name: name.into(), content: self.content.clone() }
+    }
+
+    /// Larger files are not read.
+    #[must_use]
+    pub fn max_bytes(&self) -> u64 {
+        self.content.format.max_bytes
+    }
+
     /// The file, unless it is part of the program.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
-        self.content.source.as_deref().ok()
+        self.content.path()
     }
 
     /// The same file for a scene in this folder: by the same name where that leads to it, else by its path.
@@ -135,6 +179,10 @@ impl NamedFile {
         let there = std::path::absolute(folder.join(&*self.name)).ok();
         match self.path() {
             Some(path) if there.as_deref() != Some(path) => {
+                // Whoever could use it here may use it there.
+                if self.numbers().is_some() {
+                    outside::allow(path);
+                }
                 let name = Cow::Owned(path.to_string_lossy().into_owned());
                 Self { name, content: self.content.clone() }
             }
@@ -154,6 +202,25 @@ impl NamedFile {
         self.content.state.read().unwrap_or_else(PoisonError::into_inner).problem.clone()
     }
 
+    /// True if it is outside a folder: a scene there can read it only if that is allowed.
+    #[must_use]
+    pub fn is_outside(&self, folder: &Path) -> bool {
+        let leads_out = |path| matches!(files::inside(folder, path), Err(files::FileError::Outside(_)));
+        self.path().is_some_and(leads_out)
+    }
+
+    /// The version of the numbers: another one for other numbers, also of other files.
+    #[must_use]
+    pub fn version(&self) -> u64 {
+        self.content.state.read().unwrap_or_else(PoisonError::into_inner).version
+    }
+
+    /// Something that all that share the content have in common, and nobody else.
+    #[must_use]
+    pub fn identity(&self) -> usize {
+        Arc::as_ptr(&self.content) as usize
+    }
+
     /// Reads the file again, for all that name it. True if its numbers or its mistakes are others than before.
     #[must_use]
     pub fn read_again(&self) -> bool {
@@ -168,30 +235,67 @@ impl NamedFile {
 }
 
 impl Content {
-    fn new(source: Result<PathBuf, &'static [u8]>, format: &'static FileFormat) -> Arc<Self> {
-        let content = Self { source, format, state: RwLock::default() };
+    fn new(
+        source: Result<PathBuf, &'static [u8]>,
+        folder: PathBuf,
+        format: &'static FileFormat,
+    ) -> Arc<Self> {
+        let content = Self { source, folder, format, state: RwLock::default() };
         content.read();
         Arc::new(content)
     }
 
+    /// The bytes of the file, if it may be read.
+    fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
+        let place = if outside::is_allowed(path) {
+            path.to_owned()
+        } else {
+            files::inside(&self.folder, path).map_err(|error| match error {
+                files::FileError::Outside(_) => {
+                    format!(
+                        "{error}, and a scene may read only what is in its own, unless {} is given",
+                        outside::OPTION
+                    )
+                }
+                error => error.to_string(),
+            })?
+        };
+        files::read(&place, self.format.max_bytes).map_err(|error| error.to_string())
+    }
+
+    /// True if the file is the one that was read last.
+    fn is_as_read(&self) -> bool {
+        let known = self.state.read().unwrap_or_else(PoisonError::into_inner).stamp;
+        known.is_some() && known == self.path().and_then(files::Stamp::settled)
+    }
+
+    fn path(&self) -> Option<&Path> {
+        self.source.as_deref().ok()
+    }
+
     fn read(&self) -> bool {
+        let stamp = self.path().and_then(files::Stamp::settled);
         let read = match &self.source {
             Err(shipped) => (self.format.read)(shipped).map_err(|problem| problem.message),
-            Ok(path) => files::read(path, self.format.max_bytes)
-                .map_err(|error| format!("{}: {error}", path.display()))
-                .and_then(|bytes| {
+            Ok(path) => {
+                self.bytes(path).map_err(|error| format!("{}: {error}", path.display())).and_then(|bytes| {
                     (self.format.read)(&bytes).map_err(|FileProblem { line, message }| {
                         let line = line.map_or(String::new(), |line| format!(":{line}"));
                         format!("{}{line}: {message}", path.display())
                     })
-                }),
+                })
+            }
         };
         let mut state = self.state.write().unwrap_or_else(PoisonError::into_inner);
+        state.stamp = stamp;
         match read {
             Ok(numbers) => {
-                let news = state.problem.take().is_some() || state.numbers.as_deref() != Some(&numbers[..]);
-                state.numbers = Some(numbers.into());
-                news
+                let others = state.numbers.as_deref() != Some(&numbers[..]);
+                if others {
+                    state.numbers = Some(numbers.into());
+                    state.version = CHANGES.fetch_add(1, Ordering::Relaxed) + 1;
+                }
+                state.problem.take().is_some() || others
             }
             Err(problem) => {
                 let news = state.problem.as_ref() != Some(&problem);

@@ -9,6 +9,7 @@ mod component;
 mod declaration;
 mod file;
 mod layout;
+pub mod outside;
 mod parse;
 mod reflect;
 mod set;
@@ -17,7 +18,7 @@ mod value;
 
 pub use component::{TypeComponent, Watch};
 pub use declaration::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen};
-pub use file::{FileFormat, FileProblem, NamedFile, Table};
+pub use file::{FileFormat, FileProblem, NamedFile, Table, file_changes};
 pub use layout::{BLOCK_BYTES, layout, pack, stride, words};
 pub use parse::ParseError;
 pub use set::ParameterSet;

@@ -11,6 +11,7 @@ use super::About;
 use crate::{
     files,
     library::assets,
+    parameter::outside,
     registry::Registry,
     scene::{
         Scene,
@@ -207,7 +208,8 @@ impl Left {
         let bytes = files::read(&file, MAX_FILE_BYTES).map_err(|e| vec![format!("{name}: {e}")])?;
         // The files that it names are beside the file of the document, not beside the copy.
         let folder = self.about.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
-        load::in_folder(&bytes, (&name, folder), registry, Defaults::Use)
+        // Whatever it names was open in the window.
+        outside::trusting(|| load::in_folder(&bytes, (&name, folder), registry, Defaults::Use))
             .map(|loaded| loaded.scene)
             .map_err(|e| e.to_string().lines().map(str::to_owned).collect())
     }

@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use crate::{
-    light::{Emitter, Incident, LightRecord},
-    optics::{Frame, TermSelection},
+    light::{AT_ONCE, Emitters},
+    optics::{Frame, TermSelection, radiometry::Arriving},
     reflection::Surface,
     registry::Registry,
     scene::{Scene, record},
@@ -17,23 +17,27 @@ const BRIGHTEST: f32 = 1e30;
 
 /// All lights of a scene, ready for calculation.
 pub(super) struct Lights {
-    lights: Vec<(Box<dyn Emitter>, LightRecord)>,
+    /// Neighbours of one type together, in the order of the scene.
+    groups: Vec<Box<dyn Emitters>>,
     observer: Vec3,
     terms: TermSelection,
 }
 
 impl Lights {
     pub(super) fn new(scene: &Scene, registry: &Registry, terms: TermSelection) -> Self {
-        let lights = scene
-            .shining()
-            .filter_map(|light| {
-                let encoding = scene.display.encoding;
-                let entry = registry.light(&light.light_type)?;
-                let emitter = (entry.instantiate)(&light.parameters, encoding);
-                Some((emitter, record(light, registry, encoding)))
+        let encoding = scene.display.encoding;
+        let known: Vec<_> =
+            scene.shining().filter_map(|light| Some((registry.light(&light.light_type)?, light))).collect();
+        let groups = known
+            .chunk_by(|(a, _), (b, _)| a.index == b.index)
+            .map(|lights| {
+                let group = lights[0].0.group;
+                let lights: Vec<_> =
+                    lights.iter().map(|(_, l)| (&l.parameters, record(l, registry, encoding))).collect();
+                group(&lights, encoding)
             })
             .collect();
-        Self { lights, observer: scene.observer.position, terms }
+        Self { groups, observer: scene.observer.position, terms }
     }
 
     /// The lights as they shine on one surface.
@@ -56,22 +60,19 @@ impl Lighting for LightsOn<'_> {
         let v = eye - 2.0 * normal.dot(eye).min(0.0) * normal;
         let frame = Frame::new(normal, tangent);
         let terms = self.lights.terms;
-        let mut sum = Vec3::ZERO;
-        for (emitter, light) in &self.lights.lights {
-            match emitter.incident(light, position) {
-                Incident::From { l, intensity } => {
-                    // Outside a cone there is nothing to calculate.
-                    if intensity != Vec3::ZERO {
-                        let response = self.surface.response(l, v, &frame).select(terms);
-                        sum += response * intensity * light.colour;
-                    }
-                }
-                Incident::Uniform { intensity } => {
-                    if matches!(terms, TermSelection::All | TermSelection::Ambient) {
-                        sum += self.surface.ambient_response(v, &frame) * intensity * light.colour;
-                    }
+        let (mut sum, mut uniform) = (Vec3::ZERO, Vec3::ZERO);
+        let mut arriving = [Arriving::default(); AT_ONCE];
+        for group in &self.lights.groups {
+            for first in (0..group.count()).step_by(AT_ONCE) {
+                let (count, everywhere) = group.arrive(first, position, &mut arriving);
+                uniform += everywhere;
+                if count > 0 {
+                    sum += self.surface.lit_by(&arriving[..count], v, &frame, terms);
                 }
             }
+        }
+        if uniform != Vec3::ZERO && matches!(terms, TermSelection::All | TermSelection::Ambient) {
+            sum += self.surface.ambient_response(v, &frame) * uniform;
         }
         sum.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
     }

@@ -284,14 +284,9 @@ fn triangles(draw: &Draw, lights: &Lights, clip_from_room: &Mat4, screen: &Scree
         positions.iter().map(|p| Placed::new(*clip_from_room * p.extend(1.0), screen)).collect();
 
     let visible: Vec<(u32, [u32; 3])> = mesh
-        .polygons
-        .iter()
-        .enumerate()
-        .flat_map(|(i, polygon)| {
-            let corners = polygon.corners();
-            polygon.triangles().iter().map(move |t| (i as u32, t.map(|c| corners[c])))
-        })
+        .triangles()
         .filter(|(_, t)| Placed::may_be_seen(t.map(|c| &placed[c as usize]), screen))
+        .map(|(polygon, t)| (polygon as u32, t))
         .collect();
 
     // The values of corners are calculated once per polygon or once per vertex, and only where needed.

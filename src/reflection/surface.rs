@@ -6,8 +6,9 @@ use glam::Vec3;
 
 use super::{declaration::Ambient, model::ReflectionModel, readout::Readout};
 use crate::optics::{
-    Frame, Terms,
+    Frame, TermSelection, Terms,
     albedo::{self, AlbedoCurve, LobeAlbedo},
+    radiometry::Arriving,
 };
 
 /// A model with its parameters set: the object-safe half of [`ReflectionModel`].
@@ -22,6 +23,22 @@ pub trait Surface: Send + Sync {
     fn lobe(&self) -> Option<LobeAlbedo>;
     /// See [`ReflectionModel::readouts`].
     fn readouts(&self) -> Vec<Readout>;
+
+    /// The light that leaves towards `v` under some lights: the sum of the responses. Each model has its own copy of this
+    /// loop, from which the compiler moves what depends on the object or on the view alone.
+    fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
+        let respond = |l: Vec3| self.response(l, v, frame);
+        match terms {
+            TermSelection::All => sum(lights, |l| respond(l).select(TermSelection::All)),
+            TermSelection::Ambient => sum(lights, |l| respond(l).ambient),
+            TermSelection::Diffuse => sum(lights, |l| respond(l).diffuse),
+            TermSelection::Specular => sum(lights, |l| respond(l).specular),
+        }
+    }
+}
+
+fn sum(lights: &[Arriving], response: impl Fn(Vec3) -> Vec3) -> Vec3 {
+    lights.iter().fold(Vec3::ZERO, |sum, at| sum + response(at.l) * at.light)
 }
 
 /// A model alone: it calculates its albedo anew at every call, to [`albedo::ACCURACY`].

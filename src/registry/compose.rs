@@ -67,7 +67,8 @@ fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
 }
 
 /// The response to uniform light of models that declare to give it by their albedo.
-const AMBIENT: &str = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+pub(crate) const AMBIENT: &str =
+    "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
     return directional_albedo(v, frame);
 }
 ";
@@ -124,10 +125,10 @@ fn push_light(c: &mut Composer, light: &LightEntry) {
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
     let mut text = String::from(
         "fn illumination_number(i: u32) -> f32 {
-    return bitcast<f32>(illumination.words[i]);
+    return bitcast<f32>(light_words[i]);
 }
 fn light_word(light: Light, i: u32) -> u32 {
-    return illumination.words[light.first_word + i];
+    return light_words[light.first_word + i];
 }
 fn light_number(light: Light, i: u32) -> f32 {
     return illumination_number(light.first_word + i);
@@ -159,7 +160,7 @@ pub(crate) const SHARED: [Source; 6] = [ALBEDO, LIGHTS, SHADING, LOOP, WRAPPER, 
 pub const FILE_TABLE: &str = "file_table";
 
 /// The source of a light type alone, with a function that calls its own. The numbers of its files are not in
-/// `illumination`, but in a table of one row with room for those of its defaults.
+/// `light_words`, but in a table of one row with room for those of its defaults.
 #[must_use]
 pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
     let mut c = Composer::new(sources);

@@ -6,7 +6,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{Folders, Registry, put};
+use super::{Folders, MODELS, Registry, put};
 use crate::{reflection::ModelEntry, watch::Print};
 
 /// A model from a file.
@@ -89,6 +89,17 @@ impl Registry {
             let files = [self.folders().file_of(source), below_shaders()];
             files.into_iter().flatten().find(|file| file.is_file())
         })
+    }
+
+    /// The files that it was read from: those of custom models and of edited shaders.
+    pub fn files_on_disk(&self) -> impl Iterator<Item = PathBuf> {
+        let models = self.custom_models().map(|(_, path)| path.to_owned());
+        // Looking for each of many models' files among all of them would take a while.
+        let shaders = self.sources().edited().filter_map(|source| match source.strip_prefix(MODELS) {
+            Some(file) => Some(self.custom_folder()?.join(file)),
+            None => self.path_on_disk(source),
+        });
+        models.chain(shaders)
     }
 
     /// Makes a model from a file known, with its text. A second one with the same id replaces the first, in its

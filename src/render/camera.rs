@@ -21,6 +21,7 @@ use bevy::{
     color::Color,
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     ecs::prelude::*,
+    light::cluster::ClusterConfig,
     render::view::Msaa,
     transform::components::Transform,
 };
@@ -35,8 +36,15 @@ pub struct PictureCamera {
     pub fits_width: bool,
 }
 
-/// The parts of a camera for the picture. For a picture that people see, add [`Hdr`]: it is drawn into
-/// half floats and tone mapped in a pass of its own; without, the target gets the linear values.
+/// A picture for people, which began with [`Hdr`]. That comes and goes as its display settings need half floats.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub struct ForDisplay {
+    /// True if it is drawn [straight](super::straight::Straight) into its texture.
+    pub(super) straight: bool,
+}
+
+/// The parts of a camera for the picture. For a picture that people see, add [`Hdr`]: it is tone mapped and encoded,
+/// from half floats where that takes passes of its own. Without, the target gets the linear values.
 #[must_use]
 pub fn picture_camera(samples: u8) -> impl Bundle {
     (
@@ -52,6 +60,8 @@ pub fn picture_camera(samples: u8) -> impl Bundle {
         },
         projection(&Observer::default()),
         Tonemapping::None,
+        // Bevy's lights are not used.
+        ClusterConfig::Single,
         // Dithering would make pictures differ between runs and renderers.
         DebandDither::Disabled,
         RenderLayers::from_layers(&[SCENE_LAYER, GIZMO_LAYER]),
@@ -94,11 +104,11 @@ pub fn follow_scene(
         &mut Transform,
         &mut Projection,
         &mut Tonemapping,
-        Has<Hdr>,
+        (Has<Hdr>, Has<ForDisplay>),
     )>,
 ) {
     let observer = &shown.observer;
-    for (camera, overrides, view, mut transform, mut lens, mut tone, hdr) in &mut cameras {
+    for (camera, overrides, view, mut transform, mut lens, mut tone, (hdr, display)) in &mut cameras {
         if camera.follows_observer {
             let wanted =
                 Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
@@ -115,8 +125,9 @@ pub fn follow_scene(
         {
             perspective.fov = fov;
         }
+        let seen = hdr || display;
         let display = overrides.map_or(scene.0.display, |o| o.display_of(&scene.0));
-        let wanted = if hdr { tonemapping(display.tone_mapping) } else { Tonemapping::None };
+        let wanted = if seen { tonemapping(display.tone_mapping) } else { Tonemapping::None };
         if *tone != wanted {
             *tone = wanted;
         }

@@ -31,6 +31,14 @@ impl SceneEntities {
         let parts = self.shown.and_then(|shown| document.changes_since(shown));
         // Where others changed the scene, the document counts.
         match parts.filter(|_| self.agreed == before) {
+            Some(parts)
+                if parts.iter().all(|part| *part == Extent::Rest) && document.shows_the_same(&scene.0) =>
+            {
+                // No picture changes: views follow their overrides, and layouts only arrange them.
+                let scene = &mut scene.bypass_change_detection().0;
+                scene.variants.clone_from(&document.variants);
+                scene.comparison = document.comparison;
+            }
             Some(parts) => {
                 parts.iter().for_each(|part| part.copy(document, &mut scene.0));
                 if self.seen == before {

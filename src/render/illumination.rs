@@ -1,17 +1,17 @@
-//! The buffer of lights: one, of fixed capacity, shared by all materials and visible to the vertex
-//! and fragment stages. Changing a light rewrites the buffer and touches no material. A view with
-//! overrides has a buffer of its own. At its end are the parameters of the lights, one after the other; when they
-//! outgrow it, there is another buffer, and objects get other materials.
+//! The buffers of lights, shared by all materials and visible to the vertex and fragment stages: a uniform buffer of
+//! fixed capacity, which shaders read for each light and pixel, and a storage buffer with the parameters of the lights,
+//! one after the other. Changing a light rewrites the buffers and touches no material. A view with overrides has buffers
+//! of its own. When the parameters outgrow their buffer, there are others, and objects get other materials.
 
 use std::sync::Arc;
 
 use bevy::{
-    asset::{Assets, Handle, RenderAssetUsages},
+    asset::{AssetId, Assets, Handle, RenderAssetUsages},
     ecs::{
         resource::Resource,
         world::{FromWorld, World},
     },
-    render::storage::ShaderBuffer,
+    render::{render_resource::BufferUsages, storage::ShaderBuffer},
 };
 use glam::Vec3;
 
@@ -40,56 +40,69 @@ pub const LIGHT_LAYOUT: [(&str, usize); 6] = [
     ("first_word", 44),
 ];
 /// Byte offsets of the fields of `Illumination` in `lights.wgsl`.
-pub const ILLUMINATION_LAYOUT: [(&str, usize); 6] = [
-    ("count", 0),
-    ("terms", 4),
-    ("exposure", 8),
-    ("gamma_naive", 12),
-    ("lights", HEADER_BYTES),
-    ("words", HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES),
-];
+pub const ILLUMINATION_LAYOUT: [(&str, usize); 5] =
+    [("count", 0), ("terms", 4), ("exposure", 8), ("gamma_naive", 12), ("lights", HEADER_BYTES)];
 
 /// The terms of the equation that are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
 pub struct ShownTerms(pub TermSelection);
 
-/// The buffer of all lights of the scene, as views without overrides show them.
+/// The buffers of the lights of a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LightBuffers {
+    /// `illumination` of the shaders.
+    pub lights: Handle<ShaderBuffer>,
+    /// `light_words` of the shaders.
+    pub words: Handle<ShaderBuffer>,
+}
+
+impl LightBuffers {
+    /// Buffers that have no lights yet.
+    fn new(room: usize, buffers: &mut Assets<ShaderBuffer>) -> Self {
+        let (lights, _) = illumination_bytes(&[], TermSelection::All, &Display::default());
+        let mut lights = ShaderBuffer::new(&lights, RenderAssetUsages::default());
+        lights.buffer_description.usage |= BufferUsages::UNIFORM;
+        let words = ShaderBuffer::new(&vec![0; 4 * room], RenderAssetUsages::default());
+        Self { lights: buffers.add(lights), words: buffers.add(words) }
+    }
+
+    /// True if a buffer is one of them.
+    pub(super) fn has(&self, buffer: AssetId<ShaderBuffer>) -> bool {
+        [self.lights.id(), self.words.id()].contains(&buffer)
+    }
+}
+
+/// The buffers of all lights of the scene, as views without overrides show them.
 #[derive(Clone, Debug, Resource)]
 pub struct IlluminationBuffer {
-    /// The buffer; another one when the parameters of the lights outgrow it.
-    pub handle: Handle<ShaderBuffer>,
+    /// The buffers; others when the parameters of the lights outgrow them.
+    pub buffers: LightBuffers,
     /// The words for parameters of lights that it has room for, and those of all views.
     room: usize,
 }
 
 impl IlluminationBuffer {
-    /// A buffer that has no lights yet, for another view.
-    pub(super) fn another(&self, buffers: &mut Assets<ShaderBuffer>) -> Handle<ShaderBuffer> {
-        without_lights(self.room, buffers)
+    /// Buffers that have no lights yet, for another view.
+    pub(super) fn another(&self, buffers: &mut Assets<ShaderBuffer>) -> LightBuffers {
+        LightBuffers::new(self.room, buffers)
     }
 
-    /// Makes room for so many words. True if the buffer is another one than before, as are those of all views then.
+    /// Makes room for so many words. True if the buffers are others than before, as are those of all views then.
     pub(super) fn hold(&mut self, words: usize, buffers: &mut Assets<ShaderBuffer>) -> bool {
         if words <= self.room {
             return false;
         }
         self.room = words.next_power_of_two();
-        self.handle = self.another(buffers);
+        self.buffers = self.another(buffers);
         true
     }
 }
 
 impl FromWorld for IlluminationBuffer {
     fn from_world(world: &mut World) -> Self {
-        let handle = without_lights(WORDS, &mut world.resource_mut::<Assets<ShaderBuffer>>());
-        Self { handle, room: WORDS }
+        let buffers = LightBuffers::new(WORDS, &mut world.resource_mut::<Assets<ShaderBuffer>>());
+        Self { buffers, room: WORDS }
     }
-}
-
-fn without_lights(room: usize, buffers: &mut Assets<ShaderBuffer>) -> Handle<ShaderBuffer> {
-    let mut bytes = illumination_bytes(&[], TermSelection::All, &Display::default());
-    bytes.resize(bytes.len() + 4 * room, 0);
-    buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()))
 }
 
 /// A light of the scene, as the shader has it.
@@ -165,10 +178,10 @@ pub fn word_count(lights: &[Lit]) -> usize {
     Places::of(&lights[..lights.len().min(MAX_LIGHTS)]).count
 }
 
-/// The bytes of `Illumination` in `lights.wgsl`, up to the last word in use. Lights beyond [`MAX_LIGHTS`] are left out;
-/// the checker refuses such scenes.
+/// The bytes of `Illumination` in `lights.wgsl`, and those of `light_words` up to the last word in use. Lights beyond
+/// [`MAX_LIGHTS`] are left out; the checker refuses such scenes.
 #[must_use]
-pub fn illumination_bytes(lights: &[Lit], terms: TermSelection, display: &Display) -> Vec<u8> {
+pub fn illumination_bytes(lights: &[Lit], terms: TermSelection, display: &Display) -> (Vec<u8>, Vec<u8>) {
     let lights = &lights[..lights.len().min(MAX_LIGHTS)];
     let places = Places::of(lights);
     let mut bytes = vec![0u8; HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES];
@@ -191,8 +204,7 @@ pub fn illumination_bytes(lights: &[Lit], terms: TermSelection, display: &Displa
         put(base + 28, record.intensity.to_le_bytes());
         put(base + 44, (*first as u32).to_le_bytes());
     }
-    bytes.extend(places.words(lights).into_iter().flat_map(u32::to_le_bytes));
-    bytes
+    (bytes, places.words(lights).into_iter().flat_map(u32::to_le_bytes).collect())
 }
 
 #[cfg(test)]
@@ -202,8 +214,17 @@ mod tests {
     #[test]
     fn more_lights_than_fit_are_left_out() {
         let lights = vec![Lit { words: vec![7], ..Lit::default() }; MAX_LIGHTS + 5];
-        let bytes = illumination_bytes(&lights, TermSelection::All, &Display::default());
+        let (bytes, words) = illumination_bytes(&lights, TermSelection::All, &Display::default());
         assert_eq!(bytes[..4], (MAX_LIGHTS as u32).to_le_bytes());
-        assert_eq!(bytes.len(), HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES + 4 * MAX_LIGHTS);
+        assert_eq!(bytes.len(), HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES);
+        assert_eq!(words.len(), 4 * MAX_LIGHTS);
+    }
+
+    #[test]
+    fn the_lights_fit_the_smallest_uniform_buffer_that_there_is() {
+        let limits = [wgpu::Limits::downlevel_webgl2_defaults(), wgpu::Limits::default()];
+        let smallest = limits.into_iter().map(|l| l.max_uniform_buffer_binding_size).min();
+        let (bytes, _) = illumination_bytes(&[], TermSelection::All, &Display::default());
+        assert!(smallest.is_some_and(|most| bytes.len() as u64 <= most), "{} of {smallest:?}", bytes.len());
     }
 }

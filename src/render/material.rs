@@ -12,6 +12,7 @@ use bevy::{
     ecs::{
         change_detection::Mut,
         resource::Resource,
+        system::{SystemParamItem, lifetimeless::SRes},
         world::{EntityWorldMut, World},
     },
     mesh::{Mesh, MeshVertexAttribute, MeshVertexBufferLayoutRef},
@@ -19,15 +20,20 @@ use bevy::{
     prelude::App,
     reflect::TypePath,
     render::{
+        render_asset::RenderAssets,
         render_resource::{
-            AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError, VertexFormat,
+            AsBindGroup, AsBindGroupError, BindGroupLayout, BindGroupLayoutEntries, BindGroupLayoutEntry,
+            BindingResources, OwnedBindingResource, RenderPipelineDescriptor, ShaderStages,
+            SpecializedMeshPipelineError, UnpreparedBindGroup, VertexFormat,
+            binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized},
         },
-        storage::ShaderBuffer,
+        renderer::RenderDevice,
+        storage::{GpuShaderBuffer, ShaderBuffer},
     },
     shader::Shader,
 };
 
-use super::trial::MARK;
+use super::{illumination::LightBuffers, trial::MARK};
 use crate::{custom::CustomFile, reflection::ReflectionModel};
 
 /// The tangent of the vertex. Three numbers, not Bevy's four: the bitangent is always `n × t`.
@@ -49,23 +55,23 @@ pub struct MaterialInputs {
     /// The parameters of all objects under the model.
     pub parameters: Handle<ShaderBuffer>,
     /// The lights of the scene, shared by all materials.
-    pub illumination: Handle<ShaderBuffer>,
+    pub illumination: LightBuffers,
     /// The composed shader of model and shading model.
     pub shader: Handle<Shader>,
     /// True if the mesh carries [`FACE_NORMAL`], [`FACE_TANGENT`] and [`FACE_CENTRE`].
     pub faces: bool,
+    /// True if the display shows numbers as they are, [`Encoding::Off`](crate::optics::colour::Encoding::Off).
+    pub gamma_naive: bool,
 }
 
 /// The material of objects under the model `M`; custom models share [`CustomFile`].
-#[derive(Asset, AsBindGroup, Clone, Debug)]
-#[bind_group_data(PipelineKey)]
+#[derive(Asset, Clone, Debug)]
 pub struct ModelMaterial<M: Clone + 'static> {
-    #[storage(0, read_only)]
     parameters: Handle<ShaderBuffer>,
-    #[storage(1, read_only)]
-    illumination: Handle<ShaderBuffer>,
+    illumination: LightBuffers,
     shader: Handle<Shader>,
     faces: bool,
+    gamma_naive: bool,
     model: PhantomData<fn() -> M>,
 }
 
@@ -74,11 +80,52 @@ pub struct ModelMaterial<M: Clone + 'static> {
 pub struct PipelineKey {
     shader: Handle<Shader>,
     faces: bool,
+    gamma_naive: bool,
 }
 
 impl<M: Clone + 'static> From<&ModelMaterial<M>> for PipelineKey {
     fn from(material: &ModelMaterial<M>) -> Self {
-        Self { shader: material.shader.clone(), faces: material.faces }
+        let ModelMaterial { faces, gamma_naive, .. } = *material;
+        Self { shader: material.shader.clone(), faces, gamma_naive }
+    }
+}
+
+// By hand, because a uniform buffer that materials share cannot be derived.
+impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
+    type Data = PipelineKey;
+    type Param = SRes<RenderAssets<GpuShaderBuffer>>;
+
+    fn label() -> &'static str {
+        "model"
+    }
+
+    fn bind_group_data(&self) -> PipelineKey {
+        self.into()
+    }
+
+    fn unprepared_bind_group(
+        &self,
+        _: &BindGroupLayout,
+        _: &RenderDevice,
+        buffers: &mut SystemParamItem<'_, '_, Self::Param>,
+        _: bool,
+    ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
+        let LightBuffers { lights, words } = &self.illumination;
+        let mut bindings = Vec::with_capacity(3);
+        for (binding, handle) in [(0, &self.parameters), (1, lights), (2, words)] {
+            let buffer = buffers.get(handle).ok_or(AsBindGroupError::RetryNextUpdate)?;
+            bindings.push((binding, OwnedBindingResource::Buffer(buffer.buffer.clone())));
+        }
+        Ok(UnpreparedBindGroup { bindings: BindingResources(bindings) })
+    }
+
+    fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
+        let storage = || storage_buffer_read_only_sized(false, None);
+        BindGroupLayoutEntries::sequential(
+            ShaderStages::VERTEX_FRAGMENT,
+            (storage(), uniform_buffer_sized(false, None), storage()),
+        )
+        .to_vec()
     }
 }
 
@@ -89,6 +136,7 @@ impl<M: Clone + 'static> From<MaterialInputs> for ModelMaterial<M> {
             illumination: inputs.illumination,
             shader: inputs.shader,
             faces: inputs.faces,
+            gamma_naive: inputs.gamma_naive,
             model: PhantomData,
         }
     }
@@ -140,6 +188,10 @@ impl<M: Clone + 'static> Material for ModelMaterial<M> {
         if let Some(fragment) = descriptor.fragment.as_mut() {
             if key.bind_group_data.faces {
                 fragment.shader_defs.push("FACES".into());
+            }
+            if key.bind_group_data.gamma_naive {
+                // Not a choice at run time: programs on the CPU calculate both sides of one for every pixel.
+                fragment.shader_defs.push("GAMMA_NAIVE".into());
             }
             fragment.shader_defs.push(MARK.into());
             fragment.shader = key.bind_group_data.shader;
@@ -221,7 +273,7 @@ struct SharedMaterials<M: Clone + 'static>(
 
 fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInputs) {
     let handle = entity.world_scope(|world: &mut World| {
-        let key = (inputs.shader.id(), inputs.illumination.id());
+        let key = (inputs.shader.id(), inputs.illumination.lights.id());
         world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
         world.resource_scope(|world, mut shared: Mut<SharedMaterials<M>>| {
             let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
@@ -230,9 +282,9 @@ fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInput
                 shared.0.insert(key, handle.clone());
                 return handle;
             };
-            // A table that was made anew, for more objects.
+            // A table that was made anew, for more objects, or another encoding.
             if let Some(material) = materials.get(handle)
-                && material.parameters != inputs.parameters
+                && (material.parameters != inputs.parameters || material.gamma_naive != inputs.gamma_naive)
             {
                 let _ = materials.insert(handle.id(), ModelMaterial::<M>::from(inputs));
             }

@@ -1,6 +1,9 @@
 //! Meshes for the renderer, shared by all objects of one type with equal parameters and tessellations.
 
-use std::collections::{HashMap, HashSet};
+use std::{
+    collections::{HashMap, HashSet},
+    iter,
+};
 
 use bevy::{
     asset::{Assets, Handle, RenderAssetUsages},
@@ -12,6 +15,7 @@ use rayon::prelude::*;
 
 use super::{
     material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
+    overrides::Overrides,
     shown::ShownObject,
 };
 use crate::{
@@ -75,11 +79,7 @@ impl ShapeMeshes {
 /// The mesh for shading models that interpolate over shared vertices.
 #[must_use]
 pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
-    let indices = mesh
-        .polygons
-        .iter()
-        .flat_map(|p| p.triangles().iter().flatten().map(|&i| p.corners()[i]))
-        .collect::<Vec<_>>();
+    let indices = mesh.triangles().flat_map(|(_, corners)| corners).collect();
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&mesh.positions))
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&mesh.vertex_normals()))
@@ -132,13 +132,19 @@ pub(super) fn forget_unused_meshes(world: &mut World, registry: &Registry) {
     if !std::mem::take(&mut world.resource_mut::<ShapeMeshes>().grown) {
         return;
     }
+    // Views may have another tessellation.
+    let mut views = world.query::<&Overrides>();
+    let counts: Vec<_> = views.iter(world).filter_map(|overrides| overrides.tessellation).collect();
     let mut query = world.query::<&ShownObject>();
     let used: HashSet<_> = query
         .iter(world)
         .filter_map(|object| {
             let shape = registry.shape(&object.0.object_type)?;
-            Some(shape.key(&object.0.shape, object.0.tessellation))
+            let of_views = counts.iter().map(|count| Some(shape.tessellation(Some(*count))));
+            let counts = iter::once(object.0.tessellation).chain(of_views);
+            Some(counts.map(|count| shape.key(&object.0.shape, count)).collect::<Vec<_>>())
         })
+        .flatten()
         .collect();
     let mut meshes = world.resource_mut::<ShapeMeshes>();
     if meshes.known.len() > used.len() + SPARE {

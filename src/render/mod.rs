@@ -20,6 +20,7 @@ pub mod schedule;
 pub mod show;
 mod shown;
 pub mod stage;
+pub mod straight;
 pub mod swap;
 pub mod tables;
 pub mod trial;

@@ -5,6 +5,7 @@ use bevy::ecs::component::Component;
 use crate::{
     optics::TermSelection,
     parameter::Values,
+    registry::Registry,
     scene::{Display, Object, Scene},
 };
 
@@ -21,24 +22,44 @@ pub struct Overrides {
     pub terms: Option<TermSelection>,
     /// Exposure, tone mapping and encoding.
     pub display: Option<Display>,
+    /// The tessellation of every object, as far as the object's type allows it.
+    pub tessellation: Option<u32>,
 }
 
 impl Overrides {
+    /// The differences between a view of a scene and the scene itself; none for view 0 and for views that a scene does
+    /// not have.
+    #[must_use]
+    pub fn of_view(scene: &Scene, view: usize) -> Option<Self> {
+        let variant = scene.overrides(view)?;
+        Some(Self {
+            display: Some(variant.display(scene.display)),
+            reflection_model: variant.reflection_model,
+            shading_model: variant.shading_model,
+            parameters: variant.material,
+            terms: variant.terms,
+            tessellation: variant.tessellation,
+        })
+    }
+
     /// The scene as the view shows it. Its terms are no part of it.
     #[must_use]
-    pub fn applied(&self, scene: &Scene) -> Scene {
+    pub fn applied(&self, scene: &Scene, registry: &Registry) -> Scene {
         let mut shown = Scene { display: self.display_of(scene), ..scene.clone() };
-        shown.objects.iter_mut().for_each(|object| self.dress(object));
+        shown.objects.iter_mut().for_each(|object| self.dress(object, registry));
         shown
     }
 
     /// Makes an object what the view shows.
-    pub(super) fn dress(&self, object: &mut Object) {
+    pub(super) fn dress(&self, object: &mut Object, registry: &Registry) {
         if self.reflection_model.is_some() {
             object.reflection_model.clone_from(&self.reflection_model);
         }
         if self.shading_model.is_some() {
             object.shading_model.clone_from(&self.shading_model);
+        }
+        if let (Some(count), Some(shape)) = (self.tessellation, registry.shape(&object.object_type)) {
+            object.tessellation = Some(shape.tessellation(Some(count)));
         }
         object.material.0.extend(self.parameters.0.clone());
     }

@@ -20,6 +20,7 @@ use super::{
     schedule::{LabFrame, LabSystems, detect},
     shown::{Shown, show_lights},
     stage::{Stage, set_stages},
+    straight::StraightPlugin,
     swap::swap,
     tables::TablesPlugin,
     typed::know_types,
@@ -82,7 +83,7 @@ impl Plugin for ScenePlugin {
                     (upload_lights, follow_scene).in_set(LabSystems::Upload),
                 ),
             )
-            .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin));
+            .add_plugins((LiveShadersPlugin, ViewPlugin, TablesPlugin, StraightPlugin));
         // Two systems that touch the same data must say who comes first.
         detect(app, LogLevel::Warn);
     }
@@ -104,17 +105,19 @@ fn upload_lights(
         .iter()
         .filter(|(stage, overrides)| changed || stage.is_added() || overrides.is_changed())
         .map(|(stage, overrides)| (&stage.into_inner().illumination, overrides.into_inner()));
-    for (handle, overrides) in changed.then_some((&shared.handle, &none)).into_iter().chain(changed_stages) {
+    for (known, overrides) in changed.then_some((&shared.buffers, &none)).into_iter().chain(changed_stages) {
         let display = overrides.display_of(&scene.0);
         let lights: Vec<_> = shown.shining().map(|l| Lit::new(l, &registry, display.encoding)).collect();
-        let mut bytes = illumination_bytes(&lights, overrides.terms.unwrap_or(terms.0), &display);
-        let Some(known) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
-        // Materials would not notice a buffer of another size.
-        bytes.resize(known.len(), 0);
-        if *known != bytes
-            && let Some(mut buffer) = buffers.get_mut(handle)
-        {
-            buffer.data = Some(bytes);
+        let (illumination, words) = illumination_bytes(&lights, overrides.terms.unwrap_or(terms.0), &display);
+        for (handle, mut bytes) in [(&known.lights, illumination), (&known.words, words)] {
+            let Some(old) = buffers.get(handle).and_then(|known| known.data.as_ref()) else { continue };
+            // Materials would not notice a buffer of another size.
+            bytes.resize(old.len(), 0);
+            if *old != bytes
+                && let Some(mut buffer) = buffers.get_mut(handle)
+            {
+                buffer.data = Some(bytes);
+            }
         }
     }
 }

@@ -4,7 +4,7 @@ use bevy::{
     app::App,
     ecs::{
         prelude::*,
-        schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel},
+        schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor},
     },
 };
 
@@ -36,6 +36,20 @@ pub enum LabSystems {
 /// Makes an open order of two systems in [`LabFrame`] an error when it runs first.
 pub fn strict(app: &mut App) {
     detect(app, LogLevel::Error);
+}
+
+/// Runs the systems of every schedule one after the other on the calling thread. A frame has hundreds of systems of a
+/// microsecond each, and handing one to another thread takes longer than that; those with much work spread it
+/// themselves.
+pub fn run_on_one_thread(app: &mut App) {
+    let worlds = app.sub_apps_mut();
+    for app in worlds.iter_mut() {
+        if let Some(mut schedules) = app.world_mut().get_resource_mut::<Schedules>() {
+            for (_, schedule) in schedules.iter_mut() {
+                schedule.set_executor(SingleThreadedExecutor::new());
+            }
+        }
+    }
 }
 
 /// Sets how systems whose order is left open are reported.

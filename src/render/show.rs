@@ -1,5 +1,6 @@
 //! Views in the window: their textures are copied to their places, and the panels are drawn over them in one pass.
 
+use bevy::math::URect;
 use bevy::{
     app::{App, Plugin},
     asset::Handle,
@@ -35,10 +36,20 @@ impl Plugin for ShowPlugin {
     }
 }
 
-/// The pictures that a camera of a window shows, and where their upper left corners are, pixels. The camera's
-/// textures need the usage `COPY_DST`.
+/// The pictures that a camera of a window shows. The camera's textures need the usage `COPY_DST`.
 #[derive(Component, ExtractComponent, Clone, Debug, Default, PartialEq, Eq)]
-pub struct Shows(pub Vec<(Handle<Image>, UVec2)>);
+pub struct Shows(pub Vec<ShownPicture>);
+
+/// A picture, or a part of one, in a window.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShownPicture {
+    /// The picture.
+    pub image: Handle<Image>,
+    /// The place in the window of its upper left corner, pixels.
+    pub at: UVec2,
+    /// The part of the picture that is shown, pixels of the picture; all of it if there is none.
+    pub part: Option<URect>,
+}
 
 fn copy(
     view: ViewQuery<(&ViewTarget, &Shows)>,
@@ -47,8 +58,8 @@ fn copy(
 ) {
     let (target, shows) = view.into_inner();
     let window = target.main_texture();
-    for (handle, at) in &shows.0 {
-        let Some(image) = images.get(handle) else { continue };
+    for ShownPicture { image, at, part } in &shows.0 {
+        let Some(image) = images.get(image) else { continue };
         if image.texture.format() != window.format() {
             error_once!(
                 "The picture cannot be shown: the window's format is {:?} and the picture's {:?}",
@@ -57,13 +68,19 @@ fn copy(
             );
             continue;
         }
-        let room = UVec2::new(window.width(), window.height()).saturating_sub(*at);
-        let size = UVec2::new(image.texture.width(), image.texture.height()).min(room);
+        let whole = UVec2::new(image.texture.width(), image.texture.height());
+        let part = part.unwrap_or(URect { min: UVec2::ZERO, max: whole });
+        let at = *at + part.min;
+        let room = UVec2::new(window.width(), window.height()).saturating_sub(at);
+        let size = part.max.min(whole).saturating_sub(part.min).min(room);
         if size.min_element() == 0 {
             continue;
         }
         context.command_encoder().copy_texture_to_texture(
-            image.texture.as_image_copy(),
+            TexelCopyTextureInfo {
+                origin: Origin3d { x: part.min.x, y: part.min.y, z: 0 },
+                ..image.texture.as_image_copy()
+            },
             TexelCopyTextureInfo {
                 texture: window,
                 mip_level: 0,

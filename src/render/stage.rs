@@ -2,7 +2,7 @@
 //! the material of the view, and lights of its own. Views without [`Overrides`] share the objects themselves.
 
 use bevy::{
-    asset::{Assets, Handle},
+    asset::Assets,
     camera::visibility::{RenderLayers, Visibility},
     ecs::{entity::EntityHashMap, lifecycle::HookContext, prelude::*, world::DeferredWorld},
     render::storage::ShaderBuffer,
@@ -10,7 +10,10 @@ use bevy::{
 };
 
 use super::{
-    entities::SceneEntities, illumination::IlluminationBuffer, material::Attachments, overrides::Overrides,
+    entities::SceneEntities,
+    illumination::{IlluminationBuffer, LightBuffers},
+    material::Attachments,
+    overrides::Overrides,
     tables::ParameterTables,
 };
 use crate::scene::MAX_OBJECTS;
@@ -25,7 +28,7 @@ pub const GIZMO_LAYER: usize = 1;
 #[component(on_remove = strike)]
 pub struct Stage {
     layer: usize,
-    pub(super) illumination: Handle<ShaderBuffer>,
+    pub(super) illumination: LightBuffers,
     /// By object.
     copies: EntityHashMap<Entity>,
     /// The [list](SceneEntities::list) of objects that have them.
@@ -79,7 +82,7 @@ pub(super) fn set_stages(
 fn strike(mut world: DeferredWorld, context: HookContext) {
     let view = context.entity;
     let Some(stage) = world.get::<Stage>(view) else { return };
-    let illumination = stage.illumination.id();
+    let illumination = stage.illumination.lights.id();
     let copies: Vec<_> = stage.copies.values().copied().collect();
     world.commands().queue(move |world: &mut World| {
         for copy in copies {

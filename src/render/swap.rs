@@ -26,6 +26,7 @@ use super::{
 use crate::{
     light::MAX_LIGHTS,
     optics::colour::Encoding,
+    parameter::{Value, file_changes},
     reflection::ModelEntry,
     registry::{LightSet, Registry},
     scene::{MAX_OBJECTS, Object, Scene, shines_from_everywhere},
@@ -76,10 +77,15 @@ enum Suspects {
 pub fn swap(
     world: &mut World,
     mut last: Local<Option<Common>>,
+    mut files: Local<u64>,
     changed: &mut QueryState<Entity, Changed<ShownObject>>,
     unfinished: &mut QueryState<(Entity, Option<(&'static ViewCopy, &'static ChildOf)>), Unfinished>,
     views: &mut QueryState<Entity, (With<Stage>, With<Overrides>)>,
 ) {
+    let changes = file_changes();
+    if std::mem::replace(&mut *files, changes) != changes {
+        touch_those_from_files(world);
+    }
     let objects = world.resource::<SceneEntities>().objects.len().min(MAX_OBJECTS);
     let mut all = world.resource_mut::<ParameterTables>().bypass_change_detection().hold(objects);
     let views: Vec<_> = views.iter(world).collect();
@@ -141,6 +147,16 @@ pub fn swap(
     });
 }
 
+/// A file that objects name has other numbers: they are drawn anew, although they are the same in the scene.
+fn touch_those_from_files(world: &mut World) {
+    let mut objects = world.query::<&mut ShownObject>();
+    for mut object in objects.iter_mut(world) {
+        if object.0.shape.0.values().any(|value| matches!(value, Value::File(_))) {
+            object.set_changed();
+        }
+    }
+}
+
 /// Makes room for the parameters of all lights. True if the buffers are others than before.
 fn hold_lights(world: &mut World, views: &[Entity]) -> bool {
     let registry = world.resource::<Registry>();
@@ -149,14 +165,14 @@ fn hold_lights(world: &mut World, views: &[Entity]) -> bool {
     let words = word_count(&lights);
     world.resource_scope(|world, mut shared: Mut<IlluminationBuffer>| {
         let shared = shared.bypass_change_detection();
-        let mut old = vec![shared.handle.id()];
+        let mut old = vec![shared.buffers.lights.id()];
         if !shared.hold(words, &mut world.resource_mut::<Assets<ShaderBuffer>>()) {
             return false;
         }
         for view in views {
             let another = shared.another(&mut world.resource_mut::<Assets<ShaderBuffer>>());
             if let Some(mut stage) = world.get_mut::<Stage>(*view) {
-                old.push(std::mem::replace(&mut stage.illumination, another).id());
+                old.push(std::mem::replace(&mut stage.illumination, another).lights.id());
             }
         }
         for attachment in world.resource::<Attachments>().all() {
@@ -227,7 +243,7 @@ fn find(
         }
         let mut shown = object.0.clone();
         if let Some(overrides) = overrides {
-            overrides.dress(&mut shown);
+            overrides.dress(&mut shown, registry);
         }
         pending.push(Pending { view, object: entity, drawable: drawable.id(), shown, now });
     }
@@ -261,10 +277,11 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         tables.set(view, model, row, bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
     });
     let illumination = view.and_then(|view| world.get::<Stage>(view)).map_or_else(
-        || world.resource::<IlluminationBuffer>().handle.clone(),
+        || world.resource::<IlluminationBuffer>().buffers.clone(),
         |stage| stage.illumination.clone(),
     );
-    let inputs = MaterialInputs { parameters, illumination, shader, faces };
+    let gamma_naive = now.encoding == Encoding::Off;
+    let inputs = MaterialInputs { parameters, illumination, shader, faces, gamma_naive };
     let attachments = world.resource::<Attachments>();
     let old = world
         .get::<Drawn>(drawable)

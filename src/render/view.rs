@@ -220,9 +220,8 @@ impl Changes<'_, '_> {
         }
         for event in self.buffers.read() {
             let (AssetEvent::Added { id } | AssetEvent::Modified { id }) = event else { continue };
-            let lit =
-                |(view, stage): (Entity, &Stage)| (stage.illumination.id() == *id).then_some(Some(view));
-            let shared = || (self.shared.handle.id() == *id).then_some(None);
+            let lit = |(view, stage): (Entity, &Stage)| stage.illumination.has(*id).then_some(Some(view));
+            let shared = || self.shared.buffers.has(*id).then_some(None);
             match self.tables.view_of(*id).or_else(shared).or_else(|| self.stages.iter().find_map(lit)) {
                 Some(view) => _ = some.insert(view),
                 None => all = true,

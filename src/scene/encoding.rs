@@ -17,7 +17,7 @@ pub(super) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadErr
         (b"\0\0\xFE\xFF", "the file is UTF-32; save it as UTF-8"),
         (b"\xFF\xFE", "the file is UTF-16 (little-endian); save it as UTF-8"),
         (b"\xFE\xFF", "the file is UTF-16 (big-endian); save it as UTF-8"),
-        (b"\x89PNG", "the file is a PNG picture, not a scene"),
+        (b"\x89PNG", "the file is a PNG picture; a scene in it is read if the name of the file ends in .png"),
         (b"\xFF\xD8\xFF", "the file is a JPEG picture, not a scene"),
         (b"\x1F\x8B", "the file is compressed (gzip); unpack it first"),
         (b"PK\x03\x04", "the file is a ZIP archive; unpack it first"),

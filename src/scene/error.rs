@@ -13,7 +13,7 @@ pub use crate::text::{
     place::Place,
 };
 use crate::{
-    files::{FileError, Kind},
+    files::{FileError, Kind, words},
     registry::Registry,
 };
 
@@ -130,7 +130,7 @@ pub enum LoadError {
         name: String,
     },
     /// Another failure of the operating system.
-    #[error("{name} could not be read: {source}")]
+    #[error("{name} could not be read: {}", words(.source))]
     Io {
         /// The file.
         name: String,
@@ -171,6 +171,14 @@ pub enum LoadError {
         /// The position where reading stopped.
         place: Place,
         /// The expectation there.
+        what: String,
+    },
+    /// A picture without a scene that can be read.
+    #[error("{name}: {what}")]
+    Picture {
+        /// The file.
+        name: String,
+        /// The mistake.
         what: String,
     },
     /// Readable, but not a valid scene. With every problem, in the order of the file.
@@ -224,13 +232,14 @@ impl LoadError {
             Self::Missing { missing, .. } => return missing.iter().map(Missing::problem).collect(),
             Self::NotUtf8 { place, what, .. } => (Some(*place), format!("is not UTF-8 text: {what}")),
             Self::Syntax { format, place, what, .. } => (Some(*place), format!("is not {format}: {what}")),
+            Self::Picture { what, .. } => (None, format!("could not be read: {what}")),
             Self::UnknownExtension { unknown, .. } => (None, format!("could not be read: {unknown}")),
             Self::NotFound { .. } => (None, "could not be read: file not found".to_owned()),
             Self::Folder { .. } => (None, "could not be read: it is a folder".to_owned()),
             Self::NoFile { kind, .. } => (None, format!("could not be read: it is {kind}")),
             Self::PermissionDenied { .. } => (None, "could not be read: no permission".to_owned()),
             Self::TooLarge { .. } => (None, format!("is larger than {} MiB", MAX_FILE_BYTES >> 20)),
-            Self::Io { source, .. } => (None, format!("could not be read: {source}")),
+            Self::Io { source, .. } => (None, format!("could not be read: {}", words(source))),
             Self::Empty { .. } => (None, "is empty".to_owned()),
         };
         vec![Problem { place, ..Problem::about(Path::root(), what) }]
@@ -278,6 +287,8 @@ fn scenes_within(path: &FilePath, registry: &Registry) -> Option<String> {
         .take(1000)
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
         .filter(|name| formats::is_scene_file(FilePath::new(name), registry))
+        // Most pictures hold no scene.
+        .filter(|name| !formats::is_picture(FilePath::new(name)))
         .collect();
     names.sort();
     let more = if names.len() > 5 { " and more" } else { "" };

@@ -29,10 +29,11 @@ macro_rules! texts {
 }
 
 /// From the simplest to those that measure something.
-const TEXTS: [(&str, &str); 14] = texts![
+const TEXTS: [(&str, &str); 23] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
+    "models_from_files.json",
     "gouraud_misses_highlight.json",
     "half_lambert.json",
     "photometric_lamps.json",
@@ -44,6 +45,14 @@ const TEXTS: [(&str, &str); 14] = texts![
     "white_furnace.json",
     "model_matrix.json",
     "many_lights.json",
+    "compare_gouraud_phong.json",
+    "compare_flat_derivative.json",
+    "compare_phong_blinn_phong.json",
+    "compare_diffuse_models.json",
+    "compare_gold.json",
+    "compare_furnace.json",
+    "compare_gamma.json",
+    "compare_tone_mappings.json",
 ];
 
 /// All of them, in the order of lists.

@@ -6,8 +6,13 @@
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
-use super::{Display, Light, Object, Observer, Scene, SceneSize};
+use super::{
+    Comparison, Display, Light, Object, Observer, Scene, SceneSize, Variant,
+    comparison::{Channel, Compared, Edge, Layout, Sign},
+    variant::LETTERS,
+};
 use crate::{
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::{Parameter, Value, Values},
     registry::Registry,
 };
@@ -41,6 +46,13 @@ pub(super) struct SceneFile<'a> {
     /// Conversion of light to the picture on the display.
     #[serde(skip_serializing_if = "Option::is_none")]
     display: Option<DisplayFile>,
+    /// Variants: the scene with some things changed, to be compared with it. The scene is view A; these are B, C and D.
+    #[schemars(with = "Option<Vec<VariantFile>>", length(max = 3))]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    variants: Vec<VariantFile<'a>>,
+    /// Comparison: the way in which the views are shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    comparison: Option<ComparisonFile>,
 }
 
 /// Extent of the room in metres.
@@ -178,6 +190,84 @@ pub(super) struct DisplayFile {
     encoding: Option<&'static str>,
 }
 
+/// The scene with some things changed. What is absent is inherited.
+#[derive(Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct VariantFile<'a> {
+    /// Name of the variant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<&'a str>,
+    /// Name of another variant from which it inherits, instead of the scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    based_on: Option<&'a str>,
+    /// Reflection model of every object.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reflection_model: Option<&'a str>,
+    /// Shading model of every object.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shading_model: Option<&'a str>,
+    /// Parameters of the material of every object.
+    #[schemars(with = "Option<serde_json::Map<String, serde_json::Value>>")]
+    #[serde(skip_serializing_if = "Ordered::is_empty")]
+    material: Ordered<'a>,
+    /// Terms of the equation that are shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    terms: Option<&'static str>,
+    /// Tone mapping: the curve from light to display.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tone_mapping: Option<&'static str>,
+    /// Exposure in EV: each step up doubles the light.
+    #[schemars(range(min = -16, max = 16))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exposure: Option<f32>,
+    /// `srgb`: colours are decoded before and encoded after the calculation. `off`: neither; deliberately wrong, for
+    /// comparison.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    encoding: Option<&'static str>,
+    /// Tessellation of every object, as far as the object's type allows it.
+    #[schemars(range(min = 1))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tessellation: Option<u32>,
+}
+
+/// The way in which the views of a scene are shown.
+#[derive(Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ComparisonFile {
+    /// Arrangement of the views.
+    #[schemars(extend("default" = "single"))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    layout: Option<&'static str>,
+    /// Letter of the view that is compared with view A where two are.
+    #[schemars(extend("default" = "B", "enum" = ["B", "C", "D"]))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with: Option<&'static str>,
+    /// Place of the edge of a wipe: 0 at the left or top, 1 at the right or bottom.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    split: Option<f32>,
+    /// Direction of the edge of a wipe.
+    #[schemars(extend("default" = "vertical"))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    edge: Option<&'static str>,
+    /// Sign of differences.
+    #[schemars(extend("default" = "absolute"))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sign: Option<&'static str>,
+    /// The number of a pixel that is compared.
+    #[schemars(extend("default" = "largest"))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    channel: Option<&'static str>,
+    /// The values that are compared.
+    #[schemars(extend("default" = "codes"))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    values: Option<&'static str>,
+    /// Factor by which a difference is multiplied before it becomes a colour.
+    #[schemars(range(min = 1, max = 100), extend("default" = 1))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    amplification: Option<f32>,
+}
+
 /// Parameters in the order of their declarations.
 struct Ordered<'a>(Vec<(&'a str, &'a Value)>);
 
@@ -227,6 +317,9 @@ impl<'a> SceneFile<'a> {
             observer: ObserverFile::new(&scene.observer),
             objects: scene.objects.iter().map(|o| ObjectFile::new(o, &declared, registry)).collect(),
             display: (scene.display != Display::default()).then(|| DisplayFile::new(&scene.display)),
+            variants: scene.variants.iter().map(|v| VariantFile::new(v, &declared)).collect(),
+            comparison: (scene.comparison != Comparison::default())
+                .then(|| ComparisonFile::new(&scene.comparison)),
         }
     }
 }
@@ -290,6 +383,43 @@ impl DisplayFile {
             tone_mapping: Some(display.tone_mapping.id()),
             exposure: Some(display.exposure),
             encoding: Some(display.encoding.id()),
+        }
+    }
+}
+
+impl<'a> VariantFile<'a> {
+    fn new(variant: &'a Variant, declared: &[&'static Parameter]) -> Self {
+        Self {
+            name: variant.name.as_deref(),
+            based_on: variant.based_on.as_deref(),
+            reflection_model: variant.reflection_model.as_deref(),
+            shading_model: variant.shading_model.as_deref(),
+            material: Ordered::new(&variant.material, declared.iter().copied()),
+            terms: variant.terms.map(TermSelection::id),
+            tone_mapping: variant.tone_mapping.map(ToneMapping::id),
+            exposure: variant.exposure,
+            encoding: variant.encoding.map(Encoding::id),
+            tessellation: variant.tessellation,
+        }
+    }
+}
+
+impl ComparisonFile {
+    /// Only what differs from the default.
+    fn new(comparison: &Comparison) -> Self {
+        fn unless<T: PartialEq, U>(value: T, default: T, written: impl FnOnce(T) -> U) -> Option<U> {
+            (value != default).then(|| written(value))
+        }
+        let default = Comparison::default();
+        Self {
+            layout: unless(comparison.layout, default.layout, Layout::id),
+            with: unless(comparison.with, default.with, |view| LETTERS.get(view).copied().unwrap_or("?")),
+            split: unless(comparison.split, default.split, |split| split),
+            edge: unless(comparison.edge, default.edge, Edge::id),
+            sign: unless(comparison.sign, default.sign, Sign::id),
+            channel: unless(comparison.channel, default.channel, Channel::id),
+            values: unless(comparison.values, default.values, Compared::id),
+            amplification: unless(comparison.amplification, default.amplification, |factor| factor),
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::{
         temperature,
         tone::ToneMapping,
     },
-    parameter::Values,
+    parameter::{NamedFile, Value, Values},
     registry::{LightSet, Registry},
     shape::ShapeEntry,
 };
@@ -21,6 +21,7 @@ use glam::Vec3;
 
 mod beyond_room;
 pub mod check;
+pub mod comparison;
 mod encoding;
 pub mod error;
 pub mod examples;
@@ -36,8 +37,11 @@ pub mod save;
 pub mod schema;
 mod serialise;
 mod syntax;
+pub mod variant;
 
+pub use comparison::Comparison;
 pub use serialise::{SceneIn, SceneOf};
+pub use variant::Variant;
 
 /// Largest legal extent of a scene in any direction, metres (CA `MAX_HEIGHT`, `MAX_WIDTH`, `MAX_DEPTH`).
 pub const MAX_DIMENSION: f32 = 100.0;
@@ -75,6 +79,10 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// Conversion of light to the picture on the display.
     pub display: Display,
+    /// The scene with some things changed, to be compared with it: up to [`MAX_VARIANTS`](variant::MAX_VARIANTS).
+    pub variants: Vec<Variant>,
+    /// The way in which they are compared.
+    pub comparison: Comparison,
 }
 
 /// The extent of the room in metres; one corner is the origin. Right-handed, y up: `width` bounds x,
@@ -100,6 +108,13 @@ impl SceneSize {
     #[must_use]
     pub fn contains(self, p: Vec3) -> bool {
         p.cmpgt(Vec3::ZERO).all() && p.cmple(self.corner()).all()
+    }
+
+    /// The point of the room nearest to another one, at least a centimetre from the walls at 0, which do not belong to it.
+    #[must_use]
+    pub fn nearest(self, p: Vec3) -> Vec3 {
+        let corner = self.corner();
+        p.max(corner.min(Vec3::splat(0.01))).min(corner)
     }
 }
 
@@ -302,16 +317,19 @@ impl Default for Scene {
             observer: Observer::default(),
             objects: vec![Object::default()],
             display: Display::default(),
+            variants: Vec::new(),
+            comparison: Comparison::default(),
         }
     }
 }
 
 impl Scene {
-    /// The ids of the reflection models named by the scene, each once.
+    /// The ids of the reflection models named by the scene and its variants, each once.
     #[must_use]
     pub fn models(&self) -> BTreeSet<&str> {
         let own = self.objects.iter().filter_map(|o| o.reflection_model.as_deref());
-        own.chain([self.reflection_model.as_str()]).collect()
+        let of_variants = self.variants.iter().filter_map(|v| v.reflection_model.as_deref());
+        own.chain(of_variants).chain([self.reflection_model.as_str()]).collect()
     }
 
     /// The lights that are on.
@@ -323,6 +341,16 @@ impl Scene {
     #[must_use]
     pub fn light_types(&self, registry: &Registry) -> LightSet {
         registry.light_set(self.lights.iter().map(|light| light.light_type.as_str()))
+    }
+
+    /// The files that lights and objects name, as often as they do.
+    pub fn files(&self) -> impl Iterator<Item = &NamedFile> {
+        let of_lights = self.lights.iter().map(|light| &light.parameters);
+        let values = of_lights.chain(self.objects.iter().map(|object| &object.shape));
+        values.flat_map(|values| values.0.values()).filter_map(|value| match value {
+            Value::File(file) => Some(file),
+            _ => None,
+        })
     }
 
     /// The visible objects.

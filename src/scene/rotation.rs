@@ -16,6 +16,14 @@ pub fn euler_degrees(rotation: Quat) -> Vec3 {
     Vec3::new(x, y, z).map(f32::to_degrees)
 }
 
+/// The Euler angles in degrees of a rotation that is turned on about an axis of the room, to a hundredth of a degree.
+#[must_use]
+pub fn turned(from: Quat, axis: Vec3, radians: f32) -> Vec3 {
+    let degrees = euler_degrees(Quat::from_axis_angle(axis, radians) * from);
+    // No −0.
+    (degrees * 100.0).round() / 100.0 + Vec3::ZERO
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -33,5 +41,14 @@ mod tests {
             let back = euler_degrees(rotation(degrees));
             assert!((back - degrees).length() < 1e-3, "{degrees} became {back}");
         }
+    }
+
+    #[test]
+    fn turning_on_is_about_the_axes_of_the_room() {
+        let from = rotation(Vec3::new(0.0, 30.0, 0.0));
+        assert_eq!(turned(from, Vec3::Y, 15f32.to_radians()), Vec3::new(0.0, 45.0, 0.0));
+        let about_x = rotation(turned(from, Vec3::X, 0.5));
+        assert!((about_x * Vec3::X - Quat::from_rotation_x(0.5) * (from * Vec3::X)).length() < 1e-3);
+        assert_eq!(turned(from, Vec3::Y, -30f32.to_radians()).to_string(), "[0, 0, 0]");
     }
 }

@@ -1,9 +1,14 @@
 //! The JSON Schema of scene files, for editors: the types of `format` plus the contents of the registry.
 
-use super::{MAX_DIMENSION, MAX_OBJECTS, format::SceneFile, read::keys};
+use super::{
+    MAX_DIMENSION, MAX_OBJECTS,
+    comparison::{Channel, Compared, Edge, Layout, Sign},
+    format::SceneFile,
+    read::keys,
+};
 use crate::{
     light::MAX_LIGHTS,
-    optics::{colour::Encoding, tone::ToneMapping},
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::{ABOVE_ZERO, Parameter, ParameterKind, json as value},
     reflection::ModelEntry,
     registry::Registry,
@@ -41,12 +46,28 @@ pub fn schema(registry: &Registry) -> Json {
     choose(&mut scene["display"]["properties"]["tone_mapping"], tones.into_iter());
     let encodings = Encoding::ALL.map(|e| (e.id(), e.id(), ""));
     choose(&mut scene["display"]["properties"]["encoding"], encodings.into_iter());
+    let comparison = &mut scene["comparison"]["properties"];
+    macro_rules! choices {
+        ($($key:literal $type:ident,)+) => {
+            $(choose(&mut comparison[$key], $type::ALL.iter().map(|c| (c.id(), c.name(), c.summary())));)+
+        };
+    }
+    choices! { "layout" Layout, "edge" Edge, "sign" Sign, "channel" Channel, "values" Compared, }
+    let variant = &mut scene["variants"]["items"]["properties"];
+    choose(&mut variant["reflection_model"], models());
+    choose(&mut variant["shading_model"], shadings());
+    choose(&mut variant["tone_mapping"], tones.into_iter());
+    choose(&mut variant["encoding"], encodings.into_iter());
+    choose(&mut variant["terms"], TermSelection::ALL.map(|t| (t.id(), t.id(), "")).into_iter());
     place(&mut scene["observer"]["properties"]["position"]);
     lights(&mut scene["lights"], registry);
     objects(&mut scene["objects"], registry);
     let fields = &mut scene["objects"]["items"]["properties"];
     choose(&mut fields["reflection_model"], models());
     choose(&mut fields["shading_model"], shadings());
+    let material = fields["material"]["properties"].clone();
+    let variants = &mut schema["properties"]["variants"]["items"]["properties"]["material"];
+    (variants["properties"], variants["additionalProperties"]) = (material, false.into());
     schema
 }
 

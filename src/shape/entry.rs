@@ -11,7 +11,7 @@ use glam::Vec3;
 use super::{Declaration, ObjectType, PolygonMesh};
 use crate::{
     optics::colour::Encoding,
-    parameter::{Parameter, TypeComponent, Values, words},
+    parameter::{Parameter, ParameterKind, TypeComponent, Value, Values, words},
 };
 
 /// A tessellation fine enough to tell the space that a shape takes.
@@ -109,9 +109,15 @@ impl ShapeEntry {
         })
     }
 
-    /// The parameters as the type gets them, bit by bit.
+    /// The parameters as the type gets them, bit by bit; of files, the version of their numbers.
     fn words(&self, parameters: &Values) -> Vec<u32> {
-        words(self.parameters, parameters, Encoding::Srgb)
+        let mut words = words(self.parameters, parameters, Encoding::Srgb);
+        for p in self.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::File { .. })) {
+            if let Value::File(file) = parameters.get(p) {
+                words.extend([file.version() as u32, (file.version() >> 32) as u32]);
+            }
+        }
+        words
     }
 }
 

@@ -15,19 +15,21 @@ pub struct PolygonMesh {
     pub polygons: Vec<Polygon>,
 }
 
-/// A polygon of three or four corners, and the direction in which it is brushed.
+/// A polygon of three or four corners, the direction in which it is brushed, and perhaps normals of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polygon {
     corners: [u32; 4],
     count: u8,
     brushed: Vec3,
+    /// Zero where the vertex has the normal of CA DD9.
+    normals: [Vec3; 4],
 }
 
 impl Polygon {
     /// A triangle.
     #[must_use]
     pub const fn triangle(a: u32, b: u32, c: u32) -> Self {
-        Self { corners: [a, b, c, c], count: 3, brushed: Vec3::ZERO }
+        Self { corners: [a, b, c, c], count: 3, brushed: Vec3::ZERO, normals: [Vec3::ZERO; 4] }
     }
 
     /// A quadrilateral; a triangle if neighbouring corners are the same vertex (at a pole).
@@ -44,7 +46,7 @@ impl Polygon {
         if count == 3 {
             corners[3] = corners[2];
         }
-        Self { corners, count: count as u8, brushed: Vec3::ZERO }
+        Self { corners, count: count as u8, brushed: Vec3::ZERO, normals: [Vec3::ZERO; 4] }
     }
 
     /// The polygon, brushed along a direction, which matters to anisotropic models. Without one, it is brushed
@@ -52,6 +54,13 @@ impl Polygon {
     #[must_use]
     pub const fn brushed(self, direction: Vec3) -> Self {
         Self { brushed: direction, ..self }
+    }
+
+    /// The polygon with the unit normals that the surface has at its corners, for shapes that know them better than
+    /// their polygons do. Zero is none. Polygons that share a vertex should agree on its normal: it has their mean.
+    #[must_use]
+    pub const fn with_normals(self, normals: [Vec3; 4]) -> Self {
+        Self { normals, ..self }
     }
 
     /// The indices of the corners.
@@ -72,6 +81,20 @@ impl Polygon {
 }
 
 impl PolygonMesh {
+    /// True if some polygon has [normals of its own](Polygon::with_normals).
+    #[must_use]
+    pub fn has_own_normals(&self) -> bool {
+        self.polygons.iter().any(|polygon| polygon.normals.iter().any(|normal| *normal != Vec3::ZERO))
+    }
+
+    /// The triangles of all polygons: the index of the polygon, and three corners.
+    pub fn triangles(&self) -> impl Iterator<Item = (usize, [u32; 3])> {
+        self.polygons.iter().enumerate().flat_map(|(i, polygon)| {
+            let corners = polygon.corners();
+            polygon.triangles().iter().map(move |triangle| (i, triangle.map(|c| corners[c])))
+        })
+    }
+
     /// The corners of a polygon in space.
     #[must_use]
     pub fn corner_positions(&self, polygon: &Polygon) -> ([Vec3; 4], usize) {
@@ -106,11 +129,23 @@ impl PolygonMesh {
             .collect()
     }
 
-    /// The normal of every vertex, CA DD9.
+    /// The normal of every vertex, CA DD9; that of the surface where polygons [have it](Polygon::with_normals).
     #[must_use]
     pub fn vertex_normals(&self) -> Vec<Vec3> {
         let normals = self.polygon_normals();
-        vertex_normals(self.positions.len(), self.polygons.iter().zip(normals).map(|(p, n)| (p.corners(), n)))
+        let count = self.positions.len();
+        let mut means =
+            vertex_normals(count, self.polygons.iter().zip(normals).map(|(p, n)| (p.corners(), n)));
+        if self.polygons.iter().any(|p| p.normals != [Vec3::ZERO; 4]) {
+            let corners = self
+                .polygons
+                .iter()
+                .flat_map(|p| (0..p.corners().len()).map(move |i| (&p.corners()[i..=i], p.normals[i])));
+            for (mean, own) in means.iter_mut().zip(vertex_normals(count, corners)) {
+                *mean = if own == Vec3::ZERO { *mean } else { own };
+            }
+        }
+        means
     }
 
     /// The tangent of every polygon: the direction in which it is brushed, in its plane.

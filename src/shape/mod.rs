@@ -10,6 +10,7 @@ use crate::parameter::ParameterSet;
 
 mod entry;
 pub mod mesh;
+pub mod mesh_file;
 
 mod builder;
 mod cube;
@@ -21,6 +22,7 @@ mod torus;
 pub use cube::Cube;
 pub use entry::{Bounds, MeshKey, ShapeEntry};
 pub use mesh::PolygonMesh;
+pub use mesh_file::MeshFile;
 pub use sphere::Sphere;
 pub use superellipsoid::Superellipsoid;
 pub use teapot::Teapot;
@@ -39,6 +41,7 @@ pub fn register_builtin(to: &mut impl Take) {
     to.take::<Torus>();
     to.take::<Superellipsoid>();
     to.take::<Teapot>();
+    to.take::<MeshFile>();
 }
 
 /// The name and the legal tessellations of an object type.

@@ -6,14 +6,16 @@
 //! A. Ynnerman, J. Unger (2012), *BRDF Models for Accurate and Efficient Rendering of Glossy Surfaces*, without their
 //! weights.
 //!
-//! For each width the two scales are found by the method of K. Levenberg (1944), *A Method for the Solution of Certain
-//! Non-Linear Problems in Least Squares*, in their logarithms, so that they stay positive. The width is found by trying
+//! For each width the two scales are found by [least squares](crate::matching::least_squares) in their logarithms, so
+//! that they stay positive. The width is found by trying
 //! a series of widths and narrowing the best interval by golden-section search (J. Kiefer 1953, *Sequential Minimax
 //! Search for a Maximum*).
 
 use std::f64::consts::FRAC_1_PI;
 
 use glam::Vec3;
+
+use crate::matching::least_squares::{Limits, Residuals, Stop, descend};
 
 /// One value of a BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,46 +84,51 @@ pub fn scales(values: &[f64], lobe: &[f64], width: f64) -> Fit {
     if best.specular <= 0.0 {
         return Fit { width, ..diffuse_only(values) };
     }
-    best.error = error(&best, values, lobe);
-    let mut damping = 1e-2;
-    for _ in 0..60 {
-        // Normal equations of the residuals ln f − ln f_data by ln d and ln s.
-        let (mut a, mut b, mut c, mut g, mut h) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for (y, q) in values.iter().zip(lobe) {
-            let f = model(best.diffuse, best.specular, *q).max(FLOOR);
-            let residual = (f / y).ln();
-            let (by_d, by_s) = (best.diffuse * FRAC_1_PI / f, best.specular * q / f);
-            a += by_d * by_d;
-            b += by_d * by_s;
-            c += by_s * by_s;
-            g += by_d * residual;
-            h += by_s * residual;
-        }
-        let mut improved = false;
-        while damping < 1e9 {
-            let (a, c) = (a * (1.0 + damping) + 1e-12, c * (1.0 + damping) + 1e-12);
-            let determinant = a * c - b * b;
-            let step = [(b * h - c * g) / determinant, (b * g - a * h) / determinant];
-            let [step_d, step_s] = step.map(|s| s.clamp(-3.0, 3.0));
-            let next = Fit {
-                diffuse: (best.diffuse * step_d.exp()).max(1e-9),
-                specular: (best.specular * step_s.exp()).max(1e-12),
-                ..best
-            };
-            let next = Fit { error: error(&next, values, lobe), ..next };
-            if next.error < best.error {
-                improved = best.error - next.error > 1e-7 * best.error;
-                best = next;
-                damping *= 0.2;
-                break;
-            }
-            damping *= 5.0;
-        }
-        if !improved {
-            break;
-        }
+    let mut at = [best.diffuse.ln(), best.specular.ln()];
+    // Nothing ends it early.
+    let _ = descend(&mut Scales { values, lobe }, &mut at, &[RANGE; 2], LIMITS);
+    [best.diffuse, best.specular] = at.map(f64::exp);
+    Fit { error: error(&best, values, lobe), ..best }
+}
+
+/// The logarithms of the scales.
+const RANGE: (f64, f64) = (-27.0, 27.0);
+/// The end of the search for the scales.
+const LIMITS: Limits = Limits { steps: 60, least_gain: 1e-8, least_move: 1e-9, first_step: 1.0 };
+
+/// `ln f − ln f_data` as a function of ln d and ln s.
+struct Scales<'a> {
+    values: &'a [f64],
+    lobe: &'a [f64],
+}
+
+impl Residuals for Scales<'_> {
+    fn count(&self) -> usize {
+        self.values.len()
     }
-    best
+
+    fn at(&mut self, point: &[f64], residuals: &mut [f64]) -> Result<(), Stop> {
+        let (d, s) = (point[0].exp(), point[1].exp());
+        for ((to, y), q) in residuals.iter_mut().zip(self.values).zip(self.lobe) {
+            *to = (model(d, s, *q).max(FLOOR) / y).ln();
+        }
+        Ok(())
+    }
+
+    fn derivatives(
+        &mut self,
+        point: &[f64],
+        residuals: &mut [f64],
+        columns: &mut [Vec<f64>],
+    ) -> Result<(), Stop> {
+        let (d, s) = (point[0].exp(), point[1].exp());
+        for (i, q) in self.lobe.iter().enumerate() {
+            let f = model(d, s, *q).max(FLOOR);
+            columns[0][i] = d * FRAC_1_PI / f;
+            columns[1][i] = s * q / f;
+        }
+        self.at(point, residuals)
+    }
 }
 
 /// The best width and scales. `lobe` gives the specular lobe of a width at every sample.

@@ -274,7 +274,8 @@ fn grid(head: &[&str], rows: &[Vec<String>]) -> Markup {
 fn image(rgb8: &[u8], (width, height): (u32, u32), alt: &str) -> Result<Markup, StudyError> {
     use base64::Engine as _;
     let mut bytes = Vec::new();
-    png::encode(&mut bytes, width, height, rgb8, &[]).map_err(|e| StudyError::Figure(e.to_string()))?;
+    png::encode(&mut bytes, width, height, rgb8, &png::About::default())
+        .map_err(|e| StudyError::Figure(e.to_string()))?;
     let data = base64::engine::general_purpose::STANDARD.encode(bytes);
     Ok(html! {
         img src=(format!("data:image/png;base64,{data}")) width=(width) height=(height) alt=(alt);

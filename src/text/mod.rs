@@ -3,6 +3,7 @@
 pub mod identifier;
 pub mod json;
 mod list;
+pub mod mathematics;
 pub mod path;
 pub mod place;
 mod words;

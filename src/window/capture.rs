@@ -18,8 +18,10 @@ use bevy::{
 use super::{ViewOptions, WindowView, watching::complain};
 use crate::{
     failure::Failure,
+    panel::state::Session,
+    registry::Registry,
     render::{
-        capture::png,
+        capture::png::{self, About},
         live::LiveShaders,
         schedule::{LabFrame, LabSystems},
         view::{Drawing, texture_of},
@@ -37,11 +39,13 @@ pub struct CapturePlugin {
     pub frames: Option<u32>,
     /// The PNG file.
     pub file: Option<PathBuf>,
+    /// Leave the scene out of it.
+    pub no_scene: bool,
 }
 
 impl CapturePlugin {
     pub(super) fn of(options: &ViewOptions) -> Self {
-        Self { frames: options.exit_after, file: options.capture.clone() }
+        Self { frames: options.exit_after, file: options.capture.clone(), no_scene: options.no_scene }
     }
 }
 
@@ -52,6 +56,7 @@ impl Plugin for CapturePlugin {
             .insert_resource(Countdown {
                 left,
                 file: self.file.clone(),
+                no_scene: self.no_scene,
                 reported: None,
                 since: Instant::now(),
             })
@@ -66,6 +71,7 @@ pub(super) type Report = Arc<Mutex<Option<Failure>>>;
 pub(super) struct Countdown {
     left: u32,
     file: Option<PathBuf>,
+    no_scene: bool,
     /// Whoever runs the window reports the failure; else it is reported here.
     pub(super) reported: Option<Report>,
     since: Instant,
@@ -102,12 +108,22 @@ fn count(
     }
 }
 
-fn write(captured: On<ScreenshotCaptured>, countdown: Res<Countdown>, mut exit: MessageWriter<AppExit>) {
+fn write(
+    captured: On<ScreenshotCaptured>,
+    countdown: Res<Countdown>,
+    scene: Option<(Res<Session>, Res<Registry>)>,
+    mut exit: MessageWriter<AppExit>,
+) {
     let Some(file) = &countdown.file else { return };
     let written = captured.image.clone().try_into_dynamic().map_err(|e| e.to_string()).and_then(|image| {
         let image = image.to_rgb8();
-        let facts = [("Software", concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION")))];
-        png::write(file, image.width(), image.height(), image.as_raw(), &facts).map_err(|e| e.to_string())
+        let about = match &scene {
+            Some((session, registry)) if !countdown.no_scene => {
+                About::scene(&session.document.named(registry), registry)
+            }
+            _ => About::program(),
+        };
+        png::write(file, image.width(), image.height(), image.as_raw(), &about).map_err(|e| e.to_string())
     });
     let Err(what) = written else {
         exit.write(AppExit::Success);

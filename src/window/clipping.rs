@@ -1,13 +1,13 @@
 //! Counts clipped pixels: on the GPU, in the picture that is on screen, once it has come to rest.
 //!
-//! A compute pass after tone mapping reads the texture of the picture, which holds what the display is asked for, also
-//! beyond what it can show. A few kilobytes come back, a frame or two later.
+//! A compute pass reads the texture of the picture. After tone mapping, that holds what the display is asked for, also
+//! beyond what it can show; a picture drawn [straight](Straight) into its texture marks such pixels. A few kilobytes come back, a frame or two later.
 
 use bevy::{
     app::{App, Plugin, PostUpdate},
     asset::{Assets, Handle, RenderAssetUsages},
     core_pipeline::{Core3d, Core3dSystems, tonemapping::tonemapping},
-    ecs::prelude::*,
+    ecs::{prelude::*, schedule::ScheduleLabel as _},
     prelude::Shader,
     render::{
         RenderApp, RenderStartup,
@@ -39,6 +39,7 @@ use crate::{
     render::{
         entities::CurrentScene,
         overrides::Overrides,
+        straight::{self, Straight},
         view::{Drawing, ViewSystems},
     },
     scene::Display,
@@ -77,7 +78,8 @@ impl Plugin for ClippingPlugin {
             render
                 .insert_resource(question)
                 .add_systems(RenderStartup, prepare)
-                .add_systems(Core3d, count.in_set(Core3dSystems::PostProcess).after(tonemapping));
+                .add_systems(Core3d, count.in_set(Core3dSystems::PostProcess).after(tonemapping))
+                .add_systems(Straight, count.after(straight::draw));
         }
     }
 }
@@ -212,7 +214,11 @@ fn count(
     else {
         return;
     };
-    let words = [size.x, size.y, question.limit.to_bits(), question.number];
+    // A picture that was drawn straight into its texture says with its opacity what was cut off.
+    let straight = camera.schedule == Straight.intern();
+    let picture = target.out_texture().filter(|_| straight).unwrap_or(target.main_texture_view());
+    let limit = if straight { -1.0 } else { question.limit };
+    let words = [size.x, size.y, limit.to_bits(), question.number];
     let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
     let device = context.render_device();
     let asked = device.create_buffer_with_data(&BufferInitDescriptor {
@@ -224,7 +230,7 @@ fn count(
         "clipping",
         &cache.get_bind_group_layout(&pass.layout),
         &BindGroupEntries::sequential((
-            target.main_texture_view(),
+            picture,
             asked.as_entire_binding(),
             answer.buffer.as_entire_binding(),
         )),

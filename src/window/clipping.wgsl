@@ -3,7 +3,7 @@
 struct Ask {
     // The extent of the picture.
     size: vec2<u32>,
-    // Above this, a channel clips.
+    // Above this, a channel clips; less than zero where opacity tells it, as the wrapper of the models writes it.
     limit: f32,
     // Returned, so that an answer is known to be to this question.
     number: u32,
@@ -24,8 +24,8 @@ fn count(@builtin(global_invocation_id) id: vec3<u32>) {
     var clipped = 0u;
     for (var y = low.y; y < high.y; y++) {
         for (var x = low.x; x < high.x; x++) {
-            let colour = textureLoad(picture, vec2(x, y), 0).rgb;
-            clipped += u32(any(colour > vec3(ask.limit)));
+            let pixel = textureLoad(picture, vec2(x, y), 0);
+            clipped += u32(select(any(pixel.rgb > vec3(ask.limit)), pixel.a < 0.999, ask.limit < 0.0));
         }
     }
     answer[1u + id.y * ACROSS + id.x] = clipped;

@@ -12,8 +12,10 @@ use super::{
     ViewOptions,
     editor::Editors,
     effects::{Unattended, carry_out},
+    exports::Exports,
     files::DiskFiles,
     laws::LawChecks,
+    matching::Matches,
     order::Loading,
     watching::{FilesChanged, complain},
 };
@@ -74,6 +76,8 @@ impl Plugin for DocumentPlugin {
         app.insert_resource(session)
             .insert_resource(CurrentScene(options.scene.clone()))
             .insert_resource(DiskFiles::new(options.file.clone(), options.stamp))
+            .init_resource::<Exports>()
+            .init_resource::<Matches>()
             .insert_resource(LawChecks::by(options.trial_program.clone()))
             .init_resource::<Editors>()
             .add_message::<LabEffect>()

@@ -6,7 +6,7 @@ use bevy::{
     winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
-use super::{authoring, camera, editor, files, laws, recovery, shaders, watching};
+use super::{authoring, camera, editor, exports, files, laws, matching, recovery, shaders, watching};
 use crate::{
     panel::{
         effects::run as run_files,
@@ -30,6 +30,8 @@ pub(super) fn carry_out(
     mut exit: MessageWriter<AppExit>,
     editors: Res<editor::Editors>,
     laws: Res<laws::LawChecks>,
+    exports: Res<exports::Exports>,
+    matches: Res<matching::Matches>,
     proxy: Option<Res<EventLoopProxyWrapper>>,
     mut recovery: Option<ResMut<recovery::Recovery>>,
     unattended: Option<Res<Unattended>>,
@@ -41,6 +43,12 @@ pub(super) fn carry_out(
     if let Some((model, outcome)) = laws.take() {
         session.laws_checked(&model, outcome);
     }
+    if let Some(path) = exports.report(&mut session)
+        && unattended.is_none()
+    {
+        exports::reveal(&path, &mut session);
+    }
+    matches.report(&mut session, &registry);
     let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
     pending.reverse();
     while let Some(effect) = pending.pop() {
@@ -76,6 +84,7 @@ pub(super) fn carry_out(
             dialog @ (Effect::PickOpen
             | Effect::PickSave
             | Effect::PickFile(..)
+            | Effect::PickExport(_)
             | Effect::PickShaderFolder) => {
                 session.wanted_dialog = Some(dialog);
             }
@@ -92,6 +101,21 @@ pub(super) fn carry_out(
                     proxy.map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
                 });
             }
+            Effect::Export { form, path, overwrite } => {
+                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
+                exports.begin(form, path, overwrite, &mut session, &registry, move || {
+                    proxy.as_ref().map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
+                });
+            }
+            Effect::CancelExport => exports.cancel(),
+            Effect::Match { view, what, parameters } => {
+                let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
+                matches.begin((view, what, parameters), &session, &registry, move || {
+                    proxy.as_ref().map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
+                });
+            }
+            Effect::CancelMatch => matches.cancel(),
+            Effect::Reveal(folder) => exports::reveal(&folder, &mut session),
             Effect::CheckLaws(model) => {
                 let proxy = proxy.as_ref().map(|proxy| (***proxy).clone());
                 laws.begin(&model, registry.folders(), move || {

@@ -29,6 +29,8 @@ pub struct ViewOptions {
     pub exit_after: Option<u32>,
     /// Write the whole window to this file before it closes.
     pub capture: Option<PathBuf>,
+    /// Leave the scene out of that file.
+    pub no_scene: bool,
     /// Everything that is known, with the declarations of custom models, if they were read already. What is registered
     /// with the app and missing here is added.
     pub registry: Option<Registry>,

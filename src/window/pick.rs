@@ -10,19 +10,20 @@ use bevy::{
     transform::components::GlobalTransform,
     window::{PrimaryWindow, Window},
 };
+use bevy_egui::egui::pos2;
 use glam::Vec2;
 
 use super::{
     WindowView,
     order::Loading,
-    picture::{PicturePlace, area_of},
+    place::{PicturePlace, area_of},
     pointer::{OverPicture, PointerPlugin},
 };
 use crate::{
     document::Selection,
     panel::{
         marks::{self, Lens},
-        state::{Action, PictureArea, Session},
+        state::{Action, Cell, CompareCommand, PictureArea, Session},
     },
     registry::Registry,
     render::{
@@ -76,12 +77,18 @@ fn pick(
     if start.distance(end) > CLICK_SLACK * area.zoom {
         return;
     }
-    let end = PicturePlace::of(&area, &window).within(&window, end);
+    let point = pos2(end.x / area.zoom, end.y / area.zoom);
+    let cell = area.cell_at(point).copied();
+    if let Some(cell) = cell.filter(|cell| cell.view != session.active()) {
+        session.apply(Action::Compare(CompareCommand::Activate(cell.view)), &registry);
+    }
+    let rect = cell.map_or(area.rect, |cell| cell.rect);
+    let end = PicturePlace::of_rect(rect, area.zoom, &window).within(&window, end);
     let reach = LIGHT_REACH * area.zoom * window.scale_factor();
     let light = session
         .view
         .show_gizmos
-        .then(|| nearest_light(&scene, &session, &registry, &area, camera, place, end, reach))
+        .then(|| nearest_light(&scene, &session, &registry, &area, cell, camera, place, end, reach))
         .flatten();
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
@@ -104,12 +111,13 @@ fn nearest_light(
     session: &Session,
     registry: &Registry,
     area: &PictureArea,
+    cell: Option<Cell>,
     camera: &Camera,
     place: &GlobalTransform,
     pointer: Vec2,
     reach: f32,
 ) -> Option<usize> {
-    let lens = Lens::of(session, area.frame);
+    let lens = Lens::of(session, cell.map_or(area.frame, |cell| cell.rect));
     marks::places(&scene.0, registry, &lens, &area.written)
         .into_iter()
         .enumerate()

@@ -13,16 +13,18 @@ use bevy::{
     light::cluster::GlobalClusterSettings,
     math::URect,
     render::{render_resource::TextureUsages, renderer::RenderAdapterInfo, view::Msaa},
+    transform::TransformSystems,
     window::{PrimaryWindow, Window},
 };
-use bevy_egui::{
-    EguiGlobalSettings, EguiPostUpdateSet, EguiPrimaryContextPass, PrimaryEguiContext,
-    egui::{Pos2, Rect, vec2},
-};
+use bevy_egui::{EguiGlobalSettings, EguiPostUpdateSet, EguiPrimaryContextPass, PrimaryEguiContext};
 use bevy_panorbit_camera::{ActiveCameraData, PanOrbitCameraSystemSet};
-use glam::{UVec2, Vec2};
+use glam::UVec2;
 
-use super::{WindowView, camera};
+use super::{
+    WindowView, camera,
+    place::{PicturePlace, area_of},
+    views::{set_views, show_views},
+};
 use crate::{
     panel::{
         state::{PictureArea, Session},
@@ -30,8 +32,9 @@ use crate::{
     },
     render::{
         camera::{PictureCamera, picture_camera},
+        schedule::run_on_one_thread,
         show::{ShowPlugin, Shows},
-        view::{Drawing, View, ViewSystems, texture_of},
+        view::{Drawing, View, ViewSystems},
     },
 };
 
@@ -62,11 +65,12 @@ impl Plugin for PicturePlugin {
             )
             .add_systems(
                 PostUpdate,
-                (
-                    fit_picture.after(EguiPostUpdateSet::EndPass).before(ViewSystems),
-                    show_picture.after(ViewSystems),
-                ),
-            );
+                (fit_picture.after(EguiPostUpdateSet::EndPass), set_views.after(PanOrbitCameraSystemSet))
+                    .chain()
+                    .before(ViewSystems)
+                    .before(TransformSystems::Propagate),
+            )
+            .add_systems(PostUpdate, show_views.after(ViewSystems));
     }
 
     fn finish(&self, app: &mut App) {
@@ -78,6 +82,7 @@ impl Plugin for PicturePlugin {
             // Bevy's own lights are not used, so neither is their clustering.
             clusters.gpu_clustering = None;
         }
+        run_on_one_thread(app);
     }
 }
 
@@ -125,7 +130,7 @@ fn fit_picture(
     }
     let frame = PicturePlace::of_rect(area.frame, area.zoom, &window);
     let at = frame.at.saturating_sub(place.at);
-    let inset = (frame != place).then(|| URect::from_corners(at, at + frame.size));
+    let inset = (area.cells.is_empty() && frame != place).then(|| URect::from_corners(at, at + frame.size));
     view.set_if_neq(View { inset, ..View::for_display(place.size) });
     // In the light theme the surround is light.
     let grey = Palette::of(&session.view).surround;
@@ -143,54 +148,5 @@ fn fit_picture(
             window_size: Some(window.size()),
             manual: true,
         });
-    }
-}
-
-/// Shows the picture's texture in its place.
-fn show_picture(
-    area: Option<Res<PictureArea>>,
-    window: Single<&Window, With<PrimaryWindow>>,
-    views: Query<&RenderTarget, With<WindowView>>,
-    mut shows: Single<&mut Shows, With<PrimaryEguiContext>>,
-) {
-    let at = PicturePlace::of(&area_of(area.as_deref(), &window), &window).at;
-    let pictures = views.iter().filter_map(texture_of).map(|texture| (texture.clone(), at)).collect();
-    shows.set_if_neq(Shows(pictures));
-}
-
-/// The place that the panels leave; all of the window where there are none.
-pub(super) fn area_of(area: Option<&PictureArea>, window: &Window) -> PictureArea {
-    area.cloned().unwrap_or_else(|| {
-        let rect = Rect::from_min_size(Pos2::ZERO, vec2(window.width(), window.height()));
-        PictureArea { rect, frame: rect, has_pointer: true, ..PictureArea::default() }
-    })
-}
-
-/// The place of the picture in the window, pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct PicturePlace {
-    at: UVec2,
-    size: UVec2,
-}
-
-impl PicturePlace {
-    pub(super) fn of(area: &PictureArea, window: &Window) -> Self {
-        Self::of_rect(area.rect, area.zoom, window)
-    }
-
-    fn of_rect(rect: Rect, zoom: f32, window: &Window) -> Self {
-        let limit = window.physical_size();
-        if !rect.is_finite() || !rect.is_positive() || limit.min_element() == 0 {
-            return Self { at: UVec2::ZERO, size: UVec2::ZERO };
-        }
-        let pixels = |points: f32| (points * zoom * window.scale_factor()).round().max(0.0) as u32;
-        let at = UVec2::new(pixels(rect.min.x), pixels(rect.min.y)).min(limit.saturating_sub(UVec2::ONE));
-        let end = UVec2::new(pixels(rect.max.x), pixels(rect.max.y)).min(limit);
-        Self { at, size: end.saturating_sub(at).max(UVec2::ONE) }
-    }
-
-    /// The place in the picture of a place in the window, pixels.
-    pub(super) fn within(self, window: &Window, point: Vec2) -> Vec2 {
-        point * window.scale_factor() - self.at.as_vec2()
     }
 }

@@ -16,9 +16,9 @@ use glam::UVec2;
 
 use super::{
     ViewOptions, camera::CameraPlugin, capture::CapturePlugin, clipping::ClippingPlugin,
-    document::DocumentPlugin, gizmos::GizmosPlugin, pick::PickingPlugin, picture::PicturePlugin,
-    recovery::RecoveryPlugin, requirements::RequirementsPlugin, shaders::ShaderFilesPlugin,
-    shell::ShellPlugin, watching::WatchingPlugin,
+    difference::DifferencePlugin, document::DocumentPlugin, gizmos::GizmosPlugin, pick::PickingPlugin,
+    picture::PicturePlugin, recovery::RecoveryPlugin, requirements::RequirementsPlugin,
+    shaders::ShaderFilesPlugin, shell::ShellPlugin, watching::WatchingPlugin,
 };
 use crate::{
     panel::PanelPlugin,
@@ -51,6 +51,7 @@ const SIZE: UVec2 = UVec2::new(1280, 720);
 /// | [`PickingPlugin`] | clicks select what is under the pointer |
 /// | [`GizmosPlugin`] | the outline of the room |
 /// | [`ClippingPlugin`] | counts clipped pixels |
+/// | [`DifferencePlugin`] | the numbers and the map of a comparison |
 /// | [`WatchingPlugin`] | the file of the scene is followed while others change it |
 /// | [`ShaderFilesPlugin`] | custom models, and shaders on disk; followed too if there is a [`WatchingPlugin`] |
 /// | [`RecoveryPlugin`] | copies of unsaved work, and the question before the window closes on Ctrl+C |
@@ -138,6 +139,7 @@ impl PluginGroup for LabPlugins {
             .add(CameraPlugin)
             .add(PickingPlugin)
             .add(ClippingPlugin)
+            .add(DifferencePlugin)
             .add(ShellPlugin { verbose: options.verbose })
             .add(RecoveryPlugin::of(&options))
             // It lets no window sleep.

@@ -17,9 +17,8 @@ use super::order::Loading;
 use crate::{
     files,
     panel::state::{Effect, LabEffect, Session, Severity},
-    parameter::{NamedFile, Value},
+    parameter::NamedFile,
     render::{entities::CurrentScene, schedule::LabFrame},
-    scene::Scene,
     watch::Watcher,
 };
 
@@ -104,14 +103,14 @@ fn watch_document(mut watch: ResMut<FileWatch>, session: Res<Session>, mut watch
     }
 }
 
-/// Watches the files that the lights of the document name.
+/// Watches the files that lights and objects of the document name.
 fn watch_named_files(
     mut watch: ResMut<FileWatch>,
     session: Res<Session>,
     mut watched: Local<BTreeSet<PathBuf>>,
 ) {
-    let files = named_files(&session.document);
-    let named: BTreeSet<_> = files.filter_map(|file| file.path().map(Path::to_owned)).collect();
+    let named: BTreeSet<_> =
+        session.document.files().filter_map(|file| file.path().map(Path::to_owned)).collect();
     if *watched == named {
         return;
     }
@@ -124,14 +123,7 @@ fn watch_named_files(
     *watched = named;
 }
 
-fn named_files(scene: &Scene) -> impl Iterator<Item = &NamedFile> {
-    scene.lights.iter().flat_map(|light| light.parameters.0.values()).filter_map(|value| match value {
-        Value::File(file) => Some(file),
-        _ => None,
-    })
-}
-
-/// When a file changed that a light names, it is read again. If it cannot be used, the last version that could is shown;
+/// When a file changed that a light or an object names, it is read again. If it cannot be used, the last version that could is shown;
 /// that is said after a moment, since many editors write in steps.
 fn follow_named_files(
     mut changed: MessageReader<FilesChanged>,
@@ -141,12 +133,12 @@ fn follow_named_files(
     mut suspects: Local<BTreeSet<PathBuf>>,
 ) {
     let changed: BTreeSet<_> = changed.read().flat_map(|files| files.0.clone()).collect();
-    let with_path = |file: &NamedFile| Some((file.path()?.to_owned(), file.clone()));
     if changed.is_empty() {
         return;
     }
-    let files: BTreeMap<_, _> = named_files(&session.document).filter_map(with_path).collect();
-    for (path, file) in files.into_iter().filter(|(path, _)| changed.contains(path)) {
+    let known = |file: &NamedFile| Some((file.identity(), (file.path()?.to_owned(), file.clone())));
+    let files: BTreeMap<_, _> = session.document.files().filter_map(known).collect();
+    for (path, file) in files.into_values().filter(|(path, _)| changed.contains(path)) {
         let news = file.read_again();
         match file.problem() {
             Some(problem) if suspects.remove(&path) => {

@@ -25,7 +25,7 @@ use lights_camera_models::{
     },
 };
 
-use crate::pictures::{close_up, compare};
+use crate::pictures::{close_up, compare, on_gpu};
 
 const fn number(name: &'static str, default: f32) -> Parameter {
     Parameter::number(name, 0.0..=1.0, default).help("A number.")
@@ -421,11 +421,7 @@ fn light_from_everywhere_gives_the_same_picture_on_both_machines() {
     let mut renderer =
         GpuRenderer::extended(SIZE, SIZE, 1, Output::Linear, register).expect("software Vulkan is installed");
     let settings = reference::Settings { width: SIZE, height: SIZE, samples: 1, terms: TermSelection::All };
-    let mut draw = |scene: &Scene| {
-        renderer.set_scene(scene.clone());
-        renderer.settle().expect("the GPU draws");
-        renderer.read_linear().expect("the picture can be read")
-    };
+    let mut draw = |scene: &Scene| on_gpu(&mut renderer, scene);
     let background = Encoding::Srgb.decode(BACKGROUND);
     for model in ["patchwork", "brushed"] {
         for shading in registry.shading_models() {

@@ -77,7 +77,7 @@ fn check_reports_each_scene() {
     fs::write(folder.path().join("bad.json"), &bad).expect("written");
     let run = lcm_in(folder.path(), &["check", "good.json", "bad.json"], b"");
     assert_eq!(run.status, Some(1));
-    assert_eq!(run.out, "good.json: valid: 4 lights, 4 objects\n");
+    assert_eq!(run.out, "good.json: valid: 4 lights, 4 objects, 2 variants\n");
     let lines: Vec<_> = run.err.lines().collect();
     assert_eq!(lines.len(), 3, "{}", run.err);
     assert!(lines[0].starts_with("bad.json:") && lines[0].contains(": lights[0].intensity is -1, but"));

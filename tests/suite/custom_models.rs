@@ -25,7 +25,7 @@ use lights_camera_models::{
 };
 
 use crate::{
-    pictures::{close_up, compare},
+    pictures::{close_up, compare, on_gpu},
     support::check_wording,
 };
 
@@ -297,7 +297,7 @@ fn a_model_without_a_good_version_is_drawn_as_a_stand_in() {
     registry.put_stand_in(model);
     let mut scene = close_up("sphere", "point");
     scene.reflection_model = "broken".to_owned();
-    let picture = draw(&mut renderer(&registry), &scene);
+    let picture = on_gpu(&mut renderer(&registry), &scene);
     let cpu = on_cpu(&registry, &scene);
     let d = compare(&picture, &cpu, Encoding::Srgb.decode(BACKGROUND), 1e-3);
     assert!(d.covered > 300 && d.wrong == 0, "{d:?}");
@@ -310,13 +310,6 @@ fn renderer(registry: &Registry) -> GpuRenderer {
         app.insert_resource(registry);
     })
     .expect("software Vulkan is installed")
-}
-
-/// A picture from the GPU, linear.
-fn draw(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<Vec3> {
-    renderer.set_scene(scene.clone());
-    renderer.settle().expect("the GPU draws");
-    renderer.read_linear().expect("the picture can be read")
 }
 
 /// The same from the CPU renderer.
@@ -400,9 +393,9 @@ fn a_built_in_model_as_a_file_gives_the_same_picture_in_every_shading_model() {
             scene.reflection_model = id.to_owned();
             scene.objects[0].material.set("base_colour", Value::Colour([200, 120, 60]));
             scene.objects[0].material.set("multiple_scattering", Value::Choice("kulla_conty".into()));
-            let original = draw(&mut gpu, &scene);
+            let original = on_gpu(&mut gpu, &scene);
             scene.reflection_model = copy.entry.declaration.id.to_owned();
-            let copied = draw(&mut gpu, &scene);
+            let copied = on_gpu(&mut gpu, &scene);
             let error =
                 original.iter().zip(&copied).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
             // Curves of albedo are integrated from the Rust functions here and from the interpreted file there.
@@ -486,7 +479,7 @@ fn the_file_to_start_from_works_at_once_and_keeps_what_it_claims() {
     scene.reflection_model = "my_velvet".to_owned();
     scene.shading_model = "phong".to_owned();
     let d = compare(
-        &draw(&mut renderer(&registry), &scene),
+        &on_gpu(&mut renderer(&registry), &scene),
         &on_cpu(&registry, &scene),
         Encoding::Srgb.decode(BACKGROUND),
         1e-3,
@@ -513,7 +506,7 @@ fn the_examples_are_all_there_and_say_the_truth() {
         scene.reflection_model = id.to_owned();
         scene.shading_model = "phong".to_owned();
         let d = compare(
-            &draw(&mut renderer(&registry), &scene),
+            &on_gpu(&mut renderer(&registry), &scene),
             &on_cpu(&registry, &scene),
             Encoding::Srgb.decode(BACKGROUND),
             1e-3,

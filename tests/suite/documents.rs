@@ -5,6 +5,7 @@ use std::{fs, io};
 
 use glam::Vec3;
 use lights_camera_models::{
+    matching::What,
     optics::{Frame, colour::Encoding},
     parameter::{Parameter, Value, Values},
     reference::{self, Settings},
@@ -13,6 +14,7 @@ use lights_camera_models::{
     render::capture::{evaluate::evaluate, png},
     scene::{
         Scene,
+        comparison::{Channel, Compared, Layout, Sign},
         examples::EXAMPLES,
         formats::column_table,
         load::{self, Defaults},
@@ -108,6 +110,10 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("shapes", shapes(&registry)),
             ],
         ),
+        (
+            "docs/comparing.md",
+            vec![("layouts", layouts()), ("differences", differences()), ("match", matches())],
+        ),
         ("docs/custom-models.md", vec![("limits", limits())]),
         (
             "docs/extending.md",
@@ -132,6 +138,12 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
         ("docs/README.md", vec![("window.rs", example("window.rs", "rust"))]),
         ("docs/architecture.md", vec![("modules", modules())]),
     ]
+}
+
+/// What a match compares.
+fn matches() -> String {
+    let row = |what: &What| vec![code(what.id()), what.summary().to_owned(), what.unit().to_owned()];
+    table(&["`--on`", "what is compared", "error"], What::ALL.iter().map(row))
 }
 
 /// The additions of the crate of the example, with what each takes.
@@ -309,6 +321,28 @@ fn range(field: &Json) -> String {
     }
 }
 
+/// The layouts of comparisons.
+fn layouts() -> String {
+    let rows = Layout::ALL.iter().map(|layout| vec![code(layout.id()), layout.summary().to_owned()]);
+    table(&["layout", "picture"], rows)
+}
+
+/// The choices for differences.
+fn differences() -> String {
+    let mut rows = Vec::new();
+    macro_rules! list {
+        ($($option:literal $of:ident,)+) => {
+            $(for choice in $of::ALL {
+                rows.push([$option, choice.id(), choice.summary()]);
+            })+
+        };
+    }
+    list! { "--sign" Sign, "--channel" Channel, "--values" Compared, }
+    let rows =
+        rows.into_iter().map(|[option, id, help]| vec![code(&format!("{option} {id}")), help.to_owned()]);
+    table(&["option", "number of a pixel"], rows)
+}
+
 fn tone_mapping(schema: &Json) -> String {
     let field = &schema["properties"]["display"]["properties"]["tone_mapping"];
     let texts = |key: &str| {
@@ -424,7 +458,7 @@ fn the_gallery_shows_every_model_as_it_is() {
         };
         if updating() && !agrees() {
             fs::create_dir_all(root().join("docs/images/models")).expect("the folder can be made");
-            png::write(&path, settings.width, settings.height, &picture, &[])
+            png::write(&path, settings.width, settings.height, &picture, &png::About::default())
                 .expect("the picture can be written");
         }
         assert!(agrees(), "{} is not what the model looks like; accept with LCM_UPDATE=1", path.display());

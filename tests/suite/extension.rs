@@ -29,7 +29,7 @@ use serde_json::{Value as Json, json};
 
 use crate::{
     panels::Bench,
-    pictures::{close_up, compare},
+    pictures::{close_up, compare, on_gpu},
 };
 
 const BANDS: Parameter = Parameter::integer("bands", 1..=16, 4).symbol("n").help("How many tones there are.");
@@ -261,12 +261,6 @@ fn renderer() -> GpuRenderer {
     GpuRenderer::extended(64, 64, 1, Output::Linear, register).expect("software Vulkan is installed")
 }
 
-fn gpu(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<Vec3> {
-    renderer.set_scene(scene.clone());
-    renderer.settle().expect("the GPU draws");
-    renderer.read_linear().expect("the picture can be read")
-}
-
 /// True if the CPU renderer draws a scene as the GPU did.
 fn alike(gpu: &[Vec3], scene: &Scene) -> bool {
     let settings = reference::Settings { width: 64, height: 64, samples: 1, terms: TermSelection::All };
@@ -279,7 +273,7 @@ fn alike(gpu: &[Vec3], scene: &Scene) -> bool {
 #[test]
 fn a_custom_model_light_and_shape_are_drawn_alike_by_both_renderers() {
     let mut renderer = renderer();
-    assert!(alike(&gpu(&mut renderer, &scene()), &scene()));
+    assert!(alike(&on_gpu(&mut renderer, &scene()), &scene()));
 }
 
 #[test]
@@ -293,12 +287,12 @@ fn every_type_of_parameter_of_a_light_reaches_both_renderers() {
         ("profile", Value::Choice("steps".into())),
         ("steps", Value::Integer(9)),
     ];
-    let mut shown = gpu(&mut renderer, &scene);
+    let mut shown = on_gpu(&mut renderer, &scene);
     for (name, value) in values {
         scene.lights[1].parameters.set(name, value);
         // The wrong twin: the picture before the change.
         assert!(!alike(&shown, &scene), "a change of {name} goes unnoticed");
-        shown = gpu(&mut renderer, &scene);
+        shown = on_gpu(&mut renderer, &scene);
         assert!(alike(&shown, &scene), "{name}");
     }
     // The type is a component with its parameters.
@@ -315,21 +309,21 @@ fn every_type_of_parameter_of_a_light_reaches_both_renderers() {
 fn lights_whose_parameters_outgrow_the_buffer_are_drawn() {
     let mut renderer = renderer();
     let mut scene = scene();
-    assert!(alike(&gpu(&mut renderer, &scene), &scene));
+    assert!(alike(&on_gpu(&mut renderer, &scene), &scene));
     let other = scene.clone();
     for i in 0..250_u8 {
         let mut light = Light { intensity: 0.01, ..scene.lights[1].clone() };
         light.parameters.set("zenith", Value::Colour([i, 255 - i, i / 2]));
         scene.lights.push(light);
     }
-    let shown = gpu(&mut renderer, &scene);
+    let shown = on_gpu(&mut renderer, &scene);
     assert!(alike(&shown, &scene));
     // The wrong twin: another colour of the last one alone.
     let mut wrong = scene.clone();
     wrong.lights[251].parameters.set("zenith", Value::Colour([255; 3]));
     wrong.lights[251].intensity = 0.05;
     assert!(!alike(&shown, &wrong));
-    assert!(alike(&gpu(&mut renderer, &other), &other), "and fewer again");
+    assert!(alike(&on_gpu(&mut renderer, &other), &other), "and fewer again");
 }
 
 #[test]
@@ -379,9 +373,7 @@ fn every_type_of_parameter_of_a_shape_reaches_both_renderers() {
             scene.objects[0].shape.set("top", Value::Choice("roof".into()));
         }
         scene.objects[0].shape.set(name, value);
-        renderer.set_scene(scene.clone());
-        renderer.settle().expect("the GPU draws");
-        let gpu = renderer.read_linear().expect("the picture can be read");
+        let gpu = on_gpu(&mut renderer, &scene);
         let settings = reference::Settings { width: 64, height: 64, samples: 1, terms: TermSelection::All };
         let cpu = reference::render(&scene, &registry, &settings);
         let d = compare(&gpu, &cpu, Encoding::Srgb.decode(BACKGROUND), 1e-3);
@@ -485,7 +477,7 @@ fn every_type_of_parameter_of_a_shading_model_reaches_both_renderers() {
         let mut scene = close_up("sphere", "point");
         scene.reflection_model = model.to_owned();
         scene.shading_model = "tinted".to_owned();
-        let mut shown = gpu(&mut renderer, &scene);
+        let mut shown = on_gpu(&mut renderer, &scene);
         assert!(alike(&shown, &scene), "{model}");
         for (name, value) in [
             ("order", Value::Choice("last".into())),
@@ -497,7 +489,7 @@ fn every_type_of_parameter_of_a_shading_model_reaches_both_renderers() {
             scene.objects[0].material.set(name, value);
             // The wrong twin: the picture before the change.
             assert!(name == "order" || !alike(&shown, &scene), "{model}: a change of {name} goes unnoticed");
-            shown = gpu(&mut renderer, &scene);
+            shown = on_gpu(&mut renderer, &scene);
             assert!(alike(&shown, &scene), "{model}: {name}");
         }
         let mut wrong = scene.clone();
@@ -516,12 +508,12 @@ fn objects_of_one_model_may_have_shading_models_with_different_parameters() {
     other.position.x += 1.5;
     other.shading_model = Some("flat".to_owned());
     scene.objects.push(other);
-    let shown = gpu(&mut renderer, &scene);
+    let shown = on_gpu(&mut renderer, &scene);
     assert!(alike(&shown, &scene));
     scene.objects[1].shading_model = None;
     scene.shading_model = "tinted".to_owned();
     assert!(!alike(&shown, &scene));
-    assert!(alike(&gpu(&mut renderer, &scene), &scene));
+    assert!(alike(&on_gpu(&mut renderer, &scene), &scene));
 }
 
 #[test]

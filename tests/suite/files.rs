@@ -294,7 +294,10 @@ fn a_command_reads_streams_but_waits_for_nobody() {
     ] {
         let ran = run(&mut shell(at, script));
         assert_eq!(ran.status, Some(0), "{script}: {}", ran.err);
-        assert!(String::from_utf8_lossy(&ran.out).ends_with(": valid: 4 lights, 4 objects\n"), "{script}");
+        assert!(
+            String::from_utf8_lossy(&ran.out).ends_with(": valid: 4 lights, 4 objects, 2 variants\n"),
+            "{script}"
+        );
     }
 }
 

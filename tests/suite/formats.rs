@@ -113,11 +113,13 @@ fn a_format_from_outside_is_read_and_checked_like_ours() {
 
 #[test]
 fn an_unknown_extension_is_told_with_those_that_are_known() {
-    let ours = "room.txt: .txt is not the extension of a scene; scenes are *.json (JSON) or *.csv (CSV)";
+    let ours = "room.txt: .txt is not the extension of a scene; scenes are *.json (JSON), *.csv (CSV) or *.png (PNG picture)";
     assert_eq!(said("{}", "room.txt", &Registry::builtin()), ours);
     let theirs = said("{}", "room.txt", &registry());
     assert!(
-        theirs.ends_with("scenes are *.json (JSON), *.csv (CSV) or *.spheres (list of spheres)"),
+        theirs.ends_with(
+            "scenes are *.json (JSON), *.csv (CSV), *.png (PNG picture) or *.spheres (list of spheres)"
+        ),
         "{theirs}"
     );
     check_wording(&theirs);
@@ -169,7 +171,7 @@ fn each_mistake_of_a_format_is_told_by_name() {
     assert_eq!(registry.scene_formats().len(), 1, "nothing was added");
     registry.add_scene_format(Other::GOOD);
     let names: Vec<_> = formats::all(&registry).map(SceneFormat::name).collect();
-    assert_eq!(names, ["JSON", "CSV", "list of spheres", "other"]);
+    assert_eq!(names, ["JSON", "CSV", "PNG picture", "list of spheres", "other"]);
 }
 
 #[test]
@@ -210,15 +212,15 @@ fn what_a_writer_forgets_is_named_and_the_file_stays() {
 }
 
 /// A document that was opened from a file, and its window's files.
-struct Desk {
-    session: Session,
+pub struct Desk {
+    pub session: Session,
     files: DiskFiles,
     registry: Registry,
-    left: Vec<Effect>,
+    pub left: Vec<Effect>,
 }
 
 impl Desk {
-    fn open(path: &Path, registry: Registry) -> Self {
+    pub fn open(path: &Path, registry: Registry) -> Self {
         let files = DiskFiles::new(None, None);
         let mut desk = Self { session: Session::default(), files, registry, left: Vec::new() };
         desk.act(Action::Open(path.to_owned()));
@@ -226,7 +228,7 @@ impl Desk {
         desk
     }
 
-    fn act(&mut self, action: Action) {
+    pub fn act(&mut self, action: Action) {
         let effects = self.session.apply(action, &self.registry);
         self.carry_out(effects);
     }

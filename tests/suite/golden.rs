@@ -17,6 +17,7 @@ use lights_camera_models::{
         load::{self, Defaults},
         save,
         schema::FILE_NAME,
+        variant::LETTERS,
     },
 };
 
@@ -65,6 +66,21 @@ fn scenes() -> Vec<(String, Scene)> {
     shipped_scenes().iter().map(|path| (name(path), read(path))).collect()
 }
 
+/// The pictures of the shipped scenes: one for each view, with the letter of the view beside the name from B on.
+fn views() -> Vec<(String, Scene)> {
+    let registry = Registry::builtin();
+    let mut all = Vec::new();
+    for (name, scene) in scenes() {
+        for (view, letter) in LETTERS.into_iter().enumerate().take(1 + scene.variants.len()) {
+            let (seen, terms) = scene.seen(view, &registry).expect("it has this view");
+            assert_eq!(terms, TermSelection::All, "{name}: the pictures here show all terms");
+            let name = if view == 0 { name.clone() } else { format!("{name}_{}", letter.to_lowercase()) };
+            all.push((name, seen));
+        }
+    }
+    all
+}
+
 fn on_cpu(scene: &Scene) -> Vec<u8> {
     let settings =
         reference::Settings { width: WIDTH, height: HEIGHT, samples: 4, terms: TermSelection::All };
@@ -105,7 +121,8 @@ fn keep(name: &str, actual: &[u8], expected: &[u8]) {
         actual.iter().zip(expected).map(|(a, b)| a.abs_diff(*b).saturating_mul(16)).collect();
     for (what, picture) in [("actual", actual), ("difference", &difference[..])] {
         let path = folder.join(format!("{name}_{what}.png"));
-        png::write(&path, WIDTH, HEIGHT, picture, &[]).expect("the picture can be written");
+        png::write(&path, WIDTH, HEIGHT, picture, &png::About::default())
+            .expect("the picture can be written");
     }
 }
 
@@ -128,7 +145,7 @@ fn assert_golden(pictures: &[(String, Vec<u8>)], renderer: &str, bound: Bound) {
 
 #[test]
 fn shipped_scenes_look_as_accepted_on_the_cpu() {
-    let pictures: Vec<_> = scenes().into_iter().map(|(name, scene)| (name, on_cpu(&scene))).collect();
+    let pictures: Vec<_> = views().into_iter().map(|(name, scene)| (name, on_cpu(&scene))).collect();
     if updating() {
         fs::create_dir_all(root().join("tests/golden")).expect("the folder can be made");
         for (name, picture) in &pictures {
@@ -138,7 +155,8 @@ fn shipped_scenes_look_as_accepted_on_the_cpu() {
                 (w, h) == (WIDTH, HEIGHT) && SAME_RENDERER.broken(picture, &old).is_none()
             });
             if !agrees {
-                png::write(&path, WIDTH, HEIGHT, picture, &[]).expect("the picture can be written");
+                png::write(&path, WIDTH, HEIGHT, picture, &png::About::default())
+                    .expect("the picture can be written");
             }
         }
     }
@@ -153,7 +171,7 @@ fn shipped_scenes_look_as_accepted_on_the_gpu() {
     }
     let mut renderer =
         GpuRenderer::new(WIDTH, HEIGHT, 4, Output::Display).expect("software Vulkan is installed");
-    let pictures: Vec<_> = scenes()
+    let pictures: Vec<_> = views()
         .into_iter()
         .map(|(name, scene)| {
             renderer.set_scene(scene);

@@ -1,6 +1,10 @@
 //! The GPU and the CPU renderer draw the same picture, for every model, shading model, light type and object type.
 
-use bevy::render::{RenderApp, render_resource::TextureFormat, view::ViewTarget};
+use bevy::{
+    core_pipeline::Core3d,
+    ecs::schedule::ScheduleLabel as _,
+    render::{RenderApp, camera::ExtractedCamera, render_resource::TextureFormat, view::ViewTarget},
+};
 use glam::Vec3;
 use lights_camera_models::{
     optics::{
@@ -11,13 +15,16 @@ use lights_camera_models::{
     parameter::Value,
     reference,
     registry::Registry,
-    render::capture::gpu::{GpuRenderer, Output},
+    render::{
+        capture::gpu::{GpuRenderer, Output},
+        straight::Straight,
+    },
     scene::{Display, Light, Scene},
     shader::compose::Sources,
     testing,
 };
 
-use crate::pictures::{Difference, close_up, compare};
+use crate::pictures::{Difference, close_up, compare, on_gpu};
 
 const SIZE: u32 = 96;
 
@@ -31,10 +38,8 @@ fn cpu(scene: &Scene, terms: TermSelection) -> reference::Picture {
 }
 
 fn gpu(renderer: &mut GpuRenderer, scene: &Scene, terms: TermSelection) -> Vec<Vec3> {
-    renderer.set_scene(scene.clone());
     renderer.set_terms(terms);
-    renderer.settle().expect("the GPU draws");
-    renderer.read_linear().expect("the picture can be read")
+    on_gpu(renderer, scene)
 }
 
 fn renderer() -> GpuRenderer {
@@ -213,13 +218,55 @@ fn light_too_bright_for_half_floats_is_white_and_not_black() {
 }
 
 #[test]
-fn pictures_for_people_are_drawn_into_half_floats() {
+fn pictures_for_people_are_drawn_into_half_floats_where_anything_follows_and_straight_into_the_texture_else()
+{
+    let formats = |renderer: &mut GpuRenderer| {
+        let world = renderer.app().sub_app_mut(RenderApp).world_mut();
+        let targets: Vec<_> = world.query::<(&ViewTarget, &ExtractedCamera)>().iter(world).collect();
+        targets.into_iter().map(|(t, c)| (t.main_texture_format(), c.schedule)).collect::<Vec<_>>()
+    };
+    let half_floats = [(TextureFormat::Rgba16Float, Core3d.intern())];
+    let straight = [(TextureFormat::Rgba8UnormSrgb, Straight.intern())];
     let mut renderer = displaying();
+    let mut scene = Scene::default();
+    for (tone_mapping, expected) in [
+        (ToneMapping::None, straight),
+        (ToneMapping::Reinhard, half_floats),
+        (ToneMapping::KhronosPbrNeutral, half_floats),
+        (ToneMapping::None, straight),
+    ] {
+        scene.display.tone_mapping = tone_mapping;
+        displayed(&mut renderer, &scene);
+        assert_eq!(formats(&mut renderer), expected, "{tone_mapping:?}");
+    }
+    // The mean of four samples is taken of light, not of what the display can show of it.
+    let mut renderer =
+        GpuRenderer::new(SIZE, SIZE, 4, Output::Display).expect("software Vulkan is installed");
     displayed(&mut renderer, &Scene::default());
-    let world = renderer.app().sub_app_mut(RenderApp).world_mut();
-    let formats: Vec<_> =
-        world.query::<&ViewTarget>().iter(world).map(ViewTarget::main_texture_format).collect();
-    assert_eq!(formats, [TextureFormat::Rgba16Float]);
+    assert_eq!(formats(&mut renderer), half_floats);
+}
+
+/// The opacity of pixels that are drawn straight into the texture tells what was cut off there.
+#[test]
+fn straight_pictures_mark_what_is_cut_off() {
+    for encoding in [Encoding::Srgb, Encoding::Off] {
+        let mut scene = close_up("sphere", "point");
+        scene.shading_model = "phong".to_owned();
+        scene.display = Display { exposure: 2.0, encoding, ..Display::default() };
+        let mut renderer = displaying();
+        displayed(&mut renderer, &scene);
+        let straight = renderer.read().expect("the picture can be read");
+        let picture = cpu(&scene, TermSelection::All);
+        let (mut marked, mut wrong) = (0, 0);
+        for (pixel, light) in straight.chunks_exact(4).zip(&picture.pixels) {
+            let cut_off = (light.truncate() * 4.0).max_element() > 1.0005;
+            marked += usize::from(cut_off);
+            wrong += usize::from(cut_off != (pixel[3] == 254));
+            assert!(pixel[3] == 255 || pixel[3] == 254 && pixel[..3].contains(&255), "{pixel:?}");
+        }
+        // At the silhouette and at the threshold.
+        assert!(marked > 100 && wrong * 50 < marked, "{encoding:?}: {wrong} of {marked}");
+    }
 }
 
 #[test]

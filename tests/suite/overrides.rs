@@ -14,6 +14,7 @@ use glam::{UVec2, Vec3};
 use lights_camera_models::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::{Value, Values},
+    registry::Registry,
     render::{
         camera::picture_camera,
         capture::gpu::{GpuRenderer, Output},
@@ -150,8 +151,10 @@ fn views_with_overrides_draw_beside_others_what_each_draws_alone() {
             ..model("ggx")
         },
     ];
-    let expected: Vec<_> =
-        overrides.iter().map(|o| alone(&o.applied(&scene), o.terms.unwrap_or_default())).collect();
+    let expected: Vec<_> = overrides
+        .iter()
+        .map(|o| alone(&o.applied(&scene, &Registry::builtin()), o.terms.unwrap_or_default()))
+        .collect();
 
     let mut renderer = renderer(&scene);
     let views: Vec<_> = overrides.iter().map(|o| second_view(&mut renderer, o.clone())).collect();
@@ -216,7 +219,7 @@ fn a_change_of_the_overrides_draws_that_view_and_a_change_of_the_scene_draws_all
     let (plain, overridden) = rest(&mut renderer, &|_| {});
     assert_eq!((plain, overridden), (0, 0));
     let overrides = renderer.app().world().get::<Overrides>(view).expect("it has overrides").clone();
-    let expected = alone(&overrides.applied(&moved), TermSelection::Diffuse);
+    let expected = alone(&overrides.applied(&moved, &Registry::builtin()), TermSelection::Diffuse);
     assert!(picture_of(&mut renderer, view) == expected);
     let world = renderer.app().world_mut();
     assert_eq!(world.query::<&ViewCopy>().iter(world).count(), 3);

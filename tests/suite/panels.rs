@@ -1166,6 +1166,16 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
     type Setup = fn(&mut Bench);
     let states: &[(&str, (f32, f32), Setup)] = &[
         ("start", (1280.0, 720.0), |_| {}),
+        ("match", (1280.0, 720.0), |b| crate::matching::ask(b, "blinn_phong")),
+        ("match-light", (1280.0, 720.0), |b| {
+            b.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
+            b.apply(Action::View(ViewChange::Scale(150)));
+            crate::matching::ask(b, "disney");
+        }),
+        ("match-runs", (1280.0, 720.0), |b| {
+            crate::matching::ask(b, "phong");
+            crate::matching::run(b);
+        }),
         ("phong", (1280.0, 720.0), |b| b.apply(Action::Edit(Edit::Model("phong".to_owned())))),
         ("blinn", (1920.0, 1080.0), |b| {
             b.apply(Action::Edit(Edit::Model("blinn_phong".to_owned())));

@@ -22,7 +22,7 @@ use lights_camera_models::{
 };
 
 use crate::{
-    pictures::{close_up, compare},
+    pictures::{close_up, compare, on_gpu},
     support::lcm_in,
 };
 
@@ -66,16 +66,11 @@ fn both_renderers_shine_as_the_file_says_and_follow_it() {
     let mut scene = read(folder.path(), "lamp.ies", &ies("900 100 300")).expect("legal");
     scene.lights[0].intensity = 0.5;
     let mut renderer = GpuRenderer::new(96, 96, 1, Output::Linear).expect("software Vulkan is installed");
-    let gpu = |renderer: &mut GpuRenderer, scene: &Scene| {
-        renderer.set_scene(scene.clone());
-        renderer.settle().expect("the GPU draws");
-        renderer.read_linear().expect("the picture can be read")
-    };
     let alike = |gpu: &[Vec3], scene: &Scene| {
         let d = compare(gpu, &cpu(scene), Encoding::Srgb.decode(BACKGROUND), 1e-3);
         d.covered > 500 && d.wrong * 1000 <= d.covered && d.edges * 50 <= d.covered
     };
-    let before = gpu(&mut renderer, &scene);
+    let before = on_gpu(&mut renderer, &scene);
     assert!(alike(&before, &scene));
     // Several lamps share the numbers of one file, and others have another, which does not fit into the first buffer.
     let mut many = scene.clone();
@@ -101,13 +96,13 @@ fn both_renderers_shine_as_the_file_says_and_follow_it() {
         many.lights.push(lamp);
     }
     assert_eq!(check::scene(&many, &Registry::builtin()), []);
-    assert!(alike(&gpu(&mut renderer, &many), &many));
+    assert!(alike(&on_gpu(&mut renderer, &many), &many));
     // The file changes: who reads it again sees that, and so do all that name it.
     fs::write(folder.path().join("lamp.ies"), ies("100 900 300")).expect("written");
     assert!(file_of(&scene).read_again() && !file_of(&many).read_again());
     // The wrong twin is the picture of the old file.
     assert!(!alike(&before, &scene), "the new file goes unnoticed");
-    assert!(alike(&gpu(&mut renderer, &scene), &scene));
+    assert!(alike(&on_gpu(&mut renderer, &scene), &scene));
 }
 
 /// The format of the parameter of the lamp.

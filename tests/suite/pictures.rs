@@ -4,8 +4,16 @@ use glam::{Vec3, Vec4};
 use lights_camera_models::{
     reference,
     registry::Registry,
+    render::capture::gpu::GpuRenderer,
     scene::{Light, Object, Observer, Scene},
 };
+
+/// The picture of a scene from the GPU, in linear light.
+pub fn on_gpu(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<Vec3> {
+    renderer.set_scene(scene.clone());
+    renderer.settle().expect("the GPU draws");
+    renderer.read_linear().expect("the picture can be read")
+}
 
 /// A scene with one object that fills much of the picture and one light beside the observer.
 pub fn close_up(shape: &str, light: &str) -> Scene {

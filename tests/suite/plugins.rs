@@ -32,13 +32,14 @@ use lights_camera_models::{
     },
     scene::formats::SceneFormats as _,
     window::{
-        CameraPlugin, CapturePlugin, ClippingPlugin, DocumentPlugin, GizmosPlugin, LabPlugins, PickingPlugin,
-        PicturePlugin, RecoveryPlugin, RequirementsPlugin, ShaderFilesPlugin, ShellPlugin, WatchingPlugin,
+        CameraPlugin, CapturePlugin, ClippingPlugin, DifferencePlugin, DocumentPlugin, GizmosPlugin,
+        LabPlugins, PickingPlugin, PicturePlugin, RecoveryPlugin, RequirementsPlugin, ShaderFilesPlugin,
+        ShellPlugin, WatchingPlugin,
     },
 };
 
 use crate::{
-    pictures::compare,
+    pictures::{compare, on_gpu},
     screen::{Picture, Screen, alone},
 };
 
@@ -76,7 +77,7 @@ pub fn app(plugins: PluginGroupBuilder, extend: impl FnOnce(&mut App)) -> App {
 }
 
 /// All parts of the window, without the window itself and what is the user's.
-fn whole() -> PluginGroupBuilder {
+pub fn whole() -> PluginGroupBuilder {
     LabPlugins::default()
         .build()
         .disable::<WinitPlugin>()
@@ -126,13 +127,14 @@ fn each_part_can_be_left_out_and_the_rest_runs() {
 #[test]
 fn each_part_of_the_window_can_be_left_out_and_the_rest_runs() {
     type Less = fn(PluginGroupBuilder) -> PluginGroupBuilder;
-    let parts: [(&str, Less); 8] = [
+    let parts: [(&str, Less); 9] = [
         ("panels", |group| group.disable::<PanelPlugin>()),
         ("egui", |group| group.disable::<PanelPlugin>().disable::<EguiPlugin>()),
         ("camera", |group| group.disable::<CameraPlugin>()),
         ("picking", |group| group.disable::<PickingPlugin>()),
         ("camera and picking", |group| group.disable::<CameraPlugin>().disable::<PickingPlugin>()),
         ("clipping", |group| group.disable::<ClippingPlugin>()),
+        ("difference", |group| group.disable::<DifferencePlugin>()),
         ("shell", |group| group.disable::<ShellPlugin>()),
         ("picture", |group| group.disable::<PicturePlugin>()),
     ];
@@ -447,9 +449,7 @@ fn the_examples_pass_the_public_tests_and_draw_alike_without_a_window() {
     for name in ["light", "shape", "shading_model"] {
         let file = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let scene = load::file(Path::new(&file), &registry, Defaults::Refuse).expect(name).scene;
-        renderer.set_scene(scene.clone());
-        renderer.settle().expect("the GPU draws");
-        let gpu = renderer.read_linear().expect("the picture can be read");
+        let gpu = on_gpu(&mut renderer, &scene);
         let settings = reference::Settings { width: 160, height: 90, samples: 1, terms: TermSelection::All };
         let cpu = reference::render(&scene, &registry, &settings);
         let d = compare(&gpu, &cpu, Encoding::Srgb.decode(BACKGROUND), 1e-3);

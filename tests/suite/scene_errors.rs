@@ -607,7 +607,10 @@ fn what_is_not_utf_8_json_is_recognised() {
             b"\xEF\xBB\xBF{}".to_vec(),
             "scene.json:1:1: not UTF-8 text: the file begins with a byte order mark",
         ),
-        (b"\x89PNG\r\n\x1a\n\0\0".to_vec(), "the file is a PNG picture, not a scene"),
+        (
+            b"\x89PNG\r\n\x1a\n\0\0".to_vec(),
+            "the file is a PNG picture; a scene in it is read if the name of the file ends in .png",
+        ),
         (
             b"{\n \"name\": \"caf\xE9\" }".to_vec(),
             "scene.json:2:14: not UTF-8 text: unexpected byte 0xE9; the file may be Latin-1",

@@ -4,12 +4,14 @@ use std::{fs, time::Instant};
 
 use glam::Vec3;
 use lights_camera_models::{
-    optics::{colour::Encoding, tone::ToneMapping},
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::{Parameter, ParameterKind, Value, Values},
     registry::Registry,
     scene::{
-        Display, Light, Object, Observer, Scene, SceneSize, check,
+        Comparison, Display, Light, Object, Observer, Scene, SceneSize, Variant, check,
+        comparison::{Channel, Compared, Edge, Layout, Sign},
         load::{self, Defaults},
+        variant::MAX_VARIANTS,
     },
 };
 use proptest::prelude::*;
@@ -234,7 +236,67 @@ prop_compose! {
             observer: Observer { position: eye + Vec3::Y * 4.0, direction, field_of_view },
             objects,
             display: Display { tone_mapping, exposure, encoding },
+            variants: Vec::new(),
+            comparison: Comparison::default(),
         }
+    }
+}
+
+fn variant() -> impl Strategy<Value = Variant> {
+    let registry = Registry::builtin();
+    let models: Vec<_> = registry.models().iter().map(|m| m.declaration.id.to_owned()).collect();
+    let shadings: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.id.to_owned()).collect();
+    let option = prop::option::of::<prop::sample::Select<String>>;
+    (
+        option(prop::sample::select(models)),
+        option(prop::sample::select(shadings)),
+        values(registry.material_parameters().collect()),
+        prop::option::of(prop::sample::select(&TermSelection::ALL[..])),
+        prop::option::of(prop::sample::select(&ToneMapping::ALL[..])),
+        prop::option::of(number(-16.0, 16.0)),
+        prop::option::of(prop::sample::select(&Encoding::ALL[..])),
+        prop::option::of(1..1000u32),
+    )
+        .prop_map(
+            |(reflection_model, shading_model, material, terms, tone_mapping, exposure, encoding, count)| {
+                Variant {
+                    name: None,
+                    based_on: None,
+                    reflection_model,
+                    shading_model,
+                    material,
+                    terms,
+                    tone_mapping,
+                    exposure,
+                    encoding,
+                    tessellation: count,
+                }
+            },
+        )
+}
+
+prop_compose! {
+    /// A valid scene with views that are compared.
+    fn compared()(
+        scene in scene(),
+        mut variants in prop::collection::vec(variant(), 0..=MAX_VARIANTS),
+        named in any::<bool>(),
+        with in 1..=MAX_VARIANTS,
+        split in number(0.0, 1.0),
+        amplification in number(1.0, 100.0),
+        layout in prop::sample::select(Layout::ALL),
+        edge in prop::sample::select(Edge::ALL),
+        sign in prop::sample::select(Sign::ALL),
+        channel in prop::sample::select(Channel::ALL),
+        values in prop::sample::select(Compared::ALL),
+    ) -> Scene {
+        for (i, variant) in variants.iter_mut().enumerate().filter(|_| named) {
+            variant.name = Some(format!("variant \"{i}\""));
+            variant.based_on = i.checked_sub(1).map(|base| format!("variant \"{base}\""));
+        }
+        let with = with.min(variants.len().max(1));
+        let comparison = Comparison { layout, with, split, edge, sign, channel, values, amplification };
+        Scene { variants, comparison, ..scene }
     }
 }
 
@@ -242,7 +304,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_valid_scene_comes_back_as_it_was(scene in scene()) {
+    fn every_valid_scene_comes_back_as_it_was(scene in compared()) {
         prop_assert_eq!(check::scene(&scene, &Registry::builtin()), vec![]);
         prop_assert_eq!(read(&written(&scene)), scene);
     }

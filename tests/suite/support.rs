@@ -71,7 +71,31 @@ pub fn full_scene() -> Value {
             { "type": "torus", "position": [8, 8, 5], "tube_radius": 0.1 },
             { "type": "superellipsoid", "position": [5, 8, 5], "vertical_exponent": 0.3, "horizontal_exponent": 1.5 }
         ],
-        "display": { "tone_mapping": "aces", "exposure": -1.5, "encoding": "srgb" }
+        "display": { "tone_mapping": "aces", "exposure": -1.5, "encoding": "srgb" },
+        "variants": [
+            {
+                "name": "shiny",
+                "reflection_model": "blinn_phong",
+                "shading_model": "phong",
+                "material": { "alpha": 20, "base_colour": [200, 40, 40] },
+                "terms": "specular",
+                "tone_mapping": "agx",
+                "exposure": 0.5,
+                "encoding": "off",
+                "tessellation": 12
+            },
+            { "name": "shinier", "based_on": "shiny", "material": { "alpha": 200 } }
+        ],
+        "comparison": {
+            "layout": "wipe",
+            "with": "C",
+            "split": 0.25,
+            "edge": "horizontal",
+            "sign": "signed",
+            "channel": "luminance",
+            "values": "light",
+            "amplification": 8
+        }
     })
 }
 

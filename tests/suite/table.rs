@@ -11,7 +11,7 @@ use lights_camera_models::{
     parameter::Value,
     registry::{Register as _, Registry},
     scene::{
-        Scene,
+        Comparison, Scene,
         formats::{Csv, SceneFormat as _, Target},
         load::{self, Defaults},
         save::{self, Expected},
@@ -81,8 +81,16 @@ fn a_table_says_what_json_says() {
 
 #[test]
 fn the_full_scene_comes_back_from_a_table() {
-    let scene = read(&full_scene().to_string());
+    // A table has no place for variants.
+    let whole = read(&full_scene().to_string());
+    let scene = Scene { variants: Vec::new(), comparison: Comparison::default(), ..whole.clone() };
     assert_eq!(from_table(&table(&scene, None)), scene);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("room.csv");
+    let refused =
+        save::write(&file, &whole, &Registry::builtin(), Expected::Nothing).map(|_| ()).unwrap_err();
+    assert!(refused.to_string().contains("its format would lose comparison"), "{refused}");
+    assert!(!file.exists());
 }
 
 proptest! {

@@ -17,7 +17,7 @@ use lights_camera_models::{
     shader::Source,
 };
 
-use crate::pictures::{close_up, compare};
+use crate::pictures::{close_up, compare, on_gpu};
 
 parameters! {
     /// Lambert, brighter where the half vector leans along the tangent; it reveals the tangent's sign too.
@@ -107,9 +107,7 @@ fn both_renderers_give_every_mode_and_shape_the_same_tangents() {
                 let mut scene = close_up(shape.declaration.id, light);
                 scene.reflection_model = "brushed".to_owned();
                 scene.shading_model = shading.declaration.id.to_owned();
-                renderer.set_scene(scene.clone());
-                renderer.settle().expect("the GPU draws");
-                let gpu = renderer.read_linear().expect("the picture can be read");
+                let gpu = on_gpu(&mut renderer, &scene);
                 let case = format!("{} × {} × {light}", shape.declaration.id, shading.declaration.id);
                 let d = compare(&gpu, &cpu(&scene, "brushed"), background, 1e-3);
                 // The tangent turns round within the pixel over a pole: the last bit decides the direction.

@@ -1,5 +1,5 @@
 // Photometric lamp: the candelas of a file, I(p) = I w(γ, C) / d². From `m.file` on, the numbers of the file are in
-// `illumination.words`: how many vertical and horizontal angles there are, these angles in degrees, and the candelas,
+// `light_words`: how many vertical and horizontal angles there are, these angles in degrees, and the candelas,
 // one vertical half plane after the other.
 fn incident_photometric(light: Light, m: PhotometricParameters, p: vec3<f32>) -> Incident {
     let to_light = light.position - p;

@@ -60,10 +60,8 @@ pub(super) fn light(
         for p in entry.parameters {
             let unused = usage::unused(entry.parameters, p, &light.parameters);
             if let Value::File(file) = light.parameters.get(p) {
-                let caption =
-                    Caption { symbol: p.symbol, label: p.label, help: p.help, ..Caption::default() };
-                if knob::file_knob(ui, &caption, &file) {
-                    actions.push(Action::FileDialog(i, p));
+                if knob::file_knob(ui, p, &file) {
+                    actions.push(Action::FileDialog(Selection::Light(i), p));
                 }
                 continue;
             }

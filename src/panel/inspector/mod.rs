@@ -13,6 +13,7 @@ mod object;
 mod observer;
 mod part;
 mod room;
+mod variant;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +40,7 @@ impl Panel for Inspector {
             ui.spacing_mut().scroll.floating_allocated_width = 0.0;
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_max_width(ui.available_width() - 8.0);
+                variant::variant(ui, session, registry, actions);
                 match session.selection {
                     Selection::Room => room(ui, session, registry, actions),
                     Selection::Observer => observer(ui, session, actions),

@@ -104,15 +104,15 @@ pub(super) fn terms(
         // One term is the whole equation.
         options.truncate(1);
     }
-    if !options.contains(&session.view.terms) {
-        options.push(session.view.terms);
+    if !options.contains(&session.terms()) {
+        options.push(session.terms());
     }
     if options.len() == 1 {
         return;
     }
     ui.horizontal(|ui| {
         ui.set_min_height(30.0);
-        let chosen = options.iter().position(|t| *t == session.view.terms);
+        let chosen = options.iter().position(|t| *t == session.terms());
         let names: Vec<_> = options.iter().map(|t| t.id()).collect();
         let buttons: f32 = names.iter().map(|name| segment_width(ui, name)).sum();
         // The scroll bar needs some room too.

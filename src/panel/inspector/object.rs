@@ -6,18 +6,20 @@ use super::{
     measured::measured,
     model::{equation, missing_model, model_author, model_name, stage, terms},
     part::{header, position_limits, section, thrice},
+    variant::marked,
 };
 use crate::{
-    document::{Edit, ObjectField, Selection},
+    document::{Edit, ObjectField, Selection, VariantField},
     panel::{
         knob::{self, Caption},
         model_override,
         state::{Action, Session},
         theme,
     },
+    parameter::Value,
     reflection::{ModelEntry, usage},
     registry::Registry,
-    scene::{Object, limits},
+    scene::{Object, Variant, limits},
     shading::ShadingEntry,
 };
 
@@ -28,14 +30,14 @@ pub(super) fn object(
     i: usize,
     actions: &mut Vec<Action>,
 ) {
-    let Some(object) = session.document.objects.get(i) else { return };
+    let Some(object) = session.scene().objects.get(i) else { return };
     header(ui, session, registry, Selection::Object(i), object.name.as_deref(), actions);
-    let model = registry.model(session.document.model_of(object));
+    let model = registry.model(session.scene().model_of(object));
     let shown = Shown { session, registry, object, model };
     let mut fields = Vec::new();
     section(ui, "Reflection", true, |ui| shown.reflection(ui, &mut fields, actions));
-    section(ui, "Material", true, |ui| shown.material(ui, &mut fields));
-    section(ui, "Shape and position", true, |ui| shown.geometry(ui, &mut fields));
+    section(ui, "Material", true, |ui| shown.material(ui, &mut fields, actions));
+    section(ui, "Shape and position", true, |ui| shown.geometry(ui, i, &mut fields, actions));
     actions.extend(fields.into_iter().map(|field| Action::Edit(Edit::Object(i, field))));
 }
 
@@ -67,15 +69,15 @@ impl Shown<'_> {
                 equation(ui, model);
                 terms(ui, session, registry, model, actions);
             }
-            None => missing_model(ui, session, registry, session.document.model_of(object), actions),
+            None => missing_model(ui, session, registry, session.scene().model_of(object), actions),
         }
-        if let Some(shading) = registry.shading_model(session.document.shading_model_of(object)) {
+        if let Some(shading) = registry.shading_model(session.scene().shading_model_of(object)) {
             stage(ui, shading);
         }
     }
 
     /// The knobs of the parameters of the model, and the parameters that it does not use.
-    fn material(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
+    fn material(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
         let Self { session, registry, object, model } = *self;
         let Some(model) = model else {
             ui.label(theme::small(ui, "The parameters come back with the model."));
@@ -86,14 +88,18 @@ impl Shown<'_> {
         }
         for p in model.parameters {
             let unused = usage::unused(model.parameters, p, &object.material);
-            if let Some(v) = knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref()) {
-                fields.push(ObjectField::Material(p.name, v));
-            }
+            let own = |variant: &Variant| {
+                variant.material.0.contains_key(p.name).then_some(VariantField::Material(p.name, None))
+            };
+            let value = marked(ui, session, own, actions, |ui| {
+                knob::parameter_knob(ui, p.name, p, &object.material.get(p), unused.as_deref())
+            });
+            fields.extend(value.map(|v| ObjectField::Material(p.name, v)));
         }
         if model.parameters.is_empty() {
             ui.label(theme::small(ui, "This model has no knobs."));
         }
-        let shading = registry.shading_model(session.document.shading_model_of(object));
+        let shading = registry.shading_model(session.scene().shading_model_of(object));
         if let Some(shading) = shading {
             self.shading(ui, model, shading, fields);
         }
@@ -138,7 +144,7 @@ impl Shown<'_> {
     }
 
     /// The object type, its size and its place.
-    fn geometry(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
+    fn geometry(&self, ui: &mut Ui, i: usize, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
         let Self { session, registry, object, .. } = *self;
         let types: Vec<_> = registry.shapes().iter().map(|s| s.declaration).collect();
         let names: Vec<_> = types.iter().map(|d| d.name).collect();
@@ -148,7 +154,7 @@ impl Shown<'_> {
         if let Some(k) = knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names) {
             fields.push(ObjectField::Type(types[k].id.to_owned()));
         }
-        self.shape(ui, fields);
+        self.shape(ui, i, fields, actions);
         let caption = Caption { label: "size", unit: "m", help: "The largest extent.", ..Caption::default() };
         let size_limits = limits::object_size(session.document.scene_size);
         let default = f64::from(crate::scene::DEFAULT_SIZE);
@@ -188,14 +194,11 @@ impl Shown<'_> {
             let caption = Caption { label: "tessellation", help: d.tessellation_help, ..Caption::default() };
             let value = f64::from(shape.tessellation(object.tessellation));
             let default = f64::from(d.default_tessellation);
-            if let Some(v) = knob::number_knob(
-                ui,
-                "tessellation",
-                &caption,
-                value,
-                Some(default),
-                &limits::tessellation(d),
-            ) {
+            let own = |variant: &Variant| variant.tessellation.map(|_| VariantField::Tessellation(None));
+            if let Some(v) = marked(ui, session, own, actions, |ui| {
+                let limits = limits::tessellation(d);
+                knob::number_knob(ui, "tessellation", &caption, value, Some(default), &limits)
+            }) {
                 fields
                     .push(ObjectField::Tessellation(Some(v as u32).filter(|n| *n != d.default_tessellation)));
             }
@@ -203,10 +206,16 @@ impl Shown<'_> {
     }
 
     /// The knobs of the parameters of the object type.
-    fn shape(&self, ui: &mut Ui, fields: &mut Vec<ObjectField>) {
+    fn shape(&self, ui: &mut Ui, i: usize, fields: &mut Vec<ObjectField>, actions: &mut Vec<Action>) {
         let Self { registry, object, .. } = *self;
         let Some(shape) = registry.shape(&object.object_type) else { return };
         for p in shape.parameters {
+            if let Value::File(file) = object.shape.get(p) {
+                if knob::file_knob(ui, p, &file) {
+                    actions.push(Action::FileDialog(Selection::Object(i), p));
+                }
+                continue;
+            }
             let unused = usage::unused(shape.parameters, p, &object.shape);
             let salt = format!("shape {}", p.name);
             if let Some(v) = knob::parameter_knob(ui, &salt, p, &object.shape.get(p), unused.as_deref()) {
@@ -218,7 +227,7 @@ impl Shown<'_> {
     /// The values derived from those of the knobs.
     fn readouts(&self, ui: &mut Ui, model: &ModelEntry) {
         let readouts =
-            model.instantiate(&self.object.material, self.session.document.display.encoding).readouts();
+            model.instantiate(&self.object.material, self.session.scene().display.encoding).readouts();
         if readouts.is_empty() {
             return;
         }

@@ -2,9 +2,12 @@
 
 use bevy_egui::egui::{self, Ui};
 
-use super::part::{Text, section, text_field};
+use super::{
+    part::{Text, section, text_field},
+    variant::marked,
+};
 use crate::{
-    document::Edit,
+    document::{Edit, VariantField},
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
         knob::{self, Caption},
@@ -12,13 +15,13 @@ use crate::{
         theme,
     },
     registry::Registry,
-    scene::{Display, SceneSize, limits},
+    scene::{Display, SceneSize, Variant, limits},
     text::plural,
 };
 
 pub(super) fn room(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
     let width = ui.available_width();
-    let s = &session.document;
+    let s = session.scene();
     text_field(
         ui,
         "scene name",
@@ -67,9 +70,10 @@ pub(super) fn room(ui: &mut Ui, session: &Session, registry: &Registry, actions:
             help: "Each EV doubles the brightness of the picture, as a stop of a camera does.",
             ..Caption::default()
         };
-        if let Some(v) =
+        let own = |variant: &Variant| variant.exposure.map(|_| VariantField::Exposure(None));
+        if let Some(v) = marked(ui, session, own, actions, |ui| {
             knob::number_knob(ui, "exposure", &caption, f64::from(d.exposure), Some(0.0), &limits::exposure())
-        {
+        }) {
             actions.push(set(Display { exposure: v as f32, ..d }));
         }
         let options: Vec<_> = ToneMapping::ALL.iter().map(|t| [t.name(), t.author(), t.summary()]).collect();
@@ -79,7 +83,10 @@ pub(super) fn room(ui: &mut Ui, session: &Session, registry: &Registry, actions:
             help: "How light brighter than the display can show is brought into its range. None: it is cut off, and values stay comparable.",
             ..Caption::default()
         };
-        if let Some(i) = knob::choice_with_help(ui, "tone mapping", &caption, chosen, &options) {
+        let own = |variant: &Variant| variant.tone_mapping.map(|_| VariantField::ToneMapping(None));
+        if let Some(i) = marked(ui, session, own, actions, |ui| {
+            knob::choice_with_help(ui, "tone mapping", &caption, chosen, &options)
+        }) {
             actions.push(set(Display { tone_mapping: ToneMapping::ALL[i], ..d }));
         }
         let names: Vec<_> = Encoding::ALL
@@ -95,7 +102,10 @@ pub(super) fn room(ui: &mut Ui, session: &Session, registry: &Registry, actions:
             help: "sRGB: colours are decoded to linear light, the picture is encoded for the display. Off: neither; deliberately wrong, for comparison.",
             ..Caption::default()
         };
-        if let Some(i) = knob::choice_knob(ui, "encoding", &caption, chosen, &names) {
+        let own = |variant: &Variant| variant.encoding.map(|_| VariantField::Encoding(None));
+        if let Some(i) = marked(ui, session, own, actions, |ui| {
+            knob::choice_knob(ui, "encoding", &caption, chosen, &names)
+        }) {
             actions.push(set(Display { encoding: Encoding::ALL[i], ..d }));
         }
     });

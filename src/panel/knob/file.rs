@@ -3,12 +3,16 @@
 use bevy_egui::egui::{Button, RichText, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::line::{CHOICE, Caption, Words, explain, head, tooltip};
-use crate::{panel::theme::Palette, parameter::NamedFile};
+use crate::{
+    panel::theme::Palette,
+    parameter::{NamedFile, Parameter},
+};
 
 /// A file: word at the left, at the right a button with its name. True if another one is wanted.
-pub fn file_knob(ui: &mut Ui, caption: &Caption, file: &NamedFile) -> bool {
+pub fn file_knob(ui: &mut Ui, p: &Parameter, file: &NamedFile) -> bool {
     let palette = Palette::here(ui);
-    let (label, button) = head(ui, caption, Words::Leave(CHOICE), |ui| {
+    let caption = Caption { symbol: p.symbol, label: p.label, help: p.help, ..Caption::default() };
+    let (label, button) = head(ui, &caption, Words::Leave(CHOICE), |ui| {
         ui.add_space(22.0);
         let width = (ui.available_width() - 4.0).clamp(80.0, 190.0);
         let button = Button::new(file.name()).right_text(RichText::new("…").color(palette.weak)).truncate();
@@ -18,7 +22,7 @@ pub fn file_knob(ui: &mut Ui, caption: &Caption, file: &NamedFile) -> bool {
         });
         button
     });
-    explain(label, |ui| tooltip(ui, caption, "", ""));
+    explain(label, |ui| tooltip(ui, &caption, "", ""));
     let place = file.path().map_or("part of the program".to_owned(), |path| path.display().to_string());
     let text = file.problem().unwrap_or(place);
     let clicked = button.on_hover_text(text).clicked();

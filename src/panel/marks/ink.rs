@@ -6,32 +6,52 @@ use glam::Vec3;
 use super::lens::Lens;
 
 /// Around every line.
-pub(super) const OUTLINE: Color32 = Color32::from_rgb(8, 8, 8);
+pub(in crate::panel) const OUTLINE: Color32 = Color32::from_rgb(8, 8, 8);
 /// Width of a line, points.
 const LINE: f32 = 1.75;
 /// Width of the outline on either side, points.
 pub(super) const RIM: f32 = 1.5;
 
 /// Lines with their outlines; no outline covers another line.
-pub(super) struct Ink {
+pub(in crate::panel) struct Ink {
     pub(super) lens: Lens,
     below: Vec<Shape>,
     above: Vec<Shape>,
 }
 
+/// The colour around a line.
+fn rim(colour: Color32) -> Color32 {
+    if colour.is_opaque() { OUTLINE } else { OUTLINE.gamma_multiply(f32::from(colour.a()) / 255.0) }
+}
+
 impl Ink {
-    pub(super) fn new(lens: Lens) -> Self {
+    pub(in crate::panel) fn new(lens: Lens) -> Self {
         Self { lens, below: Vec::new(), above: Vec::new() }
     }
 
-    pub(super) fn line(&mut self, mut points: Vec<Pos2>, colour: Color32) {
-        self.above.push(Shape::line(points.clone(), Stroke::new(LINE, colour)));
+    pub(super) fn line(&mut self, points: Vec<Pos2>, colour: Color32) {
+        self.stroke(points, LINE, colour);
+    }
+
+    /// A line of another width. The outline of a faint one is as faint.
+    pub(in crate::panel) fn stroke(&mut self, mut points: Vec<Pos2>, width: f32, colour: Color32) {
+        if points.len() < 2 {
+            return;
+        }
+        self.above.push(Shape::line(points.clone(), Stroke::new(width, colour)));
         // The outline goes around the ends too.
         let end = points.len() - 1;
         let (first, last) = (points[0] - points[1], points[end] - points[end - 1]);
         points[0] += first.normalized() * RIM;
         points[end] += last.normalized() * RIM;
-        self.below.push(Shape::line(points, Stroke::new(LINE + 2.0 * RIM, OUTLINE)));
+        self.below.push(Shape::line(points, Stroke::new(width + 2.0 * RIM, rim(colour))));
+    }
+
+    /// A filled convex shape.
+    pub(in crate::panel) fn fill(&mut self, corners: Vec<Pos2>, colour: Color32) {
+        let outline = Stroke::new(2.0 * RIM, rim(colour));
+        self.below.push(Shape::closed_line(corners.clone(), outline));
+        self.above.push(Shape::convex_polygon(corners, colour, Stroke::NONE));
     }
 
     pub(super) fn path(&mut self, points: &[Vec3], colour: Color32) {
@@ -40,8 +60,8 @@ impl Ink {
         }
     }
 
-    pub(super) fn disc(&mut self, at: Pos2, radius: f32, colour: Color32) {
-        self.above.push(Shape::circle_filled(at, radius + RIM, OUTLINE));
+    pub(in crate::panel) fn disc(&mut self, at: Pos2, radius: f32, colour: Color32) {
+        self.above.push(Shape::circle_filled(at, radius + RIM, rim(colour)));
         self.above.push(Shape::circle_filled(at, radius, colour));
     }
 
@@ -58,7 +78,7 @@ impl Ink {
         self.line(vec![b + back + side, b, b + back - side], colour);
     }
 
-    pub(super) fn paint(self, painter: &Painter) {
+    pub(in crate::panel) fn paint(self, painter: &Painter) {
         painter.extend(self.below);
         painter.extend(self.above);
     }

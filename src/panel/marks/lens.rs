@@ -1,4 +1,4 @@
-//! The way from the room to the picture.
+//! The way from the room to the picture, and back.
 
 use bevy_egui::egui::{Pos2, Rect, Vec2, vec2};
 use glam::{Quat, Vec3};
@@ -8,7 +8,14 @@ use crate::{panel::state::Session, scene::observer::vertical_field_of_view};
 /// Anything nearer to the camera is not drawn, metres.
 const NEAR: f32 = 0.05;
 
-/// The way from the room to the picture: what the camera of the window shows in a rectangle.
+/// A line of sight: from the eye, in a unit direction.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::panel) struct Ray {
+    pub(in crate::panel) eye: Vec3,
+    pub(in crate::panel) way: Vec3,
+}
+
+/// The way from the room to the picture, and back: what the camera of the window shows in a rectangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
     eye: Vec3,
@@ -49,17 +56,17 @@ impl Lens {
     }
 
     /// The rectangle of the picture.
-    pub(super) fn rect(&self) -> Rect {
+    pub(in crate::panel) fn rect(&self) -> Rect {
         self.rect
     }
 
     /// The length in metres, at a point of the room, of so many points of the picture.
-    pub(super) fn metres(&self, p: Vec3, points: f32) -> f32 {
+    pub(in crate::panel) fn metres(&self, p: Vec3, points: f32) -> f32 {
         points * (-self.seen(p).z).max(NEAR) / self.scale
     }
 
     /// The direction at right angles to another one in which a step at a point moves most to the side.
-    pub(super) fn across(&self, p: Vec3, direction: Vec3) -> Vec3 {
+    pub(in crate::panel) fn across(&self, p: Vec3, direction: Vec3) -> Vec3 {
         let ahead = p - self.eye;
         let right = self.to_camera.inverse() * Vec3::X;
         direction.cross(ahead).try_normalize().unwrap_or(right)
@@ -71,6 +78,21 @@ impl Lens {
         self.eye + self.to_camera.inverse() * Vec3::new(sideways.x, -sideways.y, -ahead)
     }
 
+    /// The line of sight through a place of the picture.
+    pub(in crate::panel) fn ray(&self, place: Pos2) -> Ray {
+        Ray { eye: self.eye, way: (self.at(place, 1.0) - self.eye).normalize() }
+    }
+
+    /// The directions of the picture in the room: to its right, to its top, and ahead.
+    pub(in crate::panel) fn axes(&self) -> [Vec3; 3] {
+        [Vec3::X, Vec3::Y, Vec3::NEG_Z].map(|axis| self.to_camera.inverse() * axis)
+    }
+
+    /// The place of the camera.
+    pub(in crate::panel) fn eye(&self) -> Vec3 {
+        self.eye
+    }
+
     /// The direction in the picture in which a point outside it lies.
     pub(super) fn towards(&self, p: Vec3) -> Vec2 {
         let seen = self.seen(p);
@@ -79,7 +101,7 @@ impl Lens {
     }
 
     /// A line through the room as lines in the picture, without what is behind the camera.
-    pub(super) fn path(&self, points: &[Vec3]) -> Vec<Vec<Pos2>> {
+    pub(in crate::panel) fn path(&self, points: &[Vec3]) -> Vec<Vec<Pos2>> {
         let mut runs = vec![Vec::new()];
         let mut last: Option<Vec3> = None;
         for point in points {
@@ -126,6 +148,20 @@ mod tests {
         assert_eq!(lens.project(Vec3::new(5.0, 5.0, 9.9)), None, "behind the camera");
         let there = lens.at(pos2(500.0, 50.0), 4.5);
         assert!(lens.project(there).is_some_and(|p| p.distance(pos2(500.0, 50.0)) < 0.01), "{there}");
+    }
+
+    #[test]
+    fn the_line_of_sight_through_the_place_of_a_point_meets_the_point() {
+        let mut session = Session::new(Scene::default());
+        session.facts.camera = Quat::from_rotation_y(0.4) * Quat::from_rotation_x(-0.3);
+        let lens = Lens::of(&session, Rect::from_min_size(pos2(30.0, 20.0), vec2(640.0, 360.0)));
+        for ahead in [0.5, 3.0, 12.0] {
+            let place = pos2(200.0, 310.0);
+            let (point, ray) = (lens.at(place, ahead), lens.ray(place));
+            assert!((point - ray.eye).normalize().distance(ray.way) < 1e-5);
+            assert!(lens.project(ray.eye + 2.0 * ray.way).is_some_and(|p| p.distance(place) < 0.01));
+            assert!((point - ray.eye).normalize().distance(lens.ray(pos2(201.0, 310.0)).way) > 1e-4);
+        }
     }
 
     #[test]

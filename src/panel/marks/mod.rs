@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use bevy_egui::egui::{Color32, Id, Rect, Ui, Vec2, pos2, vec2};
+use bevy_egui::egui::{Color32, Context, Id, Rect, Ui, Vec2, pos2, vec2};
 use glam::{Quat, Vec3};
 
 use super::state::{Action, Session};
@@ -18,7 +18,6 @@ use crate::{
     shape::MeshKey,
 };
 use edge::Outside;
-use ink::Ink;
 use place::{CROWD, SHORT};
 
 mod edge;
@@ -26,7 +25,9 @@ mod ink;
 mod lens;
 mod place;
 
+pub(super) use ink::{Ink, OUTLINE};
 pub use lens::Lens;
+pub(super) use lens::Ray;
 pub use place::{anchor, places};
 
 /// Okabe–Ito yellow: lights.
@@ -43,6 +44,8 @@ const LAMP: f32 = 5.0;
 const DOT: f32 = 2.5;
 /// Length of the arrows and the cone of the light that is selected, points.
 const LONG: f32 = 88.0;
+/// Length of the axis of a cone, of its reach.
+pub(super) const AXIS: f32 = 1.25;
 /// Length of the observer's mark, metres.
 const OBSERVER_MARK: f32 = 0.4;
 /// Distance of the frame around the selected object from what it frames, points.
@@ -72,7 +75,7 @@ pub fn marks(
         true => LIGHT,
         false => OFF,
     };
-    let places = places(scene, registry, &lens, overlays);
+    let places = places_shown(ui.ctx(), scene, registry, &lens, overlays);
     // The selected one is drawn last, over the others.
     let mut order: Vec<usize> = (0..scene.lights.len()).collect();
     order.sort_by_key(|i| chosen(*i));
@@ -110,6 +113,50 @@ pub fn marks(
     edge::arrows(ui, &painter, (rect, overlays), &outside, session, registry, colour_of)
 }
 
+/// The key of the mark that is held.
+fn held() -> Id {
+    Id::new("mark that is held")
+}
+
+/// Keeps the mark of a light in its place, or lets all go: light from a direction would move its own away from the
+/// pointer that turns it.
+pub(super) fn hold(ctx: &Context, light: Option<(usize, Vec3)>) {
+    ctx.data_mut(|data| match light {
+        Some(light) => drop(data.insert_temp(held(), light)),
+        None => data.remove::<(usize, Vec3)>(held()),
+    });
+}
+
+/// The [`places`] of the marks, and of the one that is held.
+pub(super) fn places_shown(
+    ctx: &Context,
+    scene: &Scene,
+    registry: &Registry,
+    lens: &Lens,
+    overlays: &[Rect],
+) -> Vec<Option<Vec3>> {
+    let mut all = places(scene, registry, lens, overlays);
+    let held = ctx.data(|data| data.get_temp::<(usize, Vec3)>(held()));
+    if let Some((light, at)) = held.filter(|(light, _)| scene.lights.get(*light).is_some_and(has_no_position))
+    {
+        all[light] = Some(at);
+    }
+    all
+}
+
+fn has_no_position(light: &Light) -> bool {
+    light.position.is_none()
+}
+
+/// The radius in metres of the mark of a light that is selected: of the sphere on which its cone ends.
+pub(super) fn reach(lens: &Lens, at: Vec3, scene: &Scene) -> f32 {
+    reach_of(lens, at, LONG, scene)
+}
+
+fn reach_of(lens: &Lens, at: Vec3, points: f32, scene: &Scene) -> f32 {
+    lens.metres(at, points).min(0.12 * scene.scene_size.corner().max_element())
+}
+
 /// The size of the mark of a light.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Size {
@@ -133,7 +180,7 @@ fn lamp(
     let direction = light.direction.and_then(Vec3::try_normalize);
     let place = ink.lens.project(position);
     let points = if size == Size::Long { LONG } else { SHORT };
-    let reach = ink.lens.metres(position, points).min(0.12 * scene.scene_size.corner().max_element());
+    let reach = reach_of(&ink.lens, position, points, scene);
     if let Some(direction) = direction {
         let turn = Quat::from_rotation_arc(Vec3::Z, direction);
         match entry.cone_angle(&light.parameters) {
@@ -152,7 +199,7 @@ fn lamp(
                     ink.path(&[position, around(side)], colour);
                 }
                 if size == Size::Long {
-                    ink.arrow(position, position + direction * reach * 1.25, colour);
+                    ink.arrow(position, position + direction * reach * AXIS, colour);
                 }
             }
             None => {

@@ -2,8 +2,8 @@
 
 use bevy_egui::egui::{self, Color32, FontId, Ui, Vec2, vec2};
 
-use super::atom::{Atom, is_variable};
 use crate::panel::theme;
+use crate::text::mathematics::{Atom, is_variable};
 
 /// A run of characters, and where it stands.
 #[derive(Clone)]

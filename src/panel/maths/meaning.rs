@@ -1,7 +1,7 @@
 //! The meanings of symbols, for tooltips.
 
-use super::atom::{Atom, parse, same_symbol};
 use crate::reflection::{EquationPart, Term};
+use crate::text::mathematics::{Atom, parse, same_symbol};
 
 /// The meaning of a symbol that all equations share.
 #[must_use]

@@ -14,12 +14,11 @@ use super::{
 };
 use crate::reflection::{EquationPart, Term};
 
-mod atom;
 mod laid;
 mod meaning;
 mod prose;
 
-pub use atom::{Atom, parse, parse_symbol, same_symbol};
+pub use crate::text::mathematics::{Atom, parse, parse_symbol, same_symbol};
 pub(super) use laid::{Laid, lay_out};
 pub use meaning::{definition, definitions, meaning};
 pub use prose::prose;
@@ -188,7 +187,7 @@ mod tests {
     #[test]
     fn every_sign_of_every_equation_is_in_the_fonts() {
         let ctx = egui::Context::default();
-        theme::install_fonts(&ctx);
+        ctx.set_fonts(crate::lettering::fonts());
         let _ = ctx.run_ui(egui::RawInput::default(), |_| ());
         let registry = crate::registry::Registry::builtin();
         let mut texts: Vec<&str> = HARD.to_vec();
@@ -222,7 +221,7 @@ mod tests {
     #[test]
     fn equations_stay_inside_the_panel() {
         let ctx = egui::Context::default();
-        theme::install_fonts(&ctx);
+        ctx.set_fonts(crate::lettering::fonts());
         for width in [120.0, 270.0] {
             for text in HARD {
                 let parts = [EquationPart { term: Term::Total, text }];

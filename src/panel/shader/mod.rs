@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, Align, Layout, Rect, ScrollArea, Ui, UiBuilder};
 
 use super::{
-    Panel, PanelContext, Place, author, laws,
+    Panel, PanelContext, Place, author, export, laws,
     state::{Action, SHADER_TAB, Session, Severity},
     theme::{self, Palette},
 };
@@ -104,6 +104,7 @@ fn well(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<A
         ui.label(theme::strong(ui, heading));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             laws::button(ui, session, registry, actions);
+            export::copy_menu(ui, session, registry, actions);
             let last = session.shaders.last.as_ref();
             let text =
                 last.map(|last| format!("{} loaded in {:.0} ms", last.file, last.milliseconds.max(0.0)));

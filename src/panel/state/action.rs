@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
-use super::{Effect, Session, Severity, Steer, ViewChange};
+use glam::Vec3;
+
+use super::{CompareCommand, Effect, MatchCommand, Session, Severity, Steer, ViewChange};
 use crate::{
-    document::{Edit, LightField, ObjectField, Selection},
+    document::{Edit, LightField, ObjectField, Selection, VariantField},
     optics::TermSelection,
     parameter::Parameter,
     registry::Registry,
@@ -30,8 +32,8 @@ pub enum Action {
     SaveAsDialog,
     /// Save to a file.
     SaveAs(PathBuf),
-    /// Choose a file for a parameter of a light, by its index.
-    FileDialog(usize, &'static Parameter),
+    /// Choose a file for a parameter of a light or an object.
+    FileDialog(Selection, &'static Parameter),
     /// Forget the list of recent files.
     ClearRecent,
     /// Close the window.
@@ -58,6 +60,10 @@ pub enum Action {
     BeginRename(Selection),
     /// Stop typing without a change.
     CancelRename,
+    /// A drag in the picture begins: what it changes is a step of its own.
+    BeginDrag,
+    /// Move, turn or resize what is selected by one step in this direction of the room, as the handles would.
+    Nudge(Vec3),
     /// Change the scene.
     Edit(Edit),
     /// Take the last step back.
@@ -86,6 +92,12 @@ pub enum Action {
     Copy(String),
     /// Something about custom models and shaders.
     Model(ModelCommand),
+    /// Something about exports.
+    Export(ExportCommand),
+    /// Something about the views of a comparison.
+    Compare(CompareCommand),
+    /// Something about matching views.
+    Match(MatchCommand),
     /// Say something.
     Say(Severity, String),
     /// Remove a message.
@@ -113,6 +125,24 @@ pub enum Answer {
     Keep,
     /// Go on with what an earlier window left.
     Recover,
+}
+
+/// A command about exports.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ExportCommand {
+    /// Choose a place for an export in a form, by its id.
+    Dialog(&'static str),
+    /// Export to a place.
+    To {
+        /// The id of the form.
+        form: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+    },
+    /// Stop the export that runs.
+    Cancel,
+    /// Show a folder in the file manager.
+    Reveal(PathBuf),
 }
 
 /// A command about custom models and shaders.
@@ -183,7 +213,7 @@ impl Session {
                 };
             }
             Action::SaveAsDialog => return vec![Effect::PickSave],
-            Action::FileDialog(light, parameter) => return vec![Effect::PickFile(light, parameter)],
+            Action::FileDialog(part, parameter) => return vec![Effect::PickFile(part, parameter)],
             Action::SaveAs(path) => return self.save_as(&path, registry),
             Action::ClearRecent => {
                 self.recent_files.clear();
@@ -219,6 +249,8 @@ impl Session {
                 self.renaming = Some(part);
             }
             Action::CancelRename => self.renaming = None,
+            Action::BeginDrag => self.document.end_gesture(),
+            Action::Nudge(way) => self.nudge(way, registry),
             Action::Edit(edit) => self.edit(edit, registry),
             Action::Undo => match self.document.done().checked_sub(1) {
                 Some(done) => self.go_to_step(done, registry),
@@ -235,25 +267,32 @@ impl Session {
                 }
             }
             Action::Expose(ev) => {
-                let exposure = self.document.display.exposure + ev;
+                let exposure = self.scene().display.exposure + ev;
                 if limits::exposure().allows(f64::from(exposure)) {
-                    self.edit(Edit::Display(Display { exposure, ..self.document.display }), registry);
+                    self.edit(Edit::Display(Display { exposure, ..self.scene().display }), registry);
                 }
             }
             Action::NextTerms => {
                 let offered = self.offered_terms(registry);
-                let next = match offered.iter().position(|t| *t == self.view.terms) {
+                let shown = self.terms();
+                let next = match offered.iter().position(|t| *t == shown) {
                     Some(at) => offered[(at + 1) % offered.len()],
                     None => TermSelection::All,
                 };
-                if offered.len() == 1 && self.view.terms == next {
+                if offered.len() == 1 && shown == next {
                     self.say(
                         Severity::Info,
                         "The equation has one term here: there is nothing to take apart.",
                     );
                 }
-                self.view.terms = next;
+                return self.carry_out(Action::View(ViewChange::Terms(next)), registry);
             }
+            Action::View(ViewChange::Terms(terms)) if self.active() > 0 => {
+                let edit = Edit::Variant(self.active() - 1, VariantField::Terms(Some(terms)));
+                self.edit_here(edit, registry);
+            }
+            Action::Compare(command) => self.compare(command, registry),
+            Action::Match(command) => return self.matching(command, registry),
             Action::View(change) => return self.change_view(change),
             Action::HomeView => return vec![Effect::HomeView],
             Action::FocusSelection => return vec![Effect::FocusSelection],
@@ -261,6 +300,7 @@ impl Session {
             Action::Steer(steer) => return vec![Effect::Steer(steer)],
             Action::Copy(text) => return vec![Effect::CopyText(text)],
             Action::Model(ask) => return self.author(ask, registry),
+            Action::Export(command) => return self.export(command),
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => self.messages.dismiss(index),
             Action::DismissAll => self.messages.clear(),

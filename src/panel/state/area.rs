@@ -10,6 +10,10 @@ pub struct PictureArea {
     pub rect: egui::Rect,
     /// The part of it that shows what the observer sees; around it the picture goes on.
     pub frame: egui::Rect,
+    /// The views that are shown, where there are several or one has overrides.
+    pub cells: Vec<Cell>,
+    /// The place of the map of a difference.
+    pub map: Option<egui::Rect>,
     /// Points of the window per point of the panels.
     pub zoom: f32,
     /// True if the pointer is over the picture with no panel, menu or dialog between. What turns the camera must ask
@@ -28,6 +32,8 @@ impl Default for PictureArea {
         Self {
             rect: egui::Rect::NOTHING,
             frame: egui::Rect::NOTHING,
+            cells: Vec::new(),
+            map: None,
             zoom: 1.0,
             has_pointer: false,
             has_keys: true,
@@ -35,4 +41,25 @@ impl Default for PictureArea {
             written: Vec::new(),
         }
     }
+}
+
+impl PictureArea {
+    /// The view at a place, and the rectangle of its picture.
+    #[must_use]
+    pub fn cell_at(&self, point: egui::Pos2) -> Option<&Cell> {
+        let shown = |cell: &&Cell| cell.part.contains(point);
+        // A map of the difference is as large as the views that it compares.
+        self.cells.iter().find(shown).or_else(|| self.cells.iter().find(|cell| cell.rect.contains(point)))
+    }
+}
+
+/// The place of a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// The view: 0 is the scene itself, 1 view B.
+    pub view: usize,
+    /// The rectangle of its picture, points of the panels.
+    pub rect: egui::Rect,
+    /// The part of it that is shown.
+    pub part: egui::Rect,
 }

@@ -2,7 +2,7 @@
 
 use super::{Session, Severity, messages::Step};
 use crate::{
-    document::{Document, Edit, Extent, LightField, ObjectField, Selection},
+    document::{Document, Edit, Extent, LightField, ObjectField, Selection, VariantField},
     panel::follow::{follow_model, follow_registry},
     registry::Registry,
     scene::{Object, Scene},
@@ -12,9 +12,19 @@ use crate::{
 const MODEL: &str = "reflection model";
 
 impl Session {
+    /// Makes a change in the active view.
     pub(super) fn edit(&mut self, edit: Edit, registry: &Registry) {
+        for edit in self.redirected(edit, registry) {
+            self.edit_here(edit, registry);
+        }
+    }
+
+    /// Makes a change.
+    pub(super) fn edit_here(&mut self, edit: Edit, registry: &Registry) {
         let model = match &edit {
-            Edit::Model(id) | Edit::Object(_, ObjectField::Model(Some(id))) => Some(id.clone()),
+            Edit::Model(id)
+            | Edit::Object(_, ObjectField::Model(Some(id)))
+            | Edit::Variant(_, VariantField::Model(Some(id))) => Some(id.clone()),
             _ => None,
         };
         let scene_choice = match &edit {

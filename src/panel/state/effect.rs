@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::ecs::message::Message;
 
-use crate::{parameter::Parameter, scene::load::Stamp};
+use crate::{document::Selection, matching::What, parameter::Parameter, scene::load::Stamp};
 
 /// Work that needs files, entities or the operating system; the app carries it out.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,8 +13,8 @@ pub enum Effect {
     PickOpen,
     /// Show the dialog that chooses a file to save to.
     PickSave,
-    /// Show the dialog that chooses a file for a parameter of a light, by its index.
-    PickFile(usize, &'static Parameter),
+    /// Show the dialog that chooses a file for a parameter of a light or an object.
+    PickFile(Selection, &'static Parameter),
     /// Read a file; see [`effects::run`](crate::panel::effects::run).
     OpenFile(PathBuf),
     /// Write the document; see [`effects::run`](crate::panel::effects::run).
@@ -83,6 +83,32 @@ pub enum Effect {
     },
     /// Try to find the laws of a model broken.
     CheckLaws(String),
+    /// Show the dialog that chooses a place for an export in a form, by its id.
+    PickExport(&'static str),
+    /// Export the scene.
+    Export {
+        /// The id of the form.
+        form: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// True to replace what is there: the user was asked.
+        overwrite: bool,
+    },
+    /// Match a view to view A: see [`match_view`](crate::matching::match_view).
+    Match {
+        /// The view: 1 is view B.
+        view: usize,
+        /// What is compared.
+        what: What,
+        /// The names of the parameters that are free.
+        parameters: Vec<&'static str>,
+    },
+    /// Stop the match that runs.
+    CancelMatch,
+    /// Stop the export that runs.
+    CancelExport,
+    /// Show a folder in the file manager.
+    Reveal(PathBuf),
     /// Show the dialog that chooses a folder for the shaders.
     PickShaderFolder,
     /// Write the shaders into a folder, to be edited there.

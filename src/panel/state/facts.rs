@@ -18,6 +18,12 @@ pub struct Facts {
     pub camera_left: bool,
     /// The clipped parts of the picture; `None` where nothing clips.
     pub clipping: Option<Clipping>,
+    /// The numbers of the comparison; `None` until they are known.
+    pub comparison: Option<Numbers>,
+    /// The export that runs.
+    pub export: Option<Exporting>,
+    /// The match that runs.
+    pub matching: Option<Matching>,
     /// Mean time per frame, milliseconds; 0 when not yet known.
     pub frame_ms: f32,
     /// The interface to the GPU: "Vulkan", "Metal", …
@@ -38,6 +44,28 @@ impl Facts {
     pub fn fps(&self) -> f32 {
         if self.frame_ms > 0.0 { 1000.0 / self.frame_ms } else { 0.0 }
     }
+}
+
+/// The state of an export that runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exporting {
+    /// The name of its form.
+    pub name: &'static str,
+    /// The fraction that is done.
+    pub done: f32,
+    /// The current step.
+    pub step: String,
+}
+
+/// The state of a match that runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matching {
+    /// The view that is matched to view A.
+    pub view: usize,
+    /// The fraction that is done.
+    pub done: f32,
+    /// The current step.
+    pub step: String,
 }
 
 /// The clipped parts of the picture.
@@ -62,5 +90,16 @@ impl Clipping {
     #[must_use]
     pub fn pixels(&self) -> u64 {
         self.counts.iter().map(|n| u64::from(*n)).sum()
+    }
+}
+
+/// The numbers of a comparison.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Numbers(pub Vec<(&'static str, String, String)>);
+
+impl Numbers {
+    /// The name of each, its value, and one sentence.
+    pub fn entries(&self) -> impl Iterator<Item = (&str, &str, &str)> {
+        self.0.iter().map(|(name, value, help)| (*name, value.as_str(), help.as_str()))
     }
 }

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::{Action, Effect, Note, Session, Severity};
 use crate::{
-    document::{Document, Edit, Extent, LightField},
+    document::{Document, Edit, Extent, LightField, ObjectField, Selection},
+    files,
     optics::TermSelection,
-    parameter::{NamedFile, Parameter, ParameterKind, Value},
+    parameter::{NamedFile, Parameter, ParameterKind, Value, Values, outside},
     registry::Registry,
     scene::{Scene, examples::EXAMPLES, formats},
 };
@@ -28,6 +29,19 @@ fn scene_file(typed: &Path, registry: &Registry) -> PathBuf {
         (true, Some(stem)) if known(stem) => typed.with_file_name(stem),
         _ => typed.to_owned(),
     }
+}
+
+/// Names the files among some values as a scene in this folder must. True if one has another name now.
+fn see_from(values: &mut Values, folder: &Path) -> bool {
+    let mut changed = false;
+    for value in values.0.values_mut() {
+        if let Value::File(file) = value {
+            let there = file.seen_from(folder);
+            changed |= there != *file;
+            *file = there;
+        }
+    }
+    changed
 }
 
 impl Session {
@@ -60,29 +74,31 @@ impl Session {
         vec![Effect::SaveFile { path, overwrite }]
     }
 
-    /// The files that lights name relative to the folder of the scene are named from the root on, if the scene goes
+    /// The files that lights and objects name relative to the folder of the scene are named from the root on, if the scene goes
     /// where they would not be found.
     fn keep_files(&mut self, path: &Path) {
         let folder = path.parent().unwrap_or(Path::new(""));
+        let name = "Place of a file";
         for i in 0..self.document.lights.len() {
             let mut light = self.document.lights[i].clone();
-            for value in light.parameters.0.values_mut() {
-                if let Value::File(file) = value {
-                    *file = file.seen_from(folder);
-                }
-            }
-            if light != self.document.lights[i] {
-                let name = "Place of a photometric file";
+            if see_from(&mut light.parameters, folder) {
                 self.document.change(name, Extent::Light(i), self.selection, |scene| scene.lights[i] = light);
+            }
+        }
+        for i in 0..self.document.objects.len() {
+            let mut object = self.document.objects[i].clone();
+            if see_from(&mut object.shape, folder) {
+                self.document
+                    .change(name, Extent::Object(i), self.selection, |scene| scene.objects[i] = object);
             }
         }
     }
 
-    /// The edit that gives a parameter of a light the file that was chosen. Its name is relative to the folder of the
-    /// scene if it is in there.
+    /// The edit that gives a parameter of a light or an object the file that was chosen. Its name is relative to the
+    /// folder of the scene if it is in there.
     pub(in crate::panel) fn file_chosen(
         &self,
-        light: usize,
+        part: Selection,
         parameter: &'static Parameter,
         path: &Path,
     ) -> Option<Edit> {
@@ -90,8 +106,12 @@ impl Session {
         let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
         let below = std::path::absolute(folder).ok().filter(|_| self.path.is_some());
         let written = below.and_then(|folder| path.strip_prefix(folder).ok()).unwrap_or(path);
-        let file = NamedFile::named(&written.to_string_lossy(), folder, format);
-        Some(Edit::Light(light, LightField::Parameter(parameter.name, Value::File(file))))
+        let file = Value::File(NamedFile::chosen(&written.to_string_lossy(), folder, format));
+        match part {
+            Selection::Light(i) => Some(Edit::Light(i, LightField::Parameter(parameter.name, file))),
+            Selection::Object(i) => Some(Edit::Object(i, ObjectField::Shape(parameter.name, file))),
+            _ => None,
+        }
     }
 
     /// The document has been written. Returns what waited for it.
@@ -116,6 +136,14 @@ impl Session {
                 None => note = note.offering("Set observer to this view", Action::ObserverFromView),
                 Some(why) => note.text.push_str(&format!(" {why}")),
             }
+        }
+        let folder = files::folder_of(path);
+        if let Some(file) = self.document.files().find(|file| file.is_outside(folder)) {
+            let option = outside::OPTION;
+            note.text.push_str(&format!(
+                " It names {}, outside its folder: copy it there, or start with {option} to open it again.",
+                file.name()
+            ));
         }
         self.messages.retain(|m| m.severity != Severity::Info || !m.text.starts_with("Saved to "));
         self.note(note);

@@ -9,14 +9,16 @@ use std::path::PathBuf;
 
 use bevy::ecs::resource::Resource;
 
-pub use action::{Action, Answer, ModelCommand};
-pub use area::PictureArea;
+pub use action::{Action, Answer, ExportCommand, ModelCommand};
+pub use area::{Cell, PictureArea};
 pub(super) use author::BUILT_IN;
 pub use author::{LawCheck, ModelDraft, NameProblem, check_name};
+pub use compare::CompareCommand;
 pub use disk::OnDisk;
 pub use effect::{Effect, LabEffect, RecoveryChoice, Steer};
-pub use facts::{Clipping, Facts};
+pub use facts::{Clipping, Exporting, Facts, Matching, Numbers};
 pub use files::RECENT_FILES;
+pub use matching::{MatchCommand, MatchDraft};
 pub use messages::{Badge, MAX_MESSAGES, Messages, Note};
 pub use place::{PanelInfo, Place};
 pub use question::{MissingPart, Question, Questions};
@@ -25,7 +27,10 @@ pub use severity::Severity;
 pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
 pub(super) use stash::{Kept, ParameterPlace};
-pub use view::{MESSAGES_TAB, SCALES, SHADER_TAB, ThemeChoice, View, ViewChange, nearest_scale};
+pub use view::{
+    HandleChange, HandleMode, Labels, MESSAGES_TAB, SCALES, SHADER_TAB, ThemeChoice, View, ViewChange,
+    nearest_scale,
+};
 
 use super::terms::KnownTerms;
 use crate::{
@@ -37,12 +42,16 @@ use crate::{
 mod action;
 mod area;
 mod author;
+mod compare;
 mod disk;
 mod edit;
 mod effect;
+mod export;
 mod facts;
 mod files;
+mod matching;
 mod messages;
+mod nudge;
 mod parts;
 mod place;
 mod question;
@@ -87,6 +96,8 @@ pub struct Session {
     pub(super) seen_troubles: Vec<(String, String)>,
     /// The custom model that is about to be written.
     pub draft: Option<ModelDraft>,
+    /// The match that is about to begin.
+    pub match_draft: Option<MatchDraft>,
     /// The model that is chosen as soon as it is known: one whose file was just written.
     pub wanted_model: Option<String>,
     /// The last check of the laws of a model.
@@ -97,6 +108,7 @@ pub struct Session {
     /// saved.
     pub wanted_dialog: Option<Effect>,
     known_terms: KnownTerms,
+    seen: compare::Seen,
 }
 
 impl Default for Session {
@@ -124,11 +136,13 @@ impl Session {
             shaders: ShaderStatus::default(),
             seen_troubles: Vec::new(),
             draft: None,
+            match_draft: None,
             wanted_model: None,
             laws: None,
             panels: Vec::new(),
             wanted_dialog: None,
             known_terms: KnownTerms::default(),
+            seen: compare::Seen::default(),
             document: Document::new(scene),
         };
         session.select_first();

@@ -45,6 +45,13 @@ pub enum Question {
         /// The state of the file.
         version: Stamp,
     },
+    /// There is something where an export should go.
+    ReplaceExport {
+        /// The id of the form.
+        form: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+    },
     /// An earlier window left unsaved changes.
     Recover(Box<Offer>),
 }
@@ -162,6 +169,7 @@ impl Session {
                 vec![Effect::ExpectFile { path, version }]
             }
             (Question::NewerOnDisk { .. }, Answer::Reload) => vec![Effect::LookAtFile { discard: true }],
+            (Question::ReplaceExport { form, path }, answer) => self.answer_export(form, path, answer),
             (Question::NewerOnDisk { path, .. }, _) => {
                 self.disk_undecided(&path);
                 Vec::new()

@@ -1,6 +1,6 @@
 //! The document as the window shows it.
 
-use std::ffi::OsStr;
+use std::{ffi::OsStr, path::Path};
 
 use super::Session;
 use crate::{
@@ -17,6 +17,18 @@ impl Session {
     pub fn title(&self) -> String {
         let file = || Some(printable(&self.path.as_ref()?.file_stem()?.to_string_lossy()).into_owned());
         self.document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
+    }
+
+    /// The name of its file without extension; while it has none, its title as one.
+    #[must_use]
+    pub fn stem(&self) -> String {
+        if let Some(stem) = self.path.as_deref().and_then(Path::file_stem) {
+            return stem.to_string_lossy().into_owned();
+        }
+        let title = self.title().to_lowercase();
+        let words = title.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+        let stem = words.collect::<Vec<_>>().join("-");
+        if stem.is_empty() { "scene".to_owned() } else { stem }
     }
 
     /// The title of the window: that of the document, and the file if it has another name.
@@ -50,7 +62,7 @@ impl Session {
         if self.view.presenting {
             return None;
         }
-        Some((i, self.document.objects.get(i)?.reflection_model.as_deref()?))
+        Some((i, self.scene().objects.get(i)?.reflection_model.as_deref()?))
     }
 
     /// The same for its shading model.
@@ -60,19 +72,19 @@ impl Session {
         if self.view.presenting {
             return None;
         }
-        Some((i, self.document.objects.get(i)?.shading_model.as_deref()?))
+        Some((i, self.scene().objects.get(i)?.shading_model.as_deref()?))
     }
 
     /// Id of the reflection model that the top of the window shows and changes.
     #[must_use]
     pub fn model_shown(&self) -> &str {
-        self.model_override().map_or(&self.document.reflection_model, |(_, id)| id)
+        self.model_override().map_or(&self.scene().reflection_model, |(_, id)| id)
     }
 
     /// Id of the shading model that the top of the window shows and changes.
     #[must_use]
     pub fn shading_shown(&self) -> &str {
-        self.shading_override().map_or(&self.document.shading_model, |(_, id)| id)
+        self.shading_override().map_or(&self.scene().shading_model, |(_, id)| id)
     }
 
     /// The edit that chooses another reflection model at the top of the window.
@@ -96,14 +108,14 @@ impl Session {
     /// The terms that the picture can show alone, and all of them; the terms that are 0 everywhere are left out.
     #[must_use]
     pub fn offered_terms(&self, registry: &Registry) -> Vec<TermSelection> {
-        self.known_terms.offered(&self.document, registry)
+        self.known_terms.offered(self.scene(), registry)
     }
 
     /// True if nothing of the picture has the term that is shown alone.
     #[must_use]
     pub fn lacks_term(&self, registry: &Registry) -> bool {
-        let shown = self.view.terms;
-        shown != TermSelection::All && !self.known_terms.present(&self.document, registry).contains(&shown)
+        let shown = self.terms();
+        shown != TermSelection::All && !self.known_terms.present(self.scene(), registry).contains(&shown)
     }
 
     /// The reason why the observer can't be where the camera is.

@@ -28,6 +28,79 @@ pub enum ThemeChoice {
     Light,
 }
 
+/// What the handles in the picture do to what is selected, and the keys that nudge it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HandleMode {
+    /// They move it.
+    #[default]
+    Move,
+    /// They turn it.
+    Turn,
+    /// They change its size.
+    Size,
+}
+
+impl HandleMode {
+    /// Every mode, in the order of the key.
+    pub const ALL: [Self; 3] = [Self::Move, Self::Turn, Self::Size];
+
+    /// The name for people.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Move => "Move",
+            Self::Turn => "Turn",
+            Self::Size => "Size",
+        }
+    }
+
+    /// The one after it; after the last comes the first.
+    #[must_use]
+    pub const fn next(self) -> Self {
+        match self {
+            Self::Move => Self::Turn,
+            Self::Turn => Self::Size,
+            Self::Size => Self::Move,
+        }
+    }
+}
+
+/// A change of the handles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HandleChange {
+    /// See [`View::show_handles`].
+    Show(bool),
+    /// See [`View::handles`]; they are shown then.
+    Mode(HandleMode),
+}
+
+/// The labels of objects in the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Labels {
+    /// None.
+    #[default]
+    Off,
+    /// Always.
+    On,
+    /// While the picture is presented.
+    Presentation,
+}
+
+impl Labels {
+    /// Every choice, in the order of presentation.
+    pub const ALL: [Self; 3] = [Self::Off, Self::On, Self::Presentation];
+
+    /// The name for people.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Off => "No labels",
+            Self::On => "Names, models and values",
+            Self::Presentation => "Only in a presentation",
+        }
+    }
+}
+
 /// The choice of what is shown, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
@@ -45,12 +118,22 @@ pub struct View {
     pub fullscreen_before: bool,
     /// True if lights have gizmos in the picture.
     pub show_gizmos: bool,
+    /// True if what is selected has handles in the picture.
+    pub show_handles: bool,
+    /// What the handles do.
+    pub handles: HandleMode,
     /// True if the outline of the room is drawn.
     pub show_room: bool,
+    /// The labels of objects.
+    pub labels: Labels,
     /// True if clipped pixels are marked.
     pub show_clipping: bool,
     /// The terms of the equation that the picture shows.
     pub terms: TermSelection,
+    /// The view that the panels show and change: 0 is the scene, 1 view B.
+    pub active: usize,
+    /// True while the other view is shown instead of view A.
+    pub blinking: bool,
     /// True if the strip at the bottom is unfolded.
     pub bottom_open: bool,
     /// Id of the panel that the strip at the bottom shows.
@@ -89,9 +172,14 @@ impl Default for View {
             fullscreen: false,
             fullscreen_before: false,
             show_gizmos: true,
+            show_handles: true,
+            handles: HandleMode::Move,
             show_room: true,
+            labels: Labels::Off,
             show_clipping: false,
             terms: TermSelection::All,
+            active: 0,
+            blinking: false,
             bottom_open: false,
             bottom_tab: MESSAGES_TAB.to_owned(),
             left_open: true,
@@ -128,8 +216,12 @@ pub enum ViewChange {
     Fullscreen(bool),
     /// See [`View::show_gizmos`].
     Gizmos(bool),
+    /// See [`View::show_handles`] and [`View::handles`].
+    Handles(HandleChange),
     /// See [`View::show_room`].
     Room(bool),
+    /// See [`View::labels`].
+    Labels(Labels),
     /// See [`View::show_clipping`].
     Clipping(bool),
     /// See [`View::terms`].
@@ -209,7 +301,12 @@ impl View {
             ViewChange::Presenting(_) => {}
             ViewChange::Fullscreen(on) => self.fullscreen = on,
             ViewChange::Gizmos(on) => self.show_gizmos = on,
+            ViewChange::Handles(HandleChange::Show(on)) => self.show_handles = on,
+            ViewChange::Handles(HandleChange::Mode(mode)) => {
+                (self.handles, self.show_handles) = (mode, true);
+            }
             ViewChange::Room(on) => self.show_room = on,
+            ViewChange::Labels(labels) => self.labels = labels,
             ViewChange::Clipping(on) => self.show_clipping = on,
             ViewChange::Terms(terms) => self.terms = terms,
             ViewChange::Bottom(open) => self.bottom_open = open,

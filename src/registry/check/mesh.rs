@@ -80,9 +80,8 @@ fn edges(mesh: &PolygonMesh) -> Result<HashMap<(u32, u32), usize>, String> {
 /// The volume that the polygons enclose; negative if they face inwards.
 #[must_use]
 pub fn volume(mesh: &PolygonMesh) -> f32 {
-    let triangles =
-        mesh.polygons.iter().flat_map(|p| p.triangles().iter().map(|t| t.map(|i| p.corners()[i])));
-    triangles.map(|t| t.map(|i| mesh.positions[i as usize])).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
+    let triangles = mesh.triangles().map(|(_, corners)| corners.map(|i| mesh.positions[i as usize]));
+    triangles.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
 
 #[cfg(test)]

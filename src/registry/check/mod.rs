@@ -24,8 +24,9 @@ type Check = Result<(), String>;
 
 /// The units of light types.
 const UNITS: [&str; 3] = ["cd", "lx", "×"];
-/// A light of a scene file, in messages.
+/// A light and an object of a scene file, in messages.
 const LIGHT: &str = "a light";
+const OBJECT: &str = "an object";
 /// The names of the literals of JSON.
 const JSON_WORDS: [&str; 3] = ["true", "false", "null"];
 
@@ -55,8 +56,9 @@ fn positive(what: &str, number: f32) -> Check {
     ensure(number.is_finite() && number > 0.0, || format!("{what} is {number}, but must be greater than 0"))
 }
 
-/// Checks declarations of parameters; `reserved` are the other keys of the part of a scene that they stand in.
-pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str) -> Check {
+/// Checks declarations of parameters; `reserved` are the other keys of the part of a scene that they stand in, and
+/// `files` is true if they may be files.
+pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str, files: bool) -> Check {
     let mut known = HashSet::new();
     for p in all {
         let of = |what: String| format!("parameter `{}`: {what}", p.name);
@@ -65,8 +67,8 @@ pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str) -> Ch
         ensure(!reserved.contains(&p.name), || {
             of(format!("the name is that of another key of {part} in scene files; choose another"))
         })?;
-        ensure(part == LIGHT || !matches!(p.kind, ParameterKind::File { .. }), || {
-            of("is a file, which light types alone may have".to_owned())
+        ensure(files || !matches!(p.kind, ParameterKind::File { .. }), || {
+            of("is a file, which light types and object types alone may have".to_owned())
         })?;
         kind(p).map_err(of)?;
         if let Some(problem) = usage::problem(all, p) {
@@ -162,7 +164,7 @@ fn shared(
 pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check {
     let d = entry.declaration;
     identity(d.id, d.name)?;
-    parameters(entry.parameters, OBJECT_KEYS, "an object")?;
+    parameters(entry.parameters, OBJECT_KEYS, OBJECT, false)?;
     let models = registry.models().iter().filter(|m| m.declaration.id != d.id);
     let shadings = registry.shading_models().iter().map(|s| (s.declaration.id, s.parameters));
     shared(entry.parameters, "models", models.map(|m| (m.declaration.id, m.parameters)).chain(shadings))?;
@@ -173,7 +175,7 @@ pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check
 pub(super) fn shading_model(registry: &Registry, entry: &ShadingEntry) -> Check {
     let d = entry.declaration;
     identity(d.id, d.name)?;
-    parameters(entry.parameters, OBJECT_KEYS, "an object")?;
+    parameters(entry.parameters, OBJECT_KEYS, OBJECT, false)?;
     let models = registry.models().iter().map(|m| (m.declaration.id, m.parameters));
     let shadings = registry.shading_models().iter().filter(|s| s.declaration.id != d.id);
     shared(entry.parameters, "models", models.chain(shadings.map(|s| (s.declaration.id, s.parameters))))?;
@@ -200,7 +202,7 @@ pub(super) fn shading_model(registry: &Registry, entry: &ShadingEntry) -> Check 
 pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
     let d = entry.declaration;
     identity(d.id, d.name)?;
-    parameters(entry.parameters, LIGHT_KEYS, LIGHT)?;
+    parameters(entry.parameters, LIGHT_KEYS, LIGHT, true)?;
     let others = registry.lights().iter().filter(|l| l.declaration.id != d.id);
     shared(entry.parameters, "light types", others.map(|l| (l.declaration.id, l.parameters)))?;
     ensure(UNITS.contains(&d.unit), || {
@@ -228,7 +230,7 @@ pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
 pub(super) fn object_type(registry: &Registry, entry: &ShapeEntry) -> Check {
     let d = entry.declaration;
     identity(d.id, d.name)?;
-    parameters(entry.parameters, OBJECT_KEYS, "an object")?;
+    parameters(entry.parameters, OBJECT_KEYS, OBJECT, true)?;
     let others = registry.shapes().iter().filter(|s| s.declaration.id != d.id);
     shared(entry.parameters, "object types", others.map(|s| (s.declaration.id, s.parameters)))?;
     let (least, most) = (*d.tessellation.start(), *d.tessellation.end());

@@ -3,13 +3,15 @@
 use std::{path::Path, sync::OnceLock, time::Duration};
 
 use bevy::{
-    app::{App, PluginsState},
+    a11y::AccessibilityPlugin,
+    app::{App, PluginsState, TerminalCtrlCHandlerPlugin},
     asset::{AssetPlugin, Assets, Handle, RenderAssetUsages},
     camera::{Hdr, RenderTarget},
     ecs::prelude::*,
     image::Image,
     light::cluster::GlobalClusterSettings,
     log::LogPlugin,
+    picking::{InteractionPlugin, PickingPlugin, input::PointerInputPlugin},
     prelude::{DefaultPlugins, PluginGroup},
     render::{
         RenderApp, RenderPlugin,
@@ -42,6 +44,7 @@ use crate::{
         illumination::ShownTerms,
         live::LiveShaders,
         plugin::ScenePlugin,
+        schedule::run_on_one_thread,
         trial::Bench,
         view::View,
     },
@@ -226,7 +229,13 @@ impl GpuRenderer {
                 .set(AssetPlugin { watch_for_changes_override: Some(false), ..AssetPlugin::default() })
                 .disable::<WinitPlugin>()
                 .disable::<PipelinedRenderingPlugin>()
-                .disable::<LogPlugin>(),
+                .disable::<LogPlugin>()
+                // Nobody looks, points or types.
+                .disable::<TerminalCtrlCHandlerPlugin>()
+                .disable::<AccessibilityPlugin>()
+                .disable::<PickingPlugin>()
+                .disable::<InteractionPlugin>()
+                .disable::<PointerInputPlugin>(),
         )
         .add_plugins(ScenePlugin);
         extend(&mut app);
@@ -250,6 +259,7 @@ impl GpuRenderer {
             // Bevy's own lights are not used, so neither is their clustering.
             clusters.gpu_clustering = None;
         }
+        run_on_one_thread(&mut app);
         Ok(Self { app, target, staging: None, output, width, height })
     }
 

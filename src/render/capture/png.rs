@@ -6,13 +6,56 @@ use std::{
     path::Path,
 };
 
-use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent};
+use png::{
+    BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent, text_metadata::ITXtChunk,
+};
 
-use crate::files::Output;
+use crate::{
+    files::Output,
+    registry::Registry,
+    scene::{Scene, formats::SCENE_KEYWORD, save::to_json},
+};
 
-/// Writes an sRGB picture (red, green, blue, row by row from the top) with `text`: pairs of keyword
-/// and value, which picture viewers show; keywords such as `Software`, `Title` and `Description` are
-/// those of the PNG specification.
+/// What a picture says of itself: texts that picture viewers show, and the scene, which the program opens again.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct About {
+    texts: Vec<(&'static str, String)>,
+    scene: Option<String>,
+}
+
+impl About {
+    /// The name and the version of the program.
+    #[must_use]
+    pub fn program() -> Self {
+        let program = concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION"));
+        Self::default().with("Software", program)
+    }
+
+    /// The same, and the scene that the picture shows.
+    #[must_use]
+    pub fn scene(scene: &Scene, registry: &Registry) -> Self {
+        let shown = Self::program()
+            .with("Title", scene.name.as_deref().unwrap_or_default())
+            .with("Reflection model", &*scene.reflection_model)
+            .with("Shading model", &*scene.shading_model);
+        Self { scene: Some(to_json(scene, None, registry)), ..shown }
+    }
+
+    /// The same with a text. Keywords such as `Title` and `Description` are those of the PNG specification.
+    #[must_use]
+    pub fn with(mut self, keyword: &'static str, text: impl Into<String>) -> Self {
+        self.texts.push((keyword, text.into()));
+        self
+    }
+
+    /// The same without the scene, for pictures that shall not give it away.
+    #[must_use]
+    pub fn without_scene(self) -> Self {
+        Self { scene: None, ..self }
+    }
+}
+
+/// Writes an sRGB picture (red, green, blue, row by row from the top) with what it says of itself.
 ///
 /// Missing folders are created. A file appears complete or not at all; standard output, devices and pipes are
 /// written straight, as [`Output`] says.
@@ -20,12 +63,12 @@ use crate::files::Output;
 /// # Errors
 /// If `rgb8` is not `width · height · 3` bytes, a keyword is empty or longer than 79 characters, or
 /// the file cannot be written.
-pub fn write(path: &Path, width: u32, height: u32, rgb8: &[u8], text: &[(&str, &str)]) -> io::Result<()> {
+pub fn write(path: &Path, width: u32, height: u32, rgb8: &[u8], about: &About) -> io::Result<()> {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         fs::create_dir_all(folder)?;
     }
     let mut output = Output::open(path)?;
-    encode(BufWriter::new(&mut output), width, height, rgb8, text)?;
+    encode(BufWriter::new(&mut output), width, height, rgb8, about)?;
     Ok(output.finish()?)
 }
 
@@ -33,28 +76,27 @@ pub fn write(path: &Path, width: u32, height: u32, rgb8: &[u8], text: &[(&str, &
 ///
 /// # Errors
 /// As [`write`](fn@write), but for the file system.
-pub fn encode(
-    mut to: impl Write,
-    width: u32,
-    height: u32,
-    rgb8: &[u8],
-    text: &[(&str, &str)],
-) -> io::Result<()> {
+pub fn encode(mut to: impl Write, width: u32, height: u32, rgb8: &[u8], about: &About) -> io::Result<()> {
     let mut encoder = Encoder::new(&mut to, width, height);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     encoder.set_compression(Compression::Fast);
-    for (keyword, value) in text {
-        let (keyword, value) = ((*keyword).to_owned(), (*value).to_owned());
+    for (keyword, text) in &about.texts {
+        let (keyword, text) = ((*keyword).to_owned(), text.clone());
         // Latin-1 fits the plain chunk that every reader knows; names like "Blinn–Phong" do not.
-        if value.chars().all(|c| u32::from(c) < 256) {
-            encoder.add_text_chunk(keyword, value).map_err(plain)?;
+        if text.chars().all(|c| u32::from(c) < 256) {
+            encoder.add_text_chunk(keyword, text).map_err(plain)?;
         } else {
-            encoder.add_itxt_chunk(keyword, value).map_err(plain)?;
+            encoder.add_itxt_chunk(keyword, text).map_err(plain)?;
         }
     }
     let mut writer = encoder.write_header().map_err(plain)?;
+    if let Some(scene) = &about.scene {
+        let mut text = ITXtChunk::new(SCENE_KEYWORD, scene);
+        text.compressed = true;
+        writer.write_text_chunk(&text).map_err(plain)?;
+    }
     writer.write_image_data(rgb8).map_err(plain)?;
     writer.finish().map_err(plain)?;
     to.flush()
@@ -73,6 +115,7 @@ mod tests {
     use std::fs::File;
 
     use super::*;
+    use crate::scene::load::{self, Defaults};
 
     fn gradient() -> Vec<u8> {
         (0..16 * 8 * 3).map(|i| (i % 251) as u8).collect()
@@ -82,8 +125,10 @@ mod tests {
     fn what_is_written_can_be_read_back_with_its_text() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("new/folder/picture.png");
-        let text = [("Software", "Lights, Camera, Models!"), ("Model", "Blinn–Phong")];
-        write(&path, 16, 8, &gradient(), &text).expect("can be written");
+        let (scene, registry) =
+            (Scene { name: Some("Blinn–Phong".to_owned()), ..Scene::default() }, Registry::builtin());
+        let about = About::scene(&scene, &registry).with("Source", "a.json");
+        write(&path, 16, 8, &gradient(), &about).expect("can be written");
         let decoder = png::Decoder::new(io::BufReader::new(File::open(&path).expect("exists")));
         let mut reader = decoder.read_info().expect("is a PNG");
         let mut bytes = vec![0; reader.output_buffer_size().expect("fits")];
@@ -91,8 +136,21 @@ mod tests {
         assert_eq!(bytes, gradient());
         let info = reader.info();
         assert_eq!((info.width, info.height), (16, 8));
-        assert_eq!(info.uncompressed_latin1_text[0].text, text[0].1);
-        assert_eq!(info.utf8_text[0].get_text().expect("is text"), text[1].1);
+        let plain: Vec<_> = info.uncompressed_latin1_text.iter().map(|t| (&*t.keyword, &*t.text)).collect();
+        let software = concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION"));
+        let models = [("Reflection model", "lambert"), ("Shading model", "gouraud"), ("Source", "a.json")];
+        assert_eq!(plain, [&[("Software", software)], &models[..]].concat());
+        let [title, embedded] = info.utf8_text.as_slice() else { panic!("{:?}", info.utf8_text) };
+        assert_eq!((&*title.keyword, title.get_text().expect("is text").as_str()), ("Title", "Blinn–Phong"));
+        assert_eq!((&*embedded.keyword, embedded.compressed), (SCENE_KEYWORD, true));
+        assert_eq!(embedded.get_text().expect("is text"), to_json(&scene, None, &registry));
+        // The program opens it again.
+        let back = load::file(&path, &registry, Defaults::Refuse).expect("has a scene").scene;
+        assert_eq!(back, scene);
+        // The wrong twin: without the scene.
+        write(&path, 16, 8, &gradient(), &about.without_scene()).expect("can be written");
+        let said = load::file(&path, &registry, Defaults::Refuse).expect_err("has no scene").to_string();
+        assert!(said.contains("there is no scene in this picture, only texts called \"Software\""), "{said}");
         // Nothing is left beside it.
         assert_eq!(fs::read_dir(path.parent().expect("has one")).expect("readable").count(), 1);
     }
@@ -100,9 +158,9 @@ mod tests {
     #[test]
     fn a_wrong_number_of_bytes_is_an_error_and_leaves_nothing() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        assert!(write(&folder.path().join("p.png"), 16, 9, &gradient(), &[]).is_err());
-        assert!(write(&folder.path().join("p.png"), 0, 0, &[], &[]).is_err());
-        assert!(write(folder.path(), 16, 8, &gradient(), &[]).is_err());
+        assert!(write(&folder.path().join("p.png"), 16, 9, &gradient(), &About::program()).is_err());
+        assert!(write(&folder.path().join("p.png"), 0, 0, &[], &About::program()).is_err());
+        assert!(write(folder.path(), 16, 8, &gradient(), &About::program()).is_err());
         assert_eq!(fs::read_dir(folder.path()).expect("readable").count(), 0);
     }
 
@@ -111,14 +169,14 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("p.png");
         fs::write(&path, "old").expect("can be written");
-        write(&path, 16, 8, &gradient(), &[]).expect("can be written");
+        write(&path, 16, 8, &gradient(), &About::program()).expect("can be written");
         assert!(fs::read(&path).expect("exists").starts_with(b"\x89PNG"));
     }
 
     #[cfg(unix)]
     #[test]
     fn devices_are_not_replaced() {
-        write(Path::new("/dev/null"), 16, 8, &gradient(), &[]).expect("takes everything");
+        write(Path::new("/dev/null"), 16, 8, &gradient(), &About::program()).expect("takes everything");
         assert!(!Path::new("/dev/null").is_file());
     }
 }

@@ -299,9 +299,14 @@ impl Actor {
         let entity = entity.id();
         let empty = ShaderBuffer::new(&[0; ROW], RenderAssetUsages::default());
         let parameters = world.resource_mut::<Assets<ShaderBuffer>>().add(empty);
-        let illumination = world.resource::<IlluminationBuffer>().handle.clone();
-        let inputs =
-            MaterialInputs { parameters: parameters.clone(), illumination, shader: shader.clone(), faces };
+        let illumination = world.resource::<IlluminationBuffer>().buffers.clone();
+        let inputs = MaterialInputs {
+            parameters: parameters.clone(),
+            illumination,
+            shader: shader.clone(),
+            faces,
+            gamma_naive: false,
+        };
         // That of models from files.
         let attachment = world.resource::<Attachments>().get("");
         if let Some(attachment) = attachment {

@@ -10,7 +10,7 @@ use glam::{Quat, Vec3};
 
 use super::*;
 use crate::{
-    document::{Edit, LightField, ObjectField, PartId, Selection},
+    document::{Edit, LightField, ObjectField, PartId, Selection, VariantField},
     light::{Ambient, Point, Spot},
     parameter::Value,
     reflection::laws::Random,
@@ -25,7 +25,7 @@ use crate::{
         shown::{Shown, ShownObject, show_lights},
         typed::{PartTypes, know_types},
     },
-    scene::{Light, Object, Scene, check},
+    scene::{Comparison, Display, Light, Object, Scene, Variant, check, comparison::Layout},
     shape::{Cube, Sphere, Torus},
 };
 
@@ -686,4 +686,31 @@ fn what_is_animated_is_shown_and_not_stored() {
     lab.0.despawn(object);
     lab.settle();
     assert_eq!(lab.document().objects.len(), 5);
+}
+
+#[test]
+fn a_change_of_layout_or_of_another_view_changes_not_what_view_a_shows() {
+    let registry = Registry::builtin();
+    let mut world = World::new();
+    world.insert_resource(CurrentScene(Scene::default()));
+    world.insert_resource(Desk(Document::new(Scene::default())));
+    world.init_resource::<SceneEntities>();
+    let mut schedule = Schedule::default();
+    schedule.add_systems(show);
+    schedule.run(&mut world);
+    let mut changes = |edit: Edit| {
+        world.clear_trackers();
+        world.resource_mut::<Desk>().0.edit(edit, Selection::Room, &registry).expect("legal");
+        schedule.run(&mut world);
+        assert_eq!(world.resource::<CurrentScene>().0, *world.resource::<Desk>().0);
+        world.is_resource_changed::<CurrentScene>()
+    };
+    let variants = vec![Variant::default()];
+    let comparison = Comparison { layout: Layout::Wipe, ..Comparison::default() };
+    assert!(!changes(Edit::Views { variants, comparison, step: "Add a view" }));
+    assert!(!changes(Edit::Comparison(Comparison { split: 0.3, ..comparison })));
+    assert!(!changes(Edit::Variant(0, VariantField::Exposure(Some(1.0)))));
+    // The wrong twin: view A changes.
+    assert!(changes(Edit::Display(Display { exposure: 1.0, ..Display::default() })));
+    assert!(!changes(Edit::Comparison(Comparison { split: 0.6, ..comparison })));
 }

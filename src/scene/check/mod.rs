@@ -9,14 +9,15 @@ use std::{collections::HashMap, fmt};
 use glam::Vec3;
 
 use super::{
-    MAX_DIMENSION, Observer, Scene, SceneSize,
+    MAX_DIMENSION, Observer, Scene, SceneSize, Variant,
     error::{Path, Problem},
+    variant::LETTERS,
 };
 use crate::{
     light::LightEntry,
     parameter::Value,
     registry::Registry,
-    text::{quoted, with_article},
+    text::{listed, quoted, with_article},
 };
 
 mod rule;
@@ -48,6 +49,7 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
         check.rule(object_count(objects), || (Path::root().key("objects"), count(objects, "objects")));
         (0..objects).for_each(|i| check.object(i));
         check.display();
+        check.variants();
     })
 }
 
@@ -126,6 +128,12 @@ pub fn room(scene: &Scene, registry: &Registry) -> Vec<Problem> {
 #[must_use]
 pub fn models(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     found(scene, registry, |check| check.models())
+}
+
+/// Everything that is wrong with the variants and the comparison.
+#[must_use]
+pub fn variants(scene: &Scene, registry: &Registry) -> Vec<Problem> {
+    found(scene, registry, |check| check.variants())
 }
 
 /// Everything that is wrong with the display.
@@ -357,6 +365,104 @@ impl Check<'_> {
         let ev = self.scene.display.exposure;
         self.rule(exposure(ev), || (Path::root().key("display").key("exposure"), ev));
     }
+}
+
+impl Check<'_> {
+    fn variants(&mut self) {
+        let (scene, registry) = (self.scene, self.registry);
+        let all = &scene.variants;
+        let list = || (Path::root().key("variants"), format!("a list of {} variants", all.len()));
+        self.rule(variant_count(all.len()), list);
+        for (i, variant) in all.iter().enumerate() {
+            let path = |key: &'static str| Path::root().key("variants").index(i).key(key);
+            if let Some(name) = &variant.name {
+                let twin = all[..i].iter().position(|other| other.name.as_ref() == Some(name));
+                if let Some(twin) = twin {
+                    let rule =
+                        format!("variants[{twin}] has this name already; variants need different names");
+                    self.problems.push(Problem::value(path("name"), quoted(name), rule));
+                }
+            }
+            if let Some(base) = &variant.based_on
+                && let Err(rule) = basis(scene, variant, base)
+            {
+                self.problems.push(Problem::value(path("based_on"), quoted(base), rule));
+            }
+            if let Some(id) = &variant.reflection_model {
+                self.rule(reflection_model(registry, id), || (path("reflection_model"), quoted(id)));
+            }
+            if let Some(id) = &variant.shading_model {
+                self.rule(shading_model(registry, id), || (path("shading_model"), quoted(id)));
+            }
+            if let Some(ev) = variant.exposure {
+                self.rule(exposure(ev), || (path("exposure"), ev));
+            }
+            if let Some(count) = variant.tessellation {
+                self.rule(any_tessellation(count), || (path("tessellation"), count));
+            }
+            if !variant.material.0.is_empty() {
+                self.variant_material(i, &path);
+            }
+        }
+        let comparison = &scene.comparison;
+        let path = |key: &'static str| Path::root().key("comparison").key(key);
+        self.rule(split(comparison.split), || (path("split"), comparison.split));
+        self.rule(amplification(comparison.amplification), || {
+            (path("amplification"), comparison.amplification)
+        });
+        if comparison.with > all.len().max(1) {
+            let letter = LETTERS.get(comparison.with).copied().unwrap_or("?");
+            let rule = match all.len() {
+                0 => "the scene has no variants".to_owned(),
+                n => format!("the last view of the scene is {}", LETTERS[n]),
+            };
+            self.problems.push(Problem::value(path("with"), quoted(letter), rule));
+        }
+    }
+
+    /// The parameters of a variant, each judged by the objects of the scene as the variant shows them.
+    fn variant_material(&mut self, index: usize, path: &dyn Fn(&'static str) -> Path) {
+        let (scene, registry) = (self.scene, self.registry);
+        let Some((seen, _)) = scene.seen(index + 1, registry) else { return };
+        for (name, value) in &scene.variants[index].material.0 {
+            let broken = seen
+                .objects
+                .iter()
+                .find_map(|object| material_parameter(registry, &seen, object, name, value).err());
+            if let Some(rule) = broken {
+                let path = path("material").key(name.clone());
+                self.problems.push(Problem::value(path, written(value), rule));
+            }
+        }
+    }
+}
+
+/// `Ok` if a variant may be based on the one with a name.
+fn basis(scene: &Scene, variant: &Variant, base: &str) -> Rule {
+    if scene.variant(base).is_none() {
+        let names =
+            scene.variants.iter().filter(|v| !std::ptr::eq(*v, variant)).filter_map(|v| v.name.as_deref());
+        let names: Vec<_> = names.map(quoted).collect();
+        return Err(match names.as_slice() {
+            [] => "there is no other variant with a name".to_owned(),
+            names => format!("this must be the name of another variant: {}", listed(names, "or")),
+        });
+    }
+    let mut chain = vec![variant.name.as_deref().unwrap_or("this variant")];
+    let mut next = Some(base);
+    while let Some(name) = next {
+        let known = chain.contains(&name);
+        chain.push(name);
+        if known {
+            // A circle that others are in is theirs to report.
+            if chain[0] == name {
+                return Err(format!("a variant must not be based on itself: {}", chain.join(" → ")));
+            }
+            return Ok(());
+        }
+        next = scene.variant(name).and_then(|v| v.based_on.as_deref());
+    }
+    Ok(())
 }
 
 /// Reports a missing field that a light's type needs, or a field that the type does not have.

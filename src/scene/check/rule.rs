@@ -6,13 +6,19 @@ use crate::{
     custom,
     light::MAX_LIGHTS,
     optics::{
+        TermSelection,
         colour::Encoding,
         temperature::{MAX_TEMPERATURE, MIN_TEMPERATURE},
         tone::ToneMapping,
     },
     parameter::{Parameter, Value},
     registry::Registry,
-    scene::{MAX_DIMENSION, MAX_OBJECTS, Object, Scene, SceneSize, limits},
+    scene::{
+        MAX_DIMENSION, MAX_OBJECTS, Object, Scene, SceneSize,
+        comparison::{AMPLIFICATIONS, Channel, Compared, Edge, Layout, Sign},
+        limits,
+        variant::{LETTERS, MAX_VARIANTS},
+    },
     shape::ShapeEntry,
     text::{self, detailed, did_you_mean},
 };
@@ -273,6 +279,68 @@ pub fn tone_mapping(id: &str) -> Rule {
 /// The id of an encoding.
 pub fn encoding(id: &str) -> Rule {
     one_of("the encoding", id, Encoding::ALL.into_iter().map(|e| (e.id(), e.id())))
+}
+
+/// The id of a selection of terms.
+pub fn terms(id: &str) -> Rule {
+    one_of("the terms", id, TermSelection::ALL.into_iter().map(|t| (t.id(), t.id())))
+}
+
+/// The id of a layout.
+pub fn layout(id: &str) -> Rule {
+    one_of("the layout", id, Layout::ALL.iter().map(|c| (c.id(), c.name())))
+}
+
+/// The id of the direction of a wipe's edge.
+pub fn edge(id: &str) -> Rule {
+    one_of("the edge of a wipe", id, Edge::ALL.iter().map(|c| (c.id(), c.name())))
+}
+
+/// The id of the sign of differences.
+pub fn sign(id: &str) -> Rule {
+    one_of("the sign of a difference", id, Sign::ALL.iter().map(|c| (c.id(), c.name())))
+}
+
+/// The id of the channel of differences.
+pub fn channel(id: &str) -> Rule {
+    one_of("the channel of a difference", id, Channel::ALL.iter().map(|c| (c.id(), c.name())))
+}
+
+/// The id of the values that are compared.
+pub fn compared(id: &str) -> Rule {
+    one_of("the values of a difference", id, Compared::ALL.iter().map(|c| (c.id(), c.name())))
+}
+
+/// The letter of a view other than A.
+pub fn view_letter(letter: &str) -> Rule {
+    one_of("the other view", letter, LETTERS[1..].iter().map(|l| (*l, *l)))
+}
+
+/// The place of the edge of a wipe.
+pub fn split(place: f32) -> Rule {
+    must((0.0..=1.0).contains(&place), || "the place of the edge must be between 0 and 1".to_owned())
+}
+
+/// The amplification of a difference.
+pub fn amplification(factor: f32) -> Rule {
+    must(AMPLIFICATIONS.contains(&factor), || {
+        format!("the amplification must be between {} and {}", AMPLIFICATIONS.start(), AMPLIFICATIONS.end())
+    })
+}
+
+/// The rule for the tessellation of a variant.
+pub const ANY_TESSELLATION: &str = "the tessellation of a variant must be a whole number of at least 1";
+
+/// The tessellation of a variant, which each object follows as far as its type allows.
+pub fn any_tessellation(count: u32) -> Rule {
+    must(count > 0, || ANY_TESSELLATION.to_owned())
+}
+
+/// The number of variants of a scene.
+pub fn variant_count(count: usize) -> Rule {
+    must(count <= MAX_VARIANTS, || {
+        format!("a scene must have at most {MAX_VARIANTS} variants: with the scene itself, four views")
+    })
 }
 
 /// The number of lights of a scene.

@@ -25,18 +25,29 @@ impl SceneFormat for Json {
 
     fn read<'a>(&self, source: &'a Source<'_>, registry: &'a Registry) -> Result<Parsed<'a>, LoadError> {
         let text = source.text()?;
-        let syntax = |(at, what)| source.syntax_error(self.name(), Lines::new(text).place(at), what);
-        check_syntax(text).map_err(syntax)?;
-        // The two parsers agree except for half surrogate pairs, which only this one refuses.
-        let root = json::parse(text, &STRICT)
-            .map_err(|(at, what)| syntax((at, what.to_lowercase())))?
-            .ok_or_else(|| LoadError::Empty { name: source.name.to_owned() })?;
-        Ok(read::parsed(text, root, source.folder, registry, Default::default()))
+        parse(text, source, registry)
+            .map_err(|(at, what)| source.syntax_error(self.name(), Lines::new(text).place(at), what))?
+            .ok_or_else(|| LoadError::Empty { name: source.name.to_owned() })
     }
 
     fn writer(&self) -> Option<&dyn SceneWriter> {
         Some(self)
     }
+}
+
+/// The scene in a text that comes from a source, if there is anything in it.
+///
+/// # Errors
+/// The position where the text ceases to be JSON, and what was expected there.
+pub(super) fn parse<'a>(
+    text: &'a str,
+    source: &'a Source<'_>,
+    registry: &'a Registry,
+) -> Result<Option<Parsed<'a>>, (usize, String)> {
+    check_syntax(text)?;
+    // The two parsers agree except for half surrogate pairs, which only this one refuses.
+    let root = json::parse(text, &STRICT).map_err(|(at, what)| (at, what.to_lowercase()))?;
+    Ok(root.map(|root| read::parsed(text, root, source.folder, registry, Default::default())))
 }
 
 impl SceneWriter for Json {

@@ -15,6 +15,7 @@ use crate::{
 mod csv;
 mod json;
 mod parsed;
+mod png;
 mod source;
 
 pub(super) use parsed::{Located, checked};
@@ -22,6 +23,7 @@ pub use {
     csv::{Csv, column_table},
     json::Json,
     parsed::Parsed,
+    png::{Png, SCENE_KEYWORD},
     source::Source,
 };
 
@@ -176,7 +178,7 @@ impl SceneFormats for Registry {
 }
 
 /// The built-in formats.
-static BUILT_IN: [&dyn SceneFormat; 2] = [&Json, &Csv];
+static BUILT_IN: [&dyn SceneFormat; 3] = [&Json, &Csv, &Png];
 
 /// All formats: the built-in ones, JSON first, and those that were added.
 pub fn all(registry: &Registry) -> impl Iterator<Item = &dyn SceneFormat> {
@@ -241,6 +243,11 @@ pub fn is_scene_file(path: &FilePath, registry: &Registry) -> bool {
     !is_schema && extension(path).is_some_and(|extension| by_extension(&extension, registry).is_some())
 }
 
+/// True if a file has the extension of pictures, which may hold a scene.
+pub(super) fn is_picture(path: &FilePath) -> bool {
+    extension(path).is_some_and(|extension| Png.extensions().contains(&&*extension))
+}
+
 /// True if a file has the extension of a format that can be written.
 #[must_use]
 pub fn can_write(path: &FilePath, registry: &Registry) -> bool {
@@ -254,7 +261,7 @@ pub fn extensions(registry: &Registry) -> Vec<&'static str> {
     all(registry).flat_map(|format| format.extensions().iter().copied()).collect()
 }
 
-/// All extensions with the names of their formats: "*.json (JSON) or *.csv (CSV)".
+/// All extensions with the names of their formats: "*.json (JSON), *.csv (CSV) or *.png (PNG picture)".
 #[must_use]
 pub fn shown_extensions(registry: &Registry) -> String {
     let each: Vec<_> = all(registry)

@@ -80,6 +80,15 @@ impl<'a> Parsed<'a> {
         self
     }
 
+    /// The same without places, which are of no use where nobody sees the text.
+    pub(in crate::scene) fn without_places(self) -> Self {
+        let Self { locate, mut problems, mut missing, .. } = self;
+        problems.iter_mut().for_each(|problem| problem.place = None);
+        missing.iter_mut().for_each(|missing| missing.place = None);
+        let locate = move |path: &Path| Located { place: None, ..locate(path) };
+        Self { locate: Box::new(locate), problems, missing, end: None, ..self }
+    }
+
     /// The same with the places of its values, and the values as written.
     pub(in crate::scene) fn located(mut self, locate: impl Fn(&Path) -> Located + 'a) -> Self {
         self.locate = Box::new(locate);

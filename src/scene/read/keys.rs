@@ -12,6 +12,8 @@ pub(in crate::scene) const SCENE_KEYS: &[&str] = &[
     "observer",
     "objects",
     "display",
+    "variants",
+    "comparison",
     "name",
     "description",
     "$schema",
@@ -25,6 +27,23 @@ pub(in crate::scene) const LIGHT_ALTERNATIVES: [[&str; 2]; 2] =
 pub(in crate::scene) const OBSERVER_KEYS: &[&str] = &["position", "direction", "field_of_view"];
 /// The keys of `display`.
 pub(in crate::scene) const DISPLAY_KEYS: &[&str] = &["tone_mapping", "exposure", "encoding"];
+
+/// The keys of a variant.
+pub(in crate::scene) const VARIANT_KEYS: &[&str] = &[
+    "name",
+    "based_on",
+    "reflection_model",
+    "shading_model",
+    "material",
+    "terms",
+    "tone_mapping",
+    "exposure",
+    "encoding",
+    "tessellation",
+];
+/// The keys of `comparison`.
+pub(in crate::scene) const COMPARISON_KEYS: &[&str] =
+    &["layout", "with", "split", "edge", "sign", "channel", "values", "amplification"];
 
 /// Other words for keys, for suggestions only: the names in other programs.
 pub(in crate::scene) const OTHER_WORDS: &[(&str, &str)] = &[
@@ -61,6 +80,10 @@ pub(in crate::scene) const OTHER_WORDS: &[(&str, &str)] = &[
     ("gamma", "encoding"),
     ("angle", "cone_angle"),
     ("shininess", "alpha"),
+    ("inherits", "based_on"),
+    ("parent", "based_on"),
+    ("compare", "comparison"),
+    ("views", "variants"),
 ];
 
 /// The keys of all light types.

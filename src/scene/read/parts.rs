@@ -4,16 +4,20 @@ use glam::Vec3;
 
 use super::{
     Reader,
-    keys::{DISPLAY_KEYS, LIGHT_ALTERNATIVES, OBSERVER_KEYS, SCENE_KEYS, SIZE_KEYS},
+    keys::{
+        COMPARISON_KEYS, DISPLAY_KEYS, LIGHT_ALTERNATIVES, OBSERVER_KEYS, SCENE_KEYS, SIZE_KEYS, VARIANT_KEYS,
+    },
     values::{COLOUR_RULE, rule_of},
 };
 use crate::{
     light::LightEntry,
-    optics::{colour::Encoding, tone::ToneMapping},
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::Values,
     scene::{
         DEFAULT_DIMENSION, DEFAULT_REFLECTION_MODEL, DEFAULT_SHADING_MODEL, Display, Light, MAX_DIMENSION,
-        Object, Observer, Scene, SceneSize, check,
+        Object, Observer, Scene, SceneSize, Variant, check,
+        comparison::{Channel, Compared, Comparison, Edge, Layout, Sign},
+        variant::LETTERS,
     },
     text::json::{Cursor, Fields, Reader as _},
 };
@@ -52,7 +56,63 @@ impl Reader<'_> {
         if let Some(value) = fields.get("display") {
             scene.display = self.display(value);
         }
+        if fields.get("variants").is_some() {
+            scene.variants = self.list(&fields, "variants", check::variant_count, Self::variant);
+        }
+        if let Some(value) = fields.get("comparison") {
+            scene.comparison = self.comparison(value);
+        }
         scene
+    }
+
+    fn variant(&mut self, value: Cursor) -> Variant {
+        let mut variant = Variant::default();
+        let Some(fields) = self.fields(value, VARIANT_KEYS, "a variant") else { return variant };
+        variant.name = self.text_field(&fields, "name", "the name must be text");
+        variant.based_on = self.text_field(&fields, "based_on", "this must be the name of another variant");
+        let mut id = |key| self.id(fields.get(key)?, key);
+        (variant.reflection_model, variant.shading_model) = (id("reflection_model"), id("shading_model"));
+        if let Some(value) = fields.get("material") {
+            variant.material = self.material(value);
+        }
+        variant.terms =
+            self.choice(&fields, "terms", check::terms).and_then(|id| TermSelection::from_id(&id));
+        variant.tone_mapping = self
+            .choice(&fields, "tone_mapping", check::tone_mapping)
+            .and_then(|id| ToneMapping::from_id(&id));
+        variant.encoding =
+            self.choice(&fields, "encoding", check::encoding).and_then(|id| Encoding::from_id(&id));
+        variant.exposure = self.number_field(&fields, "exposure", check::exposure);
+        if let Some(value) = fields.get("tessellation") {
+            variant.tessellation = self.count(value, check::ANY_TESSELLATION);
+        }
+        variant
+    }
+
+    fn comparison(&mut self, value: Cursor) -> Comparison {
+        let mut comparison = Comparison::default();
+        let Some(fields) = self.fields(value, COMPARISON_KEYS, "comparison") else { return comparison };
+        macro_rules! choose {
+            ($($key:literal $field:ident $type:ident $rule:path,)+) => {
+                $(if let Some(id) = self.choice(&fields, $key, $rule) {
+                    comparison.$field = $type::from_id(&id).unwrap_or_default();
+                })+
+            };
+        }
+        choose! {
+            "layout" layout Layout check::layout,
+            "edge" edge Edge check::edge,
+            "sign" sign Sign check::sign,
+            "channel" channel Channel check::channel,
+            "values" values Compared check::compared,
+        }
+        if let Some(letter) = self.choice(&fields, "with", check::view_letter) {
+            comparison.with = LETTERS.iter().position(|known| *known == letter).unwrap_or(comparison.with);
+        }
+        comparison.split = self.number_field(&fields, "split", check::split).unwrap_or(comparison.split);
+        let factor = self.number_field(&fields, "amplification", check::amplification);
+        comparison.amplification = factor.unwrap_or(comparison.amplification);
+        comparison
     }
 
     fn scene_size(&mut self, scene: &Fields) -> SceneSize {
@@ -167,9 +227,7 @@ impl Reader<'_> {
                 Some(shape) => check::tessellation_rule(shape),
                 None => "the tessellation must be a whole number".to_owned(),
             };
-            object.tessellation = self
-                .integer(value, &rule)
-                .and_then(|count| u32::try_from(count).map_err(|_| self.wrong(value, &rule)).ok());
+            object.tessellation = self.count(value, &rule);
         }
         let mut id = |key| self.id(fields.get(key)?, key);
         (object.reflection_model, object.shading_model) = (id("reflection_model"), id("shading_model"));
@@ -186,6 +244,12 @@ impl Reader<'_> {
             }
         }
         object
+    }
+
+    /// A whole number that is not negative.
+    fn count(&mut self, value: Cursor, rule: &str) -> Option<u32> {
+        let count = self.integer(value, rule)?;
+        u32::try_from(count).map_err(|_| self.wrong(value, rule)).ok()
     }
 
     fn material(&mut self, value: Cursor) -> Values {
@@ -210,7 +274,7 @@ impl Reader<'_> {
             display.tone_mapping = ToneMapping::from_id(&id).unwrap_or_default();
         }
         if let Some(id) = self.choice(&fields, "encoding", check::encoding) {
-            display.encoding = Encoding::ALL.into_iter().find(|e| e.id() == id).unwrap_or_default();
+            display.encoding = Encoding::from_id(&id).unwrap_or_default();
         }
         display.exposure = self.number_field(&fields, "exposure", check::exposure).unwrap_or_default();
         display

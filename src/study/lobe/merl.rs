@@ -8,6 +8,7 @@ use super::{
     paint::LARGEST_ANGLE,
 };
 use crate::{
+    matching,
     optics::geometry::direction,
     registry::Registry,
     study::{
@@ -25,31 +26,10 @@ const MATTE: f64 = 0.01;
 /// The materials whose lobes are shown.
 const SHOWN: [&str; 4] = ["gold-metallic-paint", "alum-bronze", "red-plastic", "blue-acrylic"];
 
-/// Directions for the fits of MERL materials, dense about the mirror direction like the database: by the half vector
-/// and the difference of light and half vector (S. Rusinkiewicz 1998).
+/// Directions for the fits of MERL materials, dense about the mirror direction like the database.
 fn merl_directions() -> Vec<Sample> {
-    let mut samples = Vec::new();
-    for i in 0..26u8 {
-        let theta_h = 80.0 * (f32::from(i) / 25.0).powi(2);
-        for j in 0..8u8 {
-            for k in 0..7u8 {
-                let (theta_d, phi_d) = (f32::from(j) * 10.0, f32::from(k) * 30.0);
-                let h = direction(theta_h.into(), 0.0);
-                let d = direction(theta_d.into(), phi_d.into());
-                // Turned from the normal to the half vector, about y.
-                let (s, c) = theta_h.to_radians().sin_cos();
-                let turn =
-                    |d: glam::Vec3| glam::Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x).normalize();
-                let l = turn(d);
-                let v = (2.0 * l.dot(h) * h - l).normalize();
-                let least = LARGEST_ANGLE.to_radians().cos();
-                if l.z >= least && v.z >= least {
-                    samples.push(Sample { l, v, value: 1.0 });
-                }
-            }
-        }
-    }
-    samples
+    let pairs = matching::directions(0.0, LARGEST_ANGLE.into());
+    pairs.into_iter().map(|(l, v)| Sample { l, v, value: 1.0 }).collect()
 }
 
 /// The fits of all contestants to a material.

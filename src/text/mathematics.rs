@@ -1,4 +1,4 @@
-//! The pieces of an equation.
+//! The pieces of an equation in readable mathematics: `_x` is a subscript, `^x` a superscript, braces group.
 
 /// A piece of an equation that is not broken.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -116,7 +116,8 @@ pub fn parse(text: &str) -> Vec<Atom> {
 }
 
 /// True for a variable: one letter. Several are a word, such as `max`.
-pub(super) fn is_variable(text: &str) -> bool {
+#[must_use]
+pub fn is_variable(text: &str) -> bool {
     let mut chars = text.chars();
     chars.next().is_some_and(char::is_alphabetic) && chars.next().is_none()
 }

@@ -1,0 +1,197 @@
+//! The heading of a view: what it overrides, in one line.
+
+use super::{
+    part::{Part, line},
+    said::Said,
+    words::{differing, exposure, groups, shadings, spread, terms_alone},
+};
+use crate::{
+    optics::{colour::Encoding, tone::ToneMapping},
+    parameter::ParameterKind,
+    registry::Registry,
+    scene::{Scene, variant::LETTERS},
+};
+
+/// A view in one line: "B · Phong, α 27". It says what the view overrides, and "as A" if that is nothing; of view A, the
+/// scene itself, it says what the others override. Empty if there is no such view.
+#[must_use]
+pub fn header(scene: &Scene, view: usize, registry: &Registry) -> String {
+    line(&header_parts(scene, view, registry))
+}
+
+/// The same in parts.
+#[must_use]
+pub fn header_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part> {
+    let letter = LETTERS.get(view).copied().unwrap_or_default();
+    let parts = view_parts(scene, view, registry);
+    let letter = (!parts.is_empty()).then(|| Part::new(0, letter));
+    letter.into_iter().chain(parts).collect()
+}
+
+/// The same without the letter.
+#[must_use]
+pub fn view_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part> {
+    parts_of(scene, view, &Said::of(scene, view), registry)
+}
+
+/// What of a view is to be said, in parts.
+pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Registry) -> Vec<Part> {
+    let Some((seen, terms)) = scene.seen(view, registry) else { return Vec::new() };
+    let mut parts = Vec::new();
+    let mut say = |text: String| parts.push(Part::new(0, text).continued());
+    let groups = groups(&seen);
+    let model =
+        |id: &str| registry.model(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned());
+    let models = || match groups.as_slice() {
+        [] => "nothing visible".to_owned(),
+        [(id, _)] => model(id),
+        several => format!("{} models", several.len()),
+    };
+    if said.model {
+        say(models());
+    }
+    if said.shading
+        && let Some(names) = shadings(&seen, registry)
+    {
+        say(format!("{names} shading"));
+    }
+    parts.extend(values(&seen, said, registry));
+    let mut say = |text: String| parts.push(Part::new(0, text).continued());
+    if said.terms {
+        say(terms_alone(terms).map_or_else(|| "all terms".to_owned(), |part| part.text));
+    }
+    if said.tone_mapping {
+        let none = seen.display.tone_mapping == ToneMapping::None;
+        say(if none { "no tone mapping" } else { seen.display.tone_mapping.name() }.to_owned());
+    }
+    if said.exposure {
+        say(exposure(seen.display.exposure));
+    }
+    if said.encoding {
+        let naive = seen.display.encoding == Encoding::Off;
+        say(if naive { "gamma-naive" } else { "gamma-correct" }.to_owned());
+    }
+    if said.tessellation
+        && let Some(counts) = tessellation(&seen, registry)
+    {
+        say(format!("tessellation {counts}"));
+    }
+    if parts.is_empty() {
+        parts.push(Part::new(0, if view == 0 { models() } else { "as A".to_owned() }));
+    }
+    parts[0].continues = false;
+    let name = view.checked_sub(1).and_then(|i| scene.variants.get(i)?.name.clone());
+    // A name that says the same as the first words is no name of its own.
+    let name = name.filter(|name| !line(&parts).starts_with(name.as_str()));
+    name.map(|name| Part::new(0, name)).into_iter().chain(parts).collect()
+}
+
+/// The values that a heading says.
+fn values(seen: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
+    for (id, objects) in groups(seen) {
+        let Some(model) = registry.model(id) else { continue };
+        let own: Vec<_> = if said.values {
+            let colour = |kind: &ParameterKind| matches!(kind, ParameterKind::Colour { .. });
+            differing(model, &objects).filter(|(p, _)| !colour(&p.kind)).map(|(p, _)| p.name).collect()
+        } else {
+            Vec::new()
+        };
+        for parameter in model.parameters {
+            if !said.material.contains(parameter.name) && !own.contains(&parameter.name) {
+                continue;
+            }
+            let part = spread(model, parameter, &objects).and_then(|spread| spread.part(parameter, ""));
+            // Several models may share a parameter.
+            parts.extend(part.map(Part::continued).filter(|part| !parts.contains(part)));
+        }
+    }
+    parts
+}
+
+/// The tessellation of the visible objects that have one: "16", "16 to 64".
+fn tessellation(seen: &Scene, registry: &Registry) -> Option<String> {
+    let counts =
+        || seen.shown().filter_map(|o| Some(registry.shape(&o.object_type)?.tessellation(o.tessellation)));
+    let (least, most) = (counts().min()?, counts().max()?);
+    Some(if least == most { least.to_string() } else { format!("{least} to {most}") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        optics::TermSelection,
+        parameter::{Value, Values},
+        scene::{Display, Variant},
+    };
+
+    fn headers(scene: &Scene) -> Vec<String> {
+        (0..=scene.variants.len()).map(|view| header(scene, view, &Registry::builtin())).collect()
+    }
+
+    fn values<const N: usize>(all: [(&'static str, Value); N]) -> Values {
+        Values(all.into_iter().map(|(name, value)| (name.into(), value)).collect())
+    }
+
+    #[test]
+    fn a_heading_says_what_the_view_overrides_and_a_says_its_own() {
+        let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+        assert_eq!(headers(&scene), ["A · Phong"]);
+        scene.objects[0].material = values([("alpha", Value::Integer(20))]);
+        let other = Variant {
+            reflection_model: Some("blinn_phong".to_owned()),
+            material: values([("alpha", Value::Integer(27)), ("roughness", Value::Number(0.1))]),
+            ..Variant::default()
+        };
+        scene.variants = vec![other, Variant::default()];
+        assert_eq!(headers(&scene), ["A · Phong, α 20", "B · Blinn–Phong, α 27", "C · as A"]);
+        assert_eq!(header(&scene, 3, &Registry::builtin()), "");
+        // A name stands first, unless it says nothing more.
+        scene.variants[0].name = Some("Matched".to_owned());
+        assert_eq!(headers(&scene)[1], "B · Matched · Blinn–Phong, α 27");
+        scene.variants[0].name = Some("Blinn–Phong".to_owned());
+        assert_eq!(headers(&scene)[1], "B · Blinn–Phong, α 27");
+    }
+
+    #[test]
+    fn everything_that_can_be_overridden_is_said_in_order() {
+        let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+        let all = Variant {
+            name: None,
+            based_on: None,
+            reflection_model: Some("blinn_phong".to_owned()),
+            shading_model: Some("flat".to_owned()),
+            material: values([("k_d", Value::Number(0.5))]),
+            terms: Some(TermSelection::Diffuse),
+            tone_mapping: Some(ToneMapping::AgX),
+            exposure: Some(2.0),
+            encoding: Some(Encoding::Off),
+            tessellation: Some(12),
+        };
+        let back = Variant {
+            terms: Some(TermSelection::All),
+            tone_mapping: Some(ToneMapping::None),
+            exposure: Some(0.0),
+            encoding: Some(Encoding::Srgb),
+            ..Variant::default()
+        };
+        scene.variants = vec![all, back];
+        scene.display = Display { tone_mapping: ToneMapping::Aces, exposure: -1.0, encoding: Encoding::Srgb };
+        assert_eq!(
+            headers(&scene),
+            [
+                "A · Phong, Gouraud shading, k_d 0.8, all terms, ACES (fitted), −1 EV, gamma-correct, tessellation 32",
+                "B · Blinn–Phong, Flat shading, k_d 0.5, diffuse term alone, AgX, +2 EV, gamma-naive, tessellation 12",
+                "C · all terms, no tone mapping, 0 EV, gamma-correct",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_value_that_the_model_does_not_use_changes_nothing() {
+        let other = Variant { material: values([("alpha", Value::Integer(9))]), ..Variant::default() };
+        let scene = Scene { variants: vec![other], ..Scene::default() };
+        assert_eq!(headers(&scene), ["A · Lambert", "B · as A"]);
+    }
+}

@@ -1,0 +1,234 @@
+//! Pictures in words: captions, the headings of views, and the strip below a picture.
+
+mod heading;
+mod part;
+mod said;
+mod strip;
+mod words;
+
+pub use heading::{header, header_parts, view_parts};
+pub use part::{Part, line};
+pub use strip::{draw, draw_line, line_width, type_size};
+pub(crate) use words::{display, single, terms_alone, value};
+
+use crate::{
+    optics::TermSelection,
+    registry::Registry,
+    scene::{Display, Scene, variant::LETTERS},
+};
+use said::Said;
+
+/// The caption of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Caption {
+    /// The name of the scene, and of the view if there are several; often empty.
+    pub title: String,
+    /// The reflection models, the shading models, the values that are not the defaults, terms and display.
+    pub facts: Vec<Part>,
+    /// The name and the version of the program.
+    pub program: &'static str,
+}
+
+/// The caption of a scene as it is, of whose equations these terms are shown.
+#[must_use]
+pub fn of_scene(scene: &Scene, terms: TermSelection, registry: &Registry) -> Caption {
+    let mut facts = words::surfaces(scene, &Said::default(), registry);
+    facts.extend(terms_alone(terms));
+    facts.extend(display(scene.display));
+    let program = concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION"));
+    Caption { title: scene.name.clone().unwrap_or_default(), facts, program }
+}
+
+/// The caption of a view of a scene; `None` if there is no such view.
+#[must_use]
+pub fn of_view(scene: &Scene, view: usize, registry: &Registry) -> Option<Caption> {
+    let (seen, terms) = scene.seen(view, registry)?;
+    let mut caption = of_scene(&seen, terms, registry);
+    let tessellation = scene.overrides(view).and_then(|variant| variant.tessellation);
+    caption.facts.extend(tessellation.map(|count| Part::new(1, format!("tessellation {count}"))));
+    Some(Caption { title: title(scene, view), ..caption })
+}
+
+/// The caption of a picture with several views: what is the same in all, and then what each has of its own. `terms` are
+/// those that are shown in every view, unless each has its own.
+#[must_use]
+pub fn of_views(
+    scene: &Scene,
+    views: &[usize],
+    terms: Option<TermSelection>,
+    registry: &Registry,
+) -> Caption {
+    let said = Said::of(scene, 0);
+    let mut facts = words::surfaces(scene, &said, registry);
+    facts.extend(terms.and_then(terms_alone));
+    let usual = Display::default();
+    let Display { tone_mapping, exposure, encoding } = scene.display;
+    facts.extend(display(Display {
+        tone_mapping: if said.tone_mapping { usual.tone_mapping } else { tone_mapping },
+        exposure: if said.exposure { usual.exposure } else { exposure },
+        encoding: if said.encoding { usual.encoding } else { encoding },
+    }));
+    for view in views {
+        let mut of_view = Said::of(scene, *view);
+        of_view.terms &= terms.is_none();
+        // The values are said nowhere else.
+        of_view.values = said.model;
+        let parts = heading::parts_of(scene, *view, &of_view, registry);
+        let letter = LETTERS.get(*view).copied().unwrap_or_default();
+        facts.push(Part::new(0, format!("{letter}:")));
+        facts.extend(parts.into_iter().map(|part| Part { rank: 0, ..part.continued() }));
+    }
+    Caption { facts, ..of_scene(scene, TermSelection::All, registry) }
+}
+
+fn title(scene: &Scene, view: usize) -> String {
+    let scene_name = scene.name.iter().cloned();
+    let letter = LETTERS.get(view).copied().unwrap_or_default();
+    let variant = view.checked_sub(1).and_then(|i| scene.variants.get(i)?.name.as_deref());
+    let view = match variant {
+        _ if scene.variants.is_empty() => None,
+        Some(name) => Some(format!("{letter}: {name}")),
+        None => Some(letter.to_owned()),
+    };
+    scene_name.chain(view).collect::<Vec<_>>().join(" · ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        optics::{colour::Encoding, tone::ToneMapping},
+        parameter::Value,
+        scene::{Object, Variant},
+    };
+
+    fn facts(scene: &Scene, view: usize) -> String {
+        line(&of_view(scene, view, &Registry::builtin()).expect("there is such a view").facts)
+    }
+
+    fn object(name: &str, model: Option<&str>, values: &[(&'static str, Value)]) -> Object {
+        let mut object = Object { reflection_model: model.map(str::to_owned), ..Object::default() };
+        object.name = (!name.is_empty()).then(|| name.to_owned());
+        for (name, value) in values {
+            object.material.set(*name, value.clone());
+        }
+        object
+    }
+
+    #[test]
+    fn a_caption_says_what_differs_from_the_defaults() {
+        let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+        scene.objects = vec![object("", None, &[])];
+        assert_eq!(facts(&scene, 0), "Phong · Gouraud shading");
+        scene.objects[0].material.set("alpha", Value::Integer(27));
+        scene.objects[0].material.set("k_s", Value::Number(0.25));
+        scene.objects[0].material.set("base_colour", Value::Colour([200, 100, 50]));
+        // What the model does not use is no fact of the picture.
+        scene.objects[0].material.set("roughness", Value::Number(0.9));
+        scene.display.tone_mapping = ToneMapping::AgX;
+        scene.display.exposure = -1.5;
+        scene.display.encoding = Encoding::Off;
+        assert_eq!(
+            facts(&scene, 0),
+            "Phong · Gouraud shading · C_b = (200, 100, 50), k_s = 0.25, α = 27 · AgX · −1.5 EV · gamma-naive"
+        );
+        // Hidden objects are not in the picture.
+        scene.objects.push(Object { visible: false, ..object("", Some("eon"), &[]) });
+        assert!(!facts(&scene, 0).contains("EON"));
+        scene.objects[0].visible = false;
+        assert!(facts(&scene, 0).starts_with("nothing visible · AgX · −1.5 EV"));
+    }
+
+    #[test]
+    fn each_model_is_named_once_with_its_objects_and_values() {
+        let mut scene = Scene { reflection_model: "oren_nayar".to_owned(), ..Scene::default() };
+        let alpha = |n| ("alpha", Value::Integer(n));
+        scene.objects = vec![
+            object("Ball", Some("phong"), &[alpha(20)]),
+            object("Floor", None, &[]),
+            object("Wall", None, &[("sigma", Value::Number(0.0))]),
+            object("Cube", Some("phong"), &[alpha(80), ("base_colour", Value::Colour([1, 2, 3]))]),
+        ];
+        assert_eq!(
+            facts(&scene, 0),
+            "Phong (Ball, Cube), α = 20 to 80 · Oren–Nayar (Floor, Wall), σ = 0 to 20° · Gouraud shading"
+        );
+        // What holds for all is said once.
+        let mut red = scene.clone();
+        red.objects
+            .iter_mut()
+            .for_each(|object| object.material.set("base_colour", Value::Colour([200, 0, 0])));
+        let end = "Oren–Nayar (Floor, Wall), σ = 0 to 20° · Gouraud shading · C_b = (200, 0, 0)";
+        assert_eq!(facts(&red, 0), format!("Phong (Ball, Cube), α = 20 to 80 · {end}"));
+        // Names that repeat the model's say nothing more.
+        scene.objects[0].name = Some("Phong 1".to_owned());
+        assert!(
+            facts(&scene, 0).starts_with("Phong, α = 20 to 80 · Oren–Nayar (Floor"),
+            "{}",
+            facts(&scene, 0)
+        );
+        // Long names, and parts without one, would make it a list.
+        scene.objects[0].name = Some("The first of the balls on the table".to_owned());
+        scene.objects[1].name = None;
+        scene.objects[1].shading_model = Some("flat".to_owned());
+        assert_eq!(
+            facts(&scene, 0),
+            "Phong, α = 20 to 80 · Oren–Nayar, σ = 0 to 20° · Gouraud and Flat shading"
+        );
+    }
+
+    #[test]
+    fn several_views_share_what_is_the_same_in_all() {
+        let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+        scene.objects =
+            vec![object("", None, &[("alpha", Value::Integer(20)), ("k_s", Value::Number(0.25))])];
+        scene.display.exposure = 1.0;
+        let mut sharp = Variant { tone_mapping: Some(ToneMapping::AgX), ..Variant::default() };
+        sharp.material.set("alpha", Value::Integer(80));
+        let terms = Variant {
+            name: Some("Highlight".to_owned()),
+            terms: Some(TermSelection::Specular),
+            ..Variant::default()
+        };
+        scene.variants = vec![sharp, terms];
+        let said = |scene: &Scene, views: &[usize], terms| {
+            line(&of_views(scene, views, terms, &Registry::builtin()).facts)
+        };
+        let common = "Phong · Gouraud shading · k_s = 0.25";
+        let [a, b] = ["A: α 20, all terms, no tone mapping", "B: α 80, AgX"];
+        assert_eq!(
+            said(&scene, &[0, 1, 2], None),
+            format!("{common} · +1 EV · {a} · {b} · C: Highlight, specular term alone")
+        );
+        // The terms of all views are said once.
+        assert_eq!(
+            said(&scene, &[0, 1], Some(TermSelection::Diffuse)),
+            format!("{common} · diffuse term alone · +1 EV · A: α 20, no tone mapping · B: α 80, AgX")
+        );
+        // Under other models there is nothing in common but the display and the shading.
+        scene.variants[1].reflection_model = Some("blinn_phong".to_owned());
+        let all = said(&scene, &[0, 2], None);
+        assert!(all.starts_with("Gouraud shading · +1 EV · A: Phong, k_s 0.25, α 20, "), "{all}");
+        assert!(all.ends_with(" · C: Highlight, Blinn–Phong, k_s 0.25, α 20, specular term alone"), "{all}");
+    }
+
+    #[test]
+    fn the_title_names_scene_and_view() {
+        let mut scene = Scene { name: Some("Gold".to_owned()), ..Scene::default() };
+        let title = |scene: &Scene, view| of_view(scene, view, &Registry::builtin()).map(|c| c.title);
+        assert_eq!(title(&scene, 0).as_deref(), Some("Gold"));
+        assert_eq!(title(&scene, 1), None);
+        let variant = Variant {
+            name: Some("Matched".to_owned()),
+            terms: Some(TermSelection::Specular),
+            ..Variant::default()
+        };
+        scene.variants = vec![variant, Variant { tessellation: Some(12), ..Variant::default() }];
+        assert_eq!(title(&scene, 0).as_deref(), Some("Gold · A"));
+        assert_eq!(title(&scene, 1).as_deref(), Some("Gold · B: Matched"));
+        scene.name = None;
+        assert_eq!(title(&scene, 2).as_deref(), Some("C"));
+        assert_eq!(facts(&scene, 1), "Lambert · Gouraud shading · specular term alone");
+        assert_eq!(facts(&scene, 2), "Lambert · Gouraud shading · tessellation 12");
+    }
+}

@@ -1,0 +1,56 @@
+//! The pieces of captions.
+
+/// A piece of a caption; a line is never broken within one.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Part {
+    /// The symbol before the words; often empty.
+    pub symbol: &'static str,
+    /// The words or the number.
+    pub text: String,
+    /// True if it belongs to the part before it: a comma stands between them, else a dot.
+    pub continues: bool,
+    /// The highest goes first where there is little room; 0 stays.
+    pub rank: u8,
+}
+
+impl Part {
+    /// Words that leave a caption in this order.
+    #[must_use]
+    pub fn new(rank: u8, text: impl Into<String>) -> Self {
+        Self { text: text.into(), rank, ..Self::default() }
+    }
+
+    pub(super) fn continued(self) -> Self {
+        Self { continues: true, ..self }
+    }
+
+    /// The same as text.
+    #[must_use]
+    pub fn words(&self) -> String {
+        format!("{} {}", self.symbol, self.text).trim().to_owned()
+    }
+
+    /// The sign between another part and this one. What ends in a colon leads the next.
+    pub(super) fn joint(&self, before: &Self) -> &'static str {
+        if before.text.ends_with(':') {
+            " "
+        } else if self.continues {
+            ", "
+        } else {
+            " · "
+        }
+    }
+}
+
+/// Parts of a caption as one text.
+#[must_use]
+pub fn line(parts: &[Part]) -> String {
+    let mut line = String::new();
+    for (i, part) in parts.iter().enumerate() {
+        if let Some(before) = i.checked_sub(1) {
+            line.push_str(part.joint(&parts[before]));
+        }
+        line.push_str(&part.words());
+    }
+    line
+}

@@ -1,0 +1,327 @@
+//! The strip below a picture with its caption.
+
+use std::collections::BTreeMap;
+
+use super::{Caption, Part};
+use crate::lettering::Lettering;
+
+/// The ground of the strip: neutral, since the colours above it are judged.
+const GROUND: [u8; 3] = [24; 3];
+/// The line between the picture and the strip.
+const EDGE: [u8; 3] = [72; 3];
+const TITLE: [u8; 3] = [244; 3];
+const TEXT: [u8; 3] = [208; 3];
+/// The name of the program. Its contrast is 5.9:1.
+const PROGRAM: [u8; 3] = [146; 3];
+
+/// The most lines for the facts.
+const LINES: usize = 3;
+/// The smallest text that is legible, pixels.
+const SMALLEST: f32 = 12.0;
+
+/// The size of text that goes with a picture of this size, pixels.
+#[must_use]
+pub fn type_size([width, height]: [u32; 2]) -> f32 {
+    // As in a picture of 16:9: the strip of a narrow one shall not be all lines, that of a flat one not all strip.
+    let height = height.min(width / 16 * 9);
+    (height as f32 / 48.0).round().clamp(SMALLEST, 96.0)
+}
+
+/// Parts of a caption in one line, from `at` on.
+pub fn draw_line(parts: &[Part], picture: &mut [u8], size: [u32; 2], at: [i32; 2], px: f32, colour: [u8; 3]) {
+    let line = Line::of(parts, px);
+    line.runs.iter().for_each(|run| run.draw(picture, size, at, px, colour));
+}
+
+/// The width of parts in one line, pixels.
+#[must_use]
+pub fn line_width(parts: &[Part], px: f32) -> u32 {
+    Line::of(parts, px).width
+}
+
+/// The picture with its caption in a strip below it, and the size of both. `size` is that of the picture; the height of
+/// the strip is added to it.
+#[must_use]
+pub fn draw(caption: &Caption, mut picture: Vec<u8>, size: [u32; 2]) -> (Vec<u8>, [u32; 2]) {
+    let strip = Strip::of(caption, size);
+    let [width, height] = size;
+    let whole = [width, height + strip.height];
+    let row = width as usize * 3;
+    picture.resize(row * height as usize, 0);
+    picture.extend(EDGE.repeat(width as usize));
+    picture.resize(row * whole[1] as usize, GROUND[0]);
+    for (top, px, colour, line) in &strip.lines {
+        let at = [strip.left as i32, (height + top) as i32];
+        line.runs.iter().for_each(|run| run.draw(&mut picture, whole, at, *px, *colour));
+    }
+    (picture, whole)
+}
+
+/// Characters of a line.
+#[derive(Clone, Debug, PartialEq)]
+struct Run {
+    left: u32,
+    lettering: Lettering,
+    text: String,
+}
+
+impl Run {
+    fn draw(&self, picture: &mut [u8], size: [u32; 2], at: [i32; 2], px: f32, colour: [u8; 3]) {
+        let at = [at[0].saturating_add_unsigned(self.left), at[1]];
+        self.lettering.draw(picture, size, at, px, colour, &self.text);
+    }
+}
+
+/// A line of runs.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Line {
+    runs: Vec<Run>,
+    width: u32,
+}
+
+impl Line {
+    fn of(parts: &[Part], px: f32) -> Self {
+        let mut line = Self::default();
+        for (i, part) in parts.iter().enumerate() {
+            if let Some(before) = i.checked_sub(1) {
+                line.push(Lettering::Regular, part.joint(&parts[before]), px);
+            }
+            line.part(part, px);
+        }
+        line
+    }
+
+    fn text(lettering: Lettering, text: &str, px: f32) -> Self {
+        let mut line = Self::default();
+        line.push(lettering, text, px);
+        line
+    }
+
+    fn push(&mut self, lettering: Lettering, text: &str, px: f32) {
+        self.runs.push(Run { left: self.width, lettering, text: text.to_owned() });
+        self.width += lettering.width(px, text);
+    }
+
+    fn part(&mut self, part: &Part, px: f32) {
+        if !part.symbol.is_empty() {
+            self.push(Lettering::Symbol, part.symbol, px);
+            self.width += (0.28 * px).round() as u32;
+        }
+        self.push(Lettering::Regular, &part.text, px);
+    }
+}
+
+/// The lines of a strip, each with the distance of its top from the picture, its size and its colour.
+struct Strip {
+    left: u32,
+    height: u32,
+    lines: Vec<(u32, f32, [u8; 3], Line)>,
+}
+
+impl Strip {
+    fn of(caption: &Caption, size: [u32; 2]) -> Self {
+        let px = type_size(size);
+        let title_px = (1.15 * px).round();
+        // A picture of a few pixels has no room for margins.
+        let left = ((0.9 * px) as u32).min(size[0] / 16);
+        let room = size[0] - 2 * left;
+        let mut rows: Vec<(f32, [u8; 3], Line)> = Vec::new();
+        if !caption.title.is_empty() {
+            rows.push((title_px, TITLE, elided(Lettering::Semibold, &caption.title, title_px, room)));
+        }
+        rows.extend(facts(&caption.facts, px, room).into_iter().map(|line| (px, TEXT, line)));
+        // Lines of several sizes stand on one foot, the program's beside the first where there is room.
+        let program = elided(Lettering::Regular, caption.program, px, room);
+        let beside = |(_, _, line): &(f32, [u8; 3], Line)| line.width + 2 * px as u32 + program.width <= room;
+        let last = rows.len().saturating_sub(1);
+        let place = [0, last].into_iter().find(|i| rows.get(*i).is_some_and(beside));
+        if place.is_none() {
+            rows.push((px, PROGRAM, Line::default()));
+        }
+        let place = place.unwrap_or(rows.len() - 1);
+
+        let mut top = 1 + (0.6 * px).round() as u32;
+        let mut lines = Vec::new();
+        for (i, (size, colour, line)) in rows.into_iter().enumerate() {
+            let foot = Lettering::Regular.foot(size);
+            if i == place {
+                let mut program = program.clone();
+                let right = room.saturating_sub(program.width);
+                program.runs.iter_mut().for_each(|run| run.left += right);
+                lines.push((top + (foot - Lettering::Regular.foot(px)).round() as u32, px, PROGRAM, program));
+            }
+            lines.push((top, size, colour, line));
+            top += Lettering::Regular.height(size) + (0.12 * px).round() as u32;
+        }
+        Self { left, height: top + (0.6 * px).round() as u32, lines }
+    }
+}
+
+/// A text in one line that is no wider than the room.
+fn elided(lettering: Lettering, text: &str, px: f32, room: u32) -> Line {
+    let text = lettering.lines(px, text, room, 1).into_iter().next().unwrap_or_default();
+    let line = Line::text(lettering, &text, px);
+    // Less than the mark that something is missing says nothing.
+    if line.width <= room { line } else { Line::default() }
+}
+
+/// The facts in lines. What does not fit is left out, the highest rank first, and of one rank the last; "…" stands in the
+/// place of each rank.
+fn facts(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
+    let mut left: Vec<_> = parts.iter().enumerate().collect();
+    // The first that is left out of each rank, by its place among all.
+    let mut gaps: BTreeMap<u8, usize> = BTreeMap::new();
+    loop {
+        let gap = |i: usize| Part { continues: parts[i].continues, ..Part::new(0, "…") };
+        let marks = gaps.values().map(|i| (*i, gap(*i)));
+        let mut shown: Vec<_> = left.iter().map(|(i, part)| (*i, (*part).clone())).chain(marks).collect();
+        shown.sort_by_key(|(i, _)| *i);
+        let shown: Vec<_> = shown.into_iter().map(|(_, part)| part).collect();
+        let lines = broken(&shown, px, room);
+        // The first stays, whatever happens.
+        let least = left.iter().skip(1).map(|(_, part)| part.rank).max();
+        match left.iter().rposition(|(i, part)| *i > 0 && Some(part.rank) == least) {
+            Some(at) if lines.len() > LINES => {
+                let (i, part) = left.remove(at);
+                gaps.insert(part.rank, i);
+            }
+            _ => return lines,
+        }
+    }
+}
+
+/// The parts in lines that are no wider than the room, broken between parts.
+fn broken(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    for (i, part) in parts.iter().enumerate() {
+        let joint = i.checked_sub(1).map_or("", |before| part.joint(&parts[before]));
+        // A line that goes on ends with the sign between parts.
+        let open = |next: &Part| Lettering::Regular.width(px, next.joint(part).trim_end());
+        let more = parts.get(i + 1).map_or(0, open);
+        let mut own = Line::default();
+        own.part(part, px);
+        if own.width + more > room {
+            own = elided(Lettering::Regular, &part.words(), px, room.saturating_sub(more));
+        }
+        match lines.last_mut() {
+            Some(line) if line.width + Lettering::Regular.width(px, joint) + own.width + more <= room => {
+                line.push(Lettering::Regular, joint, px);
+                let left = line.width;
+                line.runs.extend(own.runs.into_iter().map(|run| Run { left: left + run.left, ..run }));
+                line.width += own.width;
+            }
+            last => {
+                if let Some(line) = last {
+                    line.push(Lettering::Regular, joint.trim_end(), px);
+                }
+                lines.push(own);
+            }
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{parameter::Value, registry::Registry, scene::Scene};
+
+    fn text(lines: &[Line]) -> Vec<String> {
+        let text = |line: &Line| line.runs.iter().map(|run| run.text.as_str()).collect();
+        lines.iter().map(text).collect()
+    }
+
+    fn parts(n: usize) -> Vec<Part> {
+        let model = [Part::new(0, "Cook–Torrance"), Part::new(1, "Phong shading")];
+        let value = |i| Part { symbol: "k_d", continues: i > 0, ..Part::new(3, format!("= 0.{i}")) };
+        model.into_iter().chain((0..n).map(value)).chain([Part::new(1, "AgX")]).collect()
+    }
+
+    #[test]
+    fn no_line_is_wider_than_the_room_and_what_is_left_out_is_marked() {
+        for room in [60, 120, 200, 320, 600, 2000] {
+            for n in [0, 3, 9, 40] {
+                let lines = facts(&parts(n), 14.0, room);
+                assert!(lines.len() <= LINES, "{room}, {n}: {:?}", text(&lines));
+                for line in &lines {
+                    assert!(line.width <= room, "{room}, {n}: {:?}", text(&lines));
+                    let end =
+                        line.runs.last().map_or(0, |run| run.left + run.lettering.width(14.0, &run.text));
+                    assert_eq!(end, line.width);
+                }
+                let all = text(&lines).join("");
+                let shown = all.matches("k_d").count();
+                assert!(shown == n || all.contains('…'), "{room}, {n}: {all}");
+                // Values go before the display does, and the model stays.
+                assert!(all.contains("AgX") || shown == 0, "{room}, {n}: {all}");
+                assert!(all.starts_with("Cook") || room == 60, "{room}, {n}: {all}");
+            }
+        }
+        // Models that are left out are marked in their place, and so are values.
+        let models = (0..20).flat_map(|i| {
+            let value = Part { symbol: "α", continues: true, ..Part::new(3, format!("= {i}")) };
+            [Part::new(if i == 0 { 0 } else { 2 }, format!("Model {i}")), value]
+        });
+        let models: Vec<_> = models.chain([Part::new(1, "Flat shading")]).collect();
+        let lines = text(&facts(&models, 14.0, 320));
+        assert!(
+            lines[0].starts_with("Model 0, … · Model 1 · ") && lines[2].ends_with(" · … · Flat shading"),
+            "{lines:?}"
+        );
+        let lines = text(&facts(&parts(40), 14.0, 320));
+        assert!(lines[0].ends_with([',', '·']) && lines[2].ends_with(", … · AgX"), "{lines:?}");
+    }
+
+    #[test]
+    fn the_picture_stays_and_the_strip_is_added() {
+        let mut scene = Scene { name: Some("Gold".to_owned()), ..Scene::default() };
+        scene.objects[0].material.set("k_d", Value::Number(0.5));
+        let caption = super::super::of_view(&scene, 0, &Registry::builtin()).expect("the scene itself");
+        let mut heights = Vec::new();
+        for size in [[640, 360], [1280, 720], [64, 36], [3, 500], [1, 1]] {
+            let picture: Vec<u8> = (0..size[0] * size[1] * 3).map(|i| (i % 249) as u8).collect();
+            let (whole, [width, height]) = draw(&caption, picture.clone(), size);
+            assert!(width == size[0] && height > size[1], "{size:?}");
+            assert_eq!(whole.len(), (width * height * 3) as usize);
+            assert_eq!(whole[..picture.len()], picture);
+            // Nothing touches the right and the lower edge.
+            let strip = &whole[picture.len() + 3 * width as usize..];
+            let free = |row: &[u8]| width < 60 || row[row.len() - 3..] == GROUND && row[..3] == GROUND;
+            assert!(strip.chunks(3 * width as usize).all(free), "{size:?}");
+            assert!(
+                strip[strip.len() - 3 * width as usize..].iter().all(|byte| *byte == GROUND[0]),
+                "{size:?}"
+            );
+            heights.push(height - size[1]);
+        }
+        assert!(heights[0] < 60 && heights[1] < 80, "{heights:?}");
+    }
+
+    #[test]
+    fn a_long_title_leaves_the_program_a_line_of_its_own() {
+        let caption = |title: &str| Caption {
+            title: title.to_owned(),
+            facts: vec![Part::new(0, "Phong")],
+            program: "Lights, Camera, Models! 0.1.0",
+        };
+        let lines = |title: &str, width| {
+            let strip = Strip::of(&caption(title), [width, 9 * width / 16]);
+            strip
+                .lines
+                .into_iter()
+                .map(|(top, _, _, line)| (top, text(&[line])[0].clone()))
+                .collect::<Vec<_>>()
+        };
+        let program = |lines: &[(u32, String)]| {
+            lines.iter().find(|(_, text)| text.starts_with("Lights")).map(|(top, _)| *top).expect("is there")
+        };
+        let short = lines("Gold", 640);
+        assert_eq!(short.len(), 3);
+        assert!(program(&short) < short[2].0, "beside the title");
+        let long = "A comparison of gold under Blinn–Phong and metallic–roughness with three lights";
+        let beside = lines(long, 640);
+        assert!(program(&beside) >= beside[0].0 + 10 && beside.len() == 3, "beside the facts: {beside:?}");
+        let narrow = lines(long, 200);
+        assert!(narrow[0].1.ends_with('…') && program(&narrow) > narrow[1].0, "{narrow:?}");
+    }
+}

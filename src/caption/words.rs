@@ -1,0 +1,224 @@
+//! The words for models, values and display.
+
+use std::collections::BTreeSet;
+
+use super::{part::Part, said::Said};
+use crate::{
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
+    parameter::{Parameter, ParameterKind, Value},
+    reflection::{ModelEntry, usage},
+    registry::Registry,
+    scene::{Display, Object, Scene, limits::number},
+    text::listed,
+};
+
+/// More characters of objects' names would be a list, not a caption.
+const NAMES: usize = 30;
+
+/// The ranks of parts: what is not said first where there is little room.
+pub(super) const VALUES: u8 = 3;
+const FURTHER_MODELS: u8 = 2;
+
+/// The reflection models and shading models of the visible objects, and the values that are not the defaults. What holds
+/// for every model is said once, at the end, and what is `said` elsewhere not at all.
+pub(super) fn surfaces(scene: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
+    // Under other models, values are others.
+    let groups = if said.model { Vec::new() } else { groups(scene) };
+    let values = |(id, objects): &(&str, Vec<&Object>)| -> Vec<Part> {
+        let Some(model) = registry.model(id) else { return Vec::new() };
+        let values = differing(model, objects).filter(|(p, _)| !said.material.contains(p.name));
+        values.filter_map(|(p, spread)| spread.part(p, "= ")).collect()
+    };
+    let mut values: Vec<_> = groups.iter().map(values).collect();
+    let shared = |part: &Part| values.iter().all(|of_model| of_model.contains(part));
+    let mut common: Vec<_> =
+        values.first().into_iter().flatten().filter(|part| shared(part)).cloned().collect();
+    let mut parts = Vec::new();
+    for (i, ((id, objects), values)) in groups.iter().zip(&mut values).enumerate() {
+        let name = registry.model(id).map_or(*id, |m| m.declaration.name);
+        // Objects that are called as their model say nothing more.
+        let names = names(objects).filter(|names| groups.len() > 1 && !names.contains(name));
+        let text = names.map_or_else(|| name.to_owned(), |names| format!("{name} ({names})"));
+        parts.push(Part::new(if i == 0 { 0 } else { FURTHER_MODELS }, text));
+        values.retain(|part| !common.contains(part));
+        parts.extend(values.drain(..).map(Part::continued));
+    }
+    if groups.is_empty() && !said.model {
+        parts.push(Part::new(0, "nothing visible"));
+    }
+    let shading = shadings(scene, registry).filter(|_| !said.shading);
+    parts.extend(shading.map(|names| Part::new(1, format!("{names} shading"))));
+    common.iter_mut().skip(1).for_each(|part| part.continues = true);
+    parts.extend(common);
+    parts
+}
+
+/// The visible objects of each reflection model, in the order of the scene.
+pub(super) fn groups(scene: &Scene) -> Vec<(&str, Vec<&Object>)> {
+    let mut groups: Vec<(&str, Vec<&Object>)> = Vec::new();
+    for object in scene.shown() {
+        let id = scene.model_of(object);
+        match groups.iter_mut().find(|(model, _)| *model == id) {
+            Some((_, objects)) => objects.push(object),
+            None => groups.push((id, vec![object])),
+        }
+    }
+    groups
+}
+
+/// The names of the shading models of the visible objects: "Gouraud", "Gouraud and Flat".
+pub(super) fn shadings(scene: &Scene, registry: &Registry) -> Option<String> {
+    let ids: BTreeSet<_> = scene.shown().map(|object| scene.shading_model_of(object)).collect();
+    let mut ids: Vec<_> = ids.into_iter().collect();
+    // That of the scene comes first.
+    ids.sort_by_key(|id| *id != scene.shading_model);
+    let name = |id: &&'_ str| {
+        registry.shading_model(id).map_or_else(|| (*id).to_owned(), |m| m.declaration.name.to_owned())
+    };
+    let names: Vec<_> = ids.iter().map(name).collect();
+    (!names.is_empty()).then(|| listed(&names, "and"))
+}
+
+/// The names of objects, if all have one and they are short.
+fn names(objects: &[&Object]) -> Option<String> {
+    let mut all = String::new();
+    for object in objects {
+        let name = object.name.as_deref().filter(|name| !name.trim().is_empty())?;
+        if !all.is_empty() {
+            all.push_str(", ");
+        }
+        all.push_str(name);
+        if all.chars().count() > NAMES {
+            return None;
+        }
+    }
+    Some(all)
+}
+
+/// The values of a parameter on several objects.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Spread {
+    /// All have one value.
+    One(Value),
+    /// They have numbers from the first to the second.
+    Range(Value, Value),
+    /// They have other values.
+    Several,
+}
+
+impl Spread {
+    /// The values as a part, with this before a number: "= 27", "= 20 to 80"; `None` if there is no word for them.
+    pub(super) fn part(&self, parameter: &'static Parameter, before: &str) -> Option<Part> {
+        let (symbol, text) = match self {
+            Self::Several => return None,
+            Self::One(one) => value(parameter, one)?,
+            Self::Range(from, to) => {
+                let (symbol, from) = value(parameter, from)?;
+                (symbol, format!("{from} to {}", value(parameter, to)?.1))
+            }
+        };
+        let unit = match (parameter.unit, &parameter.kind) {
+            ("", _) | (_, ParameterKind::Choice { .. } | ParameterKind::Colour { .. }) => String::new(),
+            ("°", _) => "°".to_owned(),
+            (unit, _) => format!(" {unit}"),
+        };
+        let text = match (&parameter.kind, symbol) {
+            // A name with a comma would look like two.
+            (ParameterKind::Choice { .. }, _) if text.contains(',') => format!("“{text}”"),
+            (ParameterKind::Choice { .. }, _) => text,
+            (_, "") => format!("{} {before}{text}{unit}", parameter.label),
+            _ => format!("{before}{text}{unit}"),
+        };
+        Some(Part { symbol, ..Part::new(VALUES, text) })
+    }
+}
+
+/// The values of a parameter on those objects that use it; `None` if none does.
+pub(super) fn spread(model: &ModelEntry, parameter: &Parameter, objects: &[&Object]) -> Option<Spread> {
+    let used = |object: &&&Object| usage::unused(model.parameters, parameter, &object.material).is_none();
+    let size = |value: &Value| match value {
+        Value::Number(v) => Some(f64::from(*v)),
+        Value::Integer(v) => Some(*v as f64),
+        _ => None,
+    };
+    let mut values = objects.iter().filter(used).map(|object| object.material.get(parameter));
+    let first = values.next()?;
+    let (mut least, mut most, mut same) = (first.clone(), first.clone(), true);
+    for value in values {
+        same &= value == first;
+        if size(&value) < size(&least) {
+            least = value;
+        } else if size(&value) > size(&most) {
+            most = value;
+        }
+    }
+    Some(match size(&first) {
+        _ if same => Spread::One(first),
+        Some(_) => Spread::Range(least, most),
+        None => Spread::Several,
+    })
+}
+
+/// The values that are not the defaults, in the order of their declaration.
+pub(super) fn differing<'a>(
+    model: &'a ModelEntry,
+    objects: &'a [&Object],
+) -> impl Iterator<Item = (&'static Parameter, Spread)> + 'a {
+    model.parameters.iter().filter_map(move |parameter| {
+        let spread = spread(model, parameter, objects)?;
+        (spread != Spread::One(parameter.default_value())).then_some((parameter, spread))
+    })
+}
+
+/// The symbol of a parameter and its value in words.
+pub(crate) fn value(parameter: &'static Parameter, value: &Value) -> Option<(&'static str, String)> {
+    let numbers = |all: [String; 3]| match &all {
+        [a, b, c] if a == b && b == c => a.clone(),
+        _ => format!("({})", all.join(", ")),
+    };
+    Some(match (value, &parameter.kind) {
+        (Value::Number(v), _) => (parameter.symbol, number(f64::from(*v))),
+        (Value::Integer(v), _) => (parameter.symbol, v.to_string()),
+        (Value::Colour(rgb), _) => (parameter.symbol, format!("({}, {}, {})", rgb[0], rgb[1], rgb[2])),
+        (Value::Triple(v), _) => (parameter.symbol, numbers(v.map(|v| number(f64::from(v))))),
+        // The name of a distribution needs no letter; “None” alone says nothing.
+        (Value::Choice(id), ParameterKind::Choice { options, .. }) => {
+            let name = options.iter().find(|(o, _)| **o == **id).map_or(&**id, |(_, name)| *name);
+            let name = name.split(" (").next().unwrap_or(name);
+            let none = name.eq_ignore_ascii_case("none");
+            ("", if none { format!("no {}", parameter.label) } else { name.to_owned() })
+        }
+        _ => return None,
+    })
+}
+
+/// The term that is shown alone, if one is.
+pub(crate) fn terms_alone(terms: TermSelection) -> Option<Part> {
+    (terms != TermSelection::All).then(|| Part::new(1, format!("{} term alone", terms.id())))
+}
+
+/// Tone mapping, exposure and encoding, as far as they are not the usual ones.
+pub(crate) fn display(display: Display) -> Vec<Part> {
+    let mut parts = Vec::new();
+    if display.tone_mapping != ToneMapping::None {
+        parts.push(Part::new(1, display.tone_mapping.name()));
+    }
+    if display.exposure != 0.0 {
+        parts.push(Part::new(1, exposure(display.exposure)));
+    }
+    if display.encoding == Encoding::Off {
+        parts.push(Part::new(1, "gamma-naive"));
+    }
+    parts
+}
+
+/// "+1 EV".
+pub(super) fn exposure(ev: f32) -> String {
+    let sign = if ev > 0.0 { "+" } else { "" };
+    format!("{sign}{} EV", number(f64::from(ev)))
+}
+
+/// The only one of a set.
+pub(crate) fn single<'a>(all: &BTreeSet<&'a str>) -> Option<&'a str> {
+    all.first().copied().filter(|_| all.len() == 1)
+}

@@ -1,0 +1,518 @@
+//! `lcm compare`: the difference between two views, or two files, as numbers and as a picture.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{
+    Options, Outcome,
+    outputs::{self, inputs},
+    pictures, print,
+    render::{self, Size, cpu_can_draw, samples},
+    scenes::Source,
+    views::{Choice, find},
+    workshop::{Workshop, drawable},
+};
+use crate::{
+    compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose},
+    failure::Failure,
+    reference::Settings,
+    registry::Registry,
+    render::capture::png::{self, About},
+    scene::{
+        Comparison, Scene,
+        comparison::{Compared, Layout},
+        variant::LETTERS,
+    },
+    text::{listed, nearest},
+};
+
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Scene file, or PNG picture; `-` is a scene on standard input
+    #[arg(value_name = "A")]
+    a: PathBuf,
+    /// The other scene file or picture; without one, the scene is compared with its own variant
+    #[arg(value_name = "B")]
+    b: Option<PathBuf>,
+    /// PNG file for the picture of the comparison
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Size of the picture in pixels; by default that of a PNG picture, or 1280x720
+    #[arg(long, value_name = "WxH")]
+    size: Option<Size>,
+    /// Samples per pixel: 1, or 4 for smooth edges
+    #[arg(long, default_value = "4", value_parser = samples)]
+    samples: u32,
+    #[command(flatten)]
+    choice: Choice,
+    /// Fail if a metric is larger: rmse, flip, largest, light_rmse; with covered. before it, over covered pixels only
+    #[arg(long, value_name = "METRIC=VALUE", value_parser = above)]
+    fail_above: Vec<Limit>,
+    /// Fail if a metric is smaller: psnr, ssim; with covered. before it, over covered pixels only
+    #[arg(long, value_name = "METRIC=VALUE", value_parser = below)]
+    fail_below: Vec<Limit>,
+}
+
+/// A metric on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Metric {
+    Rmse,
+    Psnr,
+    Ssim,
+    Flip,
+    LightRmse,
+    Largest,
+}
+
+impl Metric {
+    const ALL: [Self; 6] = [Self::Rmse, Self::Flip, Self::Largest, Self::LightRmse, Self::Psnr, Self::Ssim];
+
+    fn id(self) -> &'static str {
+        match self {
+            Self::Rmse => "rmse",
+            Self::Psnr => "psnr",
+            Self::Ssim => "ssim",
+            Self::Flip => "flip",
+            Self::LightRmse => "light_rmse",
+            Self::Largest => "largest",
+        }
+    }
+
+    /// True for metrics that are larger where pictures are more alike.
+    fn of_likeness(self) -> bool {
+        matches!(self, Self::Psnr | Self::Ssim)
+    }
+}
+
+/// A limit that the numbers must keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Limit {
+    metric: Metric,
+    covered: bool,
+    value: f64,
+}
+
+fn above(text: &str) -> Result<Limit, String> {
+    limit(text, false)
+}
+
+fn below(text: &str) -> Result<Limit, String> {
+    limit(text, true)
+}
+
+fn limit(text: &str, of_likeness: bool) -> Result<Limit, String> {
+    let example = if of_likeness { "ssim=0.99" } else { "rmse=0.01" };
+    let (name, value) =
+        text.split_once('=').ok_or_else(|| format!("it must be METRIC=VALUE, e.g. {example}"))?;
+    let (covered, id) = match name.trim().strip_prefix("covered.") {
+        Some(id) => (true, id),
+        None => (false, name.trim()),
+    };
+    let metric = Metric::ALL.into_iter().find(|metric| metric.id() == id).ok_or_else(|| {
+        let known = Metric::ALL.map(Metric::id);
+        let hint = nearest(id, known.map(|k| (k, k)).into_iter())
+            .map_or_else(String::new, |k| format!("; did you mean {k}?"));
+        format!("the metric must be {}{hint}", listed(&known, "or"))
+    })?;
+    if metric.of_likeness() != of_likeness {
+        let flag = if of_likeness { "above" } else { "below" };
+        let moves = if of_likeness { "grows" } else { "falls" };
+        return Err(format!("{id} {moves} as pictures differ more; use --fail-{flag} {text}"));
+    }
+    if metric == Metric::Largest && covered {
+        return Err("largest is that of all pixels; omit covered.".to_owned());
+    }
+    match value.trim().parse() {
+        Ok(value) if f64::is_finite(value) => Ok(Limit { metric, covered, value }),
+        _ => Err(format!("the limit must be a number, e.g. {example}")),
+    }
+}
+
+/// An input of the comparison.
+enum Input {
+    Scene(Source, Box<Scene>),
+    Picture(String, Shown),
+}
+
+impl Input {
+    fn read(path: &Path, workshop: &mut Workshop, options: Options) -> Result<Self, Failure> {
+        let source = Source::named(path);
+        if source != Source::Stdin && pictures::is_picture(path) {
+            return Ok(Self::Picture(source.name(), pictures::read(path)?));
+        }
+        let scene = Box::new(source.open(workshop, options)?);
+        Ok(Self::Scene(source, scene))
+    }
+
+    fn name(&self) -> String {
+        match self {
+            Self::Scene(source, _) => source.name(),
+            Self::Picture(name, _) => name.clone(),
+        }
+    }
+
+    fn scene(&self) -> Option<&Scene> {
+        match self {
+            Self::Scene(_, scene) => Some(scene),
+            Self::Picture(..) => None,
+        }
+    }
+
+    fn size(&self) -> Option<[u32; 2]> {
+        match self {
+            Self::Scene(..) => None,
+            Self::Picture(_, shown) => Some(shown.size()),
+        }
+    }
+}
+
+/// A view that is compared: one of a scene, or a picture.
+#[derive(Clone, Copy)]
+struct View<'a> {
+    input: &'a Input,
+    view: usize,
+}
+
+impl View<'_> {
+    /// Fails if the view cannot be drawn.
+    fn check(&self, registry: &Registry) -> Outcome {
+        match self.input.scene().and_then(|scene| scene.seen(self.view, registry)) {
+            Some((seen, _)) => drawable(registry, &seen).and_then(|()| cpu_can_draw(&seen, registry)),
+            None => Ok(()),
+        }
+    }
+
+    /// The picture of the view. Pictures keep their size.
+    fn shown(&self, [width, height]: [u32; 2], samples: u32, registry: &Registry) -> Result<Shown, Failure> {
+        match self.input {
+            Input::Picture(_, shown) => Ok(shown.clone()),
+            Input::Scene(_, scene) => {
+                let settings = Settings { width, height, samples, ..Settings::default() };
+                let shown = Shown::of_view(scene, self.view, registry, &settings);
+                // An endless function of a custom model shows only when it runs.
+                self.check(registry)?;
+                shown.ok_or_else(|| Failure::Invalid(format!("{}: there is no such view", self.input.name())))
+            }
+        }
+    }
+
+    fn report(&self) -> Side {
+        match self.input {
+            Input::Picture(name, _) => Side { file: name.clone(), view: None, name: None },
+            Input::Scene(source, scene) => Side {
+                file: source.name(),
+                view: LETTERS.get(self.view).copied(),
+                name: match self.view.checked_sub(1) {
+                    None => scene.name.clone(),
+                    Some(i) => scene.variants.get(i).and_then(|variant| variant.name.clone()),
+                },
+            },
+        }
+    }
+}
+
+/// The result, for programs.
+#[derive(Serialize)]
+struct Report {
+    a: Side,
+    b: Side,
+    width: u32,
+    height: u32,
+    values: &'static str,
+    channel: &'static str,
+    all: Numbers,
+    covered: Option<Numbers>,
+    largest: Option<Place>,
+}
+
+/// One of the two that are compared.
+#[derive(Serialize)]
+struct Side {
+    file: String,
+    view: Option<&'static str>,
+    name: Option<String>,
+}
+
+#[derive(Serialize)]
+struct Numbers {
+    pixels: u64,
+    rmse: f64,
+    /// Null where it is infinite.
+    psnr: Option<f64>,
+    ssim: f64,
+    flip: f64,
+    light_rmse: Option<f64>,
+}
+
+impl From<Metrics> for Numbers {
+    fn from(metrics: Metrics) -> Self {
+        let Metrics { pixels, rmse, psnr, ssim, flip, light_rmse } = metrics;
+        Self { pixels, rmse, psnr: psnr.is_finite().then_some(psnr), ssim, flip, light_rmse }
+    }
+}
+
+#[derive(Serialize)]
+struct Place {
+    x: u32,
+    y: u32,
+    difference: f32,
+    a: [u8; 3],
+    b: [u8; 3],
+}
+
+impl From<Largest> for Place {
+    fn from(Largest { x, y, difference, a, b }: Largest) -> Self {
+        Self { x, y, difference, a, b }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
+    let paths: Vec<_> = [Some(&arguments.a), arguments.b.as_ref()].into_iter().flatten().collect();
+    if paths.iter().filter(|path| path.as_path() == Path::new("-")).count() > 1 {
+        return Err(Failure::Usage("- can be given once: standard input holds one scene".to_owned()));
+    }
+    if arguments.b.is_some() && arguments.choice.with.is_some() {
+        return Err(Failure::Usage("two files are compared by view A of each; omit --with".to_owned()));
+    }
+    if let Some(output) = &arguments.output {
+        render::one_picture(output)?;
+    }
+    let mut read = Vec::new();
+    let mut problems = Vec::new();
+    for path in &paths {
+        match Input::read(path, workshop, options) {
+            Ok(input) => read.push(input),
+            Err(Failure::Invalid(problem)) => problems.push(problem),
+            Err(other) => return Err(other),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(Failure::Invalid(problems.join("\n")));
+    }
+    let registry = &workshop.registry;
+    if let Some(output) = &arguments.output {
+        outputs::picture(output, &inputs(paths.iter().map(|path| path.as_path()), registry))?;
+    }
+
+    let (comparison, views) = views(arguments, &read)?;
+    let size = size(arguments.size, &read)?;
+    views.iter().try_for_each(|view| view.check(registry))?;
+    let [a, b] = [views[0], other(&comparison, &views)];
+    let [shown_a, shown_b] = [a, b].map(|view| view.shown(size, arguments.samples, registry));
+    let shown = [shown_a?, shown_b?];
+    let invalid = |error: crate::compare::Unequal| {
+        Failure::Invalid(format!("{} and {}: {error}", a.input.name(), b.input.name()))
+    };
+    let pair = Pair::new(&shown[0], &shown[1]).map_err(invalid)?;
+    let differences = pair.differences(&comparison).map_err(invalid)?;
+    let measured =
+        pair.measure().ok_or_else(|| Failure::Invalid("the pictures have no pixels".to_owned()))?;
+
+    if let Some(output) = &arguments.output {
+        let about =
+            About::program().with("Source", listed(&read.iter().map(Input::name).collect::<Vec<_>>(), "and"));
+        let (size, rgb8) = if comparison.layout == Layout::SideBySide {
+            side_by_side(&comparison, size, &views, arguments.samples, registry)?
+        } else {
+            (size, compose(&comparison, size, &shown).map_err(invalid)?)
+        };
+        outputs::tidy_beside(output);
+        png::write(output, size[0], size[1], &rgb8, &about).map_err(|e| match e.kind() {
+            io::ErrorKind::BrokenPipe => Failure::Closed,
+            _ => Failure::Write(format!("{} could not be written: {e}", output.display())),
+        })?;
+        options.tell(format_args!("wrote {}", output.display()));
+    }
+
+    let report = Report {
+        a: a.report(),
+        b: b.report(),
+        width: size[0],
+        height: size[1],
+        values: comparison.values.id(),
+        channel: comparison.channel.id(),
+        all: measured.all.into(),
+        covered: measured.covered.map(Numbers::from),
+        largest: differences.largest.map(Place::from),
+    };
+    let printed = print(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()));
+    let broken = broken(arguments, &measured, differences.largest)?;
+    // Limits matter even if nobody reads the numbers.
+    if broken.is_empty() { printed } else { Err(Failure::Invalid(broken.join("\n"))) }
+}
+
+/// The comparison, and the views that it shows: those of a scene, or view A of each input.
+fn views<'a>(arguments: &Arguments, read: &'a [Input]) -> Result<(Comparison, Vec<View<'a>>), Failure> {
+    let of_file = read.iter().find_map(Input::scene).map(|scene| scene.comparison).unwrap_or_default();
+    let mut comparison = arguments.choice.applied(of_file);
+    let pictures = read.iter().find(|input| input.scene().is_none());
+    if comparison.values == Compared::Light
+        && let Some(picture) = pictures
+    {
+        return Err(Failure::Invalid(format!(
+            "{}: the light of a picture is not known; --values codes compares what it displays",
+            picture.name()
+        )));
+    }
+    let [input] = read else {
+        comparison.with = 1;
+        return Ok((comparison, read.iter().map(|input| View { input, view: 0 }).collect()));
+    };
+    let Some(scene) = input.scene() else {
+        return Err(Failure::Usage(format!(
+            "{} is a picture; name another file to compare it with",
+            input.name()
+        )));
+    };
+    if scene.variants.is_empty() {
+        return Err(Failure::Invalid(format!(
+            "{} has no variants to be compared with; add one to it, or name another file",
+            input.name()
+        )));
+    }
+    if let Some(name) = &arguments.choice.with {
+        let view = find(scene, name).map_err(|why| Failure::Invalid(format!("{}: {why}", input.name())))?;
+        if view == 0 {
+            return Err(Failure::Usage(
+                "--with is the view that A is compared with; it must not be A".to_owned(),
+            ));
+        }
+        comparison.with = view;
+    }
+    let views = comparison.views(scene.variants.len()).into_iter().map(|view| View { input, view }).collect();
+    Ok((comparison, views))
+}
+
+/// The view that A is compared with.
+fn other<'a>(comparison: &Comparison, views: &[View<'a>]) -> View<'a> {
+    match views {
+        // Of a layout with one view, or with views A of two files.
+        [a] => View { input: a.input, view: comparison.with },
+        [_, b] => *b,
+        [a, ..] => View { input: a.input, view: comparison.with },
+        [] => unreachable!("there is always view A"),
+    }
+}
+
+/// The size of the pictures that are compared.
+fn size(asked: Option<Size>, read: &[Input]) -> Result<[u32; 2], Failure> {
+    let asked = asked.map(|size| [size.width, size.height]);
+    let mut found: Option<(String, [u32; 2])> = asked.map(|size| ("--size".to_owned(), size));
+    for input in read {
+        let Some(size) = input.size() else { continue };
+        match &found {
+            Some((name, other)) if *other != size => {
+                return Err(Failure::Invalid(format!(
+                    "{name} is {}x{} pixels, but {} is {}x{}; pictures must have the same size",
+                    other[0],
+                    other[1],
+                    input.name(),
+                    size[0],
+                    size[1]
+                )));
+            }
+            _ => found = Some((input.name(), size)),
+        }
+    }
+    let usual = Settings::default();
+    Ok(found.map_or([usual.width, usual.height], |(_, size)| size))
+}
+
+/// The picture of views beside each other. Scenes are drawn at the size of their places; pictures keep theirs, so that
+/// the whole is larger.
+fn side_by_side(
+    comparison: &Comparison,
+    size: [u32; 2],
+    views: &[View],
+    samples: u32,
+    registry: &Registry,
+) -> Result<([u32; 2], Vec<u8>), Failure> {
+    let variants = views.len() - 1;
+    let places = |size| cells(comparison, variants, size);
+    let whole = if views.iter().any(|view| view.input.scene().is_none()) {
+        let fits = |whole: &[u32; 2]| places(*whole).is_some_and(|cells| cells[0].width == size[0]);
+        (0..32).map(|gap| [2 * size[0] + gap, size[1]]).find(fits)
+    } else {
+        Some(size)
+    };
+    let no_room =
+        || Failure::Usage(format!("{}x{} pixels have no room for the views side by side", size[0], size[1]));
+    let whole = whole.ok_or_else(no_room)?;
+    let places = places(whole).ok_or_else(no_room)?;
+    let shown = views
+        .iter()
+        .zip(&places)
+        .map(|(view, cell)| view.shown([cell.width, cell.height], samples, registry));
+    let shown = shown.collect::<Result<Vec<_>, _>>()?;
+    let rgb8 = compose(comparison, whole, &shown).map_err(|error| Failure::Invalid(error.to_string()))?;
+    Ok((whole, rgb8))
+}
+
+/// The limits that the numbers break, in words.
+fn broken(
+    arguments: &Arguments,
+    measured: &Measured,
+    largest: Option<Largest>,
+) -> Result<Vec<String>, Failure> {
+    let mut broken = Vec::new();
+    for limit in arguments.fail_above.iter().chain(&arguments.fail_below) {
+        let Limit { metric, covered, value } = *limit;
+        let name = format!("{}{}", if covered { "covered." } else { "" }, metric.id());
+        let unknown = |why: &str| Failure::Invalid(format!("{name} is unknown: {why}"));
+        let metrics = match (covered, measured.covered) {
+            (false, _) => measured.all,
+            (true, Some(covered)) => covered,
+            (true, None) => return Err(unknown("no pixel is known to be covered by an object")),
+        };
+        let found = match metric {
+            Metric::Rmse => metrics.rmse,
+            Metric::Psnr => metrics.psnr,
+            Metric::Ssim => metrics.ssim,
+            Metric::Flip => metrics.flip,
+            Metric::Largest => largest.map_or(0.0, |largest| f64::from(largest.difference.abs())),
+            Metric::LightRmse => {
+                metrics.light_rmse.ok_or_else(|| unknown("the light of a picture is not known"))?
+            }
+        };
+        let likeness = metric.of_likeness();
+        // Numbers that are none keep no limit.
+        let kept = if likeness { found >= value } else { found <= value };
+        if !kept {
+            let side = if likeness { "below" } else { "above" };
+            broken.push(format!("{name} is {found}, {side} the limit {value}"));
+        }
+    }
+    Ok(broken)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_name_a_metric_and_its_side() {
+        assert_eq!(above("rmse=0.01"), Ok(Limit { metric: Metric::Rmse, covered: false, value: 0.01 }));
+        assert_eq!(below("covered.ssim= 0.9"), Ok(Limit { metric: Metric::Ssim, covered: true, value: 0.9 }));
+        for (said, expected) in [
+            (above("rmse"), "it must be METRIC=VALUE, e.g. rmse=0.01"),
+            (below("ssim"), "it must be METRIC=VALUE, e.g. ssim=0.99"),
+            (
+                above("rsme=1"),
+                "the metric must be rmse, flip, largest, light_rmse, psnr or ssim; did you mean rmse?",
+            ),
+            (above("psnr=40"), "psnr falls as pictures differ more; use --fail-below psnr=40"),
+            (below("flip=0.1"), "flip grows as pictures differ more; use --fail-above flip=0.1"),
+            (above("rmse=small"), "the limit must be a number, e.g. rmse=0.01"),
+            (above("rmse=nan"), "the limit must be a number, e.g. rmse=0.01"),
+            (above("rmse=inf"), "the limit must be a number, e.g. rmse=0.01"),
+            (above("covered.largest=1"), "largest is that of all pixels; omit covered."),
+        ] {
+            assert_eq!(said, Err(expected.to_owned()));
+        }
+    }
+}

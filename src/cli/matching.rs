@@ -1,0 +1,199 @@
+//! `lcm match`: the parameters of a view that come nearest to view A.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use serde_json::json;
+
+use super::{
+    Options, Outcome, print, print_text, progress,
+    scenes::Source,
+    workshop::{Workshop, drawable},
+};
+use crate::{
+    failure::Failure,
+    matching::{self, Match, MatchError, Request, What, digits, match_view},
+    parameter::Value,
+    progress::Progress,
+    registry::Registry,
+    scene::{
+        Scene,
+        save::{self, Expected},
+        variant::LETTERS,
+    },
+    text::{number, one_of, quoted},
+};
+
+#[derive(Args, Debug)]
+pub(super) struct Arguments {
+    /// Scene file with variants; `-` is standard input
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// The view whose parameters are searched: its letter, or its name
+    #[arg(long, default_value = "B", value_name = "LETTER|NAME")]
+    view: String,
+    /// What is compared with view A
+    #[arg(long, value_enum, default_value_t = On::Lobe)]
+    on: On,
+    /// The parameters that are free, such as alpha,k_s; by default every number
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    free: Vec<String>,
+    /// Write the scene with these parameters to this file
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace an existing file
+    #[arg(long, requires = "output")]
+    overwrite: bool,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum On {
+    /// The light reflected by the models, for all directions of light and viewer
+    Lobe,
+    /// The pictures of this scene, in linear light
+    Picture,
+    /// The width of the highlights
+    Highlight,
+}
+
+impl On {
+    fn what(self) -> What {
+        match self {
+            Self::Lobe => What::Lobe,
+            Self::Picture => What::Picture,
+            Self::Highlight => What::Highlight,
+        }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
+    let source = Source::named(&arguments.scene);
+    let mut scene = source.open(workshop, options)?;
+    let expected = if arguments.overwrite { Expected::Anything } else { Expected::Nothing };
+    // Known now rather than after the search.
+    if let Some(file) = arguments.output.as_deref().filter(|file| !arguments.overwrite && file.exists()) {
+        return Err(unwritten(&save::SaveError::Exists { path: file.to_owned() }));
+    }
+    let registry = &workshop.registry;
+    drawable(registry, &scene)?;
+    let invalid = |why: &dyn std::fmt::Display| Failure::Invalid(format!("{}: {why}", source.name()));
+    let view = view(&scene, &arguments.view).map_err(|why| invalid(&why))?;
+    let free: Vec<&str> = match arguments.free.as_slice() {
+        [] => {
+            let all = matching::parameters(&scene, view, registry);
+            all.into_iter().filter(|(_, usual)| *usual).map(|(parameter, _)| parameter.name).collect()
+        }
+        names => names.iter().map(|name| name.trim()).collect(),
+    };
+    let what = arguments.on.what();
+    let bar = progress(100, options);
+    let tell = |done: f32, step: &str| {
+        bar.set_position((100.0 * done) as u64);
+        bar.set_message(step.to_owned());
+    };
+    let request = Request { scene: &scene, view, what, parameters: &free };
+    let found = match_view(&request, registry, &Progress { tell: &tell, cancelled: &|| false });
+    bar.finish_and_clear();
+    let found = found.map_err(|error| match error {
+        MatchError::NothingFree { .. }
+        | MatchError::NoParameter { .. }
+        | MatchError::NoNumber { .. }
+        | MatchError::Unused { .. } => Failure::Usage(format!("--free: {error}")),
+        error => invalid(&error),
+    })?;
+    let before: Vec<Value> = found.values.iter().map(|(name, _)| now(&scene, view, name, registry)).collect();
+    if let Some(file) = &arguments.output {
+        for (name, value) in &found.values {
+            scene.variants[view - 1].material.set(*name, value.clone());
+        }
+        write(file, &scene, registry, expected)?;
+    }
+    if arguments.json {
+        print(&as_json(&found, view, what))?;
+    } else {
+        print_text(&in_words(&found, &before, view, what))?;
+    }
+    if let Some(file) = &arguments.output {
+        options.tell(format_args!("wrote {}", file.display()));
+    }
+    Ok(())
+}
+
+fn write(file: &Path, scene: &Scene, registry: &Registry, expected: Expected) -> Outcome {
+    save::write(file, scene, registry, expected).map(drop).map_err(|error| unwritten(&error))
+}
+
+fn unwritten(error: &save::SaveError) -> Failure {
+    let advice = match error {
+        save::SaveError::Exists { .. } => "; --overwrite replaces it",
+        _ => "",
+    };
+    Failure::Write(format!("{error}{advice}"))
+}
+
+/// The view with a letter or a name.
+fn view(scene: &Scene, wanted: &str) -> Result<usize, String> {
+    let views = 1..=scene.variants.len();
+    let is = |view: &usize| {
+        LETTERS[*view].eq_ignore_ascii_case(wanted)
+            || scene.variants[*view - 1].name.as_deref() == Some(wanted)
+    };
+    if let Some(view) = views.clone().find(is) {
+        return Ok(view);
+    }
+    if views.is_empty() {
+        return Err("the scene has no variants, so there is no view to be matched to view A".to_owned());
+    }
+    let known = views.map(|view| LETTERS[view]);
+    let rule = one_of("the view to be matched to view A", known);
+    Err(format!("--view is {}, but {rule}, or the name of a variant", quoted(wanted)))
+}
+
+/// The present value of a parameter in a view: that of the first visible object.
+fn now(scene: &Scene, view: usize, name: &str, registry: &Registry) -> Value {
+    let seen = scene.seen(view, registry).map(|(seen, _)| seen).unwrap_or_default();
+    let value = seen.shown().find_map(|object| {
+        let parameter = registry.model(seen.model_of(object))?.parameter(name)?;
+        Some(object.material.get(parameter))
+    });
+    value.unwrap_or(Value::Number(0.0))
+}
+
+fn in_words(found: &Match, before: &[Value], view: usize, what: What) -> String {
+    let letter = LETTERS[view];
+    if found.values.is_empty() {
+        return format!(
+            "view {letter} stays as it is: no other values come nearer to view A\n{}: {}\n",
+            what.unit(),
+            digits(found.before)
+        );
+    }
+    let mut text = format!("view {letter} matched to view A on the {}\n", what.id());
+    for ((name, value), before) in found.values.iter().zip(before) {
+        text += &format!("{name}: {before} → {value}\n");
+    }
+    text + &format!("{}: {} → {}\n", what.unit(), digits(found.before), digits(found.after))
+}
+
+fn as_json(found: &Match, view: usize, what: What) -> String {
+    let value = |value: &Value| match value {
+        Value::Number(v) => number(*v),
+        Value::Triple(v) => v.iter().map(|v| number(*v)).collect(),
+        other => json!(other),
+    };
+    let values: serde_json::Map<_, _> =
+        found.values.iter().map(|(name, v)| ((*name).to_owned(), value(v))).collect();
+    let all = json!({
+        "view": LETTERS[view],
+        "on": what.id(),
+        "unit": what.unit(),
+        "before": found.before,
+        "after": found.after,
+        "values": values,
+    });
+    format!("{all:#}\n")
+}

@@ -1,0 +1,64 @@
+//! Pictures as inputs: PNG files.
+
+use std::{io::Cursor, path::Path};
+
+use png::{ColorType, Decoder, Transformations};
+
+use super::render::MAX_SIDE;
+use crate::{compare::Shown, failure::Failure, files};
+
+/// The largest file of a picture: one of the largest size, not compressed.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// True if a path leads to a picture: its content begins as one, or its name says so.
+pub(super) fn is_picture(path: &Path) -> bool {
+    let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+    let begins = files::PNG.begins;
+    named || files::read_start(path, begins.len() as u64).is_ok_and(|start| start == begins)
+}
+
+/// Reads a PNG file: its colours with eight bits, as they are.
+pub(super) fn read(path: &Path) -> Result<Shown, Failure> {
+    let name = path.display();
+    let bytes = files::read_input(path, MAX_BYTES)
+        .map_err(|error| Failure::Invalid(format!("{name} could not be read: {error}")))?;
+    decode(&bytes).map_err(|what| Failure::Invalid(format!("{name}: {what}")))
+}
+
+fn decode(bytes: &[u8]) -> Result<Shown, String> {
+    if !bytes.starts_with(files::PNG.begins) {
+        return Err("this is not a PNG picture, though its name ends in .png".to_owned());
+    }
+    let broken = |error: png::DecodingError| format!("the picture is damaged: {error}");
+    let mut decoder = Decoder::new(Cursor::new(bytes));
+    decoder.set_transformations(Transformations::normalize_to_color8());
+    decoder.set_ignore_text_chunk(true);
+    let mut reader = decoder.read_info().map_err(broken)?;
+    let (width, height) = (reader.info().width, reader.info().height);
+    if width.max(height) > MAX_SIDE {
+        return Err(format!(
+            "the picture has {width}×{height} pixels, but each side must have at most {MAX_SIDE}"
+        ));
+    }
+    let size = reader.output_buffer_size().ok_or_else(|| "the picture is too large".to_owned())?;
+    let mut codes = vec![0; size];
+    let frame = reader.next_frame(&mut codes).map_err(broken)?;
+    codes.truncate(frame.buffer_size());
+    let rgb8 = match frame.color_type {
+        ColorType::Rgb => codes,
+        ColorType::Rgba => opaque::<4>(&codes)?.flat_map(|[r, g, b, _]| [r, g, b]).collect(),
+        ColorType::Grayscale => codes.iter().flat_map(|grey| [*grey; 3]).collect(),
+        ColorType::GrayscaleAlpha => opaque::<2>(&codes)?.flat_map(|[grey, _]| [grey; 3]).collect(),
+        ColorType::Indexed => return Err("the picture has a palette that could not be applied".to_owned()),
+    };
+    Shown::of_codes(width, height, rgb8).map_err(|error| error.to_string())
+}
+
+/// The pixels of a picture whose last channel, opacity, is full.
+fn opaque<const N: usize>(codes: &[u8]) -> Result<impl Iterator<Item = [u8; N]>, String> {
+    let pixels = codes.as_chunks::<N>().0;
+    match pixels.iter().all(|pixel| pixel[N - 1] == 255) {
+        true => Ok(pixels.iter().copied()),
+        false => Err("the picture is transparent in places; it must be opaque".to_owned()),
+    }
+}

@@ -1,0 +1,178 @@
+//! The views of a scene on the command line: which are drawn, and how they are compared.
+
+use clap::Args;
+
+use crate::{
+    compare::{Cell, cells},
+    optics::TermSelection,
+    registry::Registry,
+    scene::{
+        Comparison, Scene, check,
+        comparison::{Channel, Compared, Edge, Layout, Sign},
+        variant::LETTERS,
+    },
+    text::{did_you_mean, listed, quoted},
+};
+
+/// Options that change how views are compared.
+#[derive(Args, Debug)]
+pub(super) struct Choice {
+    /// Arrange the views so: single, side_by_side, wipe, difference or blink
+    #[arg(long, value_parser = layout)]
+    layout: Option<Layout>,
+    /// Compare view A with this one: its letter, or the name of its variant
+    #[arg(long, value_name = "VIEW")]
+    pub(super) with: Option<String>,
+    /// Show the size of differences, or with their sign: absolute or signed
+    #[arg(long, value_parser = sign)]
+    sign: Option<Sign>,
+    /// Compare this number of pixels: largest, luminance, red, green or blue
+    #[arg(long, value_parser = channel)]
+    channel: Option<Channel>,
+    /// Compare display codes, or linear light: codes or light
+    #[arg(long, value_parser = values)]
+    values: Option<Compared>,
+    /// Multiply differences by this, 1 to 100, before they become colours
+    #[arg(long, value_name = "FACTOR", value_parser = amplification)]
+    amplification: Option<f32>,
+    /// Place the edge of a wipe here: 0 at the left or top, 1 at the right or bottom
+    #[arg(long, value_name = "PLACE", value_parser = split)]
+    split: Option<f32>,
+    /// Direction of the edge of a wipe: vertical or horizontal
+    #[arg(long, value_parser = edge)]
+    edge: Option<Edge>,
+}
+
+/// Reads one of several words.
+fn word<T>(text: &str, rule: Result<(), String>, find: fn(&str) -> Option<T>) -> Result<T, String> {
+    rule.and_then(|()| find(text).ok_or_else(|| "it is unknown".to_owned()))
+}
+
+pub(super) fn layout(text: &str) -> Result<Layout, String> {
+    word(text, check::layout(text), Layout::from_id)
+}
+
+fn sign(text: &str) -> Result<Sign, String> {
+    word(text, check::sign(text), Sign::from_id)
+}
+
+fn channel(text: &str) -> Result<Channel, String> {
+    word(text, check::channel(text), Channel::from_id)
+}
+
+fn values(text: &str) -> Result<Compared, String> {
+    word(text, check::compared(text), Compared::from_id)
+}
+
+fn edge(text: &str) -> Result<Edge, String> {
+    word(text, check::edge(text), Edge::from_id)
+}
+
+fn amplification(text: &str) -> Result<f32, String> {
+    let factor = text.parse().unwrap_or(f32::NAN);
+    check::amplification(factor).map(|()| factor)
+}
+
+fn split(text: &str) -> Result<f32, String> {
+    let place = text.parse().unwrap_or(f32::NAN);
+    check::split(place).map(|()| place)
+}
+
+impl Choice {
+    /// A comparison with these changes, but for the other view. A single view is no comparison: then the views stand
+    /// side by side.
+    pub(super) fn applied(&self, comparison: Comparison) -> Comparison {
+        let usual = match comparison.layout {
+            Layout::Single => Layout::SideBySide,
+            layout => layout,
+        };
+        Comparison {
+            layout: self.layout.unwrap_or(usual),
+            sign: self.sign.unwrap_or(comparison.sign),
+            channel: self.channel.unwrap_or(comparison.channel),
+            values: self.values.unwrap_or(comparison.values),
+            amplification: self.amplification.unwrap_or(comparison.amplification),
+            split: self.split.unwrap_or(comparison.split),
+            edge: self.edge.unwrap_or(comparison.edge),
+            with: comparison.with,
+        }
+    }
+}
+
+/// The view with a letter, or with the name of its variant.
+pub(super) fn find(scene: &Scene, name: &str) -> Result<usize, String> {
+    let letters = &LETTERS[..=scene.variants.len().min(LETTERS.len() - 1)];
+    let letter = letters.iter().position(|letter| letter.eq_ignore_ascii_case(name));
+    let named = || scene.variants.iter().position(|v| v.name.as_deref() == Some(name)).map(|i| i + 1);
+    letter.or_else(named).ok_or_else(|| {
+        let names = scene.variants.iter().filter_map(|variant| variant.name.as_deref());
+        let hint = did_you_mean(name, names.map(|n| (n, n)));
+        let known = |(i, letter): (usize, &&str)| match i.checked_sub(1).and_then(|i| scene.variants.get(i)) {
+            Some(variant) => match &variant.name {
+                Some(name) => format!("{letter} ({name})"),
+                None => (*letter).to_owned(),
+            },
+            None => (*letter).to_owned(),
+        };
+        let known: Vec<_> = letters.iter().enumerate().map(known).collect();
+        format!("there is no view {}; it must be {}{hint}", quoted(name), listed(&known, "or"))
+    })
+}
+
+/// A part of a picture: a view, and its place.
+pub(super) struct Part {
+    pub(super) cell: Cell,
+    /// The scene that the view shows.
+    pub(super) scene: Scene,
+    pub(super) terms: TermSelection,
+}
+
+/// The parts of a picture of a scene, and what is made of them.
+pub(super) struct Plan {
+    pub(super) comparison: Comparison,
+    pub(super) parts: Vec<Part>,
+}
+
+impl Plan {
+    /// The picture of a scene as it is compared. `terms`, unless they are all, replace those of each view.
+    pub(super) fn new(
+        scene: &Scene,
+        comparison: Comparison,
+        size: [u32; 2],
+        terms: TermSelection,
+        registry: &Registry,
+    ) -> Result<Self, String> {
+        let cells = cells(&comparison, scene.variants.len(), size).ok_or_else(|| {
+            format!("a picture of {}x{} pixels has no room for the views side by side", size[0], size[1])
+        })?;
+        let part = |cell: Cell| {
+            let (scene, own) = scene.seen(cell.view, registry)?;
+            Some(Part { cell, scene, terms: if terms == TermSelection::All { own } else { terms } })
+        };
+        // The picture of a blink is that of view A.
+        let count = if comparison.layout == Layout::Blink { 1 } else { cells.len() };
+        Ok(Self { comparison, parts: cells.into_iter().take(count).filter_map(part).collect() })
+    }
+
+    /// The picture of one view.
+    pub(super) fn of_view(
+        scene: &Scene,
+        view: usize,
+        [width, height]: [u32; 2],
+        terms: TermSelection,
+        registry: &Registry,
+    ) -> Self {
+        let cell = Cell { view, left: 0, top: 0, width, height };
+        let (scene, own) = scene.seen(view, registry).unwrap_or_else(|| (scene.clone(), terms));
+        let terms = if terms == TermSelection::All { own } else { terms };
+        let comparison = Comparison { layout: Layout::Single, ..scene.comparison };
+        Self { comparison, parts: vec![Part { cell, scene, terms }] }
+    }
+
+    /// True if the picture is made from light, not from display codes.
+    pub(super) fn needs_light(&self) -> bool {
+        self.comparison.layout == Layout::Difference
+            && self.comparison.values == Compared::Light
+            && self.parts.len() > 1
+    }
+}

@@ -1,0 +1,83 @@
+//! A picture to draw on: rectangles, a circle, text.
+
+use crate::lettering::Lettering;
+
+/// The ground of plates with text, and between pictures.
+pub(super) const DARK: [u8; 3] = [22, 22, 22];
+/// Text on a plate.
+pub(super) const BRIGHT: [u8; 3] = [240, 240, 240];
+
+/// A rectangle of pixels: left, top, width, height.
+pub(super) type Rect = [u32; 4];
+
+/// A picture of RGB bytes.
+pub(super) struct Canvas {
+    pub(super) size: [u32; 2],
+    pub(super) rgb8: Vec<u8>,
+}
+
+impl Canvas {
+    /// A picture of one colour.
+    pub(super) fn new(size: [u32; 2], colour: [u8; 3]) -> Self {
+        Self { size, rgb8: colour.repeat(size[0] as usize * size[1] as usize) }
+    }
+
+    /// Sizes of text and lines grow with the picture: 1 at 720 pixels across its smaller side.
+    pub(super) fn scale(&self) -> f32 {
+        (self.size[0].min(self.size[1]) as f32 / 720.0).clamp(0.6, 4.0)
+    }
+
+    fn pixel(&mut self, x: i64, y: i64) -> Option<&mut [u8; 3]> {
+        let [width, height] = self.size.map(i64::from);
+        let inside = (0..width).contains(&x) && (0..height).contains(&y);
+        let i = inside.then_some(y * width + x)? as usize;
+        self.rgb8.as_chunks_mut::<3>().0.get_mut(i)
+    }
+
+    /// Mixes a colour into a pixel; outside nothing happens.
+    fn blend(&mut self, x: i64, y: i64, colour: [u8; 3], part: f32) {
+        let Some(pixel) = self.pixel(x, y) else { return };
+        for (old, new) in pixel.iter_mut().zip(colour) {
+            let (from, to) = (f32::from(*old), f32::from(new));
+            *old = (from + part * (to - from)).round() as u8;
+        }
+    }
+
+    /// Fills a rectangle; `part` 1 covers what was there.
+    pub(super) fn fill(&mut self, [left, top, width, height]: Rect, colour: [u8; 3], part: f32) {
+        for y in top..top.saturating_add(height).min(self.size[1]) {
+            for x in left..left.saturating_add(width).min(self.size[0]) {
+                self.blend(x.into(), y.into(), colour, part);
+            }
+        }
+    }
+
+    /// Copies a part of a picture of some width to a place of this one.
+    pub(super) fn copy(&mut self, from: &[u8], width: u32, [x, y]: [u32; 2], [left, top, w, h]: Rect) {
+        let bytes = |x: u32, y: u32, width: u32| 3 * (y as usize * width as usize + x as usize);
+        for row in 0..h {
+            let source = bytes(x, y + row, width);
+            let target = bytes(left, top + row, self.size[0]);
+            let length = 3 * w as usize;
+            self.rgb8[target..target + length].copy_from_slice(&from[source..source + length]);
+        }
+    }
+
+    /// A ring around the centre of a pixel, smooth at its edges.
+    pub(super) fn ring(&mut self, [x, y]: [u32; 2], radius: f32, width: f32, colour: [u8; 3]) {
+        let reach = (radius + width).ceil() as i64 + 1;
+        for dy in -reach..=reach {
+            for dx in -reach..=reach {
+                let from_line = ((dx * dx + dy * dy) as f32).sqrt() - radius;
+                let part = (0.5 * width + 0.5 - from_line.abs()).clamp(0.0, 1.0);
+                self.blend(i64::from(x) + dx, i64::from(y) + dy, colour, part);
+            }
+        }
+    }
+
+    /// A line of text with its upper left corner at a place.
+    pub(super) fn text(&mut self, style: Lettering, [x, y]: [u32; 2], px: f32, text: &str) {
+        let at = [x, y].map(|v| i32::try_from(v).unwrap_or(i32::MAX));
+        style.draw(&mut self.rgb8, self.size, at, px, BRIGHT, text);
+    }
+}

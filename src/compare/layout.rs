@@ -1,0 +1,151 @@
+//! The views of a scene in one picture.
+
+use super::{
+    canvas::{BRIGHT, Canvas, DARK, Rect},
+    pair::{Pair, Unequal},
+    shown::Shown,
+};
+use crate::{
+    lettering::Lettering,
+    scene::{
+        Comparison,
+        comparison::{Edge, Layout},
+        variant::LETTERS,
+    },
+};
+
+/// The place of a view in a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cell {
+    /// The view: 0 for A.
+    pub view: usize,
+    /// Pixels from the left.
+    pub left: u32,
+    /// Pixels from the top.
+    pub top: u32,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+}
+
+/// The places of the views that a layout shows in a picture of some size, where a scene has this many variants. Those
+/// beside each other have equal sizes; where views lie over each other, each has the size of the picture. `None` if the
+/// picture has no room for them.
+#[must_use]
+pub fn cells(comparison: &Comparison, variants: usize, [width, height]: [u32; 2]) -> Option<Vec<Cell>> {
+    let views = comparison.views(variants);
+    let side_by_side = comparison.layout == Layout::SideBySide && views.len() > 1;
+    if !side_by_side {
+        return Some(views.into_iter().map(|view| Cell { view, left: 0, top: 0, width, height }).collect());
+    }
+    let rows = if views.len() > 2 { 2 } else { 1 };
+    let gap = (width.min(height) / 180).clamp(2, 16);
+    let across = halves(width, gap)?;
+    let down = if rows == 1 { [(0, height); 2] } else { halves(height, gap)? };
+    let place = |(i, view)| {
+        let (column, row): (usize, usize) = (i % 2, i / 2);
+        let ((left, width), (top, height)) = (across[column], down[row]);
+        Cell { view, left, top, width, height }
+    };
+    Some(views.into_iter().enumerate().map(place).collect())
+}
+
+/// Two equal parts of a length, with a gap between them that takes what is left over: start and length of each.
+fn halves(length: u32, gap: u32) -> Option<[(u32, u32); 2]> {
+    let half = length.checked_sub(gap)? / 2;
+    (half > 0).then_some([(0, half), (length - half, half)])
+}
+
+/// The pixels of a wipe at the left of the edge, or above it.
+#[must_use]
+pub fn edge(split: f32, length: u32) -> u32 {
+    (split.clamp(0.0, 1.0) * length as f32).round() as u32
+}
+
+/// The picture of a layout: red, green, blue, row by row from the top. `shown` are the views of the layout in the order
+/// of [`Comparison::views`], each of the size of its cell. A layout of two views shows view A if there is no other.
+///
+/// # Errors
+/// If pictures of a layout over each other have different sizes, or light is to be compared and one has none.
+///
+/// # Panics
+/// If there is no picture.
+pub fn compose(comparison: &Comparison, size: [u32; 2], shown: &[Shown]) -> Result<Vec<u8>, Unequal> {
+    let (a, b) = (&shown[0], shown.get(1));
+    match (comparison.layout, b) {
+        (Layout::Wipe, Some(b)) => wipe(comparison, &Pair::new(a, b)?),
+        (Layout::Difference, Some(b)) => Pair::new(a, b)?.map(comparison),
+        (Layout::SideBySide, Some(_)) => side_by_side(comparison, size, shown),
+        _ => Ok(a.rgb8().to_vec()),
+    }
+}
+
+fn side_by_side(comparison: &Comparison, size: [u32; 2], shown: &[Shown]) -> Result<Vec<u8>, Unequal> {
+    let mut canvas = Canvas::new(size, DARK);
+    let cells = cells(comparison, shown.len() - 1, size).unwrap_or_default();
+    for (cell, shown) in cells.iter().zip(shown) {
+        let Cell { left, top, width, height, .. } = *cell;
+        if shown.size() != [width, height] {
+            return Err(Unequal::Sizes([width, height], shown.size()));
+        }
+        canvas.copy(shown.rgb8(), width, [0, 0], [left, top, width, height]);
+    }
+    for Cell { view, left, top, width, height } in cells {
+        letter(&mut canvas, view, [left, top, width, height], [false, false]);
+    }
+    Ok(canvas.rgb8)
+}
+
+fn wipe(comparison: &Comparison, pair: &Pair) -> Result<Vec<u8>, Unequal> {
+    let size @ [width, height] = pair.a.size();
+    let mut canvas = Canvas { size, rgb8: pair.a.rgb8().to_vec() };
+    let vertical = comparison.edge == Edge::Vertical;
+    let length = if vertical { width } else { height };
+    let at = edge(comparison.split, length);
+    let [a, b] = if vertical {
+        [[0, 0, at, height], [at, 0, width - at, height]]
+    } else {
+        [[0, 0, width, at], [0, at, width, height - at]]
+    };
+    canvas.copy(pair.b.rgb8(), width, [b[0], b[1]], b);
+    // A view that is not seen has neither letter nor edge.
+    if at > 0 && at < length {
+        let line = (2.0 * canvas.scale()).round().max(1.0) as u32;
+        for (extra, colour) in [(1, DARK), (0, BRIGHT)] {
+            let start = at.saturating_sub(line.div_ceil(2) + extra);
+            let thick = line + 2 * extra;
+            let rect = if vertical { [start, 0, thick, height] } else { [0, start, width, thick] };
+            canvas.fill(rect, colour, 1.0);
+        }
+    }
+    if at > 0 {
+        letter(&mut canvas, 0, a, [false, false]);
+    }
+    if at < length {
+        letter(&mut canvas, comparison.with, b, [vertical, !vertical]);
+    }
+    Ok(canvas.rgb8)
+}
+
+/// The letter of a view on a plate in a corner of a part of the picture: at the right, at the bottom.
+fn letter(
+    canvas: &mut Canvas,
+    view: usize,
+    [left, top, width, height]: Rect,
+    [at_right, at_bottom]: [bool; 2],
+) {
+    let Some(letter) = LETTERS.get(view) else { return };
+    let (scale, style) = (canvas.scale(), Lettering::Semibold);
+    let px = 20.0 * scale;
+    let line = style.height(px);
+    let margin = (8.0 * scale).round() as u32;
+    let plate = [line.max(style.width(px, letter) + margin), line];
+    if width < plate[0] + 2 * margin || height < plate[1] + 2 * margin {
+        return;
+    }
+    let x = if at_right { left + width - plate[0] - margin } else { left + margin };
+    let y = if at_bottom { top + height - plate[1] - margin } else { top + margin };
+    canvas.fill([x, y, plate[0], plate[1]], DARK, 0.88);
+    canvas.text(style, [x + (plate[0] - style.width(px, letter)) / 2, y], px, letter);
+}

@@ -1,0 +1,121 @@
+//! What a view shows.
+
+use thiserror::Error;
+
+use crate::{
+    optics::TermSelection,
+    reference::{self, Picture, Settings},
+    registry::Registry,
+    scene::{Display, Scene},
+};
+
+/// What a view shows, as a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    width: u32,
+    height: u32,
+    rgb8: Vec<u8>,
+    light: Option<Picture>,
+    covered: Option<Vec<bool>>,
+}
+
+/// A number of bytes, or of pixels, that does not match the size of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("a picture of {width} × {height} pixels has not {found} of them")]
+pub struct WrongSize {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// The number found.
+    pub found: usize,
+}
+
+impl Shown {
+    /// A picture of display codes: red, green, blue, row by row from the top. Its light, and which pixels objects cover,
+    /// are unknown.
+    ///
+    /// # Errors
+    /// If there are not `width · height · 3` codes.
+    pub fn of_codes(width: u32, height: u32, rgb8: Vec<u8>) -> Result<Self, WrongSize> {
+        let pixels = width as usize * height as usize;
+        if rgb8.len() != 3 * pixels {
+            return Err(WrongSize { width, height, found: rgb8.len() / 3 });
+        }
+        Ok(Self { width, height, rgb8, light: None, covered: None })
+    }
+
+    /// The same, where it is known which pixels objects cover.
+    ///
+    /// # Errors
+    /// If it is not known of each pixel.
+    pub fn covering(mut self, covered: Vec<bool>) -> Result<Self, WrongSize> {
+        if covered.len() * 3 != self.rgb8.len() {
+            return Err(WrongSize { width: self.width, height: self.height, found: covered.len() });
+        }
+        self.covered = Some(covered);
+        Ok(self)
+    }
+
+    /// The same with its light, which also tells what objects cover.
+    ///
+    /// # Errors
+    /// If the light is of another size.
+    pub fn with_light(mut self, light: Picture) -> Result<Self, WrongSize> {
+        if (light.width, light.height) != (self.width, self.height) {
+            return Err(WrongSize { width: self.width, height: self.height, found: light.pixels.len() });
+        }
+        self.covered = Some(light.pixels.iter().map(|pixel| pixel.w > 0.0).collect());
+        self.light = Some(light);
+        Ok(self)
+    }
+
+    /// A picture of light, as displayed.
+    #[must_use]
+    pub fn of_light(light: Picture, display: &Display) -> Self {
+        let (width, height) = (light.width, light.height);
+        let rgb8 = light.to_rgb8(display);
+        let covered = light.pixels.iter().map(|pixel| pixel.w > 0.0).collect();
+        Self { width, height, rgb8, light: Some(light), covered: Some(covered) }
+    }
+
+    /// A view of a scene, drawn by the CPU renderer; view 0 is the scene itself. The terms of `settings` are shown
+    /// unless they are all: then those of the view. `None` if there is no such view.
+    #[must_use]
+    pub fn of_view(scene: &Scene, view: usize, registry: &Registry, settings: &Settings) -> Option<Self> {
+        let (seen, own) = scene.seen(view, registry)?;
+        let terms = if settings.terms == TermSelection::All { own } else { settings.terms };
+        let light = reference::render(&seen, registry, &Settings { terms, ..*settings });
+        Some(Self::of_light(light, &seen.display))
+    }
+
+    /// Pixels across and down.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// The display codes: red, green, blue, row by row from the top.
+    #[must_use]
+    pub fn rgb8(&self) -> &[u8] {
+        &self.rgb8
+    }
+
+    /// The same, without the rest.
+    #[must_use]
+    pub fn into_rgb8(self) -> Vec<u8> {
+        self.rgb8
+    }
+
+    /// The light, if it is known: linear, before exposure; that of the background is 0.
+    #[must_use]
+    pub fn light(&self) -> Option<&Picture> {
+        self.light.as_ref()
+    }
+
+    /// Whether objects cover each pixel, if it is known: at least one of its samples.
+    #[must_use]
+    pub fn covered(&self) -> Option<&[bool]> {
+        self.covered.as_deref()
+    }
+}

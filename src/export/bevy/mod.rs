@@ -1,0 +1,97 @@
+//! The form `bevy`: a Cargo project with one `main.rs`, the shaders and the meshes of the scene.
+//!
+//! `program` writes `main.rs`, `words` turns values and names into Rust.
+
+use super::{Export, ExportError, File, Form, Makes, Progress, Request, lit::Lit, shader::Host};
+use crate::optics::tone::exposure_factor;
+
+mod program;
+mod words;
+
+/// The form.
+pub const BEVY: Form = Form {
+    id: "bevy",
+    name: "Bevy project",
+    summary: "a Cargo project with one readable main.rs and the WGSL in use; cargo run opens a window",
+    makes: Makes::Folder,
+    of_object: false,
+    make,
+};
+
+/// The version of Bevy that the project is written for.
+const BEVY_VERSION: &str = "=0.19.1";
+/// The features of Bevy that the project needs. Sound, gamepads and Wayland would need packages of the system to be
+/// built; with X11 alone the window opens on Wayland too, by XWayland.
+const FEATURES: [&str; 14] = [
+    "std",
+    "async_executor",
+    "multi_threaded",
+    "bevy_asset",
+    "bevy_log",
+    "bevy_winit",
+    "x11",
+    "bevy_render",
+    "bevy_core_pipeline",
+    "bevy_pbr",
+    "tonemapping_luts",
+    "ktx2",
+    "zstd_rust",
+    "png",
+];
+
+fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
+    progress.step(0.0, "composing the shaders")?;
+    let display = request.scene.display;
+    let host = Host::Bevy { exposure: exposure_factor(display.exposure), encoding: display.encoding };
+    let lit = Lit::of(*request, host, |_| true)?;
+    if lit.objects.is_empty() {
+        return Err(ExportError::refused("every object is hidden; make one visible"));
+    }
+    if lit.programs.iter().any(|program| program.shader.reads_header) {
+        return Err(ExportError::refused(
+            "the edited loop.wgsl reads the exposure or the encoding, which the light loop of an export has no part in",
+        ));
+    }
+    progress.step(0.5, "writing the program")?;
+    let name = words::package(request.stem);
+    let mut files =
+        vec![File::new("Cargo.toml", manifest(&name)), File::new("src/main.rs", program::text(&lit, &name))];
+    for program in &lit.programs {
+        let path = format!("assets/shaders/{}.wgsl", program.name());
+        files.push(File::new(path, program.shader.text.as_str()));
+    }
+    progress.step(0.8, "packing the meshes")?;
+    for mesh in &lit.meshes {
+        let counts = [mesh.vertices() as u32, mesh.attributes.len() as u32];
+        let mut bytes: Vec<u8> = counts.into_iter().flat_map(u32::to_le_bytes).collect();
+        bytes.extend(mesh.interleaved());
+        bytes.extend(mesh.indices.iter().flat_map(|i| i.to_le_bytes()));
+        files.push(File::new(format!("assets/meshes/{}.bin", mesh.name), bytes));
+    }
+    Ok(Export { files, notes: lit.notes() })
+}
+
+fn manifest(name: &str) -> String {
+    let features: String = FEATURES
+        .chunks(5)
+        .map(|row| {
+            let quoted: Vec<_> = row.iter().map(|f| format!("\"{f}\"")).collect();
+            format!("    {},\n", quoted.join(", "))
+        })
+        .collect();
+    format!(
+        "[package]
+name = \"{name}\"
+version = \"0.1.0\"
+edition = \"2024\"
+
+[dependencies]
+bevy = {{ version = \"{BEVY_VERSION}\", default-features = false, features = [
+{features}] }}
+
+# Bevy without optimisation is very slow.
+[profile.dev.package.\"*\"]
+opt-level = 3
+"
+    )
+}

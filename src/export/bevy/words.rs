@@ -1,0 +1,211 @@
+//! Names and values of a scene as Rust.
+
+use glam::Vec3;
+
+use crate::{
+    optics::colour::Encoding,
+    parameter::{Parameter, ParameterKind, Value, Values},
+};
+
+/// The name of a package: lower-case letters, digits and underscores, beginning with a letter.
+pub(super) fn package(stem: &str) -> String {
+    let name = snake(stem);
+    if name.is_empty() {
+        "scene".to_owned()
+    } else if RESERVED.contains(&name.as_str()) {
+        format!("{name}_scene")
+    } else {
+        name
+    }
+}
+
+/// Names that no package can have: the words of Rust, its crates, the folders of cargo, and what is used here.
+const RESERVED: &[&str] = &[
+    "abstract",
+    "alloc",
+    "as",
+    "async",
+    "await",
+    "become",
+    "bevy",
+    "box",
+    "break",
+    "build",
+    "const",
+    "continue",
+    "core",
+    "crate",
+    "deps",
+    "do",
+    "dyn",
+    "else",
+    "enum",
+    "examples",
+    "extern",
+    "false",
+    "final",
+    "fn",
+    "for",
+    "gen",
+    "if",
+    "impl",
+    "in",
+    "incremental",
+    "let",
+    "loop",
+    "macro",
+    "main",
+    "match",
+    "mod",
+    "move",
+    "mut",
+    "override",
+    "priv",
+    "proc_macro",
+    "pub",
+    "ref",
+    "return",
+    "self",
+    "static",
+    "std",
+    "struct",
+    "super",
+    "test",
+    "trait",
+    "true",
+    "try",
+    "type",
+    "typeof",
+    "unsafe",
+    "unsized",
+    "use",
+    "virtual",
+    "where",
+    "while",
+    "yield",
+];
+
+/// A text as a Rust name in lower case; empty if nothing is left of it.
+pub(super) fn snake(text: &str) -> String {
+    let mut name = String::new();
+    for c in deunicode::deunicode(text).chars() {
+        if c.is_ascii_alphanumeric() {
+            name.push(c.to_ascii_lowercase());
+        } else if !name.is_empty() && !name.ends_with('_') {
+            name.push('_');
+        }
+    }
+    let name = name.trim_end_matches('_');
+    /// The longest name: longer ones are sentences.
+    const LONGEST: usize = 32;
+    let name = name.get(..LONGEST).unwrap_or(name).trim_end_matches('_');
+    if name.starts_with(|c: char| c.is_ascii_digit()) { format!("_{name}") } else { name.to_owned() }
+}
+
+/// A name in lower case as that of a type.
+pub(super) fn camel(snake: &str) -> String {
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        // Two underscores in a row tell apart what would look alike.
+        letters
+            .next()
+            .map_or_else(|| "_".to_owned(), |c| c.to_ascii_uppercase().to_string() + letters.as_str())
+    };
+    snake.split('_').map(capital).collect()
+}
+
+/// A number.
+pub(super) fn number(x: f32) -> String {
+    format!("{x:?}")
+}
+
+/// A vector.
+pub(super) fn vector(v: Vec3) -> String {
+    if v == Vec3::ZERO {
+        return "Vec3::ZERO".to_owned();
+    }
+    if v == Vec3::ONE {
+        return "Vec3::ONE".to_owned();
+    }
+    format!("Vec3::new({:?}, {:?}, {:?})", v.x, v.y, v.z)
+}
+
+/// The type of a parameter.
+pub(super) fn kind(wgsl: &str) -> &'static str {
+    match wgsl {
+        "vec3<f32>" => "Vec3",
+        "u32" => "u32",
+        _ => "f32",
+    }
+}
+
+/// The value of a parameter, and a comment where the number does not speak for itself.
+pub(super) fn value(p: &Parameter, values: &Values, encoding: Encoding) -> (String, Option<String>) {
+    match (&p.kind, values.get(p)) {
+        (ParameterKind::Colour { .. }, Value::Colour([r, g, b])) if encoding == Encoding::Srgb => {
+            (format!("srgb({r}, {g}, {b})"), None)
+        }
+        (ParameterKind::Colour { .. } | ParameterKind::Triple { .. }, _) => {
+            (vector(values.colour(p, encoding)), None)
+        }
+        (ParameterKind::Choice { options, .. }, _) => {
+            let index = values.choice(p);
+            let name = options.get(index as usize).map(|(_, name)| (*name).to_owned());
+            (index.to_string(), name)
+        }
+        _ if p.wgsl_type() == "u32" => (values.choice(p).to_string(), None),
+        _ => (number(values.number(p)), None),
+    }
+}
+
+/// The name of a field of a struct: that of the parameter, unless Rust has another use for the word.
+pub(super) fn field(name: &str) -> String {
+    if RESERVED.contains(&name) { format!("{name}_") } else { name.to_owned() }
+}
+
+/// A text for comments: one line, without characters that a terminal or an editor would act on.
+pub(super) fn comment(text: &str) -> String {
+    let acts = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    text.chars().map(|c| if acts(c) { ' ' } else { c }).collect()
+}
+
+/// A text as a Rust string.
+pub(super) fn string(text: &str) -> String {
+    // Debug writes control characters as escapes, and so must be those that turn the direction of text.
+    let turns = |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let plain: String = text.chars().filter(|c| !turns(*c)).collect();
+    format!("{plain:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_and_fields_are_harmless() {
+        assert_eq!(comment("a\u{202e}b\n\u{1b}[0m é"), "a b  [0m é");
+        assert_eq!((field("in"), field("alpha")), ("in_".to_owned(), "alpha".to_owned()));
+    }
+
+    #[test]
+    fn names_are_legal() {
+        for (text, expected) in [
+            ("Gold, three lights", "gold_three_lights"),
+            ("3 spheres", "_3_spheres"),
+            ("Größe", "grosse"),
+            ("---", ""),
+            ("an object whose name is a whole sentence of its own", "an_object_whose_name_is_a_whole"),
+        ] {
+            assert_eq!(snake(text), expected);
+        }
+        assert_eq!(package("---"), "scene");
+        assert_eq!(
+            (package("Bevy"), package("test"), package("lamp")),
+            ("bevy_scene".into(), "test_scene".into(), "lamp".into())
+        );
+        assert_eq!(camel("blinn_phong"), "BlinnPhong");
+    }
+}

@@ -1,0 +1,246 @@
+//! The scene as the page reads it.
+
+use std::collections::HashMap;
+
+use serde_json::{Map, Value as Json, json};
+
+use super::{
+    blocks::Blocks,
+    equation::{equation, symbol},
+    mesh,
+    programs::program,
+    texts::Texts,
+};
+use crate::{
+    export::{ExportError, Progress, Request, lit::Lit, object_path, shaders::alone},
+    optics::colour::srgb_encode,
+    parameter::{Parameter, ParameterKind, json as value, layout, stride},
+    reflection::{Ambient, ModelEntry, Term},
+    scene::Scene,
+    shading::ShadingEntry,
+};
+
+/// The scene, and its meshes.
+#[derive(Debug)]
+pub struct Data {
+    /// All but the meshes.
+    pub scene: Json,
+    /// The bytes of the meshes, one after the other.
+    pub meshes: Vec<u8>,
+    /// What differs from the picture in the lab: sentences.
+    pub notes: Vec<String>,
+}
+
+/// A sentence for each object whose normals come from its file: the page calculates all.
+fn normals<'a>(lit: &'a Lit) -> impl Iterator<Item = String> + 'a {
+    let Request { scene, registry, .. } = lit.request;
+    lit.objects.iter().filter_map(move |drawn| {
+        let object = &scene.objects[drawn.index];
+        let shape = registry.shape(&object.object_type)?;
+        // Only files have normals of their own among what is built in; making all meshes again would take a while.
+        let from_file = |p: &Parameter| matches!(p.kind, ParameterKind::File { .. });
+        shape.parameters.iter().any(from_file).then_some(())?;
+        let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
+        mesh.has_own_normals().then(|| {
+            let path = object_path(scene, drawn.index);
+            format!("{path}: the page calculates the normals of its mesh and does not use those of the file.")
+        })
+    })
+}
+
+/// Takes a scene apart for a page.
+///
+/// # Errors
+/// Parts that a page cannot hold.
+pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError> {
+    let Request { scene, registry, .. } = *request;
+    let host = alone(request)?;
+    let shadings = registry.shading_models();
+    let variants: Vec<Scene> = shadings.iter().map(|shading| shaded(scene, shading)).collect();
+    let mut lits = Vec::new();
+    for (i, variant) in variants.iter().enumerate() {
+        progress.step(0.4 * i as f32 / variants.len() as f32, "taking the scene apart")?;
+        lits.push(Lit::of(Request { scene: variant, ..*request }, host, |_| true)?);
+    }
+    let Some(lit) = lits.first().filter(|lit| !lit.objects.is_empty()) else {
+        return Err(ExportError::refused("all objects are hidden; make one visible"));
+    };
+
+    let (mut texts, mut blocks) = (Texts::default(), Blocks::default());
+    let mut models = Vec::new();
+    for (m, of_model) in lit.programs.iter().enumerate() {
+        let done = 0.4 + 0.4 * m as f32 / lit.programs.len() as f32;
+        progress.step(done, "translating its shaders")?;
+        // Each shading model has materials of its own, but the objects are the same.
+        let at = lit.objects.iter().position(|drawn| lit.materials[drawn.material].program == m);
+        let Some(at) = at else { continue };
+        let mut programs = Vec::new();
+        for lit in &lits {
+            programs.push(program(lit, &lit.objects[at], &mut texts, &mut blocks)?);
+        }
+        models.push(model(of_model.model, lit.lights.uniform, &programs));
+    }
+
+    progress.step(0.8, "packing its meshes")?;
+    let tangents = lit.programs.iter().any(|p| p.model.declaration.anisotropic);
+    let (meshes, mesh_of, bytes) = meshes(lit, tangents);
+    let objects: Vec<_> = lit
+        .objects
+        .iter()
+        .zip(mesh_of)
+        .map(|(drawn, mesh)| {
+            let object = &scene.objects[drawn.index];
+            let material = &lit.materials[drawn.material];
+            let shading = scene.shading_model_of(object);
+            let values: Map<_, _> =
+                object.material.0.iter().map(|(name, v)| (name.to_string(), value(v))).collect();
+            json!({
+                "name": object.name.clone().unwrap_or_else(|| format!("{} {}", object.object_type, drawn.index + 1)),
+                "model": material.program,
+                "shading": shadings.iter().position(|s| s.declaration.id == shading),
+                "mesh": mesh,
+                "matrix": drawn.room_from_object(request).to_cols_array(),
+                "values": values,
+                "curve": (!material.curve.is_empty()).then(|| blocks.add(&material.curve)),
+            })
+        })
+        .collect();
+    let observer = &scene.observer;
+    let scene = json!({
+        "shadings": shadings.iter().map(|s| json!({
+            "id": s.declaration.id,
+            "name": s.declaration.name,
+            "source": s.declaration.source,
+            "summary": s.declaration.summary,
+            "parameters": parameters(s.parameters),
+            "size": stride(s.parameters),
+        })).collect::<Vec<_>>(),
+        "models": models,
+        "objects": objects,
+        "meshes": meshes,
+        "observer": {
+            "position": observer.position.to_array(),
+            "direction": observer.direction.to_array(),
+            "fieldOfView": observer.field_of_view,
+        },
+        "exposure": scene.display.exposure,
+        "encoding": scene.display.encoding.id(),
+        "background": lit.background().map(|v| srgb_encode(v.clamp(0.0, 1.0))).to_array(),
+        "texts": texts.json(),
+        "blocks": blocks.json(),
+    });
+    let mut notes = lit.notes();
+    notes.extend(normals(lit));
+    Ok(Data { scene, meshes: bytes, notes })
+}
+
+/// The scene with one shading model for all objects.
+fn shaded(scene: &Scene, shading: &ShadingEntry) -> Scene {
+    let mut scene = scene.clone();
+    for object in &mut scene.objects {
+        object.shading_model = Some(shading.declaration.id.to_owned());
+    }
+    scene
+}
+
+/// The meshes, that of each object, and the bytes of all.
+fn meshes(lit: &Lit, tangents: bool) -> (Vec<Json>, Vec<usize>, Vec<u8>) {
+    let Request { scene, registry, .. } = lit.request;
+    let (mut all, mut of_objects, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut known = HashMap::new();
+    for drawn in &lit.objects {
+        let object = &scene.objects[drawn.index];
+        // Known, or the scene could not have been taken apart.
+        let Some(shape) = registry.shape(&object.object_type) else { continue };
+        let index = *known.entry(shape.key(&object.shape, object.tessellation)).or_insert_with(|| {
+            let polygons = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
+            let packed = mesh::pack(&polygons, tangents);
+            all.push(json!({
+                "vertices": packed.vertices,
+                "polygons": packed.polygons,
+                "step": packed.step,
+                "tangents": packed.tangents,
+                "at": bytes.len(),
+            }));
+            bytes.extend(packed.bytes);
+            all.len() - 1
+        });
+        of_objects.push(index);
+    }
+    (all, of_objects, bytes)
+}
+
+fn model(entry: &ModelEntry, uniform: bool, programs: &[Json]) -> Json {
+    let what = entry.declaration;
+    let parts: Vec<_> = what
+        .equation
+        .iter()
+        .map(|part| json!({ "term": term(part.term), "html": equation(part.text) }))
+        .collect();
+    json!({
+        "id": what.id,
+        "name": what.name,
+        "author": what.author,
+        "source": what.source,
+        "summary": what.summary,
+        "equation": parts,
+        "parameters": parameters(entry.parameters),
+        "size": stride(entry.parameters),
+        "harmonics": entry.harmonics(),
+        // The parts of the curve that the shaders read.
+        "albedo": uniform && what.ambient == Ambient::Albedo,
+        "lobe": lobe(entry),
+        "programs": programs,
+    })
+}
+
+/// The settings under which the specular response of a model is its lobe alone, with F = 1 and without multiple
+/// scattering: null for models without a lobe, and `false` for those whose lobe only the program can calculate.
+fn lobe(entry: &ModelEntry) -> Json {
+    match entry.lobe_of() {
+        None => Json::Null,
+        Some("microfacet") if entry.has_lobe() => json!({ "fresnel": "none", "multiple_scattering": "none" }),
+        Some(_) => Json::Bool(false),
+    }
+}
+
+fn term(term: Term) -> &'static str {
+    match term {
+        Term::Total => "total",
+        Term::Ambient => "ambient",
+        Term::Diffuse => "diffuse",
+        Term::Specular => "specular",
+    }
+}
+
+fn parameters(all: &[Parameter]) -> Vec<Json> {
+    all.iter().zip(layout(all)).map(|(p, (_, _, at))| parameter(p, at)).collect()
+}
+
+fn parameter(p: &Parameter, at: usize) -> Json {
+    let mut json = json!({
+        "name": p.name,
+        "symbol": symbol(p.symbol),
+        "label": p.label,
+        "unit": p.unit,
+        "help": p.help,
+        "kind": p.kind.name(),
+        "default": value(&p.default_value()),
+        "at": at,
+        "usedWhen": p.used_when.map(|used| json!({ "parameter": used.parameter, "choices": used.choices })),
+    });
+    match &p.kind {
+        ParameterKind::Number { min, max, .. } | ParameterKind::Triple { min, max, .. } => {
+            json["min"] = json!(min);
+            json["max"] = json!(max);
+        }
+        ParameterKind::Integer { min, max, slider_max, .. } => {
+            json["min"] = json!(min);
+            json["max"] = json!(max.unwrap_or(*slider_max));
+            json["open"] = json!(max.is_none());
+        }
+        ParameterKind::Choice { options, .. } => json["options"] = json!(options),
+        ParameterKind::Colour { .. } | ParameterKind::File { .. } => {}
+    }
+    json
+}

@@ -1,0 +1,81 @@
+//! Equations and symbols as HTML: letters slanted, words upright, indices and powers in their places.
+
+use crate::text::mathematics::{Atom, parse, parse_symbol};
+
+/// A text with the signs escaped that HTML gives a meaning.
+#[must_use]
+pub fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+/// An equation.
+#[must_use]
+pub fn equation(text: &str) -> String {
+    parse(text).iter().map(atom).collect()
+}
+
+/// The symbol of a parameter.
+#[must_use]
+pub fn symbol(text: &str) -> String {
+    if text.is_empty() { String::new() } else { atom(&parse_symbol(text)) }
+}
+
+fn atom(atom: &Atom) -> String {
+    let base = match atom {
+        Atom::Space => return " ".to_owned(),
+        Atom::Symbol { base, .. } => format!("<i>{}</i>", escaped(base)),
+        Atom::Upright { base, .. } => escaped(base),
+    };
+    let script = |tag: &str, text: &str| match text {
+        "" => String::new(),
+        text => format!("<{tag}>{}</{tag}>", equation(text)),
+    };
+    base + &script("sub", atom.sub()) + &script("sup", atom.sup())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::Registry;
+
+    #[test]
+    fn letters_are_slanted_and_scripts_stand_in_their_places() {
+        assert_eq!(
+            equation("I_d = max(0, N·L)^α"),
+            "<i>I</i><sub><i>d</i></sub> = max(0, <i>N</i>·<i>L</i>)<sup><i>α</i></sup>"
+        );
+        assert_eq!(equation("F_{90}^{−x^2}"), "<i>F</i><sub>90</sub><sup>−<i>x</i><sup>2</sup></sup>");
+        assert_eq!(symbol("α_x"), "<i>α</i><sub><i>x</i></sub>");
+        assert_eq!(symbol(""), "");
+    }
+
+    #[test]
+    fn what_users_write_is_no_markup() {
+        assert_eq!(equation("a < b & \"c\""), "<i>a</i> &lt; <i>b</i> &amp; &quot;<i>c</i>&quot;");
+        assert!(!symbol("<b>_<script>").contains("<script"));
+    }
+
+    #[test]
+    fn every_mark_of_every_equation_is_set() {
+        for model in Registry::builtin().models() {
+            for part in model.declaration.equation {
+                let html = equation(part.text);
+                assert!(!html.contains(['_', '^', '{', '}']), "{html}");
+                for tag in ["i", "sub", "sup"] {
+                    let count = |mark: String| html.matches(&mark).count();
+                    assert_eq!(count(format!("<{tag}>")), count(format!("</{tag}>")), "{html}");
+                }
+            }
+        }
+    }
+}

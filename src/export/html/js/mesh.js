@@ -1,0 +1,109 @@
+// Meshes: corners and polygons as they stand in this file (see mesh.rs), and from them the vertices of the shaders.
+
+// A column of whole numbers: differences in bytes of 7 bits. Returns the numbers and the place after them.
+function column(bytes, at, count) {
+  const order = bytes[at++];
+  const values = new Int32Array(count);
+  for (let i = 0; i < count; i++) {
+    let value = 0;
+    for (let shift = 0; ; shift += 7) {
+      const byte = bytes[at++];
+      value |= (byte & 0x7f) << shift;
+      if (byte < 0x80) break;
+    }
+    values[i] = (value >>> 1) ^ -(value & 1);
+  }
+  for (let k = 0; k < order; k++) {
+    for (let i = 1; i < count; i++) values[i] += values[i - 1];
+  }
+  return [values, at];
+}
+
+class Mesh {
+  constructor(header, bytes) {
+    let at = header.at;
+    const next = (count) => {
+      const [values, after] = column(bytes, at, count);
+      at = after;
+      return values;
+    };
+    const vectors = (count, step) => {
+      const [x, y, z] = [next(count), next(count), next(count)];
+      return Array.from(x, (_, i) => [x[i] * step, y[i] * step, z[i] * step]);
+    };
+    this.positions = vectors(header.vertices, header.step);
+    const counts = next(header.polygons);
+    const places = [0, 1, 2, 3].map(() => next(header.polygons));
+    this.polygons = Array.from(counts, (count, i) => {
+      let corner = 0;
+      return Array.from({ length: count }, (_, place) => (corner += places[place][i]));
+    });
+    this.tangents = header.tangents ? vectors(header.polygons, 1).map(unit) : null;
+    this.radius = Math.max(...this.positions.map(length), 0);
+  }
+
+  // The triangles of a polygon, as places in its list of corners.
+  static triangles(polygon) {
+    return polygon.length === 4 ? [0, 1, 2, 0, 2, 3] : polygon.length === 3 ? [0, 1, 2] : [];
+  }
+
+  // The normal of a polygon: Newell's sum over its edges.
+  normal(polygon) {
+    const [first, ...others] = polygon.map((i) => this.positions[i]);
+    let sum = [0, 0, 0];
+    for (let i = 1; i < others.length; i++) {
+      sum = add(sum, cross(subtract(others[i - 1], first), subtract(others[i], first)));
+    }
+    return unit(sum);
+  }
+
+  centre(polygon) {
+    return scale(polygon.map((i) => this.positions[i]).reduce(add), 1 / polygon.length);
+  }
+
+  // The normals of the vertices: the means of those of their polygons; and so the tangents, which count little where
+  // the polygons disagree.
+  get smooth() {
+    if (this.kept) return this.kept;
+    const zero = () => this.positions.map(() => [0, 0, 0]);
+    const faceNormals = this.polygons.map((polygon) => this.normal(polygon));
+    const [normals, tangents, counts] = [zero(), zero(), this.positions.map(() => 0)];
+    this.polygons.forEach((polygon, p) => {
+      for (const corner of polygon) {
+        normals[corner] = add(normals[corner], faceNormals[p]);
+        if (this.tangents) tangents[corner] = add(tangents[corner], this.tangents[p]);
+        counts[corner] += 1;
+      }
+    });
+    const agreed = tangents.map((sum, i) => {
+      const agreement = length(sum) / Math.max(counts[i], 1);
+      return scale(unit(sum), agreement >= 0.75 ? 1 : agreement >= 1e-3 ? 1e-3 : 0);
+    });
+    this.kept = { normals: normals.map(unit), tangents: agreed, faceNormals };
+    return this.kept;
+  }
+
+  // Vertices that polygons share: position, normal, tangent.
+  get shared() {
+    const { normals, tangents } = this.smooth;
+    const vertices = this.positions.flatMap((p, i) => [...p, ...normals[i], ...tangents[i]]);
+    const indices = this.polygons.flatMap((polygon) => Mesh.triangles(polygon).map((i) => polygon[i]));
+    return { vertices: new Float32Array(vertices), indices: new Uint32Array(indices), attributes: 3 };
+  }
+
+  // Vertices that know their polygon: also its normal, tangent and centre.
+  get faces() {
+    const { normals, tangents, faceNormals } = this.smooth;
+    const vertices = [];
+    const indices = [];
+    let first = 0;
+    this.polygons.forEach((polygon, p) => {
+      const own = [...faceNormals[p], ...(this.tangents ? this.tangents[p] : [0, 0, 0]), ...this.centre(polygon)];
+      for (const i of polygon) vertices.push(...this.positions[i], ...normals[i], ...tangents[i], ...own);
+      for (const i of Mesh.triangles(polygon)) indices.push(first + i);
+      first += polygon.length;
+    });
+    return { vertices: new Float32Array(vertices), indices: new Uint32Array(indices), attributes: 6 };
+  }
+}
+

@@ -1,0 +1,125 @@
+// The panel: shading model, object, reflection model with its equation and knobs, exposure, shader.
+
+const FOREIGN_LOBE = 'Fixed here: multiple scattering of this model is calculated in the program only';
+
+class Panel {
+  // `changed(thing)` is called after values of an object changed; without an object, after anything else did.
+  constructor(scene, changed) {
+    this.scene = scene;
+    this.changed = changed;
+    this.selected = scene.things[0];
+    this.shadings = document.getElementById('shadings');
+    this.object = document.getElementById('object');
+    this.model = document.getElementById('model');
+    this.knobs = document.getElementById('knobs');
+    this.showShadings();
+    this.showObjects();
+    this.showExposure();
+    this.showModel();
+    document.getElementById('reset').addEventListener('click', () => this.reset());
+  }
+
+  showShadings() {
+    const { scene } = this;
+    const own = scene.mixed ? [[null, 'Scene', 'Each object keeps the shading model that the scene gives it.', '']] : [];
+    const all = [...own, ...scene.shadings.map((s, i) => [i, s.name, s.summary, s.source])];
+    const summary = document.getElementById('shading-summary');
+    const tell = (text, source) => {
+      summary.textContent = text;
+      summary.title = source;
+    };
+    for (const [index, name, text, source] of all) {
+      const chosen = scene.shading === index;
+      if (chosen) tell(text, source);
+      const input = element('input', {
+        type: 'radio', name: 'shading', checked: chosen, value: index === null ? 'own' : scene.shadings[index].id,
+        onchange: () => {
+          scene.setShading(index);
+          tell(text, source);
+          this.showModel();
+          this.changed(null);
+        },
+      });
+      this.shadings.append(element('label', { title: text }, input, element('span', {}, name.replace(/ shading$/, ''))));
+    }
+  }
+
+  showObjects() {
+    const { scene } = this;
+    document.getElementById('objects').hidden = scene.things.length < 2;
+    scene.things.forEach((thing, i) => {
+      const { name } = thing;
+      this.object.append(element('option', { value: i }, name));
+    });
+    this.object.addEventListener('change', () => this.select(scene.things[this.object.value]));
+  }
+
+  select(thing) {
+    if (!thing || thing === this.selected) return;
+    this.selected = thing;
+    this.object.value = this.scene.things.indexOf(thing);
+    this.showModel();
+  }
+
+  showExposure() {
+    const [range, number] = slider('exposure', { min: -10, max: 10, step: 0.1, unit: 'EV', open: true }, this.scene.exposure, (v) => {
+      this.scene.exposure = v;
+      this.changed(null);
+    });
+    const caption = element('div', { class: 'caption' }, element('span', { class: 'name' }, 'Exposure'), number);
+    document.getElementById('exposure').replaceChildren(element('div', { class: 'knob' }, caption, range));
+  }
+
+  // The reason why a parameter has no effect at present, or may not change; null if it may.
+  reasonFor(parameters, p) {
+    if (this.selected.model.lobe === false) return FOREIGN_LOBE;
+    let here = p;
+    for (let i = 0; i < parameters.length && here.usedWhen; i++) {
+      const other = parameters.find((q) => q.name === here.usedWhen.parameter);
+      if (!other) return null;
+      const value = this.selected.value(other);
+      if (!here.usedWhen.choices.includes(value)) {
+        const [, name] = other.options.find(([id]) => id === value);
+        return `Not used while the ${other.label} is ${name}`;
+      }
+      here = other;
+    }
+    return null;
+  }
+
+  showModel() {
+    const { model } = this.selected;
+    const parts = model.equation.map(({ term, html }) => markup('div', html, { class: `part ${term}` }));
+    this.model.replaceChildren(
+      element('h2', {}, model.name),
+      element('p', { class: 'summary' }, model.summary),
+      ...(parts.length > 0 ? [element('div', { class: 'equation', role: 'math', 'aria-label': 'Equation' }, ...parts)] : []),
+      ...(model.source || model.author ? [element('p', { class: 'source' }, model.source || model.author)] : []),
+    );
+    document.getElementById('shader').textContent = this.selected.program.wgsl;
+    this.showKnobs();
+  }
+
+  showKnobs() {
+    const { selected } = this;
+    const { parameters } = selected;
+    const made = parameters.map((p) =>
+      knob(p, selected.value(p), this.reasonFor(parameters, p), (value) => {
+        selected.values[p.name] = value;
+        this.changed(selected);
+        // Choices decide which other parameters are used.
+        if (p.kind === 'choice') this.showKnobs();
+      }),
+    );
+    const focused = document.activeElement?.closest?.('.knob')?.dataset.name;
+    this.knobs.replaceChildren(...made);
+    if (focused) this.knobs.querySelector(`[data-name="${CSS.escape(focused)}"] select`)?.focus();
+  }
+
+  reset() {
+    this.selected.reset();
+    this.showKnobs();
+    this.changed(this.selected);
+  }
+}
+

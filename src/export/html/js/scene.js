@@ -1,0 +1,111 @@
+// The scene: objects with their values, and what shaders need of them.
+
+class Thing {
+  constructor(data, scene) {
+    Object.assign(this, data);
+    this.scene = scene;
+    this.model = scene.models[data.model];
+    this.initialValues = structuredClone(data.values);
+    this.initialCurve = data.curve === null ? new Uint8Array(0) : scene.blocks[data.curve];
+    this.uniforms = {
+      placement: new Uniform(bytesOfFloats(data.matrix)),
+      parameters: new Uniform(this.packed(this.values)),
+      albedo_curve: new Uniform(this.initialCurve),
+      shading_values: new Uniform(this.packedShading()),
+    };
+  }
+
+  // The shading model that draws it.
+  get shadingInUse() {
+    return this.scene.shading ?? this.shading;
+  }
+
+  get program() {
+    return this.model.programs[this.shadingInUse];
+  }
+
+  get parameters() {
+    const shading = this.scene.shadings[this.shadingInUse].parameters;
+    const known = new Set(this.model.parameters.map((p) => p.name));
+    return [...this.model.parameters, ...shading.filter((p) => !known.has(p.name))];
+  }
+
+  value(parameter) {
+    return this.values[parameter.name] ?? parameter.default;
+  }
+
+  packed(values) {
+    return packed(this.model.parameters, this.model.size, values, this.scene.encoding);
+  }
+
+  packedShading() {
+    const shading = this.scene.shadings[this.shadingInUse];
+    return packed(shading.parameters, shading.size, this.values, this.scene.encoding);
+  }
+
+  get isChanged() {
+    return JSON.stringify(this.values) !== JSON.stringify(this.initialValues);
+  }
+
+  reset() {
+    this.values = structuredClone(this.initialValues);
+  }
+}
+
+class Scene {
+  constructor(data, meshBytes) {
+    this.blocks = data.blocks.map(bytesOf);
+    Object.assign(this, {
+      shadings: data.shadings,
+      models: data.models,
+      encoding: data.encoding,
+      background: data.background,
+      exposure: data.exposure,
+      initialExposure: data.exposure,
+      observer: data.observer,
+      // The shading model of all objects; null while each has its own.
+      shading: null,
+    });
+    this.common = this.blocks.map((bytes) => new Uniform(bytes));
+    const text = (parts) => parts.map((i) => data.texts[i]).join('');
+    const joined = (shader) => {
+      shader.wgsl = text(shader.wgsl);
+      for (const stage of shader.glsl) stage.text = text(stage.text);
+    };
+    for (const model of this.models) {
+      for (const program of model.programs) {
+        joined(program);
+        if (program.albedo) joined(program.albedo);
+      }
+    }
+    this.meshes = data.meshes.map((header) => new Mesh(header, meshBytes));
+    this.things = data.objects.map((object) => new Thing(object, this));
+    const shadings = new Set(this.things.map((thing) => thing.shading));
+    this.mixed = shadings.size > 1;
+    if (!this.mixed) [this.shading] = shadings;
+    this.view = new Uniform(new Uint8Array(80));
+  }
+
+  get centre() {
+    const places = this.things.map((thing) => thing.matrix.slice(12, 15));
+    return scale(places.reduce(add), 1 / places.length);
+  }
+
+  setShading(shading) {
+    this.shading = shading;
+    for (const thing of this.things) thing.uniforms.shading_values.set(thing.packedShading());
+  }
+
+  // What renderers draw: a program, the vertices and the uniforms of each object.
+  get drawings() {
+    return this.things.map((thing) => {
+      const program = thing.program;
+      const uniforms = program.uniforms.map(({ binding, name, size, block }) => {
+        const own = name === 'view' ? this.view : thing.uniforms[name];
+        return { binding, name, size, uniform: block === null ? own : this.common[block] };
+      });
+      return { thing, program, uniforms, mesh: this.meshes[thing.mesh], kind: program.faces ? 'faces' : 'shared' };
+    });
+  }
+}
+

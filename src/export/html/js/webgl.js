@@ -1,0 +1,190 @@
+// Drawing with WebGL 2, where there is no WebGPU. The shaders are those of WebGPU in GLSL; they turn the picture upside
+// down, as WebGPU's rows run downwards, and it is turned back when it is copied to the canvas.
+
+class WebGl {
+  static label = 'WebGL 2';
+
+  // Null where there is no WebGL 2.
+  static async create(canvas, samples) {
+    const options = { antialias: false, depth: false, alpha: false, preserveDrawingBuffer: true };
+    const gl = canvas.getContext('webgl2', options);
+    return gl ? new WebGl(gl, canvas, samples) : null;
+  }
+
+  constructor(gl, canvas, samples) {
+    this.gl = gl;
+    this.samples = Math.min(samples, gl.getParameter(gl.MAX_SAMPLES));
+    this.lost = new Promise((lost) => canvas.addEventListener('webglcontextlost', lost, { once: true }));
+    this.buffers = new WeakMap();
+    this.meshes = new WeakMap();
+    this.programs = new WeakMap();
+  }
+
+  get largest() {
+    return this.gl.getParameter(this.gl.MAX_RENDERBUFFER_SIZE);
+  }
+
+  // Begins to compile a program. Asking for the result would wait for it, so all are begun first.
+  begin(shader) {
+    const { gl } = this;
+    if (this.programs.has(shader)) return;
+    const program = gl.createProgram();
+    const stages = [gl.VERTEX_SHADER, gl.FRAGMENT_SHADER].map((kind, i) => {
+      const stage = gl.createShader(kind);
+      gl.shaderSource(stage, shader.glsl[i].text);
+      gl.compileShader(stage);
+      gl.attachShader(program, stage);
+      return stage;
+    });
+    gl.linkProgram(program);
+    this.programs.set(shader, { program, stages, finished: false });
+  }
+
+  // A program with its uniform blocks in their places.
+  programOf(shader) {
+    const { gl } = this;
+    this.begin(shader);
+    const kept = this.programs.get(shader);
+    const { program, stages } = kept;
+    if (kept.finished) return program;
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
+      const logs = [...stages.map((stage) => gl.getShaderInfoLog(stage)), gl.getProgramInfoLog(program)];
+      throw new Error(`a shader was refused: ${logs.filter(Boolean).join('; ')}`);
+    }
+    for (const { blocks } of shader.glsl) {
+      for (const [binding, name] of blocks) {
+        const index = gl.getUniformBlockIndex(program, name);
+        if (index !== gl.INVALID_INDEX) gl.uniformBlockBinding(program, index, binding);
+      }
+    }
+    kept.finished = true;
+    return program;
+  }
+
+  bind(binding, uniform, size) {
+    const { gl } = this;
+    let kept = this.buffers.get(uniform);
+    if (!kept) {
+      kept = { buffer: gl.createBuffer(), version: -1 };
+      this.buffers.set(uniform, kept);
+    }
+    gl.bindBufferBase(gl.UNIFORM_BUFFER, binding, kept.buffer);
+    if (kept.version === uniform.version) return;
+    const bytes = new Uint8Array(Math.max(size, uniform.bytes.length));
+    bytes.set(uniform.bytes);
+    gl.bufferData(gl.UNIFORM_BUFFER, bytes, gl.DYNAMIC_DRAW);
+    kept.version = uniform.version;
+  }
+
+  meshOf(mesh, kind) {
+    const { gl } = this;
+    if (!this.meshes.has(mesh)) this.meshes.set(mesh, {});
+    const kept = this.meshes.get(mesh);
+    if (!kept[kind]) {
+      const { vertices, indices, attributes } = mesh[kind];
+      const array = gl.createVertexArray();
+      gl.bindVertexArray(array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.STATIC_DRAW);
+      for (let i = 0; i < attributes; i++) {
+        gl.enableVertexAttribArray(i);
+        gl.vertexAttribPointer(i, 3, gl.FLOAT, false, 12 * attributes, 12 * i);
+      }
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
+      kept[kind] = { array, count: indices.length };
+    }
+    return kept[kind];
+  }
+
+  targetsFor(width, height) {
+    const { gl } = this;
+    if (this.width === width && this.height === height) return;
+    for (const { frame, buffers } of [this.sampled, this.single].filter(Boolean)) {
+      gl.deleteFramebuffer(frame);
+      for (const buffer of buffers) gl.deleteRenderbuffer(buffer);
+    }
+    const target = (samples, parts) => {
+      const frame = gl.createFramebuffer();
+      gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+      const buffers = parts.map(([attachment, format]) => {
+        const buffer = gl.createRenderbuffer();
+        gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+        gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, format, width, height);
+        gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, buffer);
+        return buffer;
+      });
+      return { frame, buffers };
+    };
+    const colour = [gl.COLOR_ATTACHMENT0, gl.RGBA8];
+    this.sampled = target(this.samples > 1 ? this.samples : 0, [colour, [gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT32F]]);
+    this.single = target(0, [colour]);
+    Object.assign(this, { width, height });
+  }
+
+  draw(scene, width, height) {
+    const { gl } = this;
+    if (gl.isContextLost()) return;
+    this.targetsFor(width, height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.sampled.frame);
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(...scene.background, 1);
+    gl.clearDepth(0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.GREATER);
+    gl.enable(gl.CULL_FACE);
+    gl.frontFace(gl.CW);
+    const { drawings } = scene;
+    for (const { program } of drawings) this.begin(program);
+    for (const { program, uniforms, mesh, kind } of drawings) {
+      gl.useProgram(this.programOf(program));
+      for (const { binding, uniform, size } of uniforms) this.bind(binding, uniform, size);
+      const { array, count } = this.meshOf(mesh, kind);
+      gl.bindVertexArray(array);
+      gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
+    }
+    gl.bindVertexArray(null);
+    // Samples are joined first: only then can the copy turn the picture round.
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.sampled.frame);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, this.single.frame);
+    gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.single.frame);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    gl.blitFramebuffer(0, 0, width, height, 0, height, width, 0, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+  }
+
+  async tryDrawing(scene, width, height) {
+    const { gl } = this;
+    const most = gl.getParameter(gl.MAX_UNIFORM_BLOCK_SIZE);
+    const largest = Math.max(...scene.drawings.flatMap(({ uniforms }) => uniforms.map(({ size }) => size)));
+    if (largest > most) throw new Error(`the lights take ${largest} bytes, and this browser takes ${most}`);
+    this.draw(scene, width, height);
+    return true;
+  }
+
+  // Three rows of 16 albedos.
+  async albedo(shader, bytes) {
+    const { gl } = this;
+    const frame = gl.createFramebuffer();
+    const buffer = gl.createRenderbuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+    gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA32UI, NODES, 3);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, buffer);
+    gl.viewport(0, 0, NODES, 3);
+    gl.disable(gl.DEPTH_TEST);
+    gl.disable(gl.CULL_FACE);
+    gl.useProgram(this.programOf(shader));
+    for (const { binding, name } of shader.uniforms) {
+      this.bind(binding, new Uniform(bytes[name]), bytes[name].length);
+    }
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    const rows = new Uint32Array(4 * NODES * 3);
+    gl.readPixels(0, 0, NODES, 3, gl.RGBA_INTEGER, gl.UNSIGNED_INT, rows);
+    gl.deleteFramebuffer(frame);
+    gl.deleteRenderbuffer(buffer);
+    return new Float32Array(rows.buffer);
+  }
+}
+

@@ -1,0 +1,205 @@
+// Drawing with WebGPU and the scene's own WGSL.
+
+class WebGpu {
+  static label = 'WebGPU';
+
+  // Null where there is no WebGPU.
+  static async create(canvas, samples) {
+    const adapter = await navigator.gpu?.requestAdapter();
+    const device = await adapter?.requestDevice();
+    const context = device && canvas.getContext('webgpu');
+    return context ? new WebGpu(device, context, samples) : null;
+  }
+
+  constructor(device, context, samples) {
+    this.device = device;
+    this.context = context;
+    this.samples = samples;
+    this.format = navigator.gpu.getPreferredCanvasFormat();
+    context.configure({ device, format: this.format, alphaMode: 'opaque' });
+    this.lost = device.lost.then((info) => (info.reason === 'destroyed' ? new Promise(() => {}) : info));
+    this.buffers = new WeakMap();
+    this.meshes = new WeakMap();
+    this.pipelines = new WeakMap();
+    this.albedoPipelines = new WeakMap();
+    this.groups = new Map();
+  }
+
+  get largest() {
+    return this.device.limits.maxTextureDimension2D;
+  }
+
+  layoutOf(uniforms) {
+    return this.device.createBindGroupLayout({
+      entries: uniforms.map(({ binding }) => ({
+        binding,
+        visibility: GPUShaderStage.VERTEX | GPUShaderStage.FRAGMENT,
+        buffer: { type: 'uniform' },
+      })),
+    });
+  }
+
+  pipelineOf(program) {
+    if (this.pipelines.has(program)) return this.pipelines.get(program);
+    const module = this.device.createShaderModule({ code: program.wgsl });
+    const layout = this.layoutOf(program.uniforms);
+    const count = program.faces ? 6 : 3;
+    const attributes = Array.from({ length: count }, (_, i) => ({
+      shaderLocation: i,
+      offset: 12 * i,
+      format: 'float32x3',
+    }));
+    const pipeline = this.device.createRenderPipeline({
+      layout: this.device.createPipelineLayout({ bindGroupLayouts: [layout] }),
+      vertex: { module, entryPoint: 'vertex', buffers: [{ arrayStride: 12 * count, attributes }] },
+      fragment: { module, entryPoint: 'fragment', targets: [{ format: this.format }] },
+      primitive: { topology: 'triangle-list', cullMode: 'back' },
+      depthStencil: { format: 'depth32float', depthWriteEnabled: true, depthCompare: 'greater' },
+      multisample: { count: this.samples },
+    });
+    const made = { pipeline, layout };
+    this.pipelines.set(program, made);
+    return made;
+  }
+
+  bufferWith(array, usage) {
+    const size = Math.max(16, 4 * Math.ceil(array.byteLength / 4));
+    const buffer = this.device.createBuffer({ size, usage, mappedAtCreation: true });
+    new Uint8Array(buffer.getMappedRange()).set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+    buffer.unmap();
+    return buffer;
+  }
+
+  bufferOf(uniform, size) {
+    let kept = this.buffers.get(uniform);
+    if (!kept) {
+      const usage = GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST;
+      kept = { buffer: this.device.createBuffer({ size: Math.max(size, 16), usage }), version: -1 };
+      this.buffers.set(uniform, kept);
+    }
+    if (kept.version !== uniform.version) {
+      const bytes = uniform.bytes.subarray(0, kept.buffer.size);
+      this.device.queue.writeBuffer(kept.buffer, 0, bytes);
+      kept.version = uniform.version;
+    }
+    return kept.buffer;
+  }
+
+  meshOf(mesh, kind) {
+    if (!this.meshes.has(mesh)) this.meshes.set(mesh, {});
+    const kept = this.meshes.get(mesh);
+    if (!kept[kind]) {
+      const { vertices, indices } = mesh[kind];
+      kept[kind] = {
+        vertices: this.bufferWith(vertices, GPUBufferUsage.VERTEX),
+        indices: this.bufferWith(indices, GPUBufferUsage.INDEX),
+        count: indices.length,
+      };
+    }
+    return kept[kind];
+  }
+
+  groupOf({ thing, program, uniforms }, layout) {
+    if (!this.groups.has(thing)) this.groups.set(thing, new Map());
+    const kept = this.groups.get(thing);
+    if (!kept.has(program)) {
+      const entries = uniforms.map(({ binding, size, uniform }) => ({
+        binding,
+        resource: { buffer: this.bufferOf(uniform, size) },
+      }));
+      kept.set(program, this.device.createBindGroup({ layout, entries }));
+    }
+    return kept.get(program);
+  }
+
+  targetsFor(width, height) {
+    if (this.depth?.width === width && this.depth?.height === height) return;
+    this.depth?.destroy();
+    this.colour?.destroy();
+    const target = (format) =>
+      this.device.createTexture({
+        size: [width, height],
+        format,
+        sampleCount: this.samples,
+        usage: GPUTextureUsage.RENDER_ATTACHMENT,
+      });
+    this.depth = target('depth32float');
+    this.colour = this.samples > 1 ? target(this.format) : null;
+  }
+
+  draw(scene, width, height) {
+    this.targetsFor(width, height);
+    const encoder = this.device.createCommandEncoder();
+    const picture = this.context.getCurrentTexture().createView();
+    const [r, g, b] = scene.background;
+    const colour = { loadOp: 'clear', storeOp: this.colour ? 'discard' : 'store', clearValue: { r, g, b, a: 1 } };
+    const pass = encoder.beginRenderPass({
+      colorAttachments: [
+        this.colour ? { view: this.colour.createView(), resolveTarget: picture, ...colour } : { view: picture, ...colour },
+      ],
+      depthStencilAttachment: {
+        view: this.depth.createView(),
+        depthLoadOp: 'clear',
+        depthStoreOp: 'discard',
+        depthClearValue: 0,
+      },
+    });
+    for (const drawing of scene.drawings) {
+      const { pipeline, layout } = this.pipelineOf(drawing.program);
+      for (const { uniform, size } of drawing.uniforms) this.bufferOf(uniform, size);
+      const mesh = this.meshOf(drawing.mesh, drawing.kind);
+      pass.setPipeline(pipeline);
+      pass.setBindGroup(0, this.groupOf(drawing, layout));
+      pass.setVertexBuffer(0, mesh.vertices);
+      pass.setIndexBuffer(mesh.indices, 'uint32');
+      pass.drawIndexed(mesh.count);
+    }
+    pass.end();
+    this.device.queue.submit([encoder.finish()]);
+  }
+
+  // Draws within a scope that catches errors; true if there was none.
+  async tryDrawing(scene, width, height) {
+    this.device.pushErrorScope('validation');
+    this.draw(scene, width, height);
+    const error = await this.device.popErrorScope();
+    if (error) console.warn(error.message);
+    return error === null;
+  }
+
+  // Three rows of 16 albedos.
+  async albedo(shader, bytes) {
+    const { device } = this;
+    if (!this.albedoPipelines.has(shader)) {
+      const module = device.createShaderModule({ code: shader.wgsl });
+      const layout = this.layoutOf(shader.uniforms);
+      const pipeline = device.createRenderPipeline({
+        layout: device.createPipelineLayout({ bindGroupLayouts: [layout] }),
+        vertex: { module, entryPoint: 'albedo_vertex' },
+        fragment: { module, entryPoint: 'albedo_fragment', targets: [{ format: 'rgba32uint' }] },
+      });
+      this.albedoPipelines.set(shader, { pipeline, layout });
+    }
+    const { pipeline, layout } = this.albedoPipelines.get(shader);
+    const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC;
+    const target = device.createTexture({ size: [NODES, 3], format: 'rgba32uint', usage });
+    const read = device.createBuffer({ size: 3 * 256, usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST });
+    const buffers = shader.uniforms.map(({ name }) => this.bufferWith(bytes[name], GPUBufferUsage.UNIFORM));
+    const entries = shader.uniforms.map(({ binding }, i) => ({ binding, resource: { buffer: buffers[i] } }));
+    const encoder = device.createCommandEncoder();
+    const pass = encoder.beginRenderPass({
+      colorAttachments: [{ view: target.createView(), loadOp: 'clear', storeOp: 'store' }],
+    });
+    pass.setPipeline(pipeline);
+    if (entries.length > 0) pass.setBindGroup(0, device.createBindGroup({ layout, entries }));
+    pass.draw(3);
+    pass.end();
+    encoder.copyTextureToBuffer({ texture: target }, { buffer: read, bytesPerRow: 256 }, [NODES, 3]);
+    device.queue.submit([encoder.finish()]);
+    await read.mapAsync(GPUMapMode.READ);
+    const rows = new Float32Array(read.getMappedRange().slice(0));
+    for (const resource of [target, read, ...buffers]) resource.destroy();
+    return rows;
+  }
+}
+

@@ -1,0 +1,147 @@
+//! The form `html`: a page that shows the scene in a browser, one file that needs nothing else.
+//!
+//! The page draws with WebGPU and the scene's own WGSL, or with WebGL 2 and the same translated to GLSL. Its texts are
+//! `page.html`, `page.css` and `js/`; this module puts the scene into them.
+
+use std::io::Write as _;
+
+use base64::{Engine as _, engine::general_purpose::STANDARD};
+use flate2::{Compression, write::ZlibEncoder};
+
+use self::equation::escaped;
+use super::{Export, ExportError, Form, Makes, Progress, Request};
+
+mod blocks;
+mod data;
+mod equation;
+mod mesh;
+mod programs;
+mod texts;
+
+/// A page for browsers.
+pub const HTML: Form = Form {
+    id: "html",
+    name: "Web page",
+    summary: "a page that shows the scene in a browser, with its knobs, in one file for students to open",
+    makes: Makes::File("html"),
+    of_object: false,
+    make,
+};
+
+/// Most bytes of a page: it is sent by mail, and opened on a phone.
+pub const LIMIT: usize = 300_000;
+
+/// The page, with places for the scene.
+const PAGE: &str = include_str!("page.html");
+/// Its style.
+const STYLE: &str = include_str!("page.css");
+/// Its program, in parts; each uses those before it.
+const SCRIPT: &[&str] = &[
+    include_str!("js/unpack.js"),
+    include_str!("js/vector.js"),
+    include_str!("js/mesh.js"),
+    include_str!("js/camera.js"),
+    include_str!("js/uniform.js"),
+    include_str!("js/scene.js"),
+    include_str!("js/curve.js"),
+    include_str!("js/webgpu.js"),
+    include_str!("js/webgl.js"),
+    include_str!("js/gestures.js"),
+    include_str!("js/pick.js"),
+    include_str!("js/knob.js"),
+    include_str!("js/panel.js"),
+    include_str!("js/main.js"),
+];
+
+fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
+    let data = data::data(request, progress)?;
+    progress.step(0.9, "writing the page")?;
+    let name = request.scene.name.as_deref().unwrap_or(request.stem);
+    let description = request.scene.description.as_deref().unwrap_or_default();
+    let (scene, meshes) = (packed(data.scene.to_string().as_bytes())?, packed(&data.meshes)?);
+    let page = filled(
+        PAGE,
+        &[
+            ("name", &escaped(name)),
+            ("description", &escaped(description)),
+            ("style", STYLE),
+            ("script", &SCRIPT.concat()),
+            ("scene", &scene),
+            ("meshes", &meshes),
+        ],
+    );
+    if page.len() > LIMIT {
+        return Err(ExportError::refused(too_large(page.len(), scene.len(), meshes.len())));
+    }
+    Ok(Export { notes: data.notes, ..Export::file(page) })
+}
+
+fn too_large(page: usize, scene: usize, meshes: usize) -> String {
+    let kb = |bytes: usize| bytes.div_ceil(1000);
+    format!(
+        "the page would have {} kB, and {} kB is the limit: {} kB are meshes, {} kB shaders and values; lower \
+         tessellations, or fewer different reflection models, make it smaller",
+        kb(page),
+        kb(LIMIT),
+        kb(meshes),
+        kb(scene)
+    )
+}
+
+/// Bytes as text, compressed as by zlib.
+fn packed(bytes: &[u8]) -> Result<String, ExportError> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
+    let compressed = encoder.write_all(bytes).and_then(|()| encoder.finish());
+    compressed
+        .map(|c| STANDARD.encode(c))
+        .map_err(|e| ExportError::refused(format!("it cannot be compressed: {e}")))
+}
+
+/// A text with its `{{places}}` filled. What is filled in is not looked at again.
+fn filled(text: &str, places: &[(&str, &str)]) -> String {
+    let mut filled = String::new();
+    let mut parts = text.split("{{");
+    filled.push_str(parts.next().unwrap_or_default());
+    for part in parts {
+        let found = part.split_once("}}").and_then(|(name, after)| {
+            let (_, value) = places.iter().find(|(known, _)| *known == name)?;
+            Some((value, after))
+        });
+        match found {
+            Some((value, after)) => {
+                filled.push_str(value);
+                filled.push_str(after);
+            }
+            None => {
+                filled.push_str("{{");
+                filled.push_str(part);
+            }
+        }
+    }
+    filled
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_filled_once() {
+        assert_eq!(filled("a {{x}} {{y}} {{z", &[("x", "{{y}}"), ("y", "2")]), "a {{y}} 2 {{z");
+    }
+
+    #[test]
+    fn the_page_has_a_place_for_everything_and_no_end_of_its_script_within() {
+        for place in ["name", "description", "style", "script", "scene", "meshes"] {
+            assert!(PAGE.contains(&format!("{{{{{place}}}}}")), "{place}");
+        }
+        assert!(!SCRIPT.concat().contains("</") && !STYLE.contains("</"));
+    }
+
+    #[test]
+    fn a_page_that_is_too_large_is_refused_with_its_sizes() {
+        let said = too_large(512_345, 90_000, 380_000);
+        assert!(said.contains("513 kB") && said.contains("300 kB is the limit"), "{said}");
+        assert!(said.contains("380 kB are meshes") && said.contains("90 kB shaders"), "{said}");
+    }
+}

@@ -1,0 +1,90 @@
+//! The shaders of a page: every reflection model of the scene under every shading model, in WGSL and in GLSL.
+
+use naga::{AddressSpace, ShaderStage, back::glsl::Version};
+use serde_json::{Value as Json, json};
+
+use super::{blocks::Blocks, texts::Texts};
+use crate::export::{
+    ExportError,
+    lit::{Drawn, Lit, Program},
+    manifest::uniforms,
+    shader::module,
+    translate::{ENTRY_POINTS, Glsl, glsl},
+};
+
+/// WebGL 2.
+const WEBGL: Version = Version::Embedded { version: 300, is_webgl: true };
+/// Appended to shaders that read a curve: it calculates the curve anew when a knob was moved.
+const ALBEDO: &str = include_str!("albedo.wgsl");
+/// Its entry points.
+const ALBEDO_ENTRY_POINTS: [(&str, ShaderStage); 2] =
+    [("albedo_vertex", ShaderStage::Vertex), ("albedo_fragment", ShaderStage::Fragment)];
+/// Uniforms that differ between objects; the page writes them. The others are the same for all.
+const OF_OBJECTS: [&str; 5] = ["parameters", "albedo_curve", "shading_values", "view", "placement"];
+
+/// A shader and its uniforms.
+///
+/// # Errors
+/// If it cannot be translated.
+pub fn program(
+    lit: &Lit,
+    drawn: &Drawn,
+    texts: &mut Texts,
+    blocks: &mut Blocks,
+) -> Result<Json, ExportError> {
+    let program = &lit.programs[lit.materials[drawn.material].program];
+    let text = &program.shader.text;
+    let (checked, info) = module(text)?;
+    let mut all = Vec::new();
+    for (binding, name, bytes) in uniforms(&checked, lit, drawn, 1.0) {
+        let own = OF_OBJECTS.contains(&name.as_str());
+        all.push(json!({
+            "binding": binding,
+            "name": name,
+            "size": bytes.len(),
+            "block": (!own).then(|| blocks.add(&bytes)),
+        }));
+    }
+    let mut stages = Vec::new();
+    for entry in ENTRY_POINTS {
+        stages.push(stage(&glsl(&checked, &info, WEBGL, entry)?, texts));
+    }
+    Ok(json!({
+        "faces": program.faces(),
+        "wgsl": texts.add(text),
+        "glsl": stages,
+        "uniforms": all,
+        "albedo": albedo(program, texts)?,
+    }))
+}
+
+/// The shader that calculates the curve of a model; null for models without one.
+fn albedo(program: &Program, texts: &mut Texts) -> Result<Json, ExportError> {
+    if !program.shader.reads_curve {
+        return Ok(Json::Null);
+    }
+    let text = format!("{}{ALBEDO}", program.shader.text);
+    let (checked, info) = module(&text)?;
+    let mut stages = Vec::new();
+    for entry in ALBEDO_ENTRY_POINTS {
+        stages.push(stage(&glsl(&checked, &info, WEBGL, entry)?, texts));
+    }
+    let fragment = checked.entry_points.iter().position(|e| e.name == ALBEDO_ENTRY_POINTS[1].0);
+    let read = |name: &str| {
+        let global = checked.global_variables.iter().find(|(_, global)| global.name.as_deref() == Some(name));
+        let uses = fragment.map(|i| info.get_entry_point(i));
+        global.zip(uses).is_some_and(|((handle, _), uses)| !uses[handle].is_empty())
+    };
+    let names = checked.global_variables.iter().filter(|(_, g)| g.space == AddressSpace::Uniform);
+    let uniforms: Vec<_> = names
+        .filter_map(|(_, global)| Some((global.binding?.binding, global.name.as_deref()?)))
+        .filter(|(_, name)| read(name))
+        .map(|(binding, name)| json!({ "binding": binding, "name": name }))
+        .collect();
+    Ok(json!({ "wgsl": texts.add(&text), "glsl": stages, "uniforms": uniforms }))
+}
+
+fn stage(glsl: &Glsl, texts: &mut Texts) -> Json {
+    let blocks: Vec<_> = glsl.blocks.iter().map(|(binding, name)| json!([binding, name])).collect();
+    json!({ "text": texts.add(&glsl.text), "blocks": blocks })
+}

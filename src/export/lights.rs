@@ -1,0 +1,174 @@
+//! The lights of a scene that are on, with the one record that holds what their types need.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::{
+    light::{LightEntry, LightRecord},
+    parameter::Parameter,
+    registry::Registry,
+    scene::{Scene, record, shines_from_everywhere},
+};
+
+/// The lights of a scene that are on.
+#[derive(Debug)]
+pub struct Lights<'a> {
+    /// The types in use, in the order of the registry.
+    pub types: Vec<&'a LightEntry>,
+    /// The lights.
+    pub rows: Vec<LightRow>,
+    /// The numbers of the files that they name, one file after the other.
+    pub numbers: Vec<f32>,
+    /// True if some light comes equally from everywhere.
+    pub uniform: bool,
+}
+
+/// A light.
+#[derive(Clone, Debug)]
+pub struct LightRow {
+    /// Its index in the scene.
+    pub index: usize,
+    /// The index of its type in [`Lights::types`].
+    pub light_type: usize,
+    /// What lights of all types have.
+    pub record: LightRecord,
+    /// Its own parameters, without padding; for a file, the index of its first number.
+    words: Vec<u32>,
+}
+
+/// A field of the record of a light.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LightField {
+    /// Its name.
+    pub name: String,
+    /// Its type in WGSL.
+    pub kind: &'static str,
+    source: FieldSource,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FieldSource {
+    Position,
+    Type,
+    Direction,
+    Intensity,
+    Colour,
+    /// The words of a parameter of a type: the index of the type, the first word.
+    Parameter(usize, usize),
+}
+
+impl<'a> Lights<'a> {
+    /// The lights of a valid scene.
+    #[must_use]
+    pub fn of(scene: &Scene, registry: &'a Registry) -> Self {
+        let encoding = scene.display.encoding;
+        let used = |entry: &&LightEntry| scene.shining().any(|l| l.light_type == entry.declaration.id);
+        let types: Vec<_> = registry.lights().iter().filter(used).collect();
+        let mut numbers = Vec::new();
+        let mut files: Vec<(Arc<[f32]>, u32)> = Vec::new();
+        let mut rows = Vec::new();
+        for (index, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
+            let Some(light_type) = types.iter().position(|t| t.declaration.id == light.light_type) else {
+                continue;
+            };
+            let entry = types[light_type];
+            let mut words = entry.words(&light.parameters, encoding);
+            for (place, table) in entry.tables(&light.parameters) {
+                let known =
+                    files.iter().find(|(file, _)| Arc::ptr_eq(file, &table.numbers)).map(|(_, at)| *at);
+                words[place] = known.unwrap_or_else(|| {
+                    let first = numbers.len() as u32;
+                    numbers.extend_from_slice(&table.numbers);
+                    files.push((table.numbers.clone(), first));
+                    first
+                });
+            }
+            rows.push(LightRow { index, light_type, record: record(light, registry, encoding), words });
+        }
+        let uniform = shines_from_everywhere(scene.shining(), encoding, registry);
+        Self { types, rows, numbers, uniform }
+    }
+
+    /// The fields that lights of these types may need, in an order that leaves few gaps.
+    #[must_use]
+    pub fn fields(&self) -> Vec<LightField> {
+        use FieldSource::{Colour, Direction, Intensity, Position, Type};
+        let field = |name: &str, kind, source| LightField { name: name.to_owned(), kind, source };
+        let mut fields = vec![
+            field("position", "vec3<f32>", Position),
+            field("light_type", "u32", Type),
+            field("direction", "vec3<f32>", Direction),
+            field("intensity", "f32", Intensity),
+            field("colour", "vec3<f32>", Colour),
+        ];
+        for (t, entry) in self.types.iter().enumerate() {
+            let mut at = 0;
+            for p in entry.parameters {
+                let source = FieldSource::Parameter(t, at);
+                fields.push(field(&self.parameter_field(t, p.name), p.wgsl_type(), source));
+                at += size(p.wgsl_type());
+            }
+        }
+        fields
+    }
+
+    /// The name of the field that holds a parameter of a type: its own, unless another field has that.
+    #[must_use]
+    pub fn parameter_field(&self, light_type: usize, name: &str) -> String {
+        let taken = ["position", "light_type", "direction", "intensity", "colour"].contains(&name);
+        let holders = self.types.iter().filter(|t| t.parameters.iter().any(|p| p.name == name)).count();
+        match taken || holders > 1 {
+            true => format!("{}_{name}", self.types[light_type].declaration.id),
+            false => name.to_owned(),
+        }
+    }
+}
+
+/// The words of a WGSL type.
+#[must_use]
+pub fn size(kind: &str) -> usize {
+    if kind == "vec3<f32>" { 3 } else { 1 }
+}
+
+/// The bytes of a record with these fields in WGSL.
+#[must_use]
+pub fn stride(fields: &[LightField]) -> usize {
+    let end = fields.iter().fold(0usize, |end, field| match size(field.kind) {
+        3 => end.next_multiple_of(16) + 12,
+        words => end + 4 * words,
+    });
+    end.next_multiple_of(16)
+}
+
+impl LightRow {
+    /// The words of a field: zero where its type has no such parameter.
+    #[must_use]
+    pub fn words(&self, field: &LightField) -> Vec<u32> {
+        let vector = |v: Vec3| v.to_array().map(f32::to_bits).to_vec();
+        match field.source {
+            FieldSource::Position => vector(self.record.position),
+            FieldSource::Direction => vector(self.record.direction),
+            FieldSource::Colour => vector(self.record.colour),
+            FieldSource::Intensity => vec![self.record.intensity.to_bits()],
+            FieldSource::Type => vec![self.light_type as u32],
+            FieldSource::Parameter(t, at) if t == self.light_type => {
+                self.words[at..at + size(field.kind)].to_vec()
+            }
+            FieldSource::Parameter(..) => vec![0; size(field.kind)],
+        }
+    }
+}
+
+/// The call of the function of a light type in WGSL; `light` is in scope.
+#[must_use]
+pub fn call(lights: &Lights, light_type: usize) -> String {
+    let entry = lights.types[light_type];
+    let field = |p: &Parameter| format!("light.{}", lights.parameter_field(light_type, p.name));
+    let values: Vec<_> = entry.parameters.iter().map(field).collect();
+    let id = entry.declaration.id;
+    match values.as_slice() {
+        [] => format!("incident_{id}(light, p)"),
+        all => format!("incident_{id}(light, {}({}), p)", entry.parameter_struct(), all.join(", ")),
+    }
+}

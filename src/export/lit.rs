@@ -1,0 +1,306 @@
+//! A scene taken apart for export: the shaders that it needs, its materials, its meshes, and the objects that are drawn
+//! with them.
+
+use std::collections::HashMap;
+
+use bevy::mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
+use glam::{Mat4, Vec3};
+
+use super::{
+    ExportError, Request,
+    lights::Lights,
+    names::Names,
+    object_path,
+    refusals::Refusals,
+    shader::{Host, Shader, compose},
+};
+use crate::{
+    optics::{
+        colour::{BACKGROUND, Encoding},
+        tone::exposure_factor,
+    },
+    parameter::{Parameter, Values, pack},
+    reflection::ModelEntry,
+    render::{
+        entities::object_transform,
+        material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
+        meshes::{face_mesh, shared_mesh},
+    },
+    scene::Object,
+    shader::compose::WRAPPER,
+    shading::{ShadingEntry, Stage},
+    shape::MeshKey,
+};
+
+/// A scene taken apart.
+pub struct Lit<'a> {
+    /// The scene, and what it was taken apart for.
+    pub request: Request<'a>,
+    /// The lights that are on.
+    pub lights: Lights<'a>,
+    /// One for each pair of reflection and shading model in use.
+    pub programs: Vec<Program<'a>>,
+    /// The different materials.
+    pub materials: Vec<Material>,
+    /// The different meshes.
+    pub meshes: Vec<MeshData>,
+    /// The visible objects, in the order of the scene.
+    pub objects: Vec<Drawn>,
+}
+
+/// What was taken apart so far, to find it again.
+#[derive(Default)]
+struct Known {
+    meshes: HashMap<(MeshKey, bool), usize>,
+    /// Those of the meshes.
+    names: Names,
+    /// By program and values.
+    materials: HashMap<(usize, String), usize>,
+}
+
+/// A shader, and the models that it is made of.
+pub struct Program<'a> {
+    /// The reflection model.
+    pub model: &'a ModelEntry,
+    /// The shading model.
+    pub shading: &'a ShadingEntry,
+    /// The shader.
+    pub shader: Shader,
+}
+
+impl Program<'_> {
+    /// True if vertices know their polygon.
+    #[must_use]
+    pub fn faces(&self) -> bool {
+        self.shading.declaration.stage == Stage::Polygon
+    }
+
+    /// A name for files: `microfacet_phong`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        format!("{}_{}", self.model.declaration.id, self.shading.declaration.id)
+    }
+}
+
+/// A material: the parameters of objects that look alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// The index of its shader.
+    pub program: usize,
+    /// The values that the scene gives.
+    pub values: Values,
+    /// The bytes of `Parameters`.
+    pub parameters: Vec<u8>,
+    /// The bytes of `AlbedoCurve`; empty for shaders that read none.
+    pub curve: Vec<u8>,
+    /// The bytes of `ShadingParameters`; empty for shaders that read none.
+    pub shading: Vec<u8>,
+}
+
+/// A mesh as the shaders want it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshData {
+    /// A name for files: `sphere_32`.
+    pub name: String,
+    /// The attributes of the vertices, in the order of their locations.
+    pub attributes: Vec<Attribute>,
+    /// Three vertices for each triangle, counter-clockwise seen from outside.
+    pub indices: Vec<u32>,
+}
+
+/// An attribute of vertices: three numbers for each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attribute {
+    /// Its name in the shader.
+    pub name: &'static str,
+    /// Its values.
+    pub values: Vec<[f32; 3]>,
+}
+
+impl MeshData {
+    /// The number of vertices.
+    #[must_use]
+    pub fn vertices(&self) -> usize {
+        self.attributes.first().map_or(0, |a| a.values.len())
+    }
+
+    /// The vertices, one after the other: each has its attributes in order, three floats each.
+    #[must_use]
+    pub fn interleaved(&self) -> Vec<u8> {
+        let vertex = |i: usize| self.attributes.iter().flat_map(move |a| a.values[i]);
+        (0..self.vertices()).flat_map(vertex).flat_map(f32::to_le_bytes).collect()
+    }
+}
+
+/// An object of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawn {
+    /// Its index in the scene.
+    pub index: usize,
+    /// The index of its material.
+    pub material: usize,
+    /// The index of its mesh.
+    pub mesh: usize,
+}
+
+impl Drawn {
+    /// From its own coordinates to those of the room.
+    #[must_use]
+    pub fn room_from_object(&self, request: &Request) -> Mat4 {
+        object_transform(&request.scene.objects[self.index]).to_matrix()
+    }
+}
+
+impl<'a> Lit<'a> {
+    /// Takes a scene apart; `wanted` selects objects by index.
+    ///
+    /// # Errors
+    /// Parts that no form can hold: models and shapes that are not known.
+    pub fn of(request: Request<'a>, host: Host, wanted: impl Fn(usize) -> bool) -> Result<Self, ExportError> {
+        let Request { scene, registry, .. } = request;
+        let lights = Lights::of(scene, registry);
+        let mut lit = Self {
+            request,
+            lights,
+            programs: Vec::new(),
+            materials: Vec::new(),
+            meshes: Vec::new(),
+            objects: Vec::new(),
+        };
+        let mut refused = Refusals::default();
+        let mut known = Known::default();
+        for (index, object) in scene.objects.iter().enumerate().filter(|(i, o)| o.visible && wanted(*i)) {
+            match lit.add(index, object, host, &mut known) {
+                Ok(()) => {}
+                Err(ExportError::Refused(reasons)) => {
+                    reasons.into_iter().for_each(|reason| refused.add(object_path(scene, index), reason));
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        refused.or(lit)
+    }
+
+    fn add(
+        &mut self,
+        index: usize,
+        object: &Object,
+        host: Host,
+        known: &mut Known,
+    ) -> Result<(), ExportError> {
+        let Request { scene, registry, .. } = self.request;
+        let (model, shading) = (scene.model_of(object), scene.shading_model_of(object));
+        let unknown = |what: &str, id: &str| ExportError::refused(format!("there is no {what} {id}"));
+        let model = registry.model(model).ok_or_else(|| unknown("reflection model", model))?;
+        let shading = registry.shading_model(shading).ok_or_else(|| unknown("shading model", shading))?;
+        let shape =
+            registry.shape(&object.object_type).ok_or_else(|| unknown("object type", &object.object_type))?;
+        let same = |p: &Program| {
+            p.model.declaration.id == model.declaration.id
+                && p.shading.declaration.id == shading.declaration.id
+        };
+        let program = match self.programs.iter().position(same) {
+            Some(program) => program,
+            None => {
+                let shader = compose(&self.lights, registry, model, shading, host)?;
+                self.programs.push(Program { model, shading, shader });
+                self.programs.len() - 1
+            }
+        };
+        let values = self.values(program, object);
+        // Debug writes each number so that no two look alike.
+        let look = (program, format!("{values:?}"));
+        let material = match known.materials.get(&look) {
+            Some(material) => *material,
+            None => {
+                let material = self.material(program, values);
+                self.materials.push(material);
+                known.materials.insert(look, self.materials.len() - 1);
+                self.materials.len() - 1
+            }
+        };
+        let faces = self.programs[program].faces();
+        let key = (shape.key(&object.shape, object.tessellation), faces);
+        let mesh = match known.meshes.get(&key) {
+            Some(mesh) => *mesh,
+            None => {
+                let tessellation = shape.tessellation(object.tessellation);
+                let polygons = shape.mesh(&object.shape, tessellation);
+                let mesh = if faces { face_mesh(&polygons) } else { shared_mesh(&polygons) };
+                let suffix = if faces { "_polygons" } else { "" };
+                let base = format!("{}_{tessellation}{suffix}", shape.declaration.id);
+                self.meshes.push(data(known.names.unique(base), &mesh, faces));
+                known.meshes.insert(key, self.meshes.len() - 1);
+                self.meshes.len() - 1
+            }
+        };
+        self.objects.push(Drawn { index, material, mesh });
+        Ok(())
+    }
+
+    /// The values of an object that its models use.
+    fn values(&self, program: usize, object: &Object) -> Values {
+        let Program { model, shading, .. } = &self.programs[program];
+        let used: Vec<Parameter> = model.parameters.iter().chain(shading.parameters).cloned().collect();
+        object.material.legal(&used)
+    }
+
+    fn material(&self, program: usize, values: Values) -> Material {
+        let Program { model, shading, shader } = &self.programs[program];
+        let encoding = self.request.scene.display.encoding;
+        let parameters = pack(model.parameters, &values, encoding);
+        let curve = if shader.reads_curve {
+            let row = model.row(&values, encoding, self.lights.uniform);
+            row[parameters.len().next_multiple_of(16)..].to_vec()
+        } else {
+            Vec::new()
+        };
+        let own = if shader.reads_shading { pack(shading.parameters, &values, encoding) } else { Vec::new() };
+        Material { program, values, parameters, curve, shading: own }
+    }
+
+    /// What differs from the picture in the lab, if anything: sentences.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let edited =
+            self.request.registry.sources().get(WRAPPER.path).is_some_and(|text| text != WRAPPER.text);
+        let note = "The edited wrapper.wgsl is no part of the export, which has entry points of its own.";
+        edited.then(|| note.to_owned()).into_iter().collect()
+    }
+
+    /// The factor of the exposure.
+    #[must_use]
+    pub fn exposure(&self) -> f32 {
+        exposure_factor(self.request.scene.display.exposure)
+    }
+
+    /// The light of the background, which tone mapping changes, and exposure does not.
+    #[must_use]
+    pub fn background(&self) -> Vec3 {
+        self.request.scene.display.tone_mapping.map(Encoding::Srgb.decode(BACKGROUND))
+    }
+}
+
+fn data(name: String, mesh: &Mesh, faces: bool) -> MeshData {
+    let all: &[(&'static str, MeshVertexAttribute)] = &[
+        ("position", Mesh::ATTRIBUTE_POSITION),
+        ("normal", Mesh::ATTRIBUTE_NORMAL),
+        ("tangent", TANGENT),
+        ("face_normal", FACE_NORMAL),
+        ("face_tangent", FACE_TANGENT),
+        ("face_centre", FACE_CENTRE),
+    ];
+    let count = if faces { 6 } else { 3 };
+    let attributes = all[..count]
+        .iter()
+        .map(|(name, attribute)| Attribute {
+            name,
+            values: match mesh.attribute(attribute.id) {
+                Some(VertexAttributeValues::Float32x3(values)) => values.clone(),
+                _ => Vec::new(),
+            },
+        })
+        .collect();
+    let indices = mesh.indices().map(|i| i.iter().map(|i| i as u32).collect()).unwrap_or_default();
+    MeshData { name, attributes, indices }
+}

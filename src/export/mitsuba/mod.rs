@@ -1,0 +1,234 @@
+//! A scene for Mitsuba 3, a renderer that follows light through the room: a reference for pictures, and a witness for
+//! ours.
+//!
+//! Only what has the same equation there is exported; the rest is refused, all parts at once. Our lights multiply a
+//! response π f_r cos θ, and Mitsuba's multiply f_r cos θ, so lights from one direction are π times as strong there.
+//! `tests/suite/mitsuba.rs` compares the pictures.
+
+use std::collections::{BTreeSet, HashMap};
+
+use glam::Vec3;
+
+use self::{
+    bsdf::{Bsdf, Material},
+    emitter::{Emitter, Lamp},
+    mesh::{Surface, ply},
+    xml::{Xml, triple},
+};
+use super::{
+    Export, ExportError, File, Form, Makes, Progress, Request, light_path, object_path, refusals::Refusals,
+};
+use crate::{
+    light::Incident,
+    optics::{colour::Encoding, tone::ToneMapping},
+    registry::compose,
+    render::entities::object_transform,
+    scene::{
+        Object,
+        observer::{NEAR, orientation},
+        record,
+    },
+    shape::MeshKey,
+    text::listed,
+};
+
+mod bsdf;
+mod emitter;
+mod mesh;
+mod xml;
+
+/// The form.
+pub const FORM: Form = Form {
+    id: "mitsuba",
+    name: "Mitsuba scene",
+    summary: "a folder with a scene for Mitsuba 3: mitsuba -m scalar_rgb FOLDER/scene.xml",
+    makes: Makes::Folder,
+    of_object: false,
+    make,
+};
+
+/// Shading models that interpolate, and those that show polygons.
+const SHADING: &[(&str, bool)] =
+    &[("gouraud", true), ("phong", true), ("flat", false), ("derivative", false)];
+
+/// Samples per pixel.
+const SAMPLES: &str = "64";
+
+fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
+    let scene = request.scene;
+    progress.step(0.0, "looking for counterparts")?;
+    let mut refused = Refusals::default();
+    let lights = lights(request, &mut refused);
+    let objects = objects(request, &mut refused);
+    let objects = refused.or(objects)?;
+    if objects.is_empty() {
+        return Err(ExportError::refused("no object is visible"));
+    }
+
+    let mut file = Xml::element("scene version=\"3.5.0\"")
+        .says("Light that arrives straight from a lamp, as in the lab, but with shadows. With type=\"path\", light goes on from surface to surface.")
+        .with(Xml::plugin("integrator", "direct").set("boolean", "hide_emitters", "true"))
+        .with(sensor(request));
+    let mut files = Vec::new();
+    for (name, Emitter { xml, file: texture }) in lights {
+        file = file.says(&name).with(xml);
+        files.extend(texture);
+    }
+    let mut meshes: HashMap<(MeshKey, Surface), String> = HashMap::new();
+    let mut notes = BTreeSet::new();
+    let total = objects.len();
+    for (done, Counterpart { name, object, bsdf, smooth }) in objects.into_iter().enumerate() {
+        progress.step(done as f32 / total as f32, "making meshes")?;
+        let Some(shape) = request.registry.shape(&object.object_type) else { continue };
+        let surface = Surface { smooth, brushed: bsdf.brushed };
+        let key = (shape.key(&object.shape, object.tessellation), surface);
+        let count = meshes.len();
+        let path = meshes.entry(key).or_insert_with(|| {
+            let path = format!("meshes/{}_{count}.ply", object.object_type);
+            let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
+            files.push(File::new(&path, ply(&mesh, surface)));
+            path
+        });
+        notes.extend(bsdf.note.map(str::to_owned));
+        let shape = Xml::plugin("shape", "ply").set("string", "filename", path);
+        let shape = if smooth { shape } else { shape.set("boolean", "face_normals", "true") };
+        file = file.says(&name).with(shape.with(placed(object)).with(bsdf.xml));
+    }
+    notes.extend(differences(request));
+    let title = scene.name.as_deref().unwrap_or(request.stem);
+    let about = format!(
+        "{title}, by Lights, Camera, Models! {}, for Mitsuba 3: mitsuba -m scalar_rgb scene.xml writes scene.exr, in linear light.",
+        env!("CARGO_PKG_VERSION")
+    );
+    files.insert(0, File::new("scene.xml", file.file(&about)));
+    Ok(Export { files, notes: notes.into_iter().collect() })
+}
+
+/// The lights that shine, each with its name.
+fn lights(request: &Request, refused: &mut Refusals) -> Vec<(String, Emitter)> {
+    let Request { scene, registry, .. } = request;
+    let mut emitters = Vec::new();
+    for (i, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
+        let Some(entry) = registry.light(&light.light_type) else { continue };
+        let name = light_path(scene, i);
+        let record = record(light, registry, scene.display.encoding);
+        let lamp = Lamp { entry, record, values: &light.parameters, number: i };
+        let shader = entry.declaration.wgsl.path;
+        let emitter = match registry.sources().get(shader) {
+            Some(_) => Err(format!("the edited {shader} has no counterpart in Mitsuba")),
+            None => lamp.emitter(),
+        };
+        match emitter {
+            Ok(emitter) => emitters.push((name, emitter)),
+            Err(why) => refused.add(name, why),
+        }
+    }
+    emitters
+}
+
+/// An object and its counterpart.
+struct Counterpart<'a> {
+    name: String,
+    object: &'a Object,
+    bsdf: Bsdf,
+    smooth: bool,
+}
+
+/// The objects that are shown.
+fn objects<'a>(request: &'a Request, refused: &mut Refusals) -> Vec<Counterpart<'a>> {
+    let Request { scene, registry, .. } = request;
+    let encoding = scene.display.encoding;
+    let ambient = scene.shining().any(|light| {
+        registry.light(&light.light_type).is_some_and(|entry| {
+            let emitter = (entry.instantiate)(&light.parameters, encoding);
+            let incident = emitter.incident(&record(light, registry, encoding), Vec3::ZERO);
+            matches!(incident, Incident::Uniform { intensity } if intensity != Vec3::ZERO)
+        })
+    });
+    let mut found = Vec::new();
+    for (i, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.visible) {
+        let (model, shading) = (scene.model_of(object), scene.shading_model_of(object));
+        let (Some(model), Some(shading)) = (registry.model(model), registry.shading_model(shading)) else {
+            continue;
+        };
+        let name = object_path(scene, i);
+        let mut wrong = Vec::new();
+        let changed = compose::files(registry.sources(), model, shading, &[]);
+        let changed: Vec<_> = changed.into_iter().filter(|file| file.edited).map(|file| file.path).collect();
+        if !changed.is_empty() {
+            wrong.push(format!("the edited {} has no counterpart in Mitsuba", listed(&changed, "and")));
+        }
+        let bsdf = Material { model, values: &object.material, encoding, ambient }.bsdf();
+        let id = shading.declaration.id;
+        let smooth = SHADING.iter().find(|(known, _)| *known == id).map(|(_, smooth)| *smooth);
+        if smooth.is_none() {
+            wrong.push(format!("Mitsuba has no counterpart of the shading model {id}"));
+        }
+        match (bsdf, smooth) {
+            (Ok(bsdf), Some(smooth)) if wrong.is_empty() => {
+                found.push(Counterpart { name, object, bsdf, smooth });
+            }
+            (bsdf, _) => {
+                wrong.extend(bsdf.err());
+                wrong.into_iter().for_each(|why| refused.add(name.clone(), why));
+            }
+        }
+    }
+    found
+}
+
+fn sensor(request: &Request) -> Xml {
+    let observer = &request.scene.observer;
+    let (width, height) = request.size;
+    let look = format!(
+        "lookat origin=\"{}\" target=\"{}\" up=\"{}\"",
+        triple(observer.position),
+        triple(observer.position + observer.direction.normalize_or(Vec3::NEG_Z)),
+        triple(orientation(observer.direction).y_axis)
+    );
+    Xml::plugin("sensor", "perspective")
+        .set("string", "fov_axis", "y")
+        .float("fov", observer.field_of_view)
+        .float("near_clip", NEAR)
+        .with(Xml::element("transform name=\"to_world\"").with(Xml::element(look)))
+        .with(Xml::plugin("sampler", "multijitter").set("integer", "sample_count", SAMPLES))
+        .with(
+            Xml::plugin("film", "hdrfilm")
+                .set("integer", "width", &width.to_string())
+                .set("integer", "height", &height.to_string())
+                .set("string", "pixel_format", "rgb")
+                .set("string", "component_format", "float32")
+                .with(Xml::plugin("rfilter", "box")),
+        )
+}
+
+/// The place, size and rotation of an object.
+fn placed(object: &Object) -> Xml {
+    let matrix = object_transform(object).to_matrix().transpose();
+    let rows: Vec<_> = matrix.to_cols_array().iter().map(f32::to_string).collect();
+    let matrix = Xml::element(format!("matrix value=\"{}\"", rows.join(" ")));
+    Xml::element("transform name=\"to_world\"").with(matrix)
+}
+
+/// Where the picture differs from that of the lab.
+fn differences(request: &Request) -> Vec<String> {
+    let scene = request.scene;
+    let shown = |id: &str| scene.shown().any(|object| scene.shading_model_of(object) == id);
+    let display = &scene.display;
+    let mut notes = vec!["Mitsuba casts shadows, the lab does not; its background is black".to_owned()];
+    if shown("gouraud") || shown("flat") {
+        notes.push(
+            "Mitsuba shades every pixel: gouraud becomes phong, and flat becomes derivative".to_owned(),
+        );
+    }
+    if display.exposure != 0.0 || display.tone_mapping != ToneMapping::None {
+        let (exposure, curve) = (display.exposure, display.tone_mapping.id());
+        notes.push(format!(
+            "the picture is linear light, before the exposure of {exposure} EV and the tone mapping {curve}"
+        ));
+    }
+    if display.encoding == Encoding::Off {
+        notes.push("colours are taken as linear light, as the scene's display does".to_owned());
+    }
+    notes
+}

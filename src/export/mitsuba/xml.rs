@@ -1,0 +1,118 @@
+//! The writing of XML: elements within elements, indented.
+
+use std::fmt::Write as _;
+
+use glam::Vec3;
+
+use crate::files::printable;
+
+/// An element: a plugin or one of its properties, with elements and comments in it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Xml {
+    /// `shape type="ply"`.
+    open: String,
+    within: Vec<Xml>,
+}
+
+impl Xml {
+    /// A plugin: `<bsdf type="diffuse">`.
+    pub(super) fn plugin(kind: &str, name: &str) -> Self {
+        Self { open: format!("{kind} type=\"{name}\""), within: Vec::new() }
+    }
+
+    /// An element with these attributes.
+    pub(super) fn element(open: impl Into<String>) -> Self {
+        Self { open: open.into(), within: Vec::new() }
+    }
+
+    /// A comment.
+    fn comment(text: &str) -> Self {
+        Self { open: format!("!-- {} --", harmless(text)), within: Vec::new() }
+    }
+
+    /// The element with one more in it.
+    pub(super) fn with(mut self, child: Self) -> Self {
+        self.within.push(child);
+        self
+    }
+
+    /// The element with a comment in it.
+    pub(super) fn says(self, text: &str) -> Self {
+        self.with(Self::comment(text))
+    }
+
+    /// The element with a property: `<float name="fov" value="45"/>`.
+    pub(super) fn set(self, kind: &str, name: &str, value: &str) -> Self {
+        self.with(Self::element(format!("{kind} name=\"{name}\" value=\"{value}\"")))
+    }
+
+    /// The same with a number.
+    pub(super) fn float(self, name: &str, value: f32) -> Self {
+        self.set("float", name, &number(value))
+    }
+
+    /// The same with a colour, or with three numbers for red, green and blue.
+    pub(super) fn rgb(self, name: &str, value: Vec3) -> Self {
+        self.set("rgb", name, &triple(value))
+    }
+
+    /// The text of a file with this element.
+    pub(super) fn file(&self, about: &str) -> String {
+        let mut text = format!("<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<!-- {} -->\n", harmless(about));
+        self.write(&mut text, 0);
+        text
+    }
+
+    fn write(&self, text: &mut String, depth: usize) {
+        let Self { open, within } = self;
+        let space = "    ".repeat(depth);
+        let name = open.split(' ').next().unwrap_or_default();
+        // Writing to a String cannot fail.
+        let _ = match within.as_slice() {
+            _ if open.starts_with('!') => writeln!(text, "{space}<{open}>"),
+            [] => writeln!(text, "{space}<{open}/>"),
+            _ => writeln!(text, "{space}<{open}>"),
+        };
+        within.iter().for_each(|child| child.write(text, depth + 1));
+        if !within.is_empty() {
+            let _ = writeln!(text, "{space}</{name}>");
+        }
+    }
+}
+
+/// A text that does not end a comment.
+fn harmless(text: &str) -> String {
+    printable(text).replace("--", "- -")
+}
+
+/// A number that is read back exactly.
+pub(super) fn number(value: f32) -> String {
+    format!("{value}")
+}
+
+/// Three numbers.
+pub(super) fn triple(value: Vec3) -> String {
+    format!("{}, {}, {}", value.x, value.y, value.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_are_indented_and_comments_end_where_they_should() {
+        let xml = Xml::element("scene version=\"3.5.0\"")
+            .says("a --> b\u{1b}")
+            .with(Xml::plugin("bsdf", "diffuse").rgb("reflectance", Vec3::new(1.0, 0.5, 1e-7)));
+        let expected = r#"<?xml version="1.0" encoding="utf-8"?>
+<!-- about -->
+<scene version="3.5.0">
+    <!-- a - -> b\u{1b} -->
+    <bsdf type="diffuse">
+        <rgb name="reflectance" value="1, 0.5, 0.0000001"/>
+    </bsdf>
+</scene>
+"#;
+        assert_eq!(xml.file("about"), expected);
+    }
+}

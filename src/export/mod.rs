@@ -1,0 +1,179 @@
+//! Code out: a scene as a project, as shader files, as a page, as a program, as a scene for another renderer.
+//!
+//! Each form is one file here and one name in [`FORMS`]. A form turns a [`Request`] into an [`Export`], files in memory;
+//! [`write()`](write::write) puts them in their place, all or nothing. A scene that a form cannot hold is refused with
+//! all reasons.
+
+use std::path::PathBuf;
+
+pub use crate::progress::Progress;
+use crate::{progress::Cancelled, registry::Registry, scene::Scene};
+
+mod bevy;
+mod executable;
+pub mod html;
+pub mod lights;
+pub mod lit;
+pub mod manifest;
+mod mitsuba;
+mod names;
+pub mod payload;
+mod refusals;
+pub mod shader;
+pub mod shaders;
+pub mod translate;
+pub mod write;
+
+/// All forms, in the order of lists: the one list.
+pub const FORMS: &[&Form] = &[
+    &bevy::BEVY,
+    &html::HTML,
+    &executable::FORM,
+    &shaders::WGSL,
+    &shaders::GLSL,
+    &shaders::HLSL,
+    &shaders::MSL,
+    &shaders::SPIRV,
+    &mitsuba::FORM,
+];
+
+/// A form of code.
+#[derive(Debug)]
+pub struct Form {
+    /// The name on the command line.
+    pub id: &'static str,
+    /// The name shown to people.
+    pub name: &'static str,
+    /// One sentence: the content, and how to use it.
+    pub summary: &'static str,
+    /// The kind of its output.
+    pub makes: Makes,
+    /// True if it holds one object of the scene, and so needs the choice of one.
+    pub of_object: bool,
+    /// Makes the files.
+    pub make: fn(&Request, &Progress) -> Result<Export, ExportError>,
+}
+
+/// The kind of output of a form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Makes {
+    /// One file, with this extension, which may be empty.
+    File(&'static str),
+    /// A folder of several files.
+    Folder,
+}
+
+/// A scene to export.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// The scene, which is valid.
+    pub scene: &'a Scene,
+    /// The models, light types and shapes, with the sources of their shaders as they are drawn.
+    pub registry: &'a Registry,
+    /// The name of the scene's file without extension; for names of files and packages.
+    pub stem: &'a str,
+    /// The size of pictures and windows in pixels.
+    pub size: (u32, u32),
+    /// The index of the object for forms that hold one; it exists.
+    pub object: usize,
+}
+
+/// One file of an export.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// Its path within the folder, with `/`; empty if the export is one file.
+    pub path: String,
+    /// Its content.
+    pub bytes: Vec<u8>,
+    /// True if it is a program.
+    pub executable: bool,
+}
+
+impl File {
+    /// A file with a text or other content.
+    #[must_use]
+    pub fn new(path: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
+        Self { path: path.into(), bytes: bytes.into(), executable: false }
+    }
+}
+
+/// A finished export.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Export {
+    /// Its files; one without a path if it is a single file.
+    pub files: Vec<File>,
+    /// Sentences about differences from the picture in the lab, if there are any.
+    pub notes: Vec<String>,
+}
+
+impl Export {
+    /// A single file.
+    #[must_use]
+    pub fn file(bytes: impl Into<Vec<u8>>) -> Self {
+        Self { files: vec![File::new("", bytes)], notes: Vec::new() }
+    }
+}
+
+/// The reason why there is no export.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ExportError {
+    /// The form has no counterpart for parts of the scene; a line for each, which names the part.
+    #[error("{}", .0.join("\n"))]
+    Refused(Vec<String>),
+    /// The user cancelled.
+    #[error("the export was cancelled")]
+    Cancelled,
+}
+
+impl ExportError {
+    /// A refusal for one reason.
+    pub fn refused(reason: impl Into<String>) -> Self {
+        Self::Refused(vec![reason.into()])
+    }
+}
+
+impl From<Cancelled> for ExportError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+/// The form with that id.
+#[must_use]
+pub fn form(id: &str) -> Option<&'static Form> {
+    FORMS.iter().copied().find(|form| form.id == id)
+}
+
+impl Form {
+    /// The place of an export that the user gives no place for.
+    #[must_use]
+    pub fn default_path(&self, stem: &str) -> PathBuf {
+        /// The folder for exports.
+        const FOLDER: &str = "exports";
+        let name = match self.makes {
+            Makes::File("") => stem.to_owned(),
+            Makes::File(extension) => format!("{stem}.{extension}"),
+            Makes::Folder => format!("{stem}_{}", self.id),
+        };
+        PathBuf::from(FOLDER).join(name)
+    }
+}
+
+/// The path of an object in messages: `objects[2] ("Gold")`.
+#[must_use]
+pub fn object_path(scene: &Scene, index: usize) -> String {
+    path("objects", index, scene.objects.get(index).and_then(|object| object.name.as_deref()))
+}
+
+/// The path of a light in messages: `lights[0] ("Key")`.
+#[must_use]
+pub fn light_path(scene: &Scene, index: usize) -> String {
+    path("lights", index, scene.lights.get(index).and_then(|light| light.name.as_deref()))
+}
+
+fn path(list: &str, index: usize, name: Option<&str>) -> String {
+    match name {
+        Some(name) => format!("{list}[{index}] ({})", crate::text::quoted(name)),
+        None => format!("{list}[{index}]"),
+    }
+}

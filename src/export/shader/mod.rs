@@ -1,0 +1,425 @@
+//! The shader of one model and one shading model for the lights of one scene: the texts that run on screen, without the
+//! tables that serve any scene, and without what the scene does not use.
+
+use std::{collections::BTreeSet, fmt::Write as _};
+
+use naga::{
+    Module,
+    valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
+};
+
+use self::items::{Item, fields, items, retain_used};
+use super::{
+    ExportError,
+    lights::{LightField, Lights, call, stride},
+};
+use crate::{
+    optics::{albedo::NODES, colour::Encoding, tone::ToneMapping},
+    reflection::{Ambient, ModelEntry},
+    registry::{Registry, compose::AMBIENT},
+    shader::{
+        Source,
+        check::reason,
+        compose::{ALBEDO, Composer, LIGHTS, LOOP, OPTICS, SHADING, Sources, parameter_struct},
+    },
+    shading::{self, ShadingEntry, Stage},
+};
+
+pub mod items;
+mod wrapper;
+
+/// Those that take a shader.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Host {
+    /// Any program: the shader stands alone, and ends with the colour for the display.
+    Alone {
+        /// The curve from light to display.
+        tone: ToneMapping,
+        /// The encoding of colours.
+        encoding: Encoding,
+    },
+    /// A program with Bevy, which has the camera, and maps tones after the shader.
+    Bevy {
+        /// The factor of the exposure.
+        exposure: f32,
+        /// The encoding of colours.
+        encoding: Encoding,
+    },
+}
+
+/// A finished shader.
+#[derive(Clone, Debug)]
+pub struct Shader {
+    /// The WGSL.
+    pub text: String,
+    /// The fields of `Light` in it.
+    pub light_fields: Vec<LightField>,
+    /// True if it reads `albedo_curve`.
+    pub reads_curve: bool,
+    /// True if it reads `shading_values`, the parameters of the shading model.
+    pub reads_shading: bool,
+    /// True if it reads `lamp_numbers`, the numbers of the lights' files.
+    pub reads_lamps: bool,
+    /// True if an edited light loop reads more of `illumination` than the lights.
+    pub reads_header: bool,
+}
+
+/// The index of the section of the light loop, before those of the light types.
+const LIGHT_LOOP: usize = 3;
+
+/// A part of the text under one heading.
+struct Section {
+    heading: String,
+    items: Vec<Item>,
+}
+
+/// What a model and a shading model need for the lights of a scene.
+///
+/// # Errors
+/// If the texts cannot be joined: only by `#import`s that lead nowhere, which drawing reports too.
+pub fn compose(
+    lights: &Lights,
+    registry: &Registry,
+    model: &ModelEntry,
+    shading: &ShadingEntry,
+    host: Host,
+) -> Result<Shader, ExportError> {
+    let files = 4 * lights.numbers.len();
+    fits("the photometric files of the lamps", files, "files with fewer angles")?;
+    let sources = registry.sources();
+    let faces = shading.declaration.stage == Stage::Polygon;
+    let (own, standing) = (model.declaration, shading.declaration);
+    let mut sections = vec![
+        Section { heading: String::new(), items: items(&wrapper::text(host, faces)) },
+        Section { heading: String::new(), items: items(&inputs(lights, model, shading, host)) },
+        Section {
+            heading: credit(standing.name, "shading", standing.source, standing.summary),
+            items: items(&text(sources, &standing.wgsl)?),
+        },
+        Section {
+            heading: "The light that leaves a point: the sum over the lights.".to_owned(),
+            items: items(&(light_loop(sources, lights)? + &incident(lights))),
+        },
+    ];
+    for entry in &lights.types {
+        let what = entry.declaration;
+        let mut all = items(&text(sources, &what.wgsl)?);
+        if !entry.parameters.is_empty() {
+            all.extend(items(&parameter_struct(&entry.parameter_struct(), entry.parameters)));
+        }
+        let heading = format!("{} light: {}", what.name.trim_end_matches(" light"), what.equation);
+        sections.push(Section { heading, items: all });
+    }
+    let mut heading = credit(own.name, "reflection", own.source, own.summary);
+    for part in own.equation {
+        let _ = write!(heading, "\n    {}", part.text);
+    }
+    let mut response = text(sources, &own.wgsl)?;
+    if own.ambient == Ambient::Albedo {
+        response.push_str(AMBIENT);
+    }
+    sections.push(Section { heading, items: items(&response) });
+    let mut vocabulary = Vec::new();
+    for source in OPTICS.iter().chain([&SHADING, &LIGHTS, &ALBEDO]) {
+        // The record of a light is made for the scene.
+        let all = items(&text(sources, source)?);
+        vocabulary.extend(all.into_iter().filter(|item| !MADE.contains(&item.name.as_str())));
+    }
+    if let Host::Alone { .. } = host {
+        vocabulary.extend(items(include_str!("tone.wgsl")));
+    }
+    let heading = "Functions and types that the equations share.".to_owned();
+    sections.push(Section { heading, items: vocabulary });
+    unique(&sections)?;
+    let shader = finish(sections, lights, host);
+    // They follow the header of `Illumination`.
+    let records = 16 + lights.rows.len() * stride(&shader.light_fields);
+    fits("the lights", records, "fewer lights")?;
+    Ok(shader)
+}
+
+/// Refuses texts that declare a name twice: custom models may use names that only exports have.
+fn unique(sections: &[Section]) -> Result<(), ExportError> {
+    let mut known = BTreeSet::new();
+    let twice = sections.iter().flat_map(|s| &s.items).find(|item| !known.insert(item.name.as_str()));
+    twice.map_or(Ok(()), |item| {
+        Err(ExportError::refused(format!(
+            "a shader declares `{}`, a name that exports use themselves; another name for it will do",
+            item.name
+        )))
+    })
+}
+
+/// The most bytes that WebGPU promises for a uniform.
+const UNIFORM_BYTES: usize = 65_536;
+
+/// Refuses what no uniform holds.
+fn fits(what: &str, bytes: usize, remedy: &str) -> Result<(), ExportError> {
+    if bytes <= UNIFORM_BYTES {
+        return Ok(());
+    }
+    Err(ExportError::refused(format!(
+        "{what} have {bytes} bytes together, and a uniform holds {UNIFORM_BYTES}; {remedy} would do"
+    )))
+}
+
+/// The declarations of `lights.wgsl` that are made for each scene.
+const MADE: [&str; 3] = ["Light", "Illumination", "MAX_LIGHTS"];
+
+fn credit(name: &str, what: &str, source: &str, summary: &str) -> String {
+    let name = if name.to_lowercase().contains(what) { name.to_owned() } else { format!("{name} {what}") };
+    // Some sources begin with a code of the requirements.
+    let source = source.strip_prefix("CA ").and_then(|rest| Some(rest.split_once(": ")?.1)).unwrap_or(source);
+    let source = if source.is_empty() { String::new() } else { format!(" ({source})") };
+    format!("{name}{source}.\n{summary}")
+}
+
+/// The text of a source, after those that it imports.
+fn text(sources: &Sources, source: &Source) -> Result<String, ExportError> {
+    let mut composer = Composer::new(sources);
+    composer.source(source);
+    match composer.composed.problem {
+        Some(problem) => Err(ExportError::refused(problem.to_string())),
+        None => Ok(without_codes(&composer.composed.text)),
+    }
+}
+
+/// A text without the codes of the requirements that comments name: `(CA DD7)`, `, CA DD9)`.
+fn without_codes(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        let mut line = line.to_owned();
+        if line.trim_start().starts_with("//") {
+            while let Some((begin, length)) = code(&line) {
+                line.replace_range(begin..begin + length, "");
+            }
+        }
+        out.push_str(&line);
+        out.push('\n');
+    }
+    out
+}
+
+/// The place of the first code in a comment: with its brackets, or with the comma before it.
+fn code(line: &str) -> Option<(usize, usize)> {
+    let whole = line.find(" (CA ").and_then(|at| Some((at, line[at..].find(')')? + 1)));
+    whole.or_else(|| line.find(", CA ").and_then(|at| Some((at, line[at..].find(')')?))))
+}
+
+/// The light loop, with a known number of lights and all terms. Of the built-in one, what the scene does not need goes.
+fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError> {
+    let mut text = text(sources, &LOOP)?;
+    let simpler = if sources.text(&LOOP) == LOOP.text { SIMPLER } else { &[] };
+    for (general, special) in simpler.iter().chain(KNOWN) {
+        text = text.replace(general, special);
+    }
+    if !lights.uniform {
+        text = text.replace(EITHER, DIRECTED);
+    }
+    Ok(text)
+}
+
+/// Parts of the built-in light loop, and what they are without a choice of terms.
+const SIMPLER: &[(&str, &str)] = &[
+    (" `illumination`, `parameters` and `observer_position` come from the wrapper.", ""),
+    (
+        "    let count = min(illumination.count, MAX_LIGHTS);
+    let selection = illumination.terms;
+    for (var i = 0u; i < count; i++) {
+",
+        "    for (var i = 0u; i < LIGHT_COUNT; i++) {\n",
+    ),
+    ("select_terms(terms, selection)", "(terms.ambient + terms.diffuse + terms.specular)"),
+];
+/// What is known of the scene, for any light loop.
+const KNOWN: &[(&str, &str)] = &[
+    ("min(illumination.count, MAX_LIGHTS)", "LIGHT_COUNT"),
+    ("illumination.count", "LIGHT_COUNT"),
+    ("illumination.terms", "TERM_ALL"),
+];
+/// The part of the light loop that tells uniform light from other light.
+const EITHER: &str = "        var terms: Terms;
+        if arriving.everywhere != 0u {
+            terms = Terms(ambient_response(v, frame, parameters), vec3(0.0), vec3(0.0));
+        } else {
+            terms = response(arriving.l, v, frame, parameters);
+        }
+";
+/// The same where there is no uniform light.
+const DIRECTED: &str = "        let terms = response(arriving.l, v, frame, parameters);\n";
+
+/// The function that hands a light to its type.
+fn incident(lights: &Lights) -> String {
+    let head = "// The light that arrives at a point of the room from one light.\nfn incident(light: Light, p: vec3<f32>) -> Incident {\n";
+    let body = match lights.types.len() {
+        0 => "    return Incident(vec3(0.0), vec3(0.0), 0u);\n".to_owned(),
+        1 => format!("    return {};\n", call(lights, 0)),
+        count => {
+            let mut body = "    switch light.light_type {\n".to_owned();
+            for t in 0..count - 1 {
+                let _ = writeln!(body, "        case {t}u: {{ return {}; }}", call(lights, t));
+            }
+            let _ = writeln!(body, "        default: {{ return {}; }}\n    }}", call(lights, count - 1));
+            body
+        }
+    };
+    format!("{head}{body}}}\n")
+}
+
+/// The inputs of the shader: their types, their bindings, and the functions that read them.
+fn inputs(lights: &Lights, model: &ModelEntry, shading: &ShadingEntry, host: Host) -> String {
+    let group = wrapper::group(host);
+    let count = lights.rows.len();
+    let mut text = parameter_struct("Parameters", model.parameters);
+    let _ = write!(
+        text,
+        "// The parameters of the material.
+@group({group}) @binding(0) var<uniform> parameters: Parameters;
+const LIGHT_COUNT: u32 = {count}u;
+const MAX_LIGHTS: u32 = LIGHT_COUNT;
+struct Illumination {{
+    count: u32,
+    terms: u32,
+    exposure: f32,
+    gamma_naive: u32,
+    lights: array<Light, {}>,
+}}
+// The lights of the scene.
+@group({group}) @binding(1) var<uniform> illumination: Illumination;
+",
+        count.max(1)
+    );
+    if model.has_curve() {
+        let harmonics = model.harmonics();
+        let _ = write!(
+            text,
+            "// The directional albedo of the material, by the angle of view.
+struct AlbedoCurve {{
+    nodes: array<vec4<f32>, {}>,
+    mean: f32,
+}}
+@group({group}) @binding(2) var<uniform> albedo_curve: AlbedoCurve;
+const HARMONICS: u32 = {harmonics}u;
+fn curve_node(i: u32) -> vec4<f32> {{
+    return albedo_curve.nodes[i];
+}}
+fn lobe_mean() -> f32 {{
+    return albedo_curve.mean;
+}}
+",
+            harmonics * NODES
+        );
+    }
+    if !shading.parameters.is_empty() {
+        let name = shading::PARAMETERS;
+        text.push_str(&parameter_struct(name, shading.parameters));
+        let _ = write!(
+            text,
+            "// The parameters of the shading model.
+@group({group}) @binding(3) var<uniform> shading_values: {name};
+fn shading_parameters() -> {name} {{
+    return shading_values;
+}}
+"
+        );
+    }
+    if !lights.numbers.is_empty() {
+        let _ = write!(
+            text,
+            "// The numbers of the files of lamps.
+@group({group}) @binding(4) var<uniform> lamp_numbers: array<vec4<f32>, {}>;
+fn illumination_number(i: u32) -> f32 {{
+    return lamp_numbers[i / 4u][i % 4u];
+}}
+",
+            lights.numbers.len().div_ceil(4)
+        );
+    }
+    text
+}
+
+/// Drops what is not used, then makes the record of a light of the fields that are.
+fn finish(sections: Vec<Section>, lights: &Lights, host: Host) -> Shader {
+    let (headings, mut all): (Vec<_>, Vec<_>) = sections.into_iter().map(|s| (s.heading, s.items)).unzip();
+    retain_used(&mut all, &["vertex", "fragment"]);
+    // In the light loop and the light types, a field is one of a light, or has the name of one. They are the same for all
+    // models of a scene, and so is the record.
+    let handling = LIGHT_LOOP..LIGHT_LOOP + 1 + lights.types.len();
+    let texts: Vec<_> = all[handling].iter().flatten().map(|item| item.text.as_str()).collect();
+    let used = fields(texts.iter().copied());
+    let light_fields: Vec<_> =
+        lights.fields().into_iter().filter(|field| used.contains(field.name.as_str())).collect();
+    let read = |field: &str| texts.iter().any(|text| text.contains(&format!("illumination.{field}")));
+    let kept = |line: &&str| line.trim().split_once(':').is_none_or(|(name, _)| read(name));
+    let narrow = |item: &Item| item.text.lines().filter(kept).collect::<Vec<_>>().join("\n");
+    let illumination = all.iter().flatten().find(|item| item.name == "Illumination").map(narrow);
+    for item in all.iter_mut().flatten().filter(|item| item.name == "Illumination") {
+        item.text = illumination.clone().unwrap_or_default();
+    }
+    let mut record = "struct Light {\n".to_owned();
+    for LightField { name, kind, .. } in &light_fields {
+        let _ = writeln!(record, "    {name}: {kind},");
+    }
+    record.push('}');
+    all[1].insert(1, Item { name: "Light".to_owned(), text: record });
+    let has = |name: &str| all.iter().flatten().any(|item| item.name == name);
+    let (reads_curve, reads_shading, reads_lamps) =
+        (has("albedo_curve"), has("shading_values"), has("lamp_numbers"));
+    let mut text = wrapper::prelude(host).to_owned();
+    // Inputs first.
+    for section in [1, 0].into_iter().chain(2..all.len()) {
+        if all[section].is_empty() {
+            continue;
+        }
+        if !headings[section].is_empty() {
+            text.push_str("\n// ---------------------------------------------------------------------\n");
+            for line in headings[section].lines().flat_map(wrapped) {
+                let _ = writeln!(text, "// {}", line.replace(char::is_control, " "));
+            }
+        }
+        for item in &all[section] {
+            let apart = !(item.text.starts_with("const ") && text.ends_with(";\n"));
+            let gap = if apart && !text.is_empty() { "\n" } else { "" };
+            let _ = writeln!(text, "{gap}{}", item.text);
+        }
+    }
+    let reads_header = illumination.is_some_and(|text| text.matches(':').count() > 1);
+    Shader { text, light_fields, reads_curve, reads_shading, reads_lamps, reads_header }
+}
+
+/// A line for a comment, cut at spaces so that it stays within the width of the files.
+fn wrapped(line: &str) -> Vec<String> {
+    /// Characters in a line.
+    const WIDTH: usize = 96;
+    let indent = &line[..line.len() - line.trim_start().len()];
+    let mut lines = vec![indent.to_owned()];
+    for word in line.split_whitespace() {
+        let last = lines.last_mut().map(|last| last.chars().count()).unwrap_or_default();
+        if last > indent.len() && last + 1 + word.chars().count() > WIDTH {
+            lines.push(indent.to_owned());
+        }
+        if let Some(last) = lines.last_mut() {
+            if last.len() > indent.len() {
+                last.push(' ');
+            }
+            last.push_str(word);
+        }
+    }
+    lines
+}
+
+/// The checked module of a shader that stands alone.
+///
+/// # Errors
+/// If it is no valid WGSL, which drawing would have reported.
+pub fn module(text: &str) -> Result<(Module, ModuleInfo), ExportError> {
+    let module = naga::front::wgsl::parse_str(text)
+        .map_err(|e| ExportError::refused(format!("its shader is not valid: {}", e.emit_to_string(text))))?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|e| ExportError::refused(format!("its shader is not valid: {}", reason(&e))))?;
+    Ok((module, info))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,140 @@
+use super::*;
+use crate::{
+    scene::{Light, Scene},
+    shader::compose::LOOP,
+};
+
+fn with_lights(types: &[&str], registry: &Registry) -> Scene {
+    let mut scene = Scene { lights: Vec::new(), ..Scene::default() };
+    for id in types {
+        let mut light = Light::default();
+        light.set_type(registry.light(id).expect("built in"), registry, scene.scene_size);
+        scene.lights.push(light);
+    }
+    scene
+}
+
+const ALONE: Host = Host::Alone { tone: ToneMapping::None, encoding: Encoding::Srgb };
+
+#[test]
+fn every_model_is_valid_by_itself_in_every_shading_model() {
+    let registry = Registry::builtin();
+    for types in [&["point"][..], &["point", "spot", "photometric", "directional", "ambient"]] {
+        let scene = with_lights(types, &registry);
+        let lights = Lights::of(&scene, &registry);
+        for model in registry.models() {
+            for shading in registry.shading_models() {
+                let shader = compose(&lights, &registry, model, shading, ALONE).expect("composed");
+                let (checked, _) = module(&shader.text)
+                    .unwrap_or_else(|error| panic!("{}: {error}\n{}", model.declaration.id, shader.text));
+                let light = checked.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Light"));
+                let bytes = light.map(|(_, ty)| ty.inner.size(checked.to_ctx()) as usize);
+                assert_eq!(bytes, Some(stride(&shader.light_fields)));
+            }
+        }
+    }
+}
+
+#[test]
+fn parts_that_a_scene_does_not_need_are_left_out() {
+    let registry = Registry::builtin();
+    let scene = with_lights(&["point"], &registry);
+    let (lambert, gouraud) =
+        (registry.model("lambert").expect("is"), registry.shading_model("gouraud").expect("is"));
+    let text =
+        compose(&Lights::of(&scene, &registry), &registry, lambert, gouraud, ALONE).expect("composed").text;
+    for absent in [
+        "incident_spot",
+        "ambient_response",
+        "ggx",
+        "select_terms",
+        "light_type",
+        "exposure: f32,\n    gamma",
+        "switch",
+        "MAX_LIGHTS",
+        "direction:",
+        "parameter_table",
+    ] {
+        assert!(!text.contains(absent), "{absent} in\n{text}");
+    }
+    for present in ["incident_point", "LIGHT_COUNT: u32 = 1u", "Gouraud", "J. H. Lambert"] {
+        assert!(text.contains(present), "{present} not in\n{text}");
+    }
+    let scene = with_lights(&["point", "ambient"], &registry);
+    let text =
+        compose(&Lights::of(&scene, &registry), &registry, lambert, gouraud, ALONE).expect("composed").text;
+    assert!(text.contains("ambient_response") && text.contains("light_type"), "{text}");
+}
+
+#[test]
+fn the_light_loop_has_the_parts_that_are_simplified() {
+    for part in SIMPLER.iter().map(|(general, _)| *general).chain([EITHER]) {
+        assert!(LOOP.text.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn an_edited_light_loop_stays_as_it_is_and_stands_alone() {
+    let mut registry = Registry::builtin();
+    let edited = LOOP.text.replace("let v = eye", "let strange = illumination.count;\n    let v = eye");
+    registry.sources_mut().edit("loop.wgsl", edited);
+    let scene = with_lights(&["point", "spot"], &registry);
+    let (model, shading) =
+        (registry.model("phong").expect("is"), registry.shading_model("phong").expect("is"));
+    let shader = compose(&Lights::of(&scene, &registry), &registry, model, shading, ALONE).expect("composed");
+    assert!(shader.text.contains("let strange = LIGHT_COUNT") && !shader.reads_header, "{}", shader.text);
+    module(&shader.text).expect("valid");
+}
+
+#[test]
+fn names_that_exports_have_themselves_are_refused_in_models() {
+    let mut registry = Registry::builtin();
+    let wgsl = registry.model("phong").expect("is").declaration.wgsl;
+    registry.sources_mut().edit(wgsl.path, format!("fn srgb_encode() {{}}\n{}", wgsl.text));
+    let scene = with_lights(&["point"], &registry);
+    let (model, shading) =
+        (registry.model("phong").expect("is"), registry.shading_model("phong").expect("is"));
+    let refused =
+        compose(&Lights::of(&scene, &registry), &registry, model, shading, ALONE).expect_err("twice");
+    assert!(refused.to_string().starts_with("a shader declares `srgb_encode`, a name"), "{refused}");
+}
+
+#[test]
+fn the_files_of_lamps_and_the_lights_must_fit_into_a_uniform() {
+    let registry = Registry::builtin();
+    let scene = with_lights(&["photometric"], &registry);
+    let (model, shading) =
+        (registry.model("phong").expect("is"), registry.shading_model("phong").expect("is"));
+    let mut lights = Lights::of(&scene, &registry);
+    assert!(compose(&lights, &registry, model, shading, ALONE).is_ok());
+    lights.numbers.resize(20_000, 0.0);
+    let refused = compose(&lights, &registry, model, shading, ALONE).expect_err("too much");
+    assert!(refused.to_string().contains("80000 bytes together, and a uniform holds 65536"), "{refused}");
+    lights.numbers.clear();
+    lights.rows = vec![lights.rows[0].clone(); 2000];
+    let refused = compose(&lights, &registry, model, shading, ALONE).expect_err("too much").to_string();
+    assert!(
+        refused.starts_with("the lights have ") && refused.contains("a uniform holds 65536"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn the_record_of_a_light_is_the_same_for_all_models_of_a_scene() {
+    let mut registry = Registry::builtin();
+    let wgsl = registry.model("phong").expect("is").declaration.wgsl;
+    // A comment on a Light beside a field of its name.
+    let mut text = wgsl.text.to_owned();
+    text.push_str("// No Light.\nfn unused_position(f: Corner) -> vec3<f32> { return f.position; }\n");
+    text = text.replace("-> Terms {", "-> Terms { var corner: Corner; _ = unused_position(corner);");
+    registry.sources_mut().edit(wgsl.path, text);
+    let scene = with_lights(&["directional"], &registry);
+    let lights = Lights::of(&scene, &registry);
+    let shading = registry.shading_model("phong").expect("is");
+    let fields = |id: &str| {
+        compose(&lights, &registry, registry.model(id).expect("is"), shading, ALONE)
+            .expect("composed")
+            .light_fields
+    };
+    assert_eq!(fields("phong"), fields("lambert"));
+}

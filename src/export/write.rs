@@ -1,0 +1,176 @@
+//! Exports on disk: whole or absent, and never over something unasked.
+
+use std::{
+    env, fs,
+    io::Write as _,
+    path::{Path, PathBuf},
+};
+
+use super::{Export, File, Form, Makes};
+use crate::{
+    files::{self, Draft, FileError, FolderDraft},
+    registry::Registry,
+    scene::Scene,
+};
+
+/// The reason why an export is not on disk.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// There is something already.
+    #[error("{} exists; it was not overwritten", .0.display())]
+    Exists(PathBuf),
+    /// It is of another kind than the export.
+    #[error("{} {}; it was not overwritten", .0.display(), .1)]
+    OtherKind(PathBuf, &'static str),
+    /// It is the folder in which this program runs, or around it.
+    #[error("{} is the folder in which this program runs, or around it; name a new folder in it", .0.display())]
+    Here(PathBuf),
+    /// It is a folder of something else.
+    #[error("{} has no {}, so it is no export of this form; it was not overwritten", .0.display(), .1)]
+    Foreign(PathBuf, String),
+    /// It holds something that no export of this form has.
+    #[error("{} has {}, which is of no export of this form; it was not overwritten", .0.display(), .1.display())]
+    Stranger(PathBuf, PathBuf),
+    /// It is a file of another kind.
+    #[error("{} is a file of another kind than the export; it was not overwritten", .0.display())]
+    OtherFile(PathBuf),
+    /// It holds a file that this command reads.
+    #[error("{} is read by this command; it was not overwritten", .0.display())]
+    Input(PathBuf),
+    /// The system refuses.
+    #[error("{} could not be written: {}", .0.display(), .1)]
+    System(PathBuf, FileError),
+}
+
+/// What exporting a scene reads: its file, the files that it names, those of models and shaders, and this program.
+#[must_use]
+pub fn inputs(file: Option<&Path>, scene: &Scene, registry: &Registry) -> Vec<PathBuf> {
+    let named = scene.files().filter_map(|file| file.path().map(Path::to_owned));
+    // By the name that people know it by.
+    let program = files::program().and_then(|program| fs::canonicalize(program).ok());
+    let scene = file.map(Path::to_owned).into_iter().chain(named);
+    scene.chain(registry.files_on_disk()).chain(program).collect()
+}
+
+/// Refuses a place that holds something, unless the user wants it replaced; inputs, and things of another kind, are
+/// never replaced. Called before anything is calculated.
+///
+/// # Errors
+/// If an export must not be written there.
+pub fn may_write(form: &Form, place: &Path, overwrite: bool, inputs: &[PathBuf]) -> Result<(), WriteError> {
+    if fs::symlink_metadata(place).is_err() {
+        return Ok(());
+    }
+    let folder = fs::metadata(place).is_ok_and(|target| target.is_dir());
+    match form.makes {
+        Makes::Folder if !folder => {
+            return Err(WriteError::OtherKind(place.to_owned(), "is not a folder, but this form makes one"));
+        }
+        Makes::File(_) if folder => {
+            return Err(WriteError::OtherKind(place.to_owned(), "is a folder, but this form makes a file"));
+        }
+        Makes::File(_) | Makes::Folder => {}
+    }
+    let empty = folder && is_empty(place);
+    if !empty && !overwrite {
+        return Err(WriteError::Exists(place.to_owned()));
+    }
+    let whole = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
+    // A terminal would stay in the folder that was replaced, where there is nothing.
+    if folder && env::current_dir().is_ok_and(|here| here.starts_with(&whole)) {
+        return Err(WriteError::Here(place.to_owned()));
+    }
+    if empty {
+        return Ok(());
+    }
+    let read = inputs.iter().find(|input| fs::canonicalize(input).is_ok_and(|i| i.starts_with(&whole)));
+    read.map_or(Ok(()), |input| Err(WriteError::Input(input.to_owned())))
+}
+
+/// Writes an export, after [`may_write`]. What was there is replaced only when everything is on disk.
+///
+/// # Errors
+/// If a folder of something else is there, or the system refuses; then nothing is left, and what was there is
+/// unchanged.
+pub fn write(export: &Export, place: &Path) -> Result<(), WriteError> {
+    // Whoever names a folder to put the export into must not lose what is in it.
+    if let [first, _, ..] = export.files.as_slice()
+        && !is_empty(place)
+        && !place.join(&first.path).is_file()
+    {
+        return Err(WriteError::Foreign(place.to_owned(), first.path.clone()));
+    }
+    let stranger = match export.files.as_slice() {
+        [only] if only.path.is_empty() => {
+            let old = files::read_start(place, KIND).unwrap_or_default();
+            (!only.bytes.starts_with(&old)).then(|| WriteError::OtherFile(place.to_owned()))
+        }
+        all => stranger(all, place, Path::new("")).map(|path| WriteError::Stranger(place.to_owned(), path)),
+    };
+    stranger.map_or(Ok(()), Err)?;
+    let written = files::in_folder(files::folder_of(place), || match export.files.as_slice() {
+        [only] if only.path.is_empty() => single(only, place),
+        all => folder(all, place),
+    });
+    written.map_err(|error| WriteError::System(place.to_owned(), error))
+}
+
+/// The first bytes by which the kind of a file is known.
+const KIND: u64 = 4;
+
+/// Something below a folder that an earlier export cannot have left there, however the scene was then. Of a Cargo
+/// project, what cargo makes is nobody's loss.
+fn stranger(all: &[File], place: &Path, below: &Path) -> Option<PathBuf> {
+    let is = |name: &str| all.iter().any(|file| file.path == name);
+    for entry in fs::read_dir(place.join(below)).ok()? {
+        let Ok(entry) = entry else { return Some(below.to_owned()) };
+        let path = below.join(entry.file_name());
+        if is("Cargo.toml") && (path == Path::new("target") || path == Path::new("Cargo.lock")) {
+            continue;
+        }
+        let kind = entry.file_type().ok();
+        if kind.is_some_and(|kind| kind.is_dir()) {
+            if let Some(found) = stranger(all, place, &path) {
+                return Some(found);
+            }
+            // An empty folder may be somebody's too.
+            if all.iter().all(|file| !Path::new(&file.path).starts_with(&path)) {
+                return Some(path);
+            }
+            continue;
+        }
+        // Another scene has other shaders and meshes.
+        let alike = |file: &File| {
+            let file = Path::new(&file.path);
+            let beside = file.parent() == Some(below) && !below.as_os_str().is_empty();
+            file == path || beside && file.extension() == path.extension()
+        };
+        if !kind.is_some_and(|kind| kind.is_file()) || !all.iter().any(alike) {
+            return Some(path);
+        }
+    }
+    None
+}
+
+/// True if nothing is there, or an empty folder.
+fn is_empty(place: &Path) -> bool {
+    match fs::read_dir(place) {
+        Ok(mut entries) => entries.next().is_none(),
+        Err(_) => fs::symlink_metadata(place).is_err(),
+    }
+}
+
+fn single(file: &File, place: &Path) -> Result<(), FileError> {
+    let draft = Draft::new(place)?;
+    let mut draft = if file.executable { draft.executable() } else { draft };
+    draft.write_all(&file.bytes)?;
+    draft.replace()
+}
+
+fn folder(all: &[File], place: &Path) -> Result<(), FileError> {
+    let draft = FolderDraft::new(place)?;
+    for file in all {
+        draft.add(&file.path, &file.bytes, file.executable)?;
+    }
+    Ok(draft.replace()?)
+}

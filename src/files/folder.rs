@@ -1,0 +1,202 @@
+//! Replacing folders, all or nothing.
+
+use std::{
+    ffi::OsStr,
+    fs::{self, File},
+    io,
+    path::{Component, Path, PathBuf},
+};
+
+use tempfile::TempDir;
+
+use super::{FileError, draft::make_executable, folder_of, follow, litter, tidy};
+
+/// The new content of a folder, not yet in its place. Dropping it deletes it.
+///
+/// It is made beside its place, in a folder called `.lcm-XXXXXX.tmp` like other drafts. The file `lock` in that folder
+/// is locked while its process lives, `new` is the new content, and `old/NAME` what it replaces, from the first of two
+/// renames to the end: [`tidy`] puts it back if the process was killed between them.
+#[derive(Debug)]
+pub struct FolderDraft {
+    // Dropped first: not every system deletes open files.
+    _lock: File,
+    /// The destination, links followed.
+    target: PathBuf,
+    folder: TempDir,
+}
+
+impl FolderDraft {
+    /// An empty draft, after [`tidy`] in the folder around it.
+    ///
+    /// # Errors
+    /// If the path leads to anything but a folder, or nothing can be written beside it.
+    pub fn new(path: &Path) -> Result<Self, FileError> {
+        let target = follow(path)?;
+        if fs::symlink_metadata(&target).is_ok_and(|there| !there.is_dir()) {
+            return Err(io::Error::new(io::ErrorKind::NotADirectory, "it is not a folder").into());
+        }
+        let around = folder_of(&target);
+        let draft = litter::locked(
+            || {
+                let mut builder = tempfile::Builder::new();
+                let folder = builder.prefix(litter::PREFIX).suffix(litter::DRAFT).tempdir_in(around)?;
+                let path = folder.path().join(litter::LOCK);
+                let lock = File::create_new(&path)?;
+                Ok((lock, folder))
+            },
+            |(lock, folder)| (lock, folder.path().join(litter::LOCK)),
+        )?;
+        let (lock, folder) = draft;
+        fs::create_dir(folder.path().join(litter::NEW))?;
+        let _ = tidy(around);
+        Ok(Self { _lock: lock, target, folder })
+    }
+
+    /// Adds a file; `path` is its path within the folder, with `/`.
+    ///
+    /// # Errors
+    /// If the path leads out of the folder, or cannot be written.
+    pub fn add(&self, path: &str, bytes: &[u8], executable: bool) -> io::Result<()> {
+        let within = Path::new(path);
+        if path.is_empty() || !within.components().all(|part| matches!(part, Component::Normal(_))) {
+            let message = format!("{path} leads out of the folder");
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        }
+        let path = self.folder.path().join(litter::NEW).join(within);
+        fs::create_dir_all(folder_of(&path))?;
+        fs::write(&path, bytes)?;
+        if executable { make_executable(&File::open(&path)?) } else { Ok(()) }
+    }
+
+    /// Puts it in its place, replacing any folder there.
+    ///
+    /// # Errors
+    /// If there is anything but a folder, and any error of the system; then what was there is unchanged.
+    pub fn replace(self) -> io::Result<()> {
+        let new = self.folder.path().join(litter::NEW);
+        match fs::symlink_metadata(&self.target) {
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return fs::rename(&new, &self.target),
+            Err(e) => return Err(e),
+            Ok(there) if !there.is_dir() => {
+                return Err(io::Error::new(io::ErrorKind::NotADirectory, "it is not a folder"));
+            }
+            Ok(_) => {}
+        }
+        let old = self.folder.path().join(litter::OLD);
+        fs::create_dir(&old)?;
+        let old = old.join(self.target.file_name().unwrap_or(OsStr::new("folder")));
+        fs::rename(&self.target, &old)?;
+        let exchanged = fs::rename(&new, &self.target);
+        if exchanged.is_err() && fs::rename(&old, &self.target).is_err() {
+            // What was there must not be deleted with the draft; tidying puts it back when it can.
+            let _ = self.folder.keep();
+        }
+        exchanged
+    }
+}
+
+/// Writes something into a folder, which is made first, with those around it. If that fails, the new ones go again.
+///
+/// # Errors
+/// If the folder cannot be made, and those of writing.
+pub fn in_folder<T, E: From<io::Error>>(folder: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    let new: Vec<_> = folder.ancestors().take_while(|folder| !folder.exists()).collect();
+    if let Some(file) = folder.ancestors().find(|path| path.exists()).filter(|path| !path.is_dir()) {
+        let message = format!("{} is not a folder", file.display());
+        return Err(io::Error::new(io::ErrorKind::NotADirectory, message).into());
+    }
+    fs::create_dir_all(folder).map_err(E::from).and_then(|()| write()).inspect_err(|_| {
+        // Only empty ones go.
+        new.iter().for_each(|folder| drop(fs::remove_dir(folder)));
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).expect("readable").flatten();
+        let mut names: Vec<_> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// A draft whose process was killed: its lock is gone, and it is not.
+    fn killed(draft: FolderDraft) -> PathBuf {
+        let FolderDraft { folder, .. } = draft;
+        folder.keep()
+    }
+
+    #[test]
+    fn a_folder_is_replaced_whole() -> Result<(), FileError> {
+        let around = tempfile::tempdir()?;
+        let place = around.path().join("made");
+        for text in ["one", "two"] {
+            let draft = FolderDraft::new(&place)?;
+            draft.add(&format!("{text}.txt"), text.as_bytes(), false)?;
+            draft.add("deep/er/file", b"", true)?;
+            draft.replace()?;
+            assert_eq!(names(&place), ["deep".to_owned(), format!("{text}.txt")]);
+            assert_eq!(names(around.path()), ["made"]);
+        }
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt as _;
+            let mode = |path: &str| fs::metadata(place.join(path)).map(|m| m.permissions().mode());
+            assert_eq!(mode("deep/er/file")? & 0o100, 0o100);
+            assert_eq!(mode("two.txt")? & 0o111, 0);
+        }
+        // Dropped, it leaves nothing.
+        FolderDraft::new(&place)?.add("x", b"", false)?;
+        assert_eq!(names(around.path()), ["made"]);
+        Ok(())
+    }
+
+    #[test]
+    fn nothing_is_written_outside_the_folder() -> Result<(), FileError> {
+        let around = tempfile::tempdir()?;
+        let draft = FolderDraft::new(&around.path().join("made"))?;
+        for path in ["", "../x", "a/../../x", "/tmp/lcm-x", ".."] {
+            assert!(draft.add(path, b"", false).is_err(), "{path}");
+        }
+        let file = around.path().join("file");
+        fs::write(&file, "")?;
+        assert!(FolderDraft::new(&file).is_err_and(|e| e.to_string() == "it is not a folder"));
+        Ok(())
+    }
+
+    #[test]
+    fn drafts_of_killed_processes_are_tidied_and_those_of_others_are_not() -> Result<(), FileError> {
+        let around = tempfile::tempdir()?;
+        let living = FolderDraft::new(&around.path().join("a"))?;
+        let dead = killed(FolderDraft::new(&around.path().join("b"))?);
+        fs::write(dead.join(litter::NEW).join("half"), "")?;
+        // Of somebody else, with the same name: it has no lock.
+        let foreign = around.path().join(".lcm-abcdef.tmp");
+        fs::create_dir(&foreign)?;
+        fs::write(foreign.join("precious"), "")?;
+        assert_eq!(tidy(around.path()), []);
+        assert!(!dead.exists() && living.folder.path().exists() && foreign.join("precious").exists());
+        living.add("x", b"", false)?;
+        Ok(living.replace()?)
+    }
+
+    #[test]
+    fn what_was_there_comes_back_if_the_process_was_killed_between_the_renames() -> Result<(), FileError> {
+        let around = tempfile::tempdir()?;
+        let place = around.path().join("made");
+        for (present, expected) in [(false, "old"), (true, "new")] {
+            let _ = fs::remove_dir_all(&place);
+            let dead = killed(FolderDraft::new(&place)?);
+            fs::create_dir_all(dead.join(litter::OLD).join("made/old"))?;
+            if present {
+                fs::create_dir_all(place.join("new"))?;
+            }
+            assert_eq!(tidy(around.path()), []);
+            assert_eq!(names(&place), [expected]);
+            assert_eq!(names(around.path()), ["made"]);
+        }
+        Ok(())
+    }
+}

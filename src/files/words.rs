@@ -1,0 +1,49 @@
+//! Failures of the operating system in words.
+
+use std::io::{self, ErrorKind};
+
+/// A failure without its number, and where the system's words help nobody, in others.
+#[must_use]
+pub fn words(error: &io::Error) -> String {
+    let said = error.to_string();
+    // Those with a number are the system's, even if a library adds the path of a draft behind it.
+    let Some((system, _)) = said.split_once(" (os error ") else { return said };
+    let own = match error.kind() {
+        ErrorKind::NotFound => "there is no such file or folder",
+        ErrorKind::PermissionDenied => "no permission",
+        ErrorKind::AlreadyExists => "there is something already",
+        ErrorKind::NotADirectory => "a part of its path is not a folder",
+        ErrorKind::ReadOnlyFilesystem => "the disk is read-only",
+        ErrorKind::StorageFull => "the disk is full",
+        ErrorKind::QuotaExceeded => "this user's share of the disk is full",
+        ErrorKind::ResourceBusy => "the system needs it as it is",
+        ErrorKind::InvalidFilename => "the name is too long",
+        _ => system,
+    };
+    own.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn failures_have_no_numbers() {
+        for (number, expected) in [
+            (libc::ENOENT, "there is no such file or folder"),
+            (libc::EACCES, "no permission"),
+            (libc::ENOTDIR, "a part of its path is not a folder"),
+            (libc::EBUSY, "the system needs it as it is"),
+            (libc::ENAMETOOLONG, "the name is too long"),
+            (libc::EIO, "Input/output error"),
+        ] {
+            assert_eq!(words(&io::Error::from_raw_os_error(number)), expected);
+        }
+        let of_draft = tempfile::tempfile_in("/proc").expect_err("nobody makes files there");
+        assert_eq!(words(&of_draft), "there is no such file or folder");
+        // Our own are as they are.
+        let own = io::Error::new(ErrorKind::NotADirectory, "it is not a folder");
+        assert_eq!(words(&own), "it is not a folder");
+    }
+}

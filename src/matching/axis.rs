@@ -1,0 +1,197 @@
+//! The coordinates of a search: parameters as numbers from 0 to 1.
+
+use crate::parameter::{Parameter, ParameterKind, Value};
+
+/// The largest value that is tried of a parameter without a largest legal one: an exponent whose highlight is a quarter
+/// of a degree wide.
+const LARGEST: f64 = 100_000.0;
+
+/// A range that ends at so many times its beginning is searched in logarithms.
+const WIDE: f64 = 50.0;
+
+/// A derivative is taken over this part of the range: far above the rounding of the models' 32 bits.
+const STEP: f64 = 2e-4;
+
+/// A coordinate: a number of a parameter, between 0 and 1.
+#[derive(Clone, Debug)]
+pub(super) struct Axis {
+    /// The channel, of colours and triples.
+    pub(super) channel: usize,
+    low: f64,
+    high: f64,
+    /// The logarithm of the value plus this is searched.
+    logarithm: Option<f64>,
+    /// Whole numbers only.
+    whole: bool,
+}
+
+impl Axis {
+    /// The axes of a parameter, which several models may declare with different ranges; `now` is its present value.
+    /// None for choices and files.
+    pub(super) fn of(declarations: &[&'static Parameter], now: &Value) -> Vec<Self> {
+        let Some(first) = declarations.first() else { return Vec::new() };
+        // Legal for all of them.
+        let range = declarations.iter().filter_map(|p| ends(p)).reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)));
+        let Some((low, high)) = range.filter(|(low, high)| low < high) else { return Vec::new() };
+        let numbers = numbers_of(now);
+        let endless = high == f64::INFINITY;
+        let top = if endless { LARGEST.max(numbers[0]) } else { high };
+        let logarithm = match low {
+            _ if endless => Some(1.0 - low),
+            low if low > 0.0 && top / low >= WIDE => Some(0.0),
+            _ => None,
+        };
+        let (channels, whole) = match first.kind {
+            ParameterKind::Number { .. } => (1, false),
+            ParameterKind::Integer { .. } => (1, true),
+            ParameterKind::Colour { .. } => (3, true),
+            ParameterKind::Triple { .. } => (3, false),
+            ParameterKind::Choice { .. } | ParameterKind::File { .. } => (0, false),
+        };
+        let axis = |channel| Self { channel, low, high: top, logarithm, whole };
+        (0..channels).map(axis).collect()
+    }
+
+    /// True if the value is a whole number.
+    pub(super) fn is_whole(&self) -> bool {
+        self.whole
+    }
+
+    /// The legal value at a coordinate.
+    pub(super) fn value(&self, at: f64) -> f64 {
+        let at = at.clamp(0.0, 1.0);
+        let value = match self.logarithm {
+            Some(plus) => {
+                let (from, to) = ((self.low + plus).ln(), (self.high + plus).ln());
+                (from + at * (to - from)).exp() - plus
+            }
+            None => self.low + at * (self.high - self.low),
+        };
+        self.legal(value)
+    }
+
+    /// The legal value next to a number, as the models get it.
+    pub(super) fn legal(&self, value: f64) -> f64 {
+        if self.whole {
+            return value.round().clamp(self.low.ceil(), self.high.floor());
+        }
+        f64::from((value as f32).clamp(self.low as f32, self.high as f32))
+    }
+
+    /// The coordinate of a value.
+    pub(super) fn coordinate(&self, value: f64) -> f64 {
+        let value = value.clamp(self.low, self.high);
+        match self.logarithm {
+            Some(plus) => {
+                let (from, to) = ((self.low + plus).ln(), (self.high + plus).ln());
+                ((value + plus).ln() - from) / (to - from)
+            }
+            None => (value - self.low) / (self.high - self.low),
+        }
+    }
+
+    /// A legal value beside another, over which a derivative can be taken.
+    pub(super) fn beside(&self, value: f64) -> f64 {
+        let at = self.coordinate(value);
+        let sign = if at + STEP <= 1.0 { 1.0 } else { -1.0 };
+        let there = self.value(at + sign * STEP);
+        if there != value {
+            return there;
+        }
+        let next = self.legal(value + sign);
+        if next == value { self.legal(value - sign) } else { next }
+    }
+}
+
+/// The ends of the range of each number.
+fn ends(parameter: &Parameter) -> Option<(f64, f64)> {
+    match parameter.kind {
+        ParameterKind::Number { min, max, .. } | ParameterKind::Triple { min, max, .. } => {
+            Some((min.into(), max.into()))
+        }
+        ParameterKind::Integer { min, max, .. } => {
+            Some((min as f64, max.map_or(f64::INFINITY, |max| max as f64)))
+        }
+        ParameterKind::Colour { .. } => Some((0.0, 255.0)),
+        ParameterKind::Choice { .. } | ParameterKind::File { .. } => None,
+    }
+}
+
+/// The numbers of a value.
+pub(super) fn numbers_of(value: &Value) -> [f64; 3] {
+    match value {
+        Value::Number(v) => [f64::from(*v); 3],
+        Value::Integer(v) => [*v as f64; 3],
+        Value::Colour(v) => v.map(f64::from),
+        Value::Triple(v) => v.map(f64::from),
+        Value::Choice(_) | Value::File(_) => [0.0; 3],
+    }
+}
+
+/// The value of a parameter with these numbers.
+pub(super) fn value_of(parameter: &Parameter, numbers: [f64; 3]) -> Value {
+    match parameter.kind {
+        ParameterKind::Integer { .. } => Value::Integer(numbers[0] as i64),
+        ParameterKind::Colour { .. } => Value::Colour(numbers.map(|v| v as u8)),
+        ParameterKind::Triple { .. } => Value::Triple(numbers.map(|v| v as f32)),
+        _ => Value::Number(numbers[0] as f32),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        parameter::{ALPHA, ALPHA_X, BASE_COLOUR, IOR, K_D},
+        registry::Registry,
+    };
+
+    #[test]
+    fn every_coordinate_is_a_legal_value_and_leads_back() {
+        let registry = Registry::builtin();
+        let mut seen = 0;
+        for parameter in registry.material_parameters() {
+            for (i, axis) in Axis::of(&[parameter], &parameter.default_value()).iter().enumerate() {
+                assert_eq!(axis.channel, i);
+                for step in 0..=10 {
+                    let value = axis.value(f64::from(step) / 10.0);
+                    let name = parameter.name;
+                    assert!(parameter.allows(&value_of(parameter, [value; 3])), "{name} {value}");
+                    assert!(
+                        (axis.value(axis.coordinate(value)) - value).abs() <= 1e-5 * value.abs(),
+                        "{name}"
+                    );
+                    let beside = axis.beside(value);
+                    assert!(beside != value, "{name} {value}");
+                    assert!(parameter.allows(&value_of(parameter, [beside; 3])), "{name} {beside}");
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 300);
+    }
+
+    #[test]
+    fn exponents_and_roughness_are_searched_in_logarithms() {
+        let axis = |p: &'static Parameter| Axis::of(&[p], &p.default_value()).remove(0);
+        // From 100 to 1000 is as far as from 1000 to 10 000.
+        let at = |v: f64| axis(&ALPHA).coordinate(v);
+        assert!(((at(999.0) - at(99.0)) - (at(9999.0) - at(999.0))).abs() < 1e-9);
+        let at = |v: f64| axis(&ALPHA_X).coordinate(v);
+        assert!(((at(0.1) - at(0.01)) - (at(1.0) - at(0.1))).abs() < 1e-6);
+        let at = |v: f64| axis(&K_D).coordinate(v);
+        assert!((at(0.75) - 0.5).abs() < 1e-9);
+        assert_eq!(Axis::of(&[&IOR], &IOR.default_value()).len(), 3);
+        assert_eq!(Axis::of(&[&BASE_COLOUR], &BASE_COLOUR.default_value()).len(), 3);
+        assert_eq!(Axis::of(&[&ALPHA], &Value::Integer(1_000_000))[0].value(1.0), 1e6);
+    }
+
+    #[test]
+    fn a_parameter_of_several_models_stays_legal_for_all_of_them() {
+        const NARROW: Parameter = Parameter::number("k_d", 0.25..=0.75, 0.6);
+        let axis = &Axis::of(&[&K_D, &NARROW], &Value::Number(0.6))[0];
+        assert_eq!((axis.value(0.0), axis.value(1.0)), (0.5, 0.75));
+        const APART: Parameter = Parameter::number("k_d", 0.0..=0.25, 0.0);
+        assert!(Axis::of(&[&K_D, &APART], &Value::Number(0.6)).is_empty());
+    }
+}

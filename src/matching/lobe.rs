@@ -1,0 +1,121 @@
+//! Lobes: the response of two models at many pairs of directions.
+
+use glam::{Quat, Vec3};
+use rayon::prelude::*;
+
+use super::{
+    search::{Given, Target},
+    sides::{Pair, Side},
+};
+use crate::{
+    optics::{Frame, TermSelection, geometry::direction},
+    reflection::Surface,
+    registry::Registry,
+};
+
+/// Directions further from the normal are left out, degrees.
+const LARGEST_ANGLE: f64 = 80.0;
+/// The azimuths of the half vector for anisotropic surfaces, degrees.
+const AZIMUTHS: [f64; 4] = [0.0, 45.0, 90.0, 135.0];
+
+/// Pairs of directions to the light and to the viewer, dense about the mirror direction, by the half vector and the
+/// difference of light and half vector: S. Rusinkiewicz (1998), *A New Change of Variables for Efficient BRDF
+/// Representation*. The half vectors have an azimuth in degrees; no direction is further from the normal than an angle
+/// in degrees.
+#[must_use]
+pub fn directions(azimuth: f64, largest: f64) -> Vec<(Vec3, Vec3)> {
+    let mut pairs = Vec::new();
+    let least = largest.to_radians().cos() as f32;
+    let around = Quat::from_rotation_z(azimuth.to_radians() as f32);
+    for i in 0..26u8 {
+        let theta_h = 80.0 * (f32::from(i) / 25.0).powi(2);
+        // From the normal to the half vector, about y.
+        let (s, c) = theta_h.to_radians().sin_cos();
+        let turn = |d: Vec3| Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x).normalize();
+        let h = direction(theta_h.into(), 0.0);
+        for j in 0..8u8 {
+            for k in 0..7u8 {
+                let (theta_d, phi_d) = (f32::from(j) * 10.0, f32::from(k) * 30.0);
+                let l = turn(direction(theta_d.into(), phi_d.into()));
+                let v = (2.0 * l.dot(h) * h - l).normalize();
+                if l.z >= least && v.z >= least {
+                    pairs.push(if azimuth == 0.0 { (l, v) } else { (around * l, around * v) });
+                }
+            }
+        }
+    }
+    pairs
+}
+
+/// The lobes of the objects' materials.
+pub(super) struct Lobe {
+    /// Each with its pairs of directions and the response that is wanted there.
+    lobes: Vec<(Pair, Vec<(Vec3, Vec3)>, Vec<f64>)>,
+    terms: TermSelection,
+    count: usize,
+}
+
+/// The response in each pair of directions, three numbers each.
+fn responses(surface: &dyn Surface, directions: &[(Vec3, Vec3)], terms: TermSelection, to: &mut [f64]) {
+    /// Fewer are not worth a task.
+    const AT_ONCE: usize = 128;
+    to.par_chunks_mut(3 * AT_ONCE).zip(directions.par_chunks(AT_ONCE)).for_each(|(to, directions)| {
+        for (to, (l, v)) in to.as_chunks_mut::<3>().0.iter_mut().zip(directions) {
+            *to = surface.response(*l, *v, &Frame::LOCAL).select(terms).to_array().map(f64::from);
+        }
+    });
+}
+
+impl Lobe {
+    /// Those of the visible objects.
+    pub(super) fn new([a, b]: [&Side; 2], registry: &Registry) -> Self {
+        let lobe = |pair: Pair| {
+            let azimuths = if pair.anisotropic { &AZIMUTHS[..] } else { &AZIMUTHS[..1] };
+            let all: Vec<_> =
+                azimuths.iter().flat_map(|azimuth| directions(*azimuth, LARGEST_ANGLE)).collect();
+            let mut wanted = vec![0.0; 3 * all.len()];
+            responses(&*pair.wanted, &all, a.terms, &mut wanted);
+            (pair, all, wanted)
+        };
+        let lobes: Vec<_> = Pair::all([a, b], registry).into_iter().map(lobe).collect();
+        let count = lobes.iter().map(|(_, _, wanted)| wanted.len()).sum();
+        Self { lobes, terms: b.terms, count }
+    }
+}
+
+impl Target for Lobe {
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn differences(&mut self, values: &Given, mut to: &mut [f64]) {
+        for (pair, directions, wanted) in &self.lobes {
+            let (own, rest) = to.split_at_mut(wanted.len());
+            responses(&*pair.with(values), directions, self.terms, own);
+            own.iter_mut().zip(wanted).for_each(|(to, wanted)| *to -= wanted);
+            to = rest;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_dense_about_the_mirror_direction_and_above_the_surface() {
+        let all = directions(0.0, 80.0);
+        assert!(all.len() > 800, "{}", all.len());
+        let near = all.iter().filter(|(l, v)| ((*l + *v).normalize().z) > 10f32.to_radians().cos()).count();
+        // Of the half vectors' 80 degrees these are an eighth, and half the pairs or nearly so.
+        assert!(near * 5 > all.len() * 2, "{near} of {}", all.len());
+        for (l, v) in &all {
+            assert!(l.is_normalized() && v.is_normalized() && l.z > 0.17 && v.z > 0.17);
+        }
+        // Turned, the half vectors lie across the tangent.
+        for (l, v) in directions(90.0, 80.0) {
+            let h = l + v;
+            assert!(h.x.abs() < 1e-4 && h.y > -1e-4, "{h}");
+        }
+    }
+}

@@ -1,0 +1,386 @@
+//! Matching: the parameters of one view that come nearest to another.
+//!
+//! View A shows Phong's model, and view B Blinn's: which exponent of the one gives the highlight of the other? The
+//! search knows nothing about the models. It changes the free parameters of view B within their legal ranges, and
+//! looks for the smallest sum of squared differences between
+//!
+//! - [the lobes](What::Lobe): the responses of both models at about a thousand pairs of directions,
+//! - [the pictures](What::Picture): the light of both views, drawn small by the CPU renderer, or
+//! - [the highlights](What::Highlight): their widths at half their height, in the plane of incidence.
+//!
+//! ```
+//! use lights_camera_models::{
+//!     matching::{self, Request, What, match_view},
+//!     parameter::Value,
+//!     progress::Progress,
+//!     registry::Registry,
+//!     scene::{Scene, Variant},
+//! };
+//! let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+//! scene.objects[0].material.set("alpha", Value::Integer(20));
+//! scene.variants = vec![Variant { reflection_model: Some("blinn_phong".to_owned()), ..Variant::default() }];
+//! let request = Request { scene: &scene, view: 1, what: What::Highlight, parameters: &["alpha"] };
+//! let found = match_view(&request, &Registry::builtin(), &Progress::NONE).expect("both have a highlight");
+//! // Four times the exponent: F. Fisher and A. Woo (1994).
+//! assert_eq!(found.values, [("alpha", Value::Integer(80))]);
+//! ```
+
+use crate::{
+    parameter::{Parameter, ParameterKind, Value},
+    progress::{Cancelled, Progress},
+    reflection::usage::unused,
+    registry::Registry,
+    scene::{Scene, variant::LETTERS},
+    text::{did_you_mean, listed, plural, quoted},
+};
+
+mod axis;
+mod highlight;
+pub mod least_squares;
+mod lobe;
+mod picture;
+mod search;
+mod sides;
+
+pub use lobe::directions;
+pub use picture::{HEIGHT, WIDTH};
+
+use axis::Axis;
+use highlight::Highlight;
+use lobe::Lobe;
+use picture::Picture;
+use search::{Found, Free, Search, Target};
+use sides::Side;
+
+/// The most evaluations of a search that compares lobes or highlights.
+const MOST_LOBES: usize = 3000;
+/// The most pictures of a search that compares them.
+const MOST_PICTURES: usize = 500;
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum What {
+    /// The responses of the models at many pairs of directions.
+    #[default]
+    Lobe,
+    /// The pictures of the views.
+    Picture,
+    /// The width of the highlights.
+    Highlight,
+}
+
+impl What {
+    /// Every choice, in the order of presentation.
+    pub const ALL: [Self; 3] = [Self::Lobe, Self::Picture, Self::Highlight];
+
+    /// The name on the command line.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Lobe => "lobe",
+            Self::Picture => "picture",
+            Self::Highlight => "highlight",
+        }
+    }
+
+    /// One sentence.
+    #[must_use]
+    pub const fn summary(self) -> &'static str {
+        match self {
+            Self::Lobe => {
+                "The reflected light, for all directions of light and viewer: independent of this scene’s lights and shapes."
+            }
+            Self::Picture => {
+                "The light of the pictures, on the covered pixels: as near as it gets on this scene."
+            }
+            Self::Highlight => {
+                "The width of the highlight where it has half its brightness, in the plane of incidence; its brightness is left alone."
+            }
+        }
+    }
+
+    /// What the error is, with its unit.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Lobe => "RMS difference of the reflected light; 1 is a white matte surface lit head-on",
+            Self::Picture => "RMS difference in linear light over the covered pixels",
+            Self::Highlight => "RMS difference of the widths, as a logarithm: 0.1 is about 10 %",
+        }
+    }
+
+    /// The choice with an id.
+    #[must_use]
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|what| what.id() == id)
+    }
+}
+
+/// What to match.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// The scene, which is valid.
+    pub scene: &'a Scene,
+    /// The view whose parameters are searched, to come near to view A: 1 is view B.
+    pub view: usize,
+    /// What is compared.
+    pub what: What,
+    /// The names of the parameters that are free.
+    pub parameters: &'a [&'a str],
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Match {
+    /// The values for the view. Parameters that hardly matter are not among them.
+    pub values: Vec<(&'static str, Value)>,
+    /// The error with the present values: see [`What::unit`].
+    pub before: f64,
+    /// The error with these.
+    pub after: f64,
+}
+
+/// The reason why there is no match.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MatchError {
+    /// There is no such view, or it is view A.
+    #[error("there is no view {view} to be matched; the scene has {}", views_in_words(*.views))]
+    NoView {
+        /// Its letter.
+        view: String,
+        /// The number of views.
+        views: usize,
+    },
+    /// No parameter is free.
+    #[error("no parameter is free; {}", remedy(.known))]
+    NothingFree {
+        /// Those that could be.
+        known: Vec<&'static str>,
+    },
+    /// A parameter that the view's models do not have.
+    #[error("{} is free, but view {view} has no such parameter; {}{hint}", quoted(.name), remedy(.known))]
+    NoParameter {
+        /// Its name as given.
+        name: String,
+        /// The letter of the view.
+        view: &'static str,
+        /// A spelling that was perhaps meant.
+        hint: String,
+        /// Those that it has.
+        known: Vec<&'static str>,
+    },
+    /// A choice cannot be searched.
+    #[error("{name} is free, but it is a {kind}: only numbers and colours can be searched")]
+    NoNumber {
+        /// Its name.
+        name: &'static str,
+        /// Its kind.
+        kind: &'static str,
+    },
+    /// A parameter that has no effect at present.
+    #[error("{name} is free, but it has no effect: {why}")]
+    Unused {
+        /// Its name.
+        name: &'static str,
+        /// The reason.
+        why: String,
+    },
+    /// The view's models share a parameter, but no range of it.
+    #[error("{name} is free, but no value of it is legal for all models of view {view}")]
+    NoRange {
+        /// Its name.
+        name: &'static str,
+        /// The letter of the view.
+        view: &'static str,
+    },
+    /// No object is visible, or none in the picture.
+    #[error("no object is visible, so there is nothing to compare")]
+    NothingVisible,
+    /// A view has no highlight whose width could be compared.
+    #[error("view {view} has no highlight with a width: {why}")]
+    NoHighlight {
+        /// The letter of the view.
+        view: &'static str,
+        /// The models.
+        why: String,
+    },
+    /// The CPU cannot run a custom model.
+    #[error("{model} cannot be matched, since the CPU does not run it: {why}")]
+    NotOnCpu {
+        /// The id of the model.
+        model: &'static str,
+        /// The reason.
+        why: String,
+    },
+    /// The user cancelled.
+    #[error("the match was cancelled")]
+    Cancelled,
+}
+
+impl From<Cancelled> for MatchError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+fn views_in_words(views: usize) -> String {
+    match views {
+        1 => "only view A".to_owned(),
+        _ => format!("{}: {}", plural(views, "view"), listed(&LETTERS[..views.min(LETTERS.len())], "and")),
+    }
+}
+
+fn remedy(known: &[&str]) -> String {
+    match known {
+        [] => "the view’s models have none that can be searched".to_owned(),
+        _ => format!("free some of {}", listed(known, "and")),
+    }
+}
+
+/// An error with a few digits.
+#[must_use]
+pub fn digits(error: f64) -> String {
+    match error {
+        0.0 => "0".to_owned(),
+        1e-3.. => format!("{error:.4}"),
+        _ => format!("{error:.1e}"),
+    }
+}
+
+/// The parameters of a view that can be searched, each with true if it is usually free: numbers are, colours and other
+/// triples only if asked for. None if there is no such view.
+#[must_use]
+pub fn parameters(scene: &Scene, view: usize, registry: &Registry) -> Vec<(&'static Parameter, bool)> {
+    Side::seen(scene, view, registry).map_or_else(Vec::new, |side| known(&side, registry))
+}
+
+fn known(side: &Side, registry: &Registry) -> Vec<(&'static Parameter, bool)> {
+    let mut all: Vec<(&'static Parameter, bool)> = Vec::new();
+    for parameter in side.models(registry).into_iter().flat_map(|model| model.parameters) {
+        let usual = match parameter.kind {
+            ParameterKind::Number { .. } | ParameterKind::Integer { .. } => true,
+            ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => false,
+            ParameterKind::Choice { .. } | ParameterKind::File { .. } => continue,
+        };
+        if all.iter().all(|(known, _)| known.name != parameter.name)
+            && reason_against(side, parameter, registry).is_none()
+        {
+            all.push((parameter, usual));
+        }
+    }
+    all
+}
+
+/// The reason why a parameter has no effect in a view; `None` if it has one for some object.
+fn reason_against(side: &Side, parameter: &Parameter, registry: &Registry) -> Option<String> {
+    let mut reason = None;
+    for object in side.scene.shown() {
+        let Some(model) = registry.model(side.scene.model_of(object)) else { continue };
+        let Some(own) = model.parameter(parameter.name) else { continue };
+        reason = Some(unused(model.parameters, own, &object.material)?);
+    }
+    reason
+}
+
+/// Finds the parameters of a view that come nearest to view A.
+///
+/// # Errors
+/// If there is nothing to compare or to search, a model cannot be run, or the user no longer wants it.
+pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -> Result<Match, MatchError> {
+    let scene = request.scene;
+    let letter = LETTERS.get(request.view).copied().unwrap_or("?");
+    let views = scene.variants.len() + 1;
+    let sides = [0, request.view].map(|view| Side::seen(scene, view, registry));
+    let [Some(a), Some(b)] = &sides else {
+        return Err(MatchError::NoView { view: letter.to_owned(), views });
+    };
+    if request.view == 0 {
+        return Err(MatchError::NoView { view: letter.to_owned(), views });
+    }
+    if b.models(registry).is_empty() {
+        return Err(MatchError::NothingVisible);
+    }
+    let sides = [a, b];
+    let can_run = || sides.iter().try_for_each(|side| side.can_run(registry));
+    can_run()?;
+    let free = frees(request, b, letter, registry)?;
+    let found = match request.what {
+        What::Lobe => search(&mut Lobe::new(sides, registry), &free, MOST_LOBES, progress),
+        What::Picture => {
+            let mut picture = Picture::new(sides, registry).ok_or(MatchError::NothingVisible)?;
+            search(&mut picture, &free, MOST_PICTURES, progress)
+        }
+        What::Highlight => {
+            let none = |i: usize| {
+                let names: Vec<_> =
+                    sides[i].models(registry).iter().map(|model| model.declaration.name).collect();
+                let why = format!("{} does not fall to half its brightness", listed(&names, "and"));
+                MatchError::NoHighlight { view: if i == 0 { LETTERS[0] } else { letter }, why }
+            };
+            search(&mut Highlight::new(sides, registry).map_err(none)?, &free, MOST_LOBES, progress)
+        }
+    };
+    // An endless function shows only when it runs.
+    can_run()?;
+    let Found { values, before, after } = found?;
+    Ok(Match { values, before, after })
+}
+
+fn search(
+    target: &mut impl Target,
+    free: &[Free],
+    most: usize,
+    progress: &Progress,
+) -> Result<Found, Cancelled> {
+    Search::new(target, free, most, progress).run()
+}
+
+/// The parameters that are free.
+fn frees(
+    request: &Request,
+    side: &Side,
+    view: &'static str,
+    registry: &Registry,
+) -> Result<Vec<Free>, MatchError> {
+    let known: Vec<_> = known(side, registry).into_iter().map(|(parameter, _)| parameter.name).collect();
+    if request.parameters.is_empty() {
+        return Err(MatchError::NothingFree { known });
+    }
+    let mut frees: Vec<Free> = Vec::new();
+    for name in request.parameters {
+        let spelling = name.replace("color", "colour");
+        let users: Vec<_> =
+            side.models(registry).into_iter().filter_map(|model| model.parameter(&spelling)).collect();
+        let Some(parameter) = users.first().copied() else {
+            let spellings = known.iter().map(|name| (*name, *name));
+            let hint = did_you_mean(&spelling, spellings);
+            return Err(MatchError::NoParameter { name: (*name).to_owned(), view, hint, known });
+        };
+        if frees.iter().any(|free| free.parameter.name == parameter.name) {
+            continue;
+        }
+        if let Some(why) = reason_against(side, parameter, registry) {
+            return Err(MatchError::Unused { name: parameter.name, why });
+        }
+        let uses = |object: &&crate::scene::Object| {
+            registry.model(side.scene.model_of(object)).is_some_and(|m| m.parameter(&spelling).is_some())
+        };
+        let object = side.scene.shown().find(uses);
+        let now = object.map_or_else(|| parameter.default_value(), |object| object.material.get(parameter));
+        let axes = Axis::of(&users, &now);
+        if axes.is_empty() {
+            return Err(match parameter.kind {
+                ParameterKind::Choice { .. } | ParameterKind::File { .. } => {
+                    MatchError::NoNumber { name: parameter.name, kind: parameter.kind.name() }
+                }
+                _ => MatchError::NoRange { name: parameter.name, view },
+            });
+        }
+        frees.push(Free { parameter, axes, now });
+    }
+    Ok(frees)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,63 @@
+//! Pictures: the light of two views, drawn small by the CPU renderer.
+
+use glam::{Vec3, Vec4};
+
+use super::{
+    search::{Given, Target},
+    sides::Side,
+};
+use crate::{
+    parameter::Values,
+    reference::{self, Settings},
+    registry::Registry,
+    scene::Scene,
+};
+
+/// The height of the pictures in pixels.
+pub const HEIGHT: u32 = 96;
+/// Their width, in the usual proportion of 16 to 9.
+pub const WIDTH: u32 = HEIGHT * 16 / 9;
+
+/// The picture of a view, to be compared with that of view A.
+pub(super) struct Picture<'r> {
+    scene: Scene,
+    /// The materials of the objects.
+    own: Vec<Values>,
+    registry: &'r Registry,
+    settings: Settings,
+    /// The pixels that objects cover in either view, and their light in view A.
+    wanted: Vec<(usize, Vec3)>,
+}
+
+impl<'r> Picture<'r> {
+    /// Of two views. `None` if no object covers a pixel.
+    pub(super) fn new([a, b]: [&Side; 2], registry: &'r Registry) -> Option<Self> {
+        let settings = |side: &Side| Settings { width: WIDTH, height: HEIGHT, samples: 1, terms: side.terms };
+        let [of_a, of_b] =
+            [a, b].map(|side| reference::render(&side.scene, registry, &settings(side)).pixels);
+        let covered = |(i, (a, b)): (usize, (&Vec4, &Vec4))| (a.w.max(b.w) > 0.0).then(|| (i, a.truncate()));
+        let wanted: Vec<_> = of_a.iter().zip(&of_b).enumerate().filter_map(covered).collect();
+        if wanted.is_empty() {
+            return None;
+        }
+        let own = b.scene.objects.iter().map(|object| object.material.clone()).collect();
+        Some(Self { scene: b.scene.clone(), own, registry, settings: settings(b), wanted })
+    }
+}
+
+impl Target for Picture<'_> {
+    fn count(&self) -> usize {
+        3 * self.wanted.len()
+    }
+
+    fn differences(&mut self, values: &Given, to: &mut [f64]) {
+        for (object, own) in self.scene.objects.iter_mut().zip(&self.own) {
+            object.material.clone_from(own);
+            values.iter().for_each(|(name, value)| object.material.set(*name, value.clone()));
+        }
+        let pixels = reference::render(&self.scene, self.registry, &self.settings).pixels;
+        for (to, (i, wanted)) in to.as_chunks_mut::<3>().0.iter_mut().zip(&self.wanted) {
+            *to = (pixels[*i].truncate() - *wanted).to_array().map(f64::from);
+        }
+    }
+}

@@ -1,0 +1,423 @@
+//! The search for the values that come nearest.
+//!
+//! It starts from the present values and from the most promising of some points spread over the ranges, descends from
+//! each, and keeps the best of everything that it has seen. Then it gives up what is not needed: a parameter that
+//! hardly matters keeps its value, and digits that change nothing are left out. Nothing in it is random.
+
+use super::{
+    axis::{Axis, numbers_of, value_of},
+    least_squares::{Limits, Residuals, Stop, descend},
+};
+use crate::{
+    parameter::{Parameter, Value},
+    progress::{Cancelled, Progress},
+};
+
+/// Points spread over the ranges.
+const SPREAD: usize = 24;
+/// Those of them from which the search descends, beside the present values.
+const DESCENTS: usize = 4;
+/// The end of each descent.
+const LIMITS: Limits = Limits { steps: 25, least_gain: 1e-7, least_move: 1e-6, first_step: 0.5 };
+/// A parameter keeps its value, and digits are left out, if the error grows by no more than this part of itself, or of
+/// the error at the start.
+const GIVEN_UP: [f64; 2] = [1e-3, 1e-4];
+/// An error below this is none: the models calculate in 32 bits.
+const NONE: f64 = 1e-6;
+
+/// Values of parameters.
+pub(super) type Given = Vec<(&'static str, Value)>;
+
+/// A picture, or a lobe, that is compared with another.
+pub(super) trait Target {
+    /// The number of differences.
+    fn count(&self) -> usize;
+
+    /// The differences with these values of parameters; others are as they are.
+    fn differences(&mut self, values: &Given, to: &mut [f64]);
+}
+
+/// A parameter that is free.
+pub(super) struct Free {
+    pub(super) parameter: &'static Parameter,
+    pub(super) axes: Vec<Axis>,
+    /// Its present value.
+    pub(super) now: Value,
+}
+
+/// The result of a search.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Found {
+    pub(super) values: Given,
+    pub(super) before: f64,
+    pub(super) after: f64,
+}
+
+/// A point: a number on each axis.
+#[derive(Clone, Debug, PartialEq)]
+struct Point {
+    numbers: Vec<f64>,
+    /// For each parameter, whether it is given.
+    on: Vec<bool>,
+}
+
+pub(super) struct Search<'a, T> {
+    target: &'a mut T,
+    free: &'a [Free],
+    progress: &'a Progress<'a>,
+    /// The most evaluations.
+    most: usize,
+    evaluations: usize,
+    /// True for the few evaluations at the end, which are made whatever was spent.
+    last: bool,
+    cancelled: bool,
+    best: (f64, Vec<f64>),
+    step: String,
+}
+
+impl<'a, T: Target> Search<'a, T> {
+    pub(super) fn new(target: &'a mut T, free: &'a [Free], most: usize, progress: &'a Progress<'a>) -> Self {
+        Self {
+            target,
+            free,
+            progress,
+            most,
+            evaluations: 0,
+            last: false,
+            cancelled: false,
+            best: (f64::INFINITY, Vec::new()),
+            step: String::new(),
+        }
+    }
+
+    /// Searches.
+    ///
+    /// # Errors
+    /// If the user no longer wants it.
+    pub(super) fn run(mut self) -> Result<Found, Cancelled> {
+        "comparing the views".clone_into(&mut self.step);
+        let none = Point { numbers: self.present(), on: vec![false; self.free.len()] };
+        let before = match self.error(&none) {
+            Ok(error) => error,
+            Err(Stop) => return Err(Cancelled),
+        };
+        if before > NONE && !self.free.is_empty() {
+            // The end of the evaluations ends the search, and what was found counts.
+            let _ = self.look();
+            if self.cancelled {
+                return Err(Cancelled);
+            }
+        }
+        let (error, numbers) = std::mem::take(&mut self.best);
+        if numbers.is_empty() || error >= before {
+            return Ok(Found { values: Vec::new(), before, after: before });
+        }
+        let best = Point { numbers, on: vec![true; self.free.len()] };
+        self.last = true;
+        let good = (1.0 + GIVEN_UP[0]) * error + GIVEN_UP[1] * before;
+        let (best, after) = self.simplified(best, good, error).map_err(|Stop| Cancelled)?;
+        Ok(Found { values: self.values(&best), before, after })
+    }
+
+    fn axes(&self) -> impl Iterator<Item = &'a Axis> + use<'a, T> {
+        self.free.iter().flat_map(|free| &free.axes)
+    }
+
+    /// The present values.
+    fn present(&self) -> Vec<f64> {
+        let numbers = |free: &'a Free| {
+            let now = numbers_of(&free.now);
+            free.axes.iter().map(move |axis| axis.legal(now[axis.channel]))
+        };
+        self.free.iter().flat_map(numbers).collect()
+    }
+
+    /// The values at a point.
+    fn values(&self, point: &Point) -> Given {
+        let mut numbers = point.numbers.iter();
+        let mut values = Vec::new();
+        for (free, on) in self.free.iter().zip(&point.on) {
+            let mut own = [0.0; 3];
+            own.iter_mut().zip(numbers.by_ref().take(free.axes.len())).for_each(|(to, from)| *to = *from);
+            if *on {
+                values.push((free.parameter.name, value_of(free.parameter, own)));
+            }
+        }
+        values
+    }
+
+    /// The differences at a point, and the root of their mean square.
+    fn differences(&mut self, point: &Point, to: &mut [f64]) -> Result<f64, Stop> {
+        self.cancelled |= (self.progress.cancelled)();
+        if self.cancelled || self.evaluations >= self.most && !self.last {
+            return Err(Stop);
+        }
+        if self.evaluations.is_multiple_of(self.most.div_ceil(100)) {
+            self.tell();
+        }
+        self.evaluations += 1;
+        let count = self.target.count();
+        let values = self.values(point);
+        self.target.differences(&values, &mut to[..count]);
+        to[count..].fill(0.0);
+        /// Stands for what is not finite.
+        const FAR: f64 = 1e9;
+        to.iter_mut().filter(|d| !d.is_finite()).for_each(|d| *d = FAR);
+        Ok((to.iter().map(|d| d * d).sum::<f64>() / count.max(1) as f64).sqrt())
+    }
+
+    /// Tells how far the search is.
+    fn tell(&self) {
+        let done = if self.last { 1.0 } else { self.evaluations as f32 / self.most as f32 };
+        (self.progress.tell)(done, &self.step);
+    }
+
+    fn error(&mut self, point: &Point) -> Result<f64, Stop> {
+        let mut scratch = vec![0.0; self.count()];
+        self.differences(point, &mut scratch)
+    }
+
+    /// The differences where every parameter is given; the best are kept.
+    fn all_given(&mut self, numbers: &[f64], to: &mut [f64]) -> Result<f64, Stop> {
+        let point = Point { numbers: numbers.to_owned(), on: vec![true; self.free.len()] };
+        let error = self.differences(&point, to)?;
+        if error < self.best.0 {
+            self.best = (error, point.numbers);
+        }
+        Ok(error)
+    }
+
+    fn look(&mut self) -> Result<(), Stop> {
+        let axes: Vec<&Axis> = self.axes().collect();
+        let mut scratch = vec![0.0; self.count()];
+        let present = self.present();
+        let mut starts = Vec::new();
+        for i in 0..SPREAD {
+            self.step = format!("trying start {} of {SPREAD}", i + 1);
+            let numbers: Vec<f64> =
+                axes.iter().zip(spread(i, axes.len())).map(|(axis, at)| axis.value(at)).collect();
+            starts.push((self.all_given(&numbers, &mut scratch)?, numbers));
+        }
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.truncate(DESCENTS);
+        starts.insert(0, (0.0, present));
+        let ranges = vec![(0.0, 1.0); axes.len()];
+        let all = starts.len();
+        for (i, (_, numbers)) in starts.into_iter().enumerate() {
+            self.step = format!("descending from start {} of {all}", i + 1);
+            let mut at: Vec<f64> = axes.iter().zip(numbers).map(|(axis, v)| axis.coordinate(v)).collect();
+            descend(self, &mut at, &ranges, LIMITS)?;
+            if self.best.0 < NONE {
+                return Ok(());
+            }
+        }
+        "trying whole numbers".clone_into(&mut self.step);
+        self.try_neighbours(&axes)
+    }
+
+    /// Moves each whole number by one, as long as that helps.
+    fn try_neighbours(&mut self, axes: &[&Axis]) -> Result<(), Stop> {
+        /// Further rounds seldom help.
+        const ROUNDS: usize = 3;
+        let mut scratch = vec![0.0; self.count()];
+        for _ in 0..ROUNDS {
+            let before = self.best.0;
+            for (i, axis) in axes.iter().enumerate().filter(|(_, axis)| axis.is_whole()) {
+                for step in [-1.0, 1.0] {
+                    let mut numbers = self.best.1.clone();
+                    numbers[i] = axis.legal(numbers[i] + step);
+                    if numbers != self.best.1 {
+                        self.all_given(&numbers, &mut scratch)?;
+                    }
+                }
+            }
+            if self.best.0 >= before {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The same point without values that hardly matter, and with as few digits as do.
+    /// Its error is at most `good`.
+    fn simplified(&mut self, mut point: Point, good: f64, mut error: f64) -> Result<(Point, f64), Stop> {
+        for i in 0..self.free.len() {
+            let mut without = point.clone();
+            without.on[i] = false;
+            let there = self.error(&without)?;
+            if there <= good {
+                (point, error) = (without, there);
+            }
+        }
+        let owners: Vec<(usize, &Axis)> = self
+            .free
+            .iter()
+            .enumerate()
+            .flat_map(|(i, free)| free.axes.iter().map(move |axis| (i, axis)))
+            .collect();
+        for (at, (owner, axis)) in owners.into_iter().enumerate() {
+            if axis.is_whole() || !point.on[owner] {
+                continue;
+            }
+            let number = point.numbers[at];
+            let end = Some(axis.coordinate(number).round()).filter(|end| {
+                // So near to an end of the range is perhaps at it.
+                (axis.coordinate(number) - end).abs() < 0.01
+            });
+            let shorter = (2..=4).map(|digits| axis.legal(rounded(number, digits)));
+            for simpler in end.map(|end| axis.value(end)).into_iter().chain(shorter) {
+                let mut shorter = point.clone();
+                shorter.numbers[at] = simpler;
+                let there = self.error(&shorter)?;
+                if there <= good {
+                    (point, error) = (shorter, there);
+                    break;
+                }
+            }
+        }
+        Ok((point, error))
+    }
+}
+
+impl<T: Target> Residuals for Search<'_, T> {
+    /// At least as many as there are axes: the last ones are always 0.
+    fn count(&self) -> usize {
+        self.target.count().max(self.free.iter().map(|free| free.axes.len()).sum())
+    }
+
+    fn at(&mut self, point: &[f64], residuals: &mut [f64]) -> Result<(), Stop> {
+        let numbers: Vec<f64> = self.axes().zip(point).map(|(axis, at)| axis.value(*at)).collect();
+        self.all_given(&numbers, residuals).map(drop)
+    }
+
+    fn derivatives(
+        &mut self,
+        point: &[f64],
+        residuals: &mut [f64],
+        columns: &mut [Vec<f64>],
+    ) -> Result<(), Stop> {
+        let axes: Vec<&Axis> = self.axes().collect();
+        let numbers: Vec<f64> = axes.iter().zip(point).map(|(axis, at)| axis.value(*at)).collect();
+        self.all_given(&numbers, residuals)?;
+        for (i, (axis, column)) in axes.iter().zip(columns).enumerate() {
+            let mut there = numbers.clone();
+            there[i] = axis.beside(numbers[i]);
+            // Between legal values: whole numbers are apart.
+            let way = axis.coordinate(there[i]) - axis.coordinate(numbers[i]);
+            self.all_given(&there, column)?;
+            column.iter_mut().zip(&*residuals).for_each(|(to, from)| *to = (*to - from) / way);
+        }
+        Ok(())
+    }
+}
+
+/// The i-th of points spread evenly over a cube: M. Roberts (2018), *The Unreasonable Effectiveness of Quasirandom
+/// Sequences*.
+fn spread(i: usize, axes: usize) -> impl Iterator<Item = f64> {
+    // The root of x^(d+1) = x + 1, by iteration.
+    let ratio = (0..40).fold(2.0f64, |x, _| (1.0 + x).powf(1.0 / (axes as f64 + 1.0)));
+    (1..=axes).map(move |axis| (0.5 + (i + 1) as f64 / ratio.powi(axis as i32)).fract())
+}
+
+/// A number with so many digits.
+fn rounded(value: f64, digits: i32) -> f64 {
+    if value == 0.0 {
+        return 0.0;
+    }
+    let scale = 10f64.powi(digits - 1 - value.abs().log10().floor() as i32);
+    (value * scale).round() / scale
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::{ALPHA, K_A, K_D, K_S};
+
+    /// A bell of an exponent and a height, over a floor that hides its foot; `k_a` does nothing.
+    struct Bell {
+        wanted: [f64; 2],
+        asked: usize,
+    }
+
+    fn bell([alpha, height]: [f64; 2], i: usize) -> f64 {
+        height * (0.02 * i as f64).cos().powf(alpha)
+    }
+
+    impl Target for Bell {
+        fn count(&self) -> usize {
+            60
+        }
+
+        fn differences(&mut self, values: &Given, to: &mut [f64]) {
+            self.asked += 1;
+            let get = |name: &str, now: f64| {
+                values.iter().find(|(n, _)| *n == name).map_or(now, |(_, value)| numbers_of(value)[0])
+            };
+            let found = [get("alpha", 3.0), get("k_s", 0.9)];
+            for (i, to) in to.iter_mut().enumerate() {
+                *to = bell(found, i) - bell(self.wanted, i);
+            }
+        }
+    }
+
+    fn free(parameter: &'static Parameter, now: Value) -> Free {
+        Free { parameter, axes: Axis::of(&[parameter], &now), now }
+    }
+
+    fn frees() -> Vec<Free> {
+        vec![free(&K_A, Value::Number(0.1)), free(&K_S, Value::Number(0.9)), free(&ALPHA, Value::Integer(3))]
+    }
+
+    #[test]
+    fn the_values_that_made_a_curve_are_found_and_others_keep_theirs() {
+        for (alpha, height) in [(1, 0.25), (40, 0.7), (700, 0.05), (20_000, 1.0)] {
+            let mut bell = Bell { wanted: [f64::from(alpha), height], asked: 0 };
+            let found = Search::new(&mut bell, &frees(), 2000, &Progress::NONE).run().expect("not cancelled");
+            let expected =
+                vec![("k_s", Value::Number(height as f32)), ("alpha", Value::Integer(alpha.into()))];
+            assert_eq!(found.values, expected, "{found:?}");
+            assert!(found.after < 1e-4 * found.before && found.before > 1e-3, "{found:?}");
+            assert!(bell.asked < 500, "{}", bell.asked);
+        }
+    }
+
+    #[test]
+    fn nothing_changes_where_nothing_comes_nearer() {
+        let mut bell = Bell { wanted: [3.0, 0.9], asked: 0 };
+        let found = Search::new(&mut bell, &frees(), 2000, &Progress::NONE).run().expect("not cancelled");
+        assert_eq!(found, Found { values: Vec::new(), before: 0.0, after: 0.0 });
+        // Only what does nothing is free.
+        let mut bell = Bell { wanted: [30.0, 0.5], asked: 0 };
+        let k_a = [free(&K_A, Value::Number(0.1)), free(&K_D, Value::Number(0.8))];
+        let found = Search::new(&mut bell, &k_a, 2000, &Progress::NONE).run().expect("not cancelled");
+        assert_eq!((found.values, found.before), (Vec::new(), found.after));
+    }
+
+    #[test]
+    fn the_number_of_evaluations_is_bounded_and_the_best_of_them_counts() {
+        let mut bell = Bell { wanted: [700.0, 0.05], asked: 0 };
+        let found = Search::new(&mut bell, &frees(), 30, &Progress::NONE).run().expect("not cancelled");
+        assert!(found.after < found.before, "{found:?}");
+        assert!(bell.asked < 60, "{}", bell.asked);
+    }
+
+    #[test]
+    fn a_search_can_be_cancelled_at_every_step() {
+        for most in [0, 1, 10, 40] {
+            let asked = std::cell::Cell::new(0);
+            let cancelled = || {
+                asked.set(asked.get() + 1);
+                asked.get() > most
+            };
+            let progress = Progress { tell: &|_, _| (), cancelled: &cancelled };
+            let mut bell = Bell { wanted: [700.0, 0.05], asked: 0 };
+            assert_eq!(Search::new(&mut bell, &frees(), 2000, &progress).run(), Err(Cancelled), "{most}");
+            assert_eq!(bell.asked, most);
+        }
+    }
+
+    #[test]
+    fn numbers_are_rounded_to_digits() {
+        assert_eq!([rounded(0.0, 2), rounded(0.03468, 2), rounded(123.4, 2)], [0.0, 0.035, 120.0]);
+    }
+}

@@ -1,0 +1,290 @@
+use super::*;
+use crate::{
+    document::{Document, Edit, Selection, VariantField},
+    scene::{Object, Variant},
+};
+
+/// A sphere under one model with some values in view A, and under another in view B.
+fn scene(a: (&str, &[(&'static str, Value)]), b: (&str, &[(&'static str, Value)])) -> Scene {
+    let mut scene = Scene { reflection_model: a.0.to_owned(), ..Scene::default() };
+    a.1.iter().for_each(|(name, value)| scene.objects[0].material.set(*name, value.clone()));
+    let mut variant = Variant { reflection_model: Some(b.0.to_owned()), ..Variant::default() };
+    b.1.iter().for_each(|(name, value)| variant.material.set(*name, value.clone()));
+    scene.variants = vec![variant];
+    scene
+}
+
+fn number(value: f32) -> Value {
+    Value::Number(value)
+}
+
+fn matched(scene: &Scene, what: What, parameters: &[&str]) -> Result<Match, MatchError> {
+    match_view(&Request { scene, view: 1, what, parameters }, &Registry::builtin(), &Progress::NONE)
+}
+
+fn error(scene: &Scene, what: What, parameters: &[&str]) -> String {
+    matched(scene, what, parameters).expect_err("refused").to_string()
+}
+
+/// The value of a number that was found.
+fn found(found: &Match, name: &str) -> f64 {
+    let value = found.values.iter().find(|(n, _)| *n == name);
+    axis::numbers_of(&value.unwrap_or_else(|| panic!("{name} is not in {found:?}")).1)[0]
+}
+
+const PHONG: [(&str, Value); 4] = [
+    ("k_a", Value::Number(0.25)),
+    ("k_d", Value::Number(0.6)),
+    ("k_s", Value::Number(0.35)),
+    ("alpha", Value::Integer(50)),
+];
+
+#[test]
+fn a_model_matched_with_itself_finds_its_own_values() {
+    for what in [What::Lobe, What::Picture] {
+        let scene =
+            scene(("phong", &PHONG), ("phong", &[("k_d", number(0.9)), ("alpha", Value::Integer(3))]));
+        // The variant inherits the other two: free, they keep their values.
+        let all = matched(&scene, what, &["k_a", "k_d", "k_s", "alpha"]).expect("a match");
+        assert_eq!(all.values, [PHONG[1].clone(), PHONG[3].clone()], "{what:?} {all:?}");
+        assert!(all.after < 1e-6 && all.before > 0.01, "{what:?} {all:?}");
+        // A wrong twin: another value that is not free leaves a rest.
+        let some = matched(&scene, what, &["alpha"]).expect("a match");
+        assert!(some.after > 0.01 && some.after < some.before, "{what:?} {some:?}");
+        // Where both are equal, nothing changes.
+        let mut same = scene.clone();
+        same.variants[0].material = Default::default();
+        let none = matched(&same, what, &["k_a", "k_d", "k_s", "alpha"]).expect("a match");
+        assert_eq!(none, Match { values: Vec::new(), before: 0.0, after: 0.0 }, "{what:?}");
+    }
+}
+
+#[test]
+fn other_models_find_their_own_values_too() {
+    let cases: [(&str, &[(&'static str, Value)], &[&str]); 5] = [
+        (
+            "ward",
+            &[
+                ("k_s", Value::Number(0.15)),
+                ("alpha_x", Value::Number(0.05)),
+                ("alpha_y", Value::Number(0.4)),
+            ],
+            &["k_s", "alpha_x", "alpha_y"],
+        ),
+        (
+            "metallic_roughness",
+            &[("roughness", Value::Number(0.35)), ("metallic", Value::Number(0.8))],
+            &["roughness", "metallic"],
+        ),
+        ("oren_nayar", &[("sigma", Value::Number(31.0))], &["sigma"]),
+        (
+            "ashikhmin_shirley",
+            &[
+                ("exponent_u", Value::Integer(400)),
+                ("exponent_v", Value::Integer(7)),
+                ("k_s", Value::Number(0.2)),
+            ],
+            &["exponent_u", "exponent_v", "k_s"],
+        ),
+        (
+            "phong",
+            &[("base_colour", Value::Colour([200, 90, 30])), ("k_s", Value::Number(0.1))],
+            &["base_colour", "k_s", "alpha"],
+        ),
+    ];
+    for (id, values, free) in cases {
+        let scene = scene((id, values), (id, &[]));
+        // Inherited values would be those already.
+        let mut scene = Scene { objects: scene.objects, ..scene };
+        let registry = Registry::builtin();
+        for (name, _) in values {
+            let parameter = registry.material_parameter(name).expect("declared");
+            scene.variants[0].material.set(*name, parameter.default_value());
+        }
+        let found = matched(&scene, What::Lobe, free).expect("a match");
+        for (name, value) in values {
+            let own = found.values.iter().find(|(n, _)| n == name).map(|(_, value)| value.clone());
+            let parameter = registry.material_parameter(name).expect("declared");
+            let expected = Some(value.clone()).filter(|v| *v != parameter.default_value());
+            assert_eq!(own, expected, "{id} {name}: {found:?}");
+        }
+        assert!(found.after < 2e-4 * found.before && found.before > 0.003, "{id}: {found:?}");
+    }
+}
+
+/// Blinn–Phong's exponent is four times Phong's: E. Lafortune and Y. Willems (1994), F. Fisher and A. Woo (1994).
+#[test]
+fn equal_highlights_of_phong_and_blinn_have_exponents_of_one_to_four() {
+    for alpha in [8, 32, 200, 2000] {
+        let scene = scene(("phong", &[("alpha", Value::Integer(alpha))]), ("blinn_phong", &[]));
+        let all = ["k_a", "k_d", "k_s", "alpha"];
+        let highlight = matched(&scene, What::Highlight, &all).expect("a match");
+        // The brightness is left alone.
+        assert_eq!(highlight.values.len(), 1, "{highlight:?}");
+        let ratio = found(&highlight, "alpha") / alpha as f64;
+        assert!((ratio - 4.0).abs() < 0.2, "{alpha}: {ratio}");
+        // The cosines of very narrow ones have few digits left in 32 bits.
+        let rest = if alpha > 1000 { 0.03 } else { 0.01 };
+        assert!(highlight.after < rest && highlight.before > 0.6, "{highlight:?}");
+        // The other way round.
+        let mut back = scene.clone();
+        back.reflection_model = "blinn_phong".to_owned();
+        back.objects[0].material.set("alpha", Value::Integer(4 * alpha));
+        back.variants[0].reflection_model = Some("phong".to_owned());
+        let highlight = matched(&back, What::Highlight, &["alpha"]).expect("a match");
+        let ratio = found(&highlight, "alpha") / alpha as f64;
+        assert!((ratio - 1.0).abs() < 0.05, "{alpha}: {ratio}");
+    }
+    // An anisotropic one has two widths.
+    let brushed = [("alpha_x", number(0.05)), ("alpha_y", number(0.25))];
+    let ward = scene(("ward", &brushed), ("ward", &[("alpha_x", number(0.3)), ("alpha_y", number(0.3))]));
+    let highlight = matched(&ward, What::Highlight, &["k_s", "alpha_x", "alpha_y"]).expect("a match");
+    for (name, value) in brushed {
+        let expected = axis::numbers_of(&value)[0];
+        assert!((found(&highlight, name) / expected - 1.0).abs() < 0.02, "{highlight:?}");
+    }
+    // Over all directions the lobes differ in shape: Blinn's is narrower across the plane of incidence, so that a smaller
+    // exponent is nearest, but still a larger one than Phong's.
+    let scene = scene(("phong", &[("alpha", Value::Integer(32))]), ("blinn_phong", &[]));
+    let lobe = matched(&scene, What::Lobe, &["k_s", "alpha"]).expect("a match");
+    let ratio = found(&lobe, "alpha") / 32.0;
+    assert!((2.0..4.5).contains(&ratio), "{ratio}");
+    assert!(lobe.after < 0.5 * lobe.before, "{lobe:?}");
+}
+
+/// The root mean square of the differences of the views as they are.
+fn rest(target: &mut impl Target) -> f64 {
+    let mut all = vec![0.0; target.count()];
+    target.differences(&Vec::new(), &mut all);
+    (all.iter().map(|d| d * d).sum::<f64>() / all.len() as f64).sqrt()
+}
+
+#[test]
+fn the_match_is_the_best_of_all_values_of_a_parameter() {
+    let registry = Registry::builtin();
+    let ggx = [("alpha_x", number(0.2)), ("alpha_y", number(0.2))];
+    let mut scene = scene(("microfacet", &ggx), ("blinn_phong", &[]));
+    let best = What::ALL.map(|what| matched(&scene, what, &["alpha"]).expect("a match").after);
+    let mut least = [f64::INFINITY; 3];
+    for step in 0..100 {
+        let alpha = 1.08f64.powi(step).round() as i64;
+        scene.variants[0].material.set("alpha", Value::Integer(alpha));
+        let [a, b] = [0, 1].map(|view| Side::seen(&scene, view, &registry).expect("there is one"));
+        let sides = [&a, &b];
+        let there = [
+            rest(&mut Lobe::new(sides, &registry)),
+            rest(&mut Picture::new(sides, &registry).expect("it is in the picture")),
+            rest(&mut Highlight::new(sides, &registry).unwrap_or_else(|_| panic!("it has one"))),
+        ];
+        least = std::array::from_fn(|i| least[i].min(there[i]));
+    }
+    for (i, what) in What::ALL.into_iter().enumerate() {
+        assert!(best[i] <= least[i] * 1.002, "{what:?}: {} but {} was seen", best[i], least[i]);
+    }
+}
+
+#[test]
+fn a_match_is_one_step_that_undo_brings_back() {
+    let registry = Registry::builtin();
+    let mut document = Document::new(scene(("phong", &PHONG), ("blinn_phong", &[])));
+    let before = document.variants.clone();
+    let found = matched(&document, What::Highlight, &["alpha", "k_s"]).expect("a match");
+    let edit = Edit::Variant(0, VariantField::Materials(found.values.clone(), "Match"));
+    document.edit(edit, Selection::default(), &registry).expect("legal");
+    assert_eq!(document.steps().collect::<Vec<_>>(), ["Match of view B"]);
+    let after = matched(&document, What::Highlight, &["alpha", "k_s"]).expect("a match");
+    assert_eq!(after.before, found.after, "what was promised is what there is");
+    document.undo();
+    assert_eq!(document.variants, before);
+}
+
+#[test]
+fn several_materials_are_matched_together() {
+    let mut scene = scene(("phong", &[("alpha", Value::Integer(10))]), ("phong", &[]));
+    let mut other = Object { position: glam::Vec3::new(3.0, 3.0, 3.0), ..scene.objects[0].clone() };
+    other.material.set("alpha", Value::Integer(80));
+    scene.objects.push(other);
+    // Without an override each has its own.
+    let none = matched(&scene, What::Lobe, &["alpha"]).expect("a match");
+    assert_eq!(none, Match { values: Vec::new(), before: 0.0, after: 0.0 });
+    scene.variants[0].material.set("alpha", Value::Integer(1000));
+    let both = matched(&scene, What::Lobe, &["alpha"]).expect("a match");
+    assert!((10.0..80.0).contains(&found(&both, "alpha")), "{both:?}");
+}
+
+#[test]
+fn what_cannot_be_matched_is_said() {
+    let lambert = scene(("phong", &[]), ("lambert", &[]));
+    assert_eq!(error(&lambert, What::Lobe, &[]), "no parameter is free; free some of base_colour");
+    assert_eq!(
+        error(&lambert, What::Lobe, &["alpha"]),
+        "\"alpha\" is free, but view B has no such parameter; free some of base_colour"
+    );
+    assert_eq!(
+        error(&lambert, What::Highlight, &["base_colour"]),
+        "view B has no highlight with a width: Lambert does not fall to half its brightness"
+    );
+    let back = scene(("lambert", &[]), ("phong", &[]));
+    assert!(
+        error(&back, What::Highlight, &["alpha"])
+            .starts_with("view A has no highlight with a width: Lambert")
+    );
+    let phong = scene(("lambert", &[]), ("phong", &[]));
+    assert_eq!(
+        error(&phong, What::Lobe, &["alhpa"]),
+        "\"alhpa\" is free, but view B has no such parameter; free some of base_colour, specular_colour, k_a, k_d, k_s and alpha; did you mean \"alpha\"?"
+    );
+    let microfacet = scene(("lambert", &[]), ("microfacet", &[]));
+    assert_eq!(
+        error(&microfacet, What::Lobe, &["masking"]),
+        "masking is free, but it is a choice: only numbers and colours can be searched"
+    );
+    assert_eq!(
+        error(&microfacet, What::Lobe, &["gamma"]),
+        "gamma is free, but it has no effect: Not used with GGX: only GTR has γ"
+    );
+    let view = |view: usize| {
+        let request = Request { scene: &phong, view, what: What::Lobe, parameters: &["alpha"] };
+        match_view(&request, &Registry::builtin(), &Progress::NONE).expect_err("refused").to_string()
+    };
+    assert_eq!(view(2), "there is no view C to be matched; the scene has 2 views: A and B");
+    assert_eq!(view(0), "there is no view A to be matched; the scene has 2 views: A and B");
+    let mut hidden = phong.clone();
+    hidden.objects[0].visible = false;
+    assert_eq!(
+        error(&hidden, What::Lobe, &["alpha"]),
+        "no object is visible, so there is nothing to compare"
+    );
+    let mut away = phong.clone();
+    away.observer.direction = glam::Vec3::Z;
+    assert_eq!(
+        error(&away, What::Picture, &["alpha"]),
+        "no object is visible, so there is nothing to compare"
+    );
+    let alone = Scene { variants: Vec::new(), ..phong };
+    assert_eq!(
+        error(&alone, What::Lobe, &["alpha"]),
+        "there is no view B to be matched; the scene has only view A"
+    );
+    let cancelled = Progress { tell: &|_, _| (), cancelled: &|| true };
+    let scene = scene(("phong", &[]), ("blinn_phong", &[]));
+    let request = Request { scene: &scene, view: 1, what: What::Picture, parameters: &["alpha"] };
+    assert_eq!(match_view(&request, &Registry::builtin(), &cancelled), Err(MatchError::Cancelled));
+}
+
+#[test]
+fn numbers_are_free_unless_it_is_said_otherwise() {
+    let registry = Registry::builtin();
+    let names = |scene: &Scene, usual: bool| -> Vec<&str> {
+        let all = parameters(scene, 1, &registry);
+        all.into_iter().filter(|(_, free)| *free == usual).map(|(parameter, _)| parameter.name).collect()
+    };
+    let phong = scene(("lambert", &[]), ("phong", &[]));
+    assert_eq!(names(&phong, true), ["k_a", "k_d", "k_s", "alpha"]);
+    assert_eq!(names(&phong, false), ["base_colour", "specular_colour"]);
+    // γ has no effect with GGX, and neither has the extinction of a dielectric.
+    let microfacet = scene(("lambert", &[]), ("microfacet", &[]));
+    assert_eq!(names(&microfacet, true), ["alpha_x", "alpha_y"]);
+    assert!(!names(&microfacet, false).contains(&"extinction"));
+    assert!(parameters(&phong, 2, &registry).is_empty());
+}

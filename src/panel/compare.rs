@@ -1,0 +1,526 @@
+//! The views of a comparison in the picture: their places, headers, the edge of a wipe, and the bar below with the
+//! layout and the numbers.
+
+use bevy_egui::egui::{
+    self, Align, Align2, Button, CursorIcon, Id, Key, Layout as Direction, Pos2, Rect, RichText, Sense,
+    Stroke, StrokeKind, TextStyle, Ui, UiBuilder, WidgetInfo, WidgetType, pos2, vec2,
+};
+
+use super::{
+    icon::{self, Icon},
+    keys::{self, Binding},
+    knob, matching,
+    segmented::{segment_width, segmented},
+    state::{Action, Cell, CompareCommand, MatchCommand, Session},
+    theme::{self, Palette},
+};
+use crate::{
+    caption::{line, view_parts},
+    registry::Registry,
+    scene::{
+        Comparison,
+        comparison::{AMPLIFICATIONS, Channel, Compared, Edge, Layout, Sign},
+        variant::{LETTERS, MAX_VARIANTS},
+    },
+};
+
+/// Height of a header, points.
+const HEADER: f32 = 28.0;
+/// Height of a row of the bar, points.
+const ROW: f32 = 34.0;
+/// Between views, points.
+const GAP: f32 = 2.0;
+/// Width of the place in which the edge of a wipe can be grasped, points.
+const GRASP: f32 = 14.0;
+/// One press of a key moves the edge by so much.
+const STEP: f32 = 0.02;
+
+/// The places of everything that belongs to a comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrangement {
+    /// The views; all have the same size.
+    pub cells: Vec<Cell>,
+    /// The headers, by view.
+    headers: Vec<(usize, Rect)>,
+    /// The bar below.
+    bar: Option<Rect>,
+    /// The picture, headers and bar apart.
+    pub picture: Rect,
+    /// The map of the difference.
+    pub map: Option<Rect>,
+    /// The place of a fourth view where there are three.
+    vacant: Option<Rect>,
+}
+
+impl Default for Arrangement {
+    fn default() -> Self {
+        Self {
+            cells: Vec::new(),
+            headers: Vec::new(),
+            bar: None,
+            picture: Rect::NOTHING,
+            map: None,
+            vacant: None,
+        }
+    }
+}
+
+impl Arrangement {
+    /// True if the scene has no variants, so that there is nothing but the picture.
+    #[must_use]
+    pub fn is_single(&self) -> bool {
+        self.headers.is_empty()
+    }
+}
+
+/// Arranges the views of a session in the place that the panels leave. In a presentation there is no bar.
+#[must_use]
+pub fn arrange(session: &Session, whole: Rect) -> Arrangement {
+    let variants = session.document.variants.len();
+    if variants == 0 {
+        let cells = vec![Cell { view: 0, rect: whole, part: whole }];
+        return Arrangement { cells, picture: whole, ..Arrangement::default() };
+    }
+    let comparison = &session.document.comparison;
+    let rows = match comparison.layout {
+        _ if session.view.presenting => 0.0,
+        Layout::Wipe | Layout::Difference => 2.0,
+        _ => 1.0,
+    };
+    let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
+    let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top()));
+    let below_header = |rect: Rect| Rect::from_min_max(rect.min + vec2(0.0, HEADER), rect.max);
+    let header = |rect: Rect| Rect::from_min_size(rect.min, vec2(rect.width(), HEADER));
+    let halves = |rect: Rect| {
+        let middle = rect.center().x;
+        [rect.with_max_x(middle - 0.5 * GAP), rect.with_min_x(middle + 0.5 * GAP)]
+    };
+    let mut all = Arrangement { bar: (rows > 0.0).then_some(bar), ..Arrangement::default() };
+    let views = comparison.views(variants);
+    match comparison.layout {
+        Layout::SideBySide => {
+            let lines = if views.len() > 2 { 2 } else { 1 };
+            let height = (picture.height() - (lines - 1) as f32 * GAP) / lines as f32;
+            let shown: Vec<_> = views.into_iter().map(Some).chain([None]).collect();
+            for (i, view) in shown.into_iter().enumerate().take(2 * lines) {
+                let top = picture.top() + (i / 2) as f32 * (height + GAP);
+                let line = Rect::from_min_size(pos2(picture.left(), top), vec2(picture.width(), height));
+                let place = halves(line)[i % 2];
+                let rect = below_header(place);
+                match view {
+                    Some(view) => {
+                        all.headers.push((view, header(place)));
+                        all.cells.push(Cell { view, rect, part: rect });
+                    }
+                    None => all.vacant = Some(place),
+                }
+            }
+        }
+        Layout::Single => {
+            let rect = below_header(picture);
+            let view = match session.active() {
+                0 if session.view.blinking => comparison.with.min(variants),
+                _ if session.view.blinking => 0,
+                active => active,
+            };
+            all.headers.push((view, header(picture)));
+            all.cells.push(Cell { view, rect, part: rect });
+        }
+        Layout::Wipe | Layout::Difference | Layout::Blink => {
+            let rect = below_header(picture);
+            for (view, place) in views.iter().zip(halves(header(picture))) {
+                all.headers.push((*view, place));
+            }
+            let parts = match comparison.layout {
+                Layout::Wipe => parts(rect, comparison),
+                Layout::Difference => {
+                    all.map = Some(rect);
+                    [Rect::NOTHING; 2]
+                }
+                _ if session.view.blinking => [Rect::NOTHING, rect],
+                _ => [rect, Rect::NOTHING],
+            };
+            all.cells.extend(views.iter().zip(parts).map(|(view, part)| Cell { view: *view, rect, part }));
+        }
+    }
+    let first = all.cells.iter().map(|cell| cell.rect);
+    all.picture = first.reduce(Rect::union).unwrap_or(picture);
+    all
+}
+
+/// The parts of a rectangle at both sides of the edge of a wipe.
+fn parts(rect: Rect, comparison: &Comparison) -> [Rect; 2] {
+    let edge = edge_of(rect, comparison);
+    match comparison.edge {
+        Edge::Vertical => [rect.with_max_x(edge.x), rect.with_min_x(edge.x)],
+        Edge::Horizontal => [rect.with_max_y(edge.y), rect.with_min_y(edge.y)],
+    }
+}
+
+/// The point of the edge of a wipe in the middle of its length.
+fn edge_of(rect: Rect, comparison: &Comparison) -> Pos2 {
+    match comparison.edge {
+        Edge::Vertical => pos2(rect.left() + comparison.split * rect.width(), rect.center().y),
+        Edge::Horizontal => pos2(rect.center().x, rect.top() + comparison.split * rect.height()),
+    }
+}
+
+/// The entries of a menu: the layouts, and another view.
+pub(super) fn entries(ui: &mut Ui, session: &Session, table: &[Binding], actions: &mut Vec<Action>) {
+    let now = session.document.comparison.layout;
+    for layout in Layout::ALL {
+        let mut letters = layout.name().chars();
+        let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+        let radio = ui.radio(now == *layout, first + letters.as_str());
+        if radio.on_hover_text(layout.summary()).clicked() {
+            actions.push(Action::Compare(CompareCommand::Layout(*layout)));
+            ui.close();
+        }
+    }
+    ui.separator();
+    let add = Action::Compare(CompareCommand::Add);
+    let keys = RichText::new(keys::keys_of(table, &add)).color(Palette::here(ui).weak);
+    if ui.add(Button::new("Add a view").shortcut_text(keys)).clicked() {
+        actions.push(add);
+        ui.close();
+    }
+}
+
+/// Shows headers, edge and bar. Returns what was asked for, and the places that do not belong to the picture.
+pub fn show(
+    ui: &mut Ui,
+    arrangement: &Arrangement,
+    session: &Session,
+    registry: &Registry,
+) -> (Vec<Action>, Vec<Rect>) {
+    let (mut actions, mut places) = (Vec::new(), Vec::new());
+    if session.view.blinking && !ui.input(|i| i.key_down(Key::Space)) {
+        actions.push(Action::Compare(CompareCommand::Blink(false)));
+    }
+    let palette = Palette::here(ui);
+    let several = arrangement.cells.len() > 1;
+    for (view, rect) in &arrangement.headers {
+        places.push(*rect);
+        header(ui, *view, *rect, several, session, registry, &mut actions);
+    }
+    let comparison = &session.document.comparison;
+    if several && comparison.layout == Layout::SideBySide {
+        for cell in arrangement.cells.iter().filter(|cell| cell.view == session.active()) {
+            let stroke = Stroke::new(1.5, palette.accent);
+            ui.painter().rect_stroke(cell.rect, 0.0, stroke, StrokeKind::Inside);
+        }
+    }
+    if let Some(rect) = arrangement.vacant {
+        let font = TextStyle::Body.resolve(ui.style());
+        ui.painter().rect_filled(rect, 0.0, palette.panel);
+        ui.painter().text(rect.center(), Align2::CENTER_CENTER, "Ctrl+B adds a view", font, palette.weak);
+        places.push(rect);
+    }
+    if comparison.layout == Layout::Wipe && several {
+        places.push(wipe(ui, arrangement.picture, comparison, &mut actions));
+    }
+    if let Some(rect) = arrangement.bar {
+        places.push(rect);
+        bar(ui, rect, session, &mut actions);
+    }
+    (actions, places)
+}
+
+/// The letter of a view, its difference from A, and its menu.
+fn header(
+    ui: &mut Ui,
+    view: usize,
+    rect: Rect,
+    several: bool,
+    session: &Session,
+    registry: &Registry,
+    actions: &mut Vec<Action>,
+) {
+    let palette = Palette::here(ui);
+    let active = session.active() == view;
+    ui.painter().rect_filled(rect, 0.0, palette.panel);
+    let line = if active && several { palette.accent } else { palette.line };
+    ui.painter().hline(
+        rect.x_range(),
+        rect.bottom() - 1.0,
+        Stroke::new(if active { 2.0 } else { 1.0 }, line),
+    );
+    let letter = LETTERS[view.min(MAX_VARIANTS)];
+    let text = words(session, view, registry);
+    let click = ui.interact(rect, Id::new(("view header", view)), Sense::click());
+    click.widget_info(|| {
+        WidgetInfo::selected(WidgetType::RadioButton, true, active, format!("View {letter}: {text}"))
+    });
+    if click.clicked() {
+        actions.push(Action::Compare(CompareCommand::Activate(view)));
+    }
+    let inner = rect.shrink2(vec2(6.0, 2.0));
+    ui.scope_builder(
+        UiBuilder::new().max_rect(inner).layout(Direction::right_to_left(Align::Center)),
+        |ui| {
+            menu(ui, view, session, actions);
+            if !several && session.document.comparison.layout == Layout::Single {
+                for other in (0..=session.document.variants.len()).rev() {
+                    let name = LETTERS[other];
+                    let on = other == view;
+                    let text =
+                        RichText::new(name).small().color(if on { palette.text } else { palette.weak });
+                    let button = ui.add(Button::new(text).selected(on).min_size(vec2(22.0, 20.0)));
+                    button.widget_info(|| {
+                        WidgetInfo::selected(WidgetType::RadioButton, true, on, format!("Show view {name}"))
+                    });
+                    if button.clicked() {
+                        actions.push(Action::Compare(CompareCommand::Activate(other)));
+                    }
+                    button.on_hover_text(format!("View {name}: {}", words(session, other, registry)));
+                }
+            }
+            ui.with_layout(Direction::left_to_right(Align::Center), |ui| {
+                let badge = egui::Rect::from_center_size(
+                    pos2(ui.max_rect().left() + 10.0, rect.center().y),
+                    vec2(20.0, 20.0),
+                );
+                let (fill, ink) =
+                    if active { (palette.accent, palette.panel) } else { (palette.field, palette.text) };
+                ui.painter().rect(badge, 4.0, fill, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+                let font = egui::FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+                ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, ink);
+                let room = (ui.max_rect().width() - 30.0).max(0.0);
+                let galley = theme::elided(ui, &text, TextStyle::Body, palette.text, room);
+                let at =
+                    Align2::LEFT_CENTER.anchor_size(badge.right_center() + vec2(8.0, 0.0), galley.size());
+                ui.painter().galley(at.min, galley, palette.text);
+            });
+        },
+    );
+    click.on_hover_ui(|ui| {
+        ui.set_max_width(320.0);
+        ui.label(theme::strong(ui, format!("View {letter}")));
+        ui.label(if view == 0 { "The scene itself.".to_owned() } else { text });
+        ui.label(theme::small(ui, "Click: the panels show and change this view."));
+    });
+}
+
+/// A view in words: its name, unless what it shows says the same, and what it shows.
+fn words(session: &Session, view: usize, registry: &Registry) -> String {
+    let shown = line(&view_parts(&session.document, view, registry));
+    let name = view.checked_sub(1).and_then(|i| session.document.variants.get(i)?.name.as_deref());
+    match name {
+        Some(name) if !shown.to_lowercase().contains(&name.to_lowercase()) => format!("{name} · {shown}"),
+        _ => shown,
+    }
+}
+
+/// What can be done with a view.
+fn menu(ui: &mut Ui, view: usize, session: &Session, actions: &mut Vec<Action>) {
+    let letter = LETTERS[view.min(MAX_VARIANTS)];
+    let button = icon::button(ui, Icon::Down, &format!("Menu of view {letter}"));
+    let id = ui.make_persistent_id(("view menu", view));
+    let chosen = knob::drop_down(&button, id, |ui, _| {
+        ui.set_min_width(200.0);
+        let mut chosen = None;
+        let mut item = |ui: &mut Ui, text: String, command: CompareCommand| {
+            if ui.add(Button::new(text).frame(false)).clicked() {
+                chosen = Some(command);
+                egui::Popup::close_id(ui.ctx(), id);
+            }
+        };
+        if view > 0 {
+            item(ui, format!("Make {letter} like A"), CompareCommand::LikeA(view));
+            item(ui, format!("Swap A and {letter}"), CompareCommand::Swap(view));
+            if matching::entry(ui, view) {
+                actions.push(Action::Match(MatchCommand::Ask(view)));
+                egui::Popup::close_id(ui.ctx(), id);
+            }
+            item(ui, format!("Remove view {letter}"), CompareCommand::Remove(view));
+            ui.separator();
+        }
+        if session.document.variants.len() < MAX_VARIANTS {
+            item(ui, "Add a view".to_owned(), CompareCommand::Add);
+        } else {
+            ui.label(theme::small(ui, "A scene has at most four views."));
+        }
+        chosen
+    });
+    actions.extend(chosen.map(Action::Compare));
+}
+
+/// The edge of a wipe, with a handle. Returns the place that it takes from the picture.
+fn wipe(ui: &mut Ui, rect: Rect, comparison: &Comparison, actions: &mut Vec<Action>) -> Rect {
+    let at = edge_of(rect, comparison);
+    let upright = comparison.edge == Edge::Vertical;
+    let (place, cursor) = if upright {
+        (Rect::from_center_size(at, vec2(GRASP, rect.height())), CursorIcon::ResizeHorizontal)
+    } else {
+        (Rect::from_center_size(at, vec2(rect.width(), GRASP)), CursorIcon::ResizeVertical)
+    };
+    let response = ui.interact(place, Id::new("edge of the wipe"), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::slider(true, f64::from(comparison.split), "Edge between the views"));
+    let painter = ui.painter_at(rect);
+    let ends = if upright {
+        [pos2(at.x, rect.top()), pos2(at.x, rect.bottom())]
+    } else {
+        [pos2(rect.left(), at.y), pos2(rect.right(), at.y)]
+    };
+    let on = response.hovered() || response.dragged() || response.has_focus();
+    let core = if on { egui::Color32::from_rgb(0x7c, 0xc8, 0xff) } else { egui::Color32::WHITE };
+    painter.line_segment(ends, Stroke::new(3.5, egui::Color32::from_black_alpha(160)));
+    painter.line_segment(ends, Stroke::new(1.5, core));
+    painter.circle(at, 9.0, egui::Color32::from_black_alpha(190), Stroke::new(1.5, core));
+    let along = if upright { vec2(4.0, 0.0) } else { vec2(0.0, 4.0) };
+    let across = if upright { vec2(0.0, 3.0) } else { vec2(3.0, 0.0) };
+    for side in [-1.0, 1.0] {
+        let tip = at + side * 1.5 * along;
+        let back = at + side * 0.6 * along;
+        painter.line(vec![back + across, tip, back - across], Stroke::new(1.5, core));
+    }
+    let mut split = comparison.split;
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+        split = if upright {
+            (pointer.x - rect.left()) / rect.width()
+        } else {
+            (pointer.y - rect.top()) / rect.height()
+        };
+    }
+    if response.double_clicked() {
+        split = 0.5;
+    }
+    if response.has_focus() {
+        let keys = if upright { [Key::ArrowLeft, Key::ArrowRight] } else { [Key::ArrowUp, Key::ArrowDown] };
+        ui.memory_mut(|m| {
+            let filter = egui::EventFilter {
+                horizontal_arrows: upright,
+                vertical_arrows: !upright,
+                ..Default::default()
+            };
+            m.set_focus_lock_filter(response.id, filter);
+        });
+        for (key, step) in keys.into_iter().zip([-STEP, STEP]) {
+            if ui.input(|i| i.key_pressed(key)) {
+                split += step;
+            }
+        }
+    }
+    if split != comparison.split {
+        let split = (split.clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
+        actions.push(Action::Compare(CompareCommand::Set(Comparison { split, ..*comparison })));
+    }
+    response.on_hover_cursor(cursor).on_hover_text(
+        "Drag the edge between the views. With the focus, arrow keys move it; double-click: the middle.",
+    );
+    place
+}
+
+/// The layout, its choices, and the numbers.
+fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<Action>) {
+    let palette = Palette::here(ui);
+    ui.painter().rect_filled(rect, 0.0, palette.panel);
+    ui.painter().hline(rect.x_range(), rect.top(), Stroke::new(1.0, palette.line));
+    let comparison = session.document.comparison;
+    let row = |i: f32| {
+        Rect::from_min_size(rect.min + vec2(0.0, i * ROW), vec2(rect.width(), ROW)).shrink2(vec2(6.0, 2.0))
+    };
+    let left = |place: Rect| UiBuilder::new().max_rect(place).layout(Direction::left_to_right(Align::Center));
+    ui.scope_builder(left(row(0.0)), |ui| {
+        ui.set_clip_rect(ui.clip_rect().intersect(rect));
+        let names: Vec<_> = Layout::ALL.iter().map(|layout| layout.name()).collect();
+        let chosen = Layout::ALL.iter().position(|layout| *layout == comparison.layout);
+        let tip = |ui: &mut Ui, i: usize| {
+            ui.set_max_width(280.0);
+            ui.label(Layout::ALL[i].summary());
+            if Layout::ALL[i] == Layout::Blink {
+                ui.label(theme::small(ui, "Hold Space to see the other view."));
+            }
+        };
+        let width: f32 = names.iter().map(|name| segment_width(ui, name)).sum();
+        if let Some(i) = segmented(ui, "Layout", &names, chosen, tip) {
+            actions.push(Action::Compare(CompareCommand::Layout(Layout::ALL[i])));
+        }
+        let room = rect.width() - width - 28.0;
+        ui.with_layout(Direction::right_to_left(Align::Center), |ui| numbers(ui, session, room));
+    });
+    if !matches!(comparison.layout, Layout::Wipe | Layout::Difference) {
+        return;
+    }
+    ui.scope_builder(left(row(1.0)), |ui| {
+        ui.set_clip_rect(ui.clip_rect().intersect(rect));
+        ui.spacing_mut().item_spacing.x = 8.0;
+        let mut now = comparison;
+        if comparison.layout == Layout::Wipe {
+            let names: Vec<_> = Edge::ALL.iter().map(|edge| edge.name()).collect();
+            let at = Edge::ALL.iter().position(|edge| *edge == comparison.edge);
+            let tip = |ui: &mut Ui, i: usize| _ = ui.label(Edge::ALL[i].summary());
+            ui.label(theme::small(ui, "edge"));
+            if let Some(i) = segmented(ui, "Edge", &names, at, tip) {
+                now.edge = Edge::ALL[i];
+            }
+        } else {
+            let names: Vec<_> = Sign::ALL.iter().map(|sign| sign.name()).collect();
+            let at = Sign::ALL.iter().position(|sign| *sign == comparison.sign);
+            let tip = |ui: &mut Ui, i: usize| _ = ui.label(Sign::ALL[i].summary());
+            if let Some(i) = segmented(ui, "Sign", &names, at, tip) {
+                now.sign = Sign::ALL[i];
+            }
+            choose(ui, "channel", Channel::ALL, &mut now.channel, Channel::name, Channel::summary);
+            choose(ui, "values", Compared::ALL, &mut now.values, Compared::name, Compared::summary);
+            ui.label(theme::small(ui, "×"));
+            let field =
+                egui::DragValue::new(&mut now.amplification).range(AMPLIFICATIONS).speed(0.2).max_decimals(0);
+            ui.add(field).on_hover_text(
+                "Amplification: differences are multiplied by this before they become colours, 1 to 100.",
+            );
+        }
+        if now != comparison {
+            actions.push(Action::Compare(CompareCommand::Set(now)));
+        }
+    });
+}
+
+/// A list of choices.
+fn choose<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    label: &str,
+    all: &[T],
+    value: &mut T,
+    name: fn(T) -> &'static str,
+    summary: fn(T) -> &'static str,
+) {
+    ui.label(theme::small(ui, label));
+    let list = egui::ComboBox::from_id_salt(("comparison", label)).selected_text(name(*value));
+    let shown = list.show_ui(ui, |ui| {
+        for choice in all {
+            ui.selectable_value(value, *choice, name(*choice)).on_hover_text(summary(*choice));
+        }
+    });
+    shown.response.on_hover_text(summary(*value));
+}
+
+/// Between two numbers, points.
+const SPACE: f32 = 14.0;
+
+/// The numbers of the comparison; those that have no room are left out.
+fn numbers(ui: &mut Ui, session: &Session, room: f32) {
+    let Some(numbers) = &session.facts.comparison else { return };
+    let palette = Palette::here(ui);
+    let mut left = room;
+    let laid_out = numbers.entries().map(|(name, value, help)| {
+        let text = format!("{name} {value}");
+        (theme::elided(ui, &text, TextStyle::Body, palette.text, f32::INFINITY), text, help)
+    });
+    let mut fits = |(galley, ..): &(std::sync::Arc<egui::Galley>, String, &str)| {
+        left -= galley.size().x + SPACE;
+        left >= 0.0
+    };
+    let shown: Vec<_> = laid_out.take_while(&mut fits).collect();
+    // From right to left.
+    for (galley, text, help) in shown.into_iter().rev() {
+        let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
+        ui.painter().galley(rect.min, galley, palette.text);
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
+        response.on_hover_ui(|ui| {
+            ui.set_max_width(320.0);
+            ui.label(help);
+        });
+        ui.add_space(SPACE - ui.spacing().item_spacing.x);
+    }
+}

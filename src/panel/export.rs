@@ -1,0 +1,101 @@
+//! Exports: their menu, the progress of the one that runs, and shaders for the clipboard.
+
+use bevy_egui::egui::{Button, ProgressBar, Ui};
+
+use super::{
+    menu::submenu,
+    state::{Action, ExportCommand, Session, Severity},
+    theme,
+};
+use crate::{
+    document::Selection,
+    export::{FORMS, Form, Request, shaders},
+    registry::Registry,
+};
+
+/// The size of the pictures of exports, pixels.
+pub const SIZE: (u32, u32) = (1280, 720);
+
+/// The submenu with an entry for each form.
+pub(super) fn menu(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    submenu(ui, "Export as", |ui| {
+        for form in FORMS {
+            let help = match form.of_object.then(|| object(session)).flatten() {
+                Some(i) => format!("{} The object is {}.", sentence(form), name(session, i)),
+                None => sentence(form),
+            };
+            if ui.button(format!("{}…", form.name)).on_hover_text(help).clicked() {
+                actions.push(Action::Export(ExportCommand::Dialog(form.id)));
+                ui.close();
+            }
+        }
+    });
+}
+
+/// The summary of a form as a sentence.
+fn sentence(form: &Form) -> String {
+    let mut letters = form.summary.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str())
+}
+
+/// The object whose shader is exported: the selected one, or the first that is visible.
+#[must_use]
+pub fn object(session: &Session) -> Option<usize> {
+    match session.selection {
+        Selection::Object(i) if i < session.document.objects.len() => Some(i),
+        _ => session.document.objects.iter().position(|object| object.visible),
+    }
+}
+
+fn name(session: &Session, i: usize) -> String {
+    let object = &session.document.objects[i];
+    object.name.as_ref().map_or_else(|| format!("the {}", object.object_type), |name| format!("“{name}”"))
+}
+
+/// The progress of the export that runs, with a button that stops it.
+pub(super) fn progress(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let Some(export) = &session.facts.export else { return };
+    let name = format!("Exporting as {}", export.name);
+    if strip(ui, &name, (export.done, &export.step), "Stop the export; nothing of it stays on disk") {
+        actions.push(Action::Export(ExportCommand::Cancel));
+    }
+}
+
+/// The name of some work, the part of it that is done with its current step, and a button with this tooltip that stops
+/// it. True if that was clicked.
+pub(super) fn strip(ui: &mut Ui, name: &str, (done, step): (f32, &str), stop: &str) -> bool {
+    /// Points.
+    const WIDTH: f32 = 120.0;
+    ui.label(theme::small(ui, name));
+    let step = if step.is_empty() { "starting" } else { step };
+    ui.add(ProgressBar::new(done).desired_width(WIDTH).desired_height(10.0)).on_hover_text(step);
+    ui.add(Button::new(theme::small(ui, "Cancel")).small()).on_hover_text(stop).clicked()
+}
+
+/// The menu that puts the shader of the object on the clipboard, in each language that is text.
+pub(super) fn copy_menu(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+    let Some(object) = object(session) else { return };
+    let help = format!(
+        "Copy the shader of {}, lit by the lights of this scene: alone, without what it does not use",
+        name(session, object)
+    );
+    ui.menu_button("Copy as…", |ui| {
+        for form in FORMS.iter().filter(|form| shaders::is_text(form)) {
+            if ui.button(form.name).clicked() {
+                let request =
+                    Request { scene: &session.document, registry, stem: "scene", size: SIZE, object };
+                match shaders::text(form, &request) {
+                    Ok(text) => {
+                        actions.push(Action::Copy(text));
+                        actions.push(Action::Say(Severity::Info, format!("Copied: {}.", form.name)));
+                    }
+                    Err(error) => actions.push(Action::Say(Severity::Error, format!("Not copied: {error}."))),
+                }
+                ui.close();
+            }
+        }
+    })
+    .response
+    .on_hover_text(help);
+}

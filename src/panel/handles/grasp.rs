@@ -1,0 +1,547 @@
+//! A handle in the hand: from the way of the pointer to the value that it means.
+
+use std::f32::consts::{PI, TAU};
+
+use bevy_egui::egui::Pos2;
+use glam::{Quat, Vec3};
+
+use super::shape::{Body, Handle, LETTERS, Placed, Target};
+use crate::{
+    document::{Edit, LightField, ObjectField, Selection},
+    panel::marks::{Lens, Ray},
+    parameter::{Parameter, Value},
+    scene::{
+        SceneSize,
+        rotation::{rotation, turned},
+    },
+};
+
+/// With Ctrl, positions and sizes go in such steps, metres.
+const METRES: f32 = 0.25;
+/// With Ctrl, angles go in such steps, degrees.
+const DEGREES: f32 = 15.0;
+/// A ring whose axis is nearer to a right angle with the view than this sine is turned as a wheel seen from its side.
+const EDGE_ON: f32 = 0.2;
+/// A cone whose plane is nearer to a right angle with the picture than this sine is seen from its end.
+const SIDEWAYS: f32 = 0.35;
+/// Farther than so many radii from the middle, a handle is off its sphere.
+const OFF: f32 = 1.15;
+
+/// What a drag sets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Dragged {
+    /// The position, metres.
+    Position(Vec3),
+    /// The rotation, degrees; and the angle about the axis.
+    Rotation(Vec3, f32),
+    /// The size, metres.
+    Size(f32),
+    /// The direction of a light.
+    Direction(Vec3),
+    /// Half the angle of a cone, degrees.
+    Cone(f32),
+}
+
+/// A handle in the hand, and what it had when it was grasped.
+#[derive(Clone, Debug)]
+pub(super) struct Grasp {
+    pub(super) handle: Handle,
+    pub(super) part: Selection,
+    /// The middle of the handles.
+    pub(super) at: Vec3,
+    /// The place of the pointer.
+    pub(super) pointer: Pos2,
+    /// The point of the room that the handle holds.
+    point: Vec3,
+    rotation: Quat,
+    size: f32,
+    direction: Vec3,
+    cone: Option<(&'static Parameter, f32)>,
+    /// The handle is on the side of its sphere that is towards the camera.
+    near: bool,
+    /// It was pulled off its sphere; back on it, it is on the other side.
+    off: bool,
+}
+
+/// The nearest multiple of a step.
+fn snapped(v: f32, step: f32) -> f32 {
+    (v / step).round() * step
+}
+
+/// An angle from −180° to 180°, in degrees.
+fn wrapped(radians: f32) -> f32 {
+    let degrees = ((radians + PI).rem_euclid(TAU) - PI).to_degrees();
+    if degrees <= -179.999 { 180.0 } else { degrees }
+}
+
+/// The largest decimal step of a length that is no larger than another.
+fn decimal(length: f32) -> f32 {
+    10f32.powf(length.max(1e-6).log10().floor()).clamp(1e-4, 0.01)
+}
+
+/// The place on an axis through a point that is nearest to a line of sight, metres from the point.
+fn along(ray: Ray, from: Vec3, axis: Vec3) -> Option<f32> {
+    let cos = axis.dot(ray.way);
+    let (to, less) = (ray.eye - from, 1.0 - cos * cos);
+    let t = (to.dot(axis) - cos * to.dot(ray.way)) / less;
+    // Beyond the vanishing point the two meet behind the camera.
+    let ahead = (from + t * axis - ray.eye).dot(ray.way) > 0.0;
+    (less > 1e-5 && ahead).then_some(t)
+}
+
+/// The place where a line of sight meets a plane.
+fn on_plane(ray: Ray, through: Vec3, normal: Vec3) -> Option<Vec3> {
+    let t = (through - ray.eye).dot(normal) / ray.way.dot(normal);
+    (t.is_finite() && t > 0.0).then(|| ray.eye + t * ray.way)
+}
+
+/// The direction from the middle of a sphere to where a line of sight meets its near or its far side; beside it, to the
+/// point of its edge that is nearest.
+fn on_sphere(ray: Ray, middle: Vec3, radius: f32, near: bool) -> Option<Vec3> {
+    let to = middle - ray.eye;
+    let closest = to.dot(ray.way);
+    let inside = radius * radius - (to.length_squared() - closest * closest);
+    let depth = inside.max(0.0).sqrt();
+    let t = if near && closest > depth { closest - depth } else { closest + depth };
+    (ray.eye + t * ray.way - middle).try_normalize()
+}
+
+/// True if the end of an arm is on the side of a sphere that is seen from a place.
+fn is_near(arm: Vec3, eye: Vec3) -> bool {
+    let limb = arm.length() / eye.length().max(1e-6);
+    arm.normalize_or_zero().dot(eye.normalize_or_zero()) > limb - 0.01
+}
+
+/// The angle by which a rotation turns about an axis.
+fn twist(rotation: Quat, axis: Vec3) -> f32 {
+    2.0 * rotation.xyz().dot(axis).atan2(rotation.w)
+}
+
+/// The angles of a direction in degrees: about y from +z, and above the horizon.
+fn angles(direction: Vec3) -> [f32; 2] {
+    [direction.x.atan2(direction.z), direction.y.clamp(-1.0, 1.0).asin()].map(f32::to_degrees)
+}
+
+impl Grasp {
+    /// Takes a handle in the hand.
+    pub(super) fn of(placed: &Placed, target: &Target, lens: &Lens, pointer: Pos2) -> Self {
+        let mut grasp = Self {
+            handle: placed.handle,
+            part: target.part,
+            at: target.at,
+            pointer,
+            point: placed.point,
+            rotation: Quat::IDENTITY,
+            size: 1.0,
+            direction: Vec3::NEG_Y,
+            cone: None,
+            near: is_near(placed.point - target.at, lens.eye() - target.at),
+            off: false,
+        };
+        match target.body {
+            Body::Object(object, _) => {
+                (grasp.rotation, grasp.size) = (rotation(object.rotation), object.size);
+            }
+            Body::Light(light, entry) => {
+                grasp.direction = light.direction.and_then(Vec3::try_normalize).unwrap_or(Vec3::NEG_Y);
+                grasp.cone = entry.cone_parameter().map(|p| (p, light.parameters.number(p)));
+            }
+        }
+        grasp
+    }
+
+    /// The value that a place of the pointer means; in steps if it is to `snap`. None where it means nothing.
+    pub(super) fn drag(&self, lens: &Lens, pointer: Pos2, snap: bool, room: SceneSize) -> Option<Dragged> {
+        let [right, up, ahead] = lens.axes();
+        let (start, now) = (lens.ray(self.pointer), lens.ray(pointer));
+        let step = if snap { METRES } else { decimal(lens.metres(self.at, 1.0)) };
+        let flat = |ray: Ray| on_plane(ray, self.at, ahead);
+        match self.handle {
+            Handle::Axis(axis) => {
+                let way = Vec3::AXES[axis];
+                // Along the axis as it is seen: what the pointer does across it moves nothing.
+                let end = lens.project(self.at + lens.metres(self.at, 10.0) * way)?;
+                let seen = (end - lens.project(self.at)?).normalized();
+                let foot = self.pointer + seen * (pointer - self.pointer).dot(seen);
+                let by = along(lens.ray(foot), self.at, way)? - along(start, self.at, way)?;
+                let to = snapped(self.at[axis] + by, step);
+                let mut place = self.at;
+                place[axis] = room.nearest(Vec3::splat(to))[axis];
+                Some(Dragged::Position(place))
+            }
+            Handle::Plane => {
+                let to = self.at + flat(now)? - flat(start)?;
+                let to = to.map(|v| snapped(v, step));
+                Some(Dragged::Position(room.nearest(to)))
+            }
+            Handle::Ring(axis) => {
+                let axis = Vec3::AXES[axis];
+                let to_eye = (lens.eye() - self.at).normalize_or_zero();
+                let by = if axis.dot(to_eye).abs() < EDGE_ON {
+                    let across = axis.cross(to_eye).normalize_or_zero();
+                    let radius = (self.point - self.at).length();
+                    (flat(now)? - flat(start)?).dot(across) / radius
+                } else {
+                    let angle = |ray: Ray| {
+                        let arm = on_plane(ray, self.at, axis)? - self.at;
+                        let first = axis.any_orthonormal_vector();
+                        Some(arm.dot(axis.cross(first)).atan2(arm.dot(first)))
+                    };
+                    angle(now)? - angle(start)?
+                };
+                let before = twist(self.rotation, axis);
+                let after = snapped(wrapped(before + by), if snap { DEGREES } else { 1.0 });
+                let degrees = turned(self.rotation, axis, after.to_radians() - before);
+                Some(Dragged::Rotation(degrees, after + 0.0))
+            }
+            Handle::Size => {
+                // As seen from the middle, so that it is no matter where it was grasped.
+                let radius = |ray: Ray| {
+                    let arm = flat(ray)? - self.at;
+                    Some(arm.dot(right).hypot(arm.dot(up)))
+                };
+                let part = radius(now)? / radius(start)?.max(1e-6);
+                Some(Dragged::Size(snapped(self.size * part, step).max(step.max(0.01))))
+            }
+            Handle::Direction => {
+                let p = self.pulled(lens, pointer)?;
+                if !snap {
+                    return Some(Dragged::Direction((p * 1000.0).round() / 1000.0 + Vec3::ZERO));
+                }
+                let [azimuth, elevation] = angles(p).map(|v| snapped(v, DEGREES).to_radians());
+                let level = elevation.cos();
+                let p = Vec3::new(level * azimuth.sin(), elevation.sin(), level * azimuth.cos());
+                Some(Dragged::Direction((p * 10_000.0).round() / 10_000.0 + Vec3::ZERO))
+            }
+            Handle::Cone => {
+                let angle = self.opened(lens, pointer)?.to_degrees();
+                let wanted = snapped(angle, if snap { DEGREES } else { 0.5 });
+                match self.cone?.0.nearest(&Value::Number(wanted))? {
+                    Value::Number(angle) => Some(Dragged::Cone(angle)),
+                    _ => None,
+                }
+            }
+        }
+    }
+
+    /// Takes note of a place of the pointer: pulled off its sphere and back, the handle of a direction is on the other side.
+    pub(super) fn follow(&mut self, lens: &Lens, pointer: Pos2) {
+        let Some(end) = self.end(lens, pointer).filter(|_| self.handle == Handle::Direction) else { return };
+        let (ray, to) = (lens.ray(end), self.at - lens.eye());
+        let beside = to.reject_from_normalized(ray.way).length() / (self.point - self.at).length();
+        if beside > OFF {
+            self.off = true;
+        } else if self.off && beside < 1.0 {
+            (self.off, self.near) = (false, !self.near);
+        }
+    }
+
+    /// The place at which the point is seen that the handle holds, when it was not grasped in its middle.
+    fn end(&self, lens: &Lens, pointer: Pos2) -> Option<Pos2> {
+        Some(pointer + (lens.project(self.point)? - self.pointer))
+    }
+
+    /// The direction to the point that the handle holds when the pointer pulls it along its sphere.
+    fn pulled(&self, lens: &Lens, pointer: Pos2) -> Option<Vec3> {
+        let ray = lens.ray(self.end(lens, pointer)?);
+        on_sphere(ray, self.at, (self.point - self.at).length(), self.near)
+    }
+
+    /// The angle between the axis of a cone and the place to which its edge is pulled.
+    fn opened(&self, lens: &Lens, pointer: Pos2) -> Option<f32> {
+        let side = (self.point - self.at).reject_from(self.direction).normalize_or_zero();
+        let normal = self.direction.cross(side);
+        if normal.dot((lens.eye() - self.at).normalize_or_zero()).abs() < SIDEWAYS {
+            return Some(self.direction.angle_between(self.pulled(lens, pointer)?));
+        }
+        // Seen from its side, the cone opens in a plane.
+        let arm = on_plane(lens.ray(self.end(lens, pointer)?), self.at, normal)? - self.at;
+        Some(arm.dot(side).abs().atan2(arm.dot(self.direction)))
+    }
+
+    /// The change of the scene that gives the part a value.
+    pub(super) fn edit(&self, dragged: Dragged) -> Option<Edit> {
+        Some(match (self.part, dragged) {
+            (Selection::Object(i), Dragged::Position(p)) => Edit::Object(i, ObjectField::Position(p)),
+            (Selection::Object(i), Dragged::Rotation(r, _)) => Edit::Object(i, ObjectField::Rotation(r)),
+            (Selection::Object(i), Dragged::Size(size)) => Edit::Object(i, ObjectField::Size(size)),
+            (Selection::Light(i), Dragged::Position(p)) => Edit::Light(i, LightField::Position(p)),
+            (Selection::Light(i), Dragged::Direction(d)) => Edit::Light(i, LightField::Direction(d)),
+            (Selection::Light(i), Dragged::Cone(angle)) => {
+                Edit::Light(i, LightField::Parameter(self.cone?.0.name, Value::Number(angle)))
+            }
+            _ => return None,
+        })
+    }
+
+    /// The value in words.
+    pub(super) fn words(&self, dragged: Dragged, metre: f32) -> String {
+        let digits = if decimal(metre) < 0.005 { 3 } else { 2 };
+        let metres = |v: f32| format!("{v:.digits$}");
+        let text = match (dragged, self.handle) {
+            (Dragged::Position(p), Handle::Axis(axis)) => format!("{} {} m", LETTERS[axis], metres(p[axis])),
+            (Dragged::Position(p), _) => {
+                let [x, y, z] = p.to_array().map(metres);
+                format!("x {x}   y {y}   z {z} m")
+            }
+            (Dragged::Rotation(_, angle), Handle::Ring(axis)) => format!("{} {angle:.0}°", LETTERS[axis]),
+            (Dragged::Rotation(_, angle), _) => format!("{angle:.0}°"),
+            (Dragged::Size(size), _) => format!("size {} m", metres(size)),
+            (Dragged::Direction(d), _) => {
+                let [azimuth, elevation] = angles(d.normalize_or_zero()).map(|v| v.round() + 0.0);
+                format!("azimuth {azimuth}°   elevation {elevation}°")
+            }
+            (Dragged::Cone(angle), _) => {
+                format!("{} {angle:.1}°", self.cone.map_or("cone", |(p, _)| p.label))
+            }
+        };
+        text.replace('-', "−")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::{Rect, Vec2, pos2, vec2};
+
+    use super::*;
+    use crate::{
+        panel::{
+            handles::shape::placed,
+            state::{HandleMode, Session},
+        },
+        registry::Registry,
+        scene::{Light, Scene},
+    };
+
+    /// A view from the right and above, so that every axis can be seen.
+    fn session() -> Session {
+        let mut scene = Scene::default();
+        scene.lights[0] = Light {
+            light_type: "spot".to_owned(),
+            position: Some(Vec3::new(4.5, 5.5, 5.0)),
+            direction: Some(Vec3::new(0.6, -0.8, 0.0)),
+            ..Light::default()
+        };
+        let mut session = Session::new(scene);
+        session.facts.camera = Quat::from_rotation_y(0.6) * Quat::from_rotation_x(-0.5);
+        session.facts.eye = Vec3::splat(5.0) + session.facts.camera * Vec3::new(0.0, 0.0, 4.0);
+        session
+    }
+
+    fn lens(session: &Session) -> Lens {
+        Lens::of(session, Rect::from_min_size(pos2(200.0, 50.0), vec2(800.0, 600.0)))
+    }
+
+    fn grasp(session: &Session, mode: HandleMode, handle: Handle) -> (Grasp, Placed) {
+        let registry = Registry::builtin();
+        let target = Target::of(session, &registry, Vec::new).expect("selected");
+        let all = placed(&target, mode, session, &lens(session));
+        let handle = all.iter().find(|p| p.handle == handle).expect("it is there").clone();
+        let start = handle.lines.first().map_or(handle.end, |line| line[line.len() / 2]);
+        (Grasp::of(&handle, &target, &lens(session), start), handle)
+    }
+
+    fn drag(session: &Session, grasp: &Grasp, to: Pos2, snap: bool) -> Dragged {
+        grasp.drag(&lens(session), to, snap, session.document.scene_size).expect("it means something")
+    }
+
+    #[test]
+    fn a_drag_along_an_axis_moves_along_it_and_along_no_other() {
+        let session = session();
+        let lens = lens(&session);
+        for axis in 0..3 {
+            let (grasp, _) = grasp(&session, HandleMode::Move, Handle::Axis(axis));
+            let way = Vec3::AXES[axis];
+            // To where the point that was grasped is after half a metre.
+            let t = along(lens.ray(grasp.pointer), grasp.at, way).expect("on the axis");
+            let to = lens.project(grasp.at + (t + 0.5) * way).expect("in view");
+            let Dragged::Position(p) = drag(&session, &grasp, to, false) else { panic!("it moves") };
+            assert!((p - grasp.at - 0.5 * way).length() < 0.011, "{axis}: {p}");
+            assert!((0..3).all(|other| other == axis || p[other] == grasp.at[other]), "{axis}: {p}");
+            // Across the axis, it stays nearly where it is.
+            let side = (to - grasp.pointer).rot90();
+            let Dragged::Position(p) = drag(&session, &grasp, grasp.pointer + side, false) else { panic!() };
+            assert!((p - grasp.at).length() < 0.011, "{axis}: {p}");
+        }
+    }
+
+    #[test]
+    fn a_drag_in_the_plane_keeps_what_was_grasped_under_the_pointer() {
+        let session = session();
+        let (grasp, _) = grasp(&session, HandleMode::Move, Handle::Plane);
+        let by = vec2(60.0, -25.0);
+        let Dragged::Position(p) = drag(&session, &grasp, grasp.pointer + by, false) else { panic!() };
+        let lens = lens(&session);
+        let (before, after) = (lens.project(grasp.at).expect("seen"), lens.project(p).expect("seen"));
+        assert!((after - before - by).length() < 2.0, "{:?}", after - before);
+    }
+
+    #[test]
+    fn with_ctrl_values_go_in_steps_and_never_leave_the_room() {
+        let session = session();
+        let (grasp_x, _) = grasp(&session, HandleMode::Move, Handle::Axis(0));
+        let is_step = |v: f32, step: f32| (v / step - (v / step).round()).abs() < 1e-3;
+        let mut values = Vec::new();
+        for k in -30..=30 {
+            let to = grasp_x.pointer + vec2(20.0 * k as f32, 0.0);
+            let Some(Dragged::Position(p)) =
+                grasp_x.drag(&lens(&session), to, true, session.document.scene_size)
+            else {
+                continue;
+            };
+            assert!(session.document.scene_size.contains(p), "{p}");
+            let inside = (0.011..=9.99).contains(&p.x);
+            assert!(!inside || is_step(p.x, 0.25), "{p}");
+            values.push(p.x);
+        }
+        assert!(values.windows(2).any(|v| v[0] != v[1]));
+        let (ring, placed) = grasp(&session, HandleMode::Turn, Handle::Ring(1));
+        for point in placed.lines.iter().flatten() {
+            let Dragged::Rotation(degrees, angle) = drag(&session, &ring, *point, true) else { panic!() };
+            assert!(
+                is_step(angle, 15.0)
+                    && (rotation(degrees).y.abs() - (0.5 * angle).to_radians().sin().abs()).abs() < 1e-3
+            );
+        }
+        let (size, _) = grasp(&session, HandleMode::Size, Handle::Size);
+        for k in 0..20 {
+            let to = size.pointer + vec2(7.0, -7.0) * (k as f32 - 10.0);
+            let Dragged::Size(metres) = drag(&session, &size, to, true) else { panic!() };
+            assert!(metres >= 0.25 && is_step(metres, 0.25), "{metres}");
+        }
+    }
+
+    #[test]
+    fn a_ring_turns_about_its_axis_by_the_angle_of_the_drag() {
+        let session = session();
+        let lens = lens(&session);
+        for axis in 0..3 {
+            let (grasp, _) = grasp(&session, HandleMode::Turn, Handle::Ring(axis));
+            let way = Vec3::AXES[axis];
+            let arm = on_plane(lens.ray(grasp.pointer), grasp.at, way).expect("met") - grasp.at;
+            let after = Quat::from_axis_angle(way, 30f32.to_radians()) * arm;
+            let to = lens.project(grasp.at + after).expect("seen");
+            let Dragged::Rotation(degrees, angle) = drag(&session, &grasp, to, false) else { panic!() };
+            assert!((angle - 30.0).abs() <= 1.0, "{axis}: {angle}");
+            assert!(degrees.distance(30.0 * way) <= 1.1, "{axis}: {degrees}");
+        }
+    }
+
+    #[test]
+    fn a_ring_seen_from_its_edge_turns_as_a_wheel() {
+        let mut session = session();
+        session.facts.camera = Quat::IDENTITY;
+        session.facts.eye = Vec3::new(5.0, 5.0, 9.0);
+        let (grasp, _) = grasp(&session, HandleMode::Turn, Handle::Ring(1));
+        let Dragged::Rotation(right, _) = drag(&session, &grasp, grasp.pointer + vec2(40.0, 0.0), false)
+        else {
+            panic!()
+        };
+        // The side towards the eye goes to the right.
+        assert!(right.y > 20.0 && right.x == 0.0 && right.z == 0.0, "{right}");
+    }
+
+    #[test]
+    fn the_size_follows_the_distance_from_the_middle() {
+        let session = session();
+        let (grasp, placed) = grasp(&session, HandleMode::Size, Handle::Size);
+        let middle = lens(&session).project(grasp.at).expect("seen");
+        let to = middle + 1.5 * (grasp.pointer - middle);
+        let before = session.document.objects[0].size;
+        let Dragged::Size(size) = drag(&session, &grasp, to, false) else { panic!() };
+        assert!((size / before - 1.5).abs() < 0.03, "{size}");
+        assert!(placed.end.x > middle.x && placed.end.y < middle.y);
+    }
+
+    #[test]
+    fn a_light_shines_to_where_its_handle_is_pulled() {
+        let mut session = session();
+        session.selection = Selection::Light(0);
+        let (grasp, _) = grasp(&session, HandleMode::Move, Handle::Direction);
+        let lens = lens(&session);
+        let arm = (grasp.point - grasp.at).length();
+        let wanted = Vec3::new(0.5, -0.8, -0.3).normalize();
+        let to = lens.project(grasp.at + arm * wanted).expect("seen");
+        let Dragged::Direction(d) = drag(&session, &grasp, to, false) else { panic!() };
+        assert!(d.distance(wanted) < 0.02, "{d}");
+        let Dragged::Direction(d) = drag(&session, &grasp, to, true) else { panic!() };
+        let is_step = |v: f32| (v / 15.0 - (v / 15.0).round()).abs() < 0.01;
+        assert!(angles(d).into_iter().all(is_step), "{:?}", angles(d));
+        let still = drag(&session, &grasp, grasp.pointer, false);
+        let Dragged::Direction(d) = still else { panic!() };
+        assert!(d.distance(Vec3::new(0.6, -0.8, 0.0)) < 0.002, "{d}");
+    }
+
+    #[test]
+    fn pulled_off_its_sphere_and_back_a_direction_is_on_the_other_side() {
+        let mut session = session();
+        session.selection = Selection::Light(0);
+        let (mut grasp, _) = grasp(&session, HandleMode::Move, Handle::Direction);
+        let lens = lens(&session);
+        let middle = lens.project(grasp.at).expect("seen");
+        let out = grasp.pointer - middle;
+        let to_eye = (lens.eye() - grasp.at).normalize();
+        let pull = |grasp: &mut Grasp, part: f32| {
+            let to = middle + part * out;
+            grasp.follow(&lens, to);
+            let Some(Dragged::Direction(d)) = grasp.drag(&lens, to, false, session.document.scene_size)
+            else {
+                panic!()
+            };
+            d.dot(to_eye)
+        };
+        assert!(pull(&mut grasp, 0.5) < -0.5);
+        // A little beyond the edge does not count.
+        pull(&mut grasp, 1.05);
+        assert!(pull(&mut grasp, 0.5) < -0.5);
+        pull(&mut grasp, 1.4);
+        assert!(pull(&mut grasp, 0.5) > 0.5);
+    }
+
+    #[test]
+    fn the_cone_opens_to_where_its_handle_is_pulled_and_stays_legal() {
+        let mut session = session();
+        session.selection = Selection::Light(0);
+        let (grasp, placed) = grasp(&session, HandleMode::Size, Handle::Cone);
+        let lens = lens(&session);
+        let arm = placed.point - grasp.at;
+        let side = arm.reject_from(grasp.direction).normalize();
+        let to = |degrees: f32| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            lens.project(grasp.at + arm.length() * (cos * grasp.direction + sin * side)).expect("seen")
+        };
+        for degrees in [10.0, 35.0, 60.0] {
+            let Dragged::Cone(angle) = drag(&session, &grasp, to(degrees), false) else { panic!() };
+            assert!((angle - degrees).abs() < 1.0, "{angle} for {degrees}");
+        }
+        let Dragged::Cone(angle) = drag(&session, &grasp, to(170.0), false) else { panic!() };
+        assert!(grasp.cone.is_some_and(|(p, _)| p.allows(&Value::Number(angle))), "{angle}");
+    }
+
+    #[test]
+    fn words_have_the_unit_and_a_true_minus() {
+        let session = session();
+        let said = |mode, handle, dragged| grasp(&session, mode, handle).0.words(dragged, 0.02);
+        let at = Dragged::Position(Vec3::new(3.25, 1.0, 2.0));
+        assert_eq!(said(HandleMode::Move, Handle::Axis(0), at), "x 3.25 m");
+        assert_eq!(said(HandleMode::Move, Handle::Plane, at), "x 3.25   y 1.00   z 2.00 m");
+        let turned = Dragged::Rotation(Vec3::ZERO, -45.0);
+        assert_eq!(said(HandleMode::Turn, Handle::Ring(1), turned), "y −45°");
+        assert_eq!(said(HandleMode::Size, Handle::Size, Dragged::Size(2.5)), "size 2.50 m");
+    }
+
+    #[test]
+    fn a_handle_is_grasped_near_its_line_and_not_beside_it() {
+        let session = session();
+        let (grasp, placed) = grasp(&session, HandleMode::Move, Handle::Axis(0));
+        let side = (placed.end - grasp.pointer).normalized().rot90();
+        assert!(placed.distance(grasp.pointer + 5.0 * side).is_some());
+        assert!(placed.distance(grasp.pointer + 9.0 * side).is_none());
+        let covered = |at: Pos2| {
+            placed.points().any(|p| Rect::from_center_size(p, Vec2::splat(2.0 * placed.half())).contains(at))
+        };
+        assert!(covered(grasp.pointer + 4.0 * side) && !covered(grasp.pointer + 14.0 * side));
+        let middle = lens(&session).project(grasp.at).expect("seen");
+        assert!(placed.distance(middle).is_none(), "in the middle the picture is turned");
+    }
+}

@@ -1,0 +1,227 @@
+//! The handles of what is selected: arrows that move it, rings that turn it, one for its size; for a light one for its
+//! direction and one for its cone.
+//!
+//! Bevy's `TransformGizmo` does not serve here. It takes the cursor of the window for one in the target of its camera,
+//! but the cameras of the window draw into textures that are shown beside panels and beside each other; and it draws
+//! into the picture, where tone mapping and exposure would change it and a capture would show it. These are painted over
+//! the picture, as the [`marks`] are, and what they change is an edit as that of any knob.
+
+use bevy_egui::egui::{CursorIcon, Id, Key, Order, Pos2, Rect, Sense, Ui, Vec2, WidgetInfo, WidgetType};
+
+use super::{
+    marks::{self, Lens},
+    state::{Action, Session},
+};
+use crate::{
+    document::{Edit, LightField, ObjectField, Selection},
+    registry::Registry,
+    scene::rotation::rotation,
+};
+use grasp::{Dragged, Grasp};
+use paint::State;
+use shape::{Handle, Placed, Target, placed};
+
+mod grasp;
+mod paint;
+mod shape;
+
+/// In a smaller picture there is no room for them, points.
+const SMALLEST: f32 = 120.0;
+/// A press that moves the pointer less is no drag, points.
+const SLACK: f32 = 1.5;
+
+/// A handle in the hand.
+#[derive(Clone, Debug)]
+struct Hold {
+    /// The view in which it is.
+    view: Id,
+    grasp: Grasp,
+    /// What it had before: Escape brings it back.
+    before: Edit,
+    /// The pointer has moved.
+    moved: bool,
+}
+
+/// The key of the handle in the hand.
+fn held() -> Id {
+    Id::new("handle in the hand")
+}
+
+/// Shows the handles of what is selected in the rectangle of a view. Returns what was asked for, and the places that do
+/// not belong to the picture.
+pub(super) fn handles(
+    ui: &Ui,
+    rect: Rect,
+    written: &[Rect],
+    session: &Session,
+    registry: &Registry,
+) -> (Vec<Action>, Vec<Rect>) {
+    let (mut actions, mut places) = (Vec::new(), Vec::new());
+    let view = ui.id().with("handles");
+    let hold: Option<Hold> = ui.data(|data| data.get_temp(held()));
+    let lens = Lens::of(session, rect);
+    let seen = || marks::places_shown(ui.ctx(), &session.document, registry, &lens, written);
+    let target = Target::of(session, registry, seen)
+        .filter(|_| session.view.show_handles && rect.size().min_elem() >= SMALLEST);
+    let Some(target) = target else {
+        release(ui);
+        return (actions, places);
+    };
+    let hold = hold.filter(|hold| hold.grasp.part == target.part);
+    let all = placed(&target, session.view.handles, session, &lens);
+    let under = free_pointer(ui, rect, written, session).and_then(|at| under(&all, at));
+    let mine = hold.as_ref().filter(|hold| hold.view == view);
+    let is_down = ui.input(|i| i.pointer.any_down());
+    let hot = match &hold {
+        Some(_) => mine.map(|hold| hold.grasp.handle),
+        None => under.filter(|_| !is_down || ui.input(|i| i.pointer.primary_pressed())).map(|p| p.handle),
+    };
+    let state = |handle: Handle| match hot {
+        Some(hot) if hot == handle => State::Hot,
+        _ if hold.is_some() => State::Dim,
+        _ => State::Free,
+    };
+    paint::handles(ui, lens, &all, state);
+    nodes(ui, view, rect, &all, session, registry);
+    places.extend(all.iter().flat_map(|placed| {
+        let side = Vec2::splat(2.0 * placed.half());
+        placed.points().filter(|p| rect.contains(*p)).map(move |p| Rect::from_center_size(p, side))
+    }));
+    if hot.is_some() {
+        ui.ctx().set_cursor_icon(if hold.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
+    }
+    if let Some(mine) = mine {
+        actions.extend(drag(ui, &lens, mine.clone(), &target, session, registry));
+    } else if hold.is_none()
+        && let Some(placed) = under
+        && ui.input(|i| i.pointer.primary_pressed())
+        && let Some(pointer) = ui.input(|i| i.pointer.press_origin())
+    {
+        let grasp = Grasp::of(placed, &target, &lens, pointer);
+        if let Some(before) = value(&grasp, &target).and_then(|value| grasp.edit(value)) {
+            if let Selection::Light(i) = target.part {
+                marks::hold(ui.ctx(), Some((i, target.at)));
+            }
+            ui.data_mut(|data| data.insert_temp(held(), Hold { view, grasp, before, moved: false }));
+            ui.ctx().set_dragged_id(view.with(placed.handle));
+            actions.push(Action::BeginDrag);
+        }
+    }
+    (actions, places)
+}
+
+/// Lets go of the handle once the button is up.
+fn release(ui: &Ui) {
+    if !ui.input(|i| i.pointer.primary_down()) {
+        ui.data_mut(|data| data.remove::<Hold>(held()));
+        marks::hold(ui.ctx(), None);
+    }
+}
+
+/// The place of the pointer, if nothing is over the picture there and nothing else has it.
+fn free_pointer(ui: &Ui, rect: Rect, written: &[Rect], session: &Session) -> Option<Pos2> {
+    let ctx = ui.ctx();
+    let busy = session.questions.open.is_some()
+        || bevy_egui::egui::Popup::is_any_open(ctx)
+        || session.view.chooser_open
+        || ctx.egui_is_using_pointer();
+    let at = ui.input(|i| i.pointer.press_origin().or(i.pointer.latest_pos()))?;
+    let open = ctx.layer_id_at(at).is_none_or(|layer| layer.order == Order::Background);
+    let covered = written.iter().any(|place| place.contains(at));
+    (!busy && open && !covered && rect.contains(at)).then_some(at)
+}
+
+/// The handle at a place.
+fn under(all: &[Placed], at: Pos2) -> Option<&Placed> {
+    let near = all.iter().filter_map(|placed| Some((placed.distance(at)?, placed)));
+    // What is painted later lies over what is painted first.
+    near.rev().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, placed)| placed)
+}
+
+/// The handles for screen readers, and their tooltips.
+fn nodes(ui: &Ui, view: Id, rect: Rect, all: &[Placed], session: &Session, registry: &Registry) {
+    let part = session.name_of(session.selection, registry);
+    for placed in all {
+        let place = Rect::from_center_size(placed.end, Vec2::splat(2.0 * placed.radius)).intersect(rect);
+        let response = ui.interact(place, view.with(placed.handle), Sense::hover());
+        let name = placed.handle.name(&part);
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, &name));
+    }
+}
+
+/// The value that a part has now, of the kind that a handle sets.
+fn value(grasp: &Grasp, target: &Target) -> Option<Dragged> {
+    let now = match (&target.body, grasp.handle) {
+        (shape::Body::Object(object, _), Handle::Axis(_) | Handle::Plane) => {
+            Dragged::Position(object.position)
+        }
+        (shape::Body::Object(object, _), Handle::Ring(_)) => Dragged::Rotation(object.rotation, 0.0),
+        (shape::Body::Object(object, _), Handle::Size) => Dragged::Size(object.size),
+        (shape::Body::Light(light, _), Handle::Axis(_) | Handle::Plane) => Dragged::Position(light.position?),
+        (shape::Body::Light(light, _), Handle::Direction) => Dragged::Direction(light.direction?),
+        (shape::Body::Light(light, entry), Handle::Cone) => {
+            Dragged::Cone(entry.cone_angle(&light.parameters)?)
+        }
+        _ => return None,
+    };
+    Some(now)
+}
+
+/// True if an edit leaves the scene as it is.
+fn is_same(edit: &Edit, now: Option<Edit>) -> bool {
+    match (edit, now) {
+        // The same rotation in other angles is the same.
+        (Edit::Object(_, ObjectField::Rotation(a)), Some(Edit::Object(_, ObjectField::Rotation(b)))) => {
+            rotation(*a).angle_between(rotation(b)) < 1e-4
+        }
+        (Edit::Light(_, LightField::Direction(a)), Some(Edit::Light(_, LightField::Direction(b)))) => {
+            a.normalize_or_zero() == b.normalize_or_zero()
+        }
+        (edit, now) => now.as_ref() == Some(edit),
+    }
+}
+
+/// Goes on with a drag, and paints its numbers.
+fn drag(
+    ui: &Ui,
+    lens: &Lens,
+    mut hold: Hold,
+    target: &Target,
+    session: &Session,
+    registry: &Registry,
+) -> Option<Action> {
+    let (pointer, snap) = ui.input(|i| (i.pointer.latest_pos(), i.modifiers.command));
+    let now = value(&hold.grasp, target);
+    if ui.input(|i| i.key_pressed(Key::Escape)) {
+        let undone = (now.and_then(|now| hold.grasp.edit(now)).as_ref() != Some(&hold.before))
+            .then(|| Action::Edit(hold.before.clone()));
+        ui.data_mut(|data| data.remove::<Hold>(held()));
+        marks::hold(ui.ctx(), None);
+        return undone;
+    }
+    let pointer = pointer?;
+    hold.moved |= pointer.distance(hold.grasp.pointer) >= SLACK;
+    hold.grasp.follow(lens, pointer);
+    let grasp = &hold.grasp;
+    let room = session.document.scene_size;
+    let wanted = grasp.drag(lens, pointer, snap, room).filter(|_| hold.moved);
+    let edit = wanted.and_then(|wanted| grasp.edit(wanted));
+    // Where another thing stands, the last place that was free stays.
+    let legal = edit.filter(|edit| session.document.allows(edit, registry));
+    if hold.moved {
+        let shown = wanted.filter(|_| legal.is_some()).or(now);
+        if let Handle::Axis(axis) = grasp.handle {
+            paint::guide(ui, *lens, target.at, axis, room);
+        }
+        if let Handle::Ring(_) = grasp.handle {
+            paint::angle(ui, *lens, target.at, [grasp.pointer, pointer]);
+        }
+        if let Some(shown) = shown {
+            paint::plate(ui, lens.rect(), pointer, grasp.words(shown, lens.metres(grasp.at, 1.0)));
+        }
+    }
+    let changed = legal.filter(|edit| !is_same(edit, now.and_then(|now| hold.grasp.edit(now))));
+    ui.data_mut(|data| data.insert_temp(held(), hold));
+    release(ui);
+    changed.map(Action::Edit)
+}

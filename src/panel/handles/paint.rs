@@ -1,0 +1,149 @@
+//! The handles as they are painted.
+
+use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, TextStyle, Ui, pos2, vec2};
+use glam::Vec3;
+
+use super::shape::{DISC, Handle, LETTERS, Placed};
+use crate::{
+    panel::{
+        marks::{Ink, Lens, OUTLINE},
+        theme::{self, Palette},
+    },
+    scene::SceneSize,
+};
+
+/// Okabe–Ito vermilion, bluish green and blue, lightened: x, y, z.
+const AXES: [Color32; 3] = [
+    Color32::from_rgb(0xff, 0x7a, 0x33),
+    Color32::from_rgb(0x2e, 0xd0, 0x9c),
+    Color32::from_rgb(0x5a, 0xa9, 0xf5),
+];
+/// What belongs to no axis.
+const WHITE: Color32 = Color32::from_rgb(0xf6, 0xf6, 0xf6);
+/// Width of a line, points.
+const LINE: f32 = 2.25;
+/// Width of the line under the pointer, points.
+const HOT: f32 = 3.75;
+
+/// The state of a handle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum State {
+    /// It can be grasped.
+    Free,
+    /// The pointer is over it, or holds it.
+    Hot,
+    /// Another one is held.
+    Dim,
+}
+
+fn colour_of(handle: Handle, state: State) -> Color32 {
+    let colour = match handle {
+        Handle::Axis(axis) | Handle::Ring(axis) => AXES[axis],
+        _ => WHITE,
+    };
+    match state {
+        State::Free => colour,
+        State::Hot => colour.lerp_to_gamma(Color32::WHITE, 0.45),
+        State::Dim => colour.gamma_multiply(0.3),
+    }
+}
+
+/// Paints the handles, each in its state: the one under the pointer over the others.
+pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], state: impl Fn(Handle) -> State) {
+    let painter = ui.painter_at(lens.rect());
+    for hot in [false, true] {
+        let mut ink = Ink::new(lens);
+        let mut letters: Vec<(Pos2, &str, Color32)> = Vec::new();
+        for placed in all.iter().filter(|p| (state(p.handle) == State::Hot) == hot) {
+            let colour = colour_of(placed.handle, state(placed.handle));
+            let width = if hot { HOT } else { LINE };
+            for line in &placed.far {
+                ink.stroke(line.clone(), 1.25, colour.gamma_multiply(0.35));
+            }
+            for line in &placed.lines {
+                ink.stroke(line.clone(), width, colour);
+            }
+            let end = placed.end;
+            match placed.handle {
+                Handle::Axis(axis) => {
+                    if let Some([.., from, tip]) = placed.lines.first().map(Vec::as_slice) {
+                        let ahead = (*tip - *from).normalized() * (2.0 + 1.5 * width);
+                        let side = ahead.rot90() * 0.62;
+                        let back = *tip - 1.2 * ahead;
+                        ink.fill(vec![*tip + ahead, back + side, back - side], colour);
+                    }
+                    letters.push((end + (end - middle(placed)).normalized() * 4.0, LETTERS[axis], colour));
+                }
+                Handle::Ring(axis) => letters.push((end, LETTERS[axis], colour)),
+                Handle::Plane => {
+                    ink.disc(end, DISC, colour);
+                    ink.disc(end, DISC - 4.5, OUTLINE.gamma_multiply(f32::from(colour.a()) / 255.0));
+                }
+                Handle::Size => {
+                    let r = if hot { 7.0 } else { 5.5 };
+                    let corners = [(-r, -r), (r, -r), (r, r), (-r, r)];
+                    ink.fill(corners.map(|(x, y)| end + vec2(x, y)).to_vec(), colour);
+                }
+                Handle::Direction | Handle::Cone => {
+                    ink.disc(end, if hot { DISC + 1.0 } else { DISC - 0.5 }, colour);
+                }
+            }
+        }
+        ink.paint(&painter);
+        for (at, letter, colour) in letters {
+            painter.circle_filled(at, 8.0, OUTLINE.gamma_multiply(0.75 * f32::from(colour.a()) / 255.0));
+            let font = FontId::new(13.0, theme::semibold());
+            painter.text(at - vec2(0.0, 1.0), Align2::CENTER_CENTER, letter, font, colour);
+        }
+    }
+}
+
+/// The beginning of the first line.
+fn middle(placed: &Placed) -> Pos2 {
+    placed.lines.first().and_then(|line| line.first()).copied().unwrap_or(placed.end)
+}
+
+/// The axis along which something is moved, through the room.
+pub(super) fn guide(ui: &Ui, lens: Lens, at: Vec3, axis: usize, room: SceneSize) {
+    let ends = [0.0, room.corner()[axis]].map(|v| {
+        let mut end = at;
+        end[axis] = v;
+        end
+    });
+    let mut ink = Ink::new(lens);
+    for run in lens.path(&ends) {
+        ink.stroke(run, 1.0, AXES[axis].gamma_multiply(0.6));
+    }
+    ink.paint(&ui.painter_at(lens.rect()));
+}
+
+/// The arms of an angle.
+pub(super) fn angle(ui: &Ui, lens: Lens, at: Vec3, ends: [Pos2; 2]) {
+    let Some(middle) = lens.project(at) else { return };
+    let mut ink = Ink::new(lens);
+    for end in ends {
+        ink.stroke(vec![middle, end], 1.0, WHITE.gamma_multiply(0.7));
+    }
+    ink.paint(&ui.painter_at(lens.rect()));
+}
+
+/// Numbers beside the pointer.
+pub(super) fn plate(ui: &Ui, rect: Rect, pointer: Pos2, text: String) {
+    let palette = Palette::here(ui);
+    let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+    let galley = ui.painter().layout_no_wrap(text, font, palette.text);
+    let padding = vec2(8.0, 4.0) * theme::scale_here(ui);
+    let size = galley.size() + 2.0 * padding;
+    let mut at = pointer + vec2(18.0, 16.0);
+    if at.x + size.x > rect.right() - 4.0 {
+        at.x = pointer.x - 18.0 - size.x;
+    }
+    if at.y + size.y > rect.bottom() - 4.0 {
+        at.y = pointer.y - 16.0 - size.y;
+    }
+    let corner = pos2(at.x.max(rect.left() + 4.0), at.y.max(rect.top() + 4.0));
+    let place = Rect::from_min_size(corner, size);
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.92));
+    painter.galley(place.min + padding, galley, palette.text);
+}

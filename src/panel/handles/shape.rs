@@ -1,0 +1,297 @@
+//! The handles of what is selected, and their places in the picture.
+
+use std::f32::consts::TAU;
+
+use bevy_egui::egui::{Pos2, Vec2, vec2};
+use glam::Vec3;
+
+use crate::{
+    document::Selection,
+    light::LightEntry,
+    panel::{
+        marks::{self, Lens},
+        state::{HandleMode, Session},
+    },
+    registry::Registry,
+    scene::{Light, Object},
+};
+
+/// Length of the arrows, points.
+const ARM: f32 = 76.0;
+/// Radius of the rings, points.
+const RING: f32 = 78.0;
+/// Around the middle there is no handle, so that the picture can be turned there.
+const GAP: f32 = 13.0;
+/// The shortest arrow, points: seen from its end, an axis cannot be dragged along.
+const SHORTEST: f32 = 30.0;
+/// Distance of the disc that moves sideways from the middle, points.
+const ASIDE: f32 = 34.0;
+/// The nearest that the handle of the size comes to the middle, points.
+const NEAREST: f32 = 44.0;
+/// Distance of a letter from the end of its arrow, points.
+pub(super) const LETTER: f32 = 13.0;
+/// Radius of a disc, points.
+pub(super) const DISC: f32 = 6.0;
+/// Distance within which a line is grasped, points.
+const REACH: f32 = 6.0;
+/// Lines of a ring.
+const SIDES: usize = 72;
+
+/// A handle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Handle {
+    /// Moves along an axis of the room.
+    Axis(usize),
+    /// Moves in the plane of the picture.
+    Plane,
+    /// Turns about an axis of the room.
+    Ring(usize),
+    /// Makes larger and smaller.
+    Size,
+    /// Turns the direction of a light.
+    Direction,
+    /// Opens the cone of a light.
+    Cone,
+}
+
+impl Handle {
+    /// Its name for people, with that of its part.
+    pub(super) fn name(self, part: &str) -> String {
+        match self {
+            Self::Axis(i) => format!("Handle: move {part} along {}", LETTERS[i]),
+            Self::Plane => format!("Handle: move {part} in the plane of the picture"),
+            Self::Ring(i) => format!("Handle: turn {part} about {}", LETTERS[i]),
+            Self::Size => format!("Handle: size of {part}"),
+            Self::Direction => format!("Handle: direction of {part}"),
+            Self::Cone => format!("Handle: cone of {part}"),
+        }
+    }
+}
+
+/// The names of the axes.
+pub(super) const LETTERS: [&str; 3] = ["x", "y", "z"];
+
+/// The part of the scene that the handles change.
+pub(super) enum Body<'a> {
+    /// An object, with the radius in metres at which the handle of its size is.
+    Object(&'a Object, f32),
+    /// A light.
+    Light(&'a Light, &'a LightEntry),
+}
+
+/// What the handles belong to.
+pub(super) struct Target<'a> {
+    pub(super) part: Selection,
+    /// The middle of the handles.
+    pub(super) at: Vec3,
+    pub(super) body: Body<'a>,
+}
+
+impl<'a> Target<'a> {
+    /// What is selected, if it has handles; `places` are those of the marks of lights.
+    pub(super) fn of(
+        session: &'a Session,
+        registry: &'a Registry,
+        places: impl FnOnce() -> Vec<Option<Vec3>>,
+    ) -> Option<Self> {
+        let part = session.selection;
+        match part {
+            Selection::Object(i) => {
+                let object = session.document.objects.get(i)?;
+                let half = registry.shape(&object.object_type)?.bounds(&object.shape).half;
+                let radius = 1.2 * object.size * half.max_element();
+                Some(Self { part, at: object.position, body: Body::Object(object, radius) })
+            }
+            Selection::Light(i) => {
+                let light = session.document.lights.get(i)?;
+                let entry = registry.light(&light.light_type)?;
+                let at = light.position.or_else(|| places().get(i).copied().flatten())?;
+                Some(Self { part, at, body: Body::Light(light, entry) })
+            }
+            Selection::Room | Selection::Observer => None,
+        }
+    }
+}
+
+/// A handle in the picture.
+#[derive(Clone, Debug)]
+pub(super) struct Placed {
+    pub(super) handle: Handle,
+    /// Its lines.
+    pub(super) lines: Vec<Vec<Pos2>>,
+    /// The lines on its far side, which are fainter.
+    pub(super) far: Vec<Vec<Pos2>>,
+    /// The place of its end or its letter.
+    pub(super) end: Pos2,
+    /// The radius within which the end is grasped.
+    pub(super) radius: f32,
+    /// The point of the room that it holds.
+    pub(super) point: Vec3,
+}
+
+impl Placed {
+    /// The distance of a place in the picture from the handle if that is within its reach; 0 on it.
+    pub(super) fn distance(&self, from: Pos2) -> Option<f32> {
+        let end = (self.end.distance(from) - self.radius).max(0.0);
+        let lines = self.lines.iter().map(|line| (line, 0.0)).chain(self.far.iter().map(|line| (line, 3.0)));
+        let segments = lines.flat_map(|(line, more)| line.windows(2).map(move |pair| (pair, more)));
+        let nearest = segments.map(|(pair, more)| more + apart(from, pair[0], pair[1]));
+        Some(nearest.fold(end, f32::min)).filter(|distance| *distance <= REACH)
+    }
+
+    /// Points of it, so close to each other that squares around them cover it.
+    pub(super) fn points(&self) -> impl Iterator<Item = Pos2> + '_ {
+        let lines = self.lines.iter().chain(&self.far);
+        let along = lines.flat_map(|line| line.windows(2)).flat_map(|pair| {
+            let count = (pair[0].distance(pair[1]) / REACH).ceil().max(1.0) as usize;
+            (0..=count).map(move |k| pair[0].lerp(pair[1], k as f32 / count as f32))
+        });
+        along.chain([self.end])
+    }
+
+    /// The half side of the squares around its points.
+    pub(super) fn half(&self) -> f32 {
+        REACH.max(self.radius)
+    }
+}
+
+/// The distance of a point from a segment.
+fn apart(p: Pos2, a: Pos2, b: Pos2) -> f32 {
+    let along = b - a;
+    let t = ((p - a).dot(along) / along.length_sq().max(1e-6)).clamp(0.0, 1.0);
+    p.distance(a + t * along)
+}
+
+/// The handles of a target in a mode, in the order in which they are painted.
+pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens: &Lens) -> Vec<Placed> {
+    let Some(middle) = lens.project(target.at).filter(|p| lens.rect().contains(*p)) else {
+        return Vec::new();
+    };
+    // In a small view they are small.
+    let part = (0.0034 * lens.rect().size().min_elem()).min(1.0);
+    let mut all = Vec::new();
+    match (&target.body, mode) {
+        (Body::Object(..), HandleMode::Turn) => {
+            all.extend((0..3).map(|axis| ring(target.at, axis, part * RING, lens)));
+        }
+        (Body::Object(_, radius), HandleMode::Size) => {
+            all.extend(size(target.at, middle, *radius, lens));
+        }
+        (Body::Object(..), HandleMode::Move) => all.extend(arrows(target.at, middle, part * ARM, lens)),
+        (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
+            all.extend(arrows(target.at, middle, part * ARM, lens));
+        }
+        (Body::Light(..), _) => {}
+    }
+    if let Body::Light(light, entry) = target.body
+        && let Some(direction) = light.direction.and_then(Vec3::try_normalize)
+    {
+        let reach = marks::reach(lens, target.at, &session.document);
+        let cone = entry.cone_angle(&light.parameters);
+        let length = if cone.is_some() { marks::AXIS * reach } else { reach };
+        let tip = target.at + direction * (length + lens.metres(target.at, DISC + 4.0));
+        let disc = |handle: Handle, point: Vec3| {
+            let end = lens.project(point)?;
+            Some(Placed { handle, lines: Vec::new(), far: Vec::new(), end, radius: DISC, point })
+        };
+        all.extend(disc(Handle::Direction, tip));
+        if let Some(angle) = cone {
+            let (sin, cos) = angle.to_radians().sin_cos();
+            let edge = direction * cos + lens.across(target.at, direction) * sin;
+            all.extend(disc(Handle::Cone, target.at + reach * edge));
+        }
+    }
+    all
+}
+
+/// The arrows along the axes of the room, and the disc that moves in the plane of the picture.
+fn arrows(at: Vec3, middle: Pos2, arm: f32, lens: &Lens) -> Vec<Placed> {
+    let length = lens.metres(at, arm);
+    let mut all = Vec::new();
+    for (axis, way) in Vec3::AXES.into_iter().enumerate() {
+        let point = at + length * way;
+        let Some(tip) = lens.project(point) else { continue };
+        let along = tip - middle;
+        if along.length() < SHORTEST.min(0.5 * arm) {
+            continue;
+        }
+        // Towards the camera it would grow without end.
+        let tip = middle + along * (1.2 * arm / along.length()).min(1.0);
+        let line = vec![middle + along.normalized() * GAP.min(0.3 * arm), tip];
+        let end = tip + along.normalized() * LETTER;
+        all.push(Placed {
+            handle: Handle::Axis(axis),
+            lines: vec![line],
+            far: Vec::new(),
+            end,
+            radius: 8.0,
+            point,
+        });
+    }
+    // Where the arrows leave most room: to the upper right, if they leave it there.
+    let ways: Vec<Vec2> = all.iter().map(|p: &Placed| (p.end - middle).normalized()).collect();
+    let corners = [vec2(1.0, -1.0), vec2(-1.0, -1.0), vec2(1.0, 1.0), vec2(-1.0, 1.0)].map(Vec2::normalized);
+    let nearest = |corner: &Vec2| ways.iter().map(|way| way.dot(*corner)).fold(-1.0, f32::max);
+    let free = corners.iter().find(|corner| nearest(corner) < 0.87);
+    let corner = free.copied().unwrap_or(corners[0]);
+    all.push(Placed {
+        handle: Handle::Plane,
+        lines: Vec::new(),
+        far: Vec::new(),
+        end: middle + corner * (ASIDE * arm / ARM).max(DISC + GAP),
+        radius: DISC,
+        point: at,
+    });
+    all
+}
+
+/// A ring about an axis of the room.
+fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
+    let [first, second] = [Vec3::AXES[(axis + 1) % 3], Vec3::AXES[(axis + 2) % 3]];
+    let length = lens.metres(at, radius);
+    let around = |k: usize| {
+        let (y, x) = (k as f32 / SIDES as f32 * TAU).sin_cos();
+        at + length * (x * first + y * second)
+    };
+    let to_eye = (lens.eye() - at).normalize_or_zero();
+    let is_near = |p: Vec3| (p - at).dot(to_eye) >= -0.06 * length;
+    let (mut lines, mut far) = (Vec::new(), Vec::new());
+    for k in 0..SIDES {
+        let pair = [around(k), around(k + 1)];
+        let near = is_near(0.5 * (pair[0] + pair[1]));
+        let to: &mut Vec<Vec<Pos2>> = if near { &mut lines } else { &mut far };
+        for run in lens.path(&pair) {
+            match to.last_mut().filter(|line| line.last().is_some_and(|p| p.distance(run[0]) < 0.01)) {
+                Some(line) => line.extend(&run[1..]),
+                None => to.push(run),
+            }
+        }
+    }
+    // Its letter is where it is seen best: at the top, at the right, between them.
+    let wanted = [vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(0.7, 0.7)][axis];
+    let middle = lens.project(at).unwrap_or_default();
+    let points = lines.iter().flatten().copied();
+    let best = points.max_by(|a, b| (*a - middle).dot(wanted).total_cmp(&(*b - middle).dot(wanted)));
+    let best = best.unwrap_or(middle);
+    let end = best + (best - middle).normalized() * LETTER;
+    Placed { handle: Handle::Ring(axis), lines, far, end, radius: 8.0, point: around(0) }
+}
+
+/// The handle of the size, on the way to the upper right.
+fn size(at: Vec3, middle: Pos2, radius: f32, lens: &Lens) -> Option<Placed> {
+    let way = vec2(1.0, -1.0).normalized();
+    let edge = [lens.rect().right() - middle.x, middle.y - lens.rect().top()]
+        .map(|room| (room - 20.0) / way.x.abs());
+    let most = edge[0].min(edge[1]).max(GAP + DISC);
+    let points = (radius / lens.metres(at, 1.0)).max(NEAREST).min(most);
+    let end = middle + points * way;
+    let line = vec![middle + GAP * way, end];
+    Some(Placed {
+        handle: Handle::Size,
+        lines: vec![line],
+        far: Vec::new(),
+        end,
+        radius: DISC + 2.0,
+        point: at,
+    })
+}

@@ -1,0 +1,142 @@
+//! What the active view of a comparison overrides: a list at the top, and marks beside the knobs.
+
+use bevy_egui::egui::{
+    Align, CursorIcon, Id, Layout, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
+};
+
+use crate::{
+    document::VariantField,
+    panel::{
+        icon::{self, Icon},
+        state::{Action, CompareCommand, Session},
+        theme::{self, Palette},
+    },
+    registry::Registry,
+    scene::{Variant, limits::number, variant::LETTERS},
+};
+
+/// Says which view is shown here, and what it overrides. Nothing where the scene has no variants.
+pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+    if session.document.variants.is_empty() {
+        return;
+    }
+    let palette = Palette::here(ui);
+    let view = session.active();
+    let letter = LETTERS[view];
+    let Some(variant) = session.variant() else {
+        ui.label(theme::small(ui, "View A: the scene itself. Views inherit from it."));
+        ui.add_space(4.0);
+        return;
+    };
+    let rows = overridden(variant, registry);
+    ui.horizontal(|ui| {
+        ui.label(theme::strong(ui, format!("View {letter}")));
+        ui.label(theme::small(ui, if rows.is_empty() { "as A" } else { "differs from A in" }));
+    });
+    for (name, value, field) in rows {
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let help = format!("{name}: back to A");
+                if icon::button(ui, Icon::Reset, &help).clicked() {
+                    actions.push(Action::Compare(CompareCommand::Reset(view, field)));
+                }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    bar(ui, ui.max_rect(), &palette);
+                    ui.add_space(8.0);
+                    let room = ui.available_width();
+                    let text = format!("{name}  {value}");
+                    let galley = theme::elided(ui, &text, TextStyle::Body, palette.text, room);
+                    let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
+                    ui.painter().galley(rect.min, galley, palette.text);
+                    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
+                });
+            });
+        });
+    }
+    if variant.based_on.is_some() {
+        let name = variant.based_on.as_deref().unwrap_or_default();
+        ui.label(theme::small(ui, format!("The rest is inherited from “{name}”.")));
+    }
+    ui.label(theme::small(
+        ui,
+        format!(
+            "Model, shading, material, terms and display are changed in {letter} alone, for all objects."
+        ),
+    ));
+    ui.add_space(4.0);
+}
+
+/// The mark of what is overridden.
+fn bar(ui: &Ui, rect: Rect, palette: &Palette) {
+    let x = rect.left() + 1.5;
+    ui.painter().vline(x, rect.shrink2(vec2(0.0, 3.0)).y_range(), Stroke::new(3.0, palette.accent));
+}
+
+/// Everything that a variant overrides: its name, its value, and the field that takes it back.
+fn overridden(variant: &Variant, registry: &Registry) -> Vec<(String, String, VariantField)> {
+    let mut rows = Vec::new();
+    let mut row = |name: &str, value: String, field| rows.push((name.to_owned(), value, field));
+    if let Some(id) = &variant.reflection_model {
+        let name = registry.model(id).map_or(id.as_str(), |m| m.declaration.name);
+        row("reflection model", name.to_owned(), VariantField::Model(None));
+    }
+    if let Some(id) = &variant.shading_model {
+        let name = registry.shading_model(id).map_or(id.as_str(), |m| m.declaration.name);
+        row("shading model", name.to_owned(), VariantField::ShadingModel(None));
+    }
+    for (name, value) in &variant.material.0 {
+        if let Some(p) = registry.material_parameter(name) {
+            row(p.label, value.to_string(), VariantField::Material(p.name, None));
+        }
+    }
+    if let Some(terms) = variant.terms {
+        row("terms", terms.id().to_owned(), VariantField::Terms(None));
+    }
+    if let Some(tone) = variant.tone_mapping {
+        row("tone mapping", tone.name().to_owned(), VariantField::ToneMapping(None));
+    }
+    if let Some(ev) = variant.exposure {
+        row("exposure", format!("{} EV", number(f64::from(ev))), VariantField::Exposure(None));
+    }
+    if let Some(encoding) = variant.encoding {
+        row("encoding", encoding.id().to_owned(), VariantField::Encoding(None));
+    }
+    if let Some(count) = variant.tessellation {
+        row("tessellation", count.to_string(), VariantField::Tessellation(None));
+    }
+    rows
+}
+
+/// Shows a knob with a mark at the left edge if the active view overrides its value; a click on the mark takes the
+/// override back.
+pub(super) fn marked<T>(
+    ui: &mut Ui,
+    session: &Session,
+    overrides: impl FnOnce(&Variant) -> Option<VariantField>,
+    actions: &mut Vec<Action>,
+    add: impl FnOnce(&mut Ui) -> T,
+) -> T {
+    let top = ui.cursor().top();
+    let out = add(ui);
+    let Some(field) = session.variant().and_then(overrides) else { return out };
+    let bottom = ui.min_rect().bottom();
+    let left = ui.max_rect().left() - 10.0;
+    let rect = Rect::from_x_y_ranges(left..=left + 8.0, top..=bottom.max(top));
+    let clip = ui.clip_rect();
+    ui.set_clip_rect(clip.with_min_x(clip.left().min(left)));
+    let mark = ui.interact(rect, Id::new(("override", format!("{field:?}"))), Sense::click());
+    mark.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "Overridden: back to A"));
+    let palette = Palette::here(ui);
+    let width = if mark.hovered() { 4.0 } else { 3.0 };
+    ui.painter().vline(
+        left + 2.0,
+        rect.shrink2(vec2(0.0, 3.0)).y_range(),
+        Stroke::new(width, palette.accent),
+    );
+    ui.set_clip_rect(clip);
+    if mark.clicked() {
+        actions.push(Action::Compare(CompareCommand::Reset(session.active(), field)));
+    }
+    mark.on_hover_cursor(CursorIcon::PointingHand).on_hover_text("Differs from A. Click: back to A");
+    out
+}

@@ -1,0 +1,157 @@
+//! Matches: the question how a view shall be matched to view A, and the progress of the match that runs.
+
+use bevy_egui::egui::{
+    self, Align, Button, Id, Key, Layout, RichText, ScrollArea, Ui, WidgetInfo, WidgetType, Window, vec2,
+};
+
+use super::{
+    export,
+    segmented::segmented,
+    state::{Action, MatchCommand, MatchDraft, PictureArea, Session},
+    theme::{self, Palette},
+};
+use crate::{
+    matching::What,
+    registry::Registry,
+    scene::variant::{LETTERS, MAX_VARIANTS},
+};
+
+/// The width of the question, points.
+const WIDTH: f32 = 440.0;
+/// The height of the sentence about a choice: the room for each, so that nothing moves between them.
+const SENTENCE: f32 = 34.0;
+/// The most that the list of parameters takes, points.
+const LIST: f32 = 240.0;
+/// Remembers that the question has got the focus.
+const FOCUSED: &str = "match draft focused";
+
+/// The letter of a view.
+fn letter(view: usize) -> &'static str {
+    LETTERS[view.min(MAX_VARIANTS)]
+}
+
+/// The entry in the menu of a view. True if it was chosen.
+pub(super) fn entry(ui: &mut Ui, view: usize) -> bool {
+    let button = ui.add(Button::new(format!("Match {} to A…", letter(view))).frame(false));
+    let help = format!(
+        "Searches for the parameters of view {} that come nearest to view A, and sets them. One step of the history.",
+        letter(view)
+    );
+    button.on_hover_text(help).clicked()
+}
+
+/// Asks how a view shall be matched, while there is a draft. Stands in nobody's way.
+pub(super) fn show(
+    ctx: &egui::Context,
+    session: &Session,
+    area: &PictureArea,
+    registry: &Registry,
+) -> Vec<Action> {
+    let Some(draft) = &session.match_draft else {
+        ctx.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
+        return Vec::new();
+    };
+    let close = || vec![Action::Match(MatchCommand::Close)];
+    // The view is gone, or shows other models now.
+    let now = crate::matching::parameters(&session.document, draft.view, registry);
+    if !now.iter().map(|(p, _)| p.name).eq(draft.parameters.iter().map(|(p, _)| p.name)) {
+        return close();
+    }
+    let mut actions = Vec::new();
+    let mut open = true;
+    Window::new(RichText::new(format!("Match {} to A", letter(draft.view))).heading())
+        .id(Id::new("match draft"))
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_width(WIDTH)
+        .pivot(egui::Align2::CENTER_CENTER)
+        .default_pos(area.rect.center())
+        .show(ctx, |ui| {
+            ui.set_width(WIDTH);
+            actions.extend(ask(ui, session, registry, draft));
+        });
+    if !open || ctx.input(|i| i.key_pressed(Key::Escape)) {
+        return close();
+    }
+    actions
+}
+
+fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &MatchDraft) -> Vec<Action> {
+    let palette = Palette::here(ui);
+    let mut next = draft.clone();
+    ui.horizontal(|ui| {
+        ui.label("Compare the");
+        let names = What::ALL.map(What::id);
+        let at = What::ALL.iter().position(|what| *what == draft.what);
+        let tip = |ui: &mut Ui, i: usize| {
+            ui.set_max_width(300.0);
+            ui.label(What::ALL[i].summary());
+        };
+        if let Some(i) = segmented(ui, "Compare", &names, at, tip) {
+            next.what = What::ALL[i];
+        }
+    });
+    ui.add_space(2.0);
+    let room = vec2(ui.available_width(), SENTENCE);
+    ui.allocate_ui_with_layout(room, Layout::top_down(Align::Min), |ui| {
+        ui.set_min_height(SENTENCE);
+        ui.add(egui::Label::new(theme::small(ui, draft.what.summary())).wrap());
+    });
+    ui.add_space(8.0);
+    ui.label(theme::strong(ui, format!("Free parameters of view {}", letter(draft.view))));
+    let seen = session.document.seen(draft.view, registry).map(|(scene, _)| scene);
+    ScrollArea::vertical().max_height(LIST).auto_shrink([false, true]).show(ui, |ui| {
+        for (parameter, free) in &mut next.parameters {
+            let now = seen.as_ref().and_then(|scene| {
+                let has =
+                    |id: &str| registry.model(id).is_some_and(|m| m.parameter(parameter.name).is_some());
+                let object = scene.shown().find(|object| has(scene.model_of(object)))?;
+                Some(object.material.get(parameter).to_string())
+            });
+            ui.horizontal(|ui| {
+                let name = format!("Free: {}", parameter.label);
+                let check = ui.checkbox(free, parameter.label).on_hover_text(parameter.help);
+                check.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, *free, &name));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    // The scroll bar floats over this margin.
+                    ui.add_space(12.0);
+                    ui.label(theme::small(ui, now.unwrap_or_default()));
+                });
+            });
+        }
+    });
+    ui.add_space(12.0);
+    let mut actions = Vec::new();
+    let ready = draft.free().next().is_some();
+    let line = vec2(ui.available_width(), 28.0);
+    ui.allocate_ui_with_layout(line, Layout::right_to_left(Align::Center), |ui| {
+        let mut button = Button::new(theme::strong(ui, "Match")).min_size(vec2(80.0, 28.0));
+        if ready {
+            button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
+        }
+        let start = ui.add_enabled(ready, button).on_disabled_hover_text("Free at least one parameter.");
+        if !ui.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default(Id::new(FOCUSED)), true)) {
+            start.request_focus();
+        }
+        if start.clicked() {
+            actions.push(Action::Match(MatchCommand::Start));
+        }
+        if ui.add(Button::new("Cancel").min_size(vec2(80.0, 28.0))).clicked() {
+            actions.push(Action::Match(MatchCommand::Close));
+        }
+    });
+    if next != *draft {
+        actions.push(Action::Match(MatchCommand::Change(next)));
+    }
+    actions
+}
+
+/// The progress of the match that runs, with a button that stops it.
+pub(super) fn progress(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let Some(now) = &session.facts.matching else { return };
+    let name = format!("Matching {} to A", letter(now.view));
+    if export::strip(ui, &name, (now.done, &now.step), "Stop the match; the view stays as it is") {
+        actions.push(Action::Match(MatchCommand::Cancel));
+    }
+}

@@ -1,0 +1,399 @@
+//! The views of a comparison: the one that the panels show and change, and what comes and goes.
+
+use std::sync::Arc;
+
+use super::{Session, Severity};
+use crate::{
+    document::{Edit, Extent, ObjectField, Revision, VariantField},
+    optics::TermSelection,
+    parameter::{Value, Values},
+    registry::Registry,
+    scene::{
+        Comparison, Scene, Variant,
+        comparison::Layout,
+        variant::{LETTERS, MAX_VARIANTS},
+    },
+};
+
+/// A command about the views of a comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CompareCommand {
+    /// Show and change this view: 0 is the scene, 1 view B.
+    Activate(usize),
+    /// Add a view that shows what the active one shows.
+    Add,
+    /// Remove a view.
+    Remove(usize),
+    /// Take all overrides of a view back.
+    LikeA(usize),
+    /// Exchange what view A and another show.
+    Swap(usize),
+    /// Choose a layout; with only one view, the second is added.
+    Layout(Layout),
+    /// Choose the next layout.
+    NextLayout,
+    /// Change the comparison otherwise.
+    Set(Comparison),
+    /// Show the other view while the key is held, where the layout is [`Layout::Blink`].
+    Blink(bool),
+    /// Take one override of a view back: the field is `None`.
+    Reset(usize, VariantField),
+}
+
+/// The scene as the active view shows it, while that is not the scene itself.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen(Option<(Revision, usize, Arc<Scene>)>);
+
+impl Session {
+    /// The view that the panels show and change: 0 is the scene itself, 1 view B.
+    #[must_use]
+    pub fn active(&self) -> usize {
+        self.view.active.min(self.document.variants.len())
+    }
+
+    /// The scene as the active view shows it.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        match &self.seen.0 {
+            Some((revision, view, scene))
+                if *view == self.active() && *view > 0 && *revision == self.document.revision() =>
+            {
+                scene
+            }
+            _ => &self.document,
+        }
+    }
+
+    /// True if [`look`](Self::look) is to be called: the active view shows something else.
+    #[must_use]
+    pub fn is_stale(&self) -> bool {
+        let now = (self.active() > 0).then(|| (self.document.revision(), self.active()));
+        self.seen.0.as_ref().map(|(revision, view, _)| (*revision, *view)) != now
+    }
+
+    /// Makes [`scene`](Self::scene) what the active view shows.
+    pub fn look(&mut self, registry: &Registry) {
+        self.view.active = self.active();
+        let seen = self.document.seen(self.view.active, registry).filter(|_| self.view.active > 0);
+        self.seen.0 = seen.map(|(scene, _)| (self.document.revision(), self.view.active, Arc::new(scene)));
+    }
+
+    /// What the active view overrides; `None` for view A.
+    #[must_use]
+    pub fn variant(&self) -> Option<&Variant> {
+        self.document.variants.get(self.active().checked_sub(1)?)
+    }
+
+    /// The terms that the active view shows.
+    #[must_use]
+    pub fn terms(&self) -> TermSelection {
+        let own = self.document.overrides(self.active()).and_then(|variant| variant.terms);
+        own.unwrap_or(self.view.terms)
+    }
+
+    /// The edits that make in the active view what an edit of the scene would. Of what a variant cannot override, the
+    /// scene itself is changed.
+    pub(super) fn redirected(&self, edit: Edit, registry: &Registry) -> Vec<Edit> {
+        let Some(i) = self.active().checked_sub(1) else { return vec![edit] };
+        let put = |field: VariantField| vec![Edit::Variant(i, field)];
+        match edit {
+            Edit::Model(id) | Edit::Object(_, ObjectField::Model(Some(id))) => {
+                put(VariantField::Model(Some(id)))
+            }
+            Edit::ShadingModel(id) | Edit::Object(_, ObjectField::ShadingModel(Some(id))) => {
+                put(VariantField::ShadingModel(Some(id)))
+            }
+            Edit::Object(_, ObjectField::Model(None)) => put(VariantField::Model(None)),
+            Edit::Object(_, ObjectField::ShadingModel(None)) => put(VariantField::ShadingModel(None)),
+            Edit::Object(_, ObjectField::Material(name, value)) => {
+                put(VariantField::Material(name, Some(value)))
+            }
+            Edit::Object(_, ObjectField::Preset(all)) => {
+                put(VariantField::Materials(all, "Measured material"))
+            }
+            Edit::Object(o, ObjectField::Tessellation(count)) => {
+                let object = self.document.objects.get(o);
+                let shape = object.and_then(|object| registry.shape(&object.object_type));
+                put(VariantField::Tessellation(count.or(shape.map(|shape| shape.tessellation(None)))))
+            }
+            Edit::Display(display) => {
+                let now = self.scene().display;
+                let mut edits = Vec::new();
+                if display.tone_mapping != now.tone_mapping {
+                    edits.push(VariantField::ToneMapping(Some(display.tone_mapping)));
+                }
+                if display.exposure != now.exposure {
+                    edits.push(VariantField::Exposure(Some(display.exposure)));
+                }
+                if display.encoding != now.encoding {
+                    edits.push(VariantField::Encoding(Some(display.encoding)));
+                }
+                edits.into_iter().map(|field| Edit::Variant(i, field)).collect()
+            }
+            edit => vec![edit],
+        }
+    }
+
+    pub(super) fn compare(&mut self, command: CompareCommand, registry: &Registry) {
+        let comparison = self.document.comparison;
+        match command {
+            CompareCommand::Activate(view) => {
+                if view <= self.document.variants.len() {
+                    self.view.active = view;
+                    if view > 0 && view != comparison.with && comparison.layout.shows_two() {
+                        self.set(Comparison { with: view, ..comparison }, registry);
+                    }
+                }
+            }
+            CompareCommand::Add => self.add_view(comparison.layout, registry),
+            CompareCommand::Layout(layout)
+                if self.document.variants.is_empty() && layout != Layout::Single =>
+            {
+                self.add_view(layout, registry);
+            }
+            CompareCommand::Layout(layout) => {
+                let with = match self.active() {
+                    0 => comparison.with,
+                    view => view,
+                };
+                self.set(Comparison { layout, with, ..comparison }, registry);
+            }
+            CompareCommand::NextLayout => {
+                let all = Layout::ALL;
+                let at = all.iter().position(|layout| *layout == comparison.layout).unwrap_or(0);
+                self.compare(CompareCommand::Layout(all[(at + 1) % all.len()]), registry);
+            }
+            CompareCommand::Set(comparison) => self.set(comparison, registry),
+            CompareCommand::Remove(view) => self.remove_view(view, registry),
+            CompareCommand::LikeA(view) => {
+                let mut all = self.document.variants.clone();
+                let Some(variant) = view.checked_sub(1).and_then(|i| all.get_mut(i)) else { return };
+                *variant = Variant { name: variant.name.take(), ..Variant::default() };
+                self.set_views(all, comparison, "Make a view like A", registry);
+            }
+            CompareCommand::Swap(view) => self.swap_views(view, registry),
+            CompareCommand::Blink(on) => self.view.blinking = on,
+            CompareCommand::Reset(view, field) => {
+                if let Some(i) = view.checked_sub(1) {
+                    self.edit_here(Edit::Variant(i, field), registry);
+                }
+            }
+        }
+        self.look(registry);
+    }
+
+    fn set(&mut self, comparison: Comparison, registry: &Registry) {
+        if comparison != self.document.comparison {
+            self.edit_here(Edit::Comparison(comparison), registry);
+        }
+    }
+
+    fn set_views(
+        &mut self,
+        variants: Vec<Variant>,
+        comparison: Comparison,
+        step: &'static str,
+        registry: &Registry,
+    ) {
+        self.edit_here(Edit::Views { variants, comparison, step }, registry);
+    }
+
+    fn add_view(&mut self, layout: Layout, registry: &Registry) {
+        let mut all = self.document.variants.clone();
+        if all.len() >= MAX_VARIANTS {
+            let last = LETTERS[MAX_VARIANTS];
+            self.say(Severity::Info, format!("A scene has at most four views, A to {last}."));
+            return;
+        }
+        let copied = self.document.overrides(self.active()).unwrap_or_default();
+        all.push(Variant { name: None, ..copied });
+        let with = all.len();
+        let layout = if layout == Layout::Single { Layout::SideBySide } else { layout };
+        self.set_views(all, Comparison { layout, with, ..self.document.comparison }, "Add a view", registry);
+        self.view.active = with.min(self.document.variants.len());
+    }
+
+    fn remove_view(&mut self, view: usize, registry: &Registry) {
+        let Some(i) = view.checked_sub(1).filter(|i| *i < self.document.variants.len()) else { return };
+        let mut all = self.document.variants.clone();
+        let gone = all.remove(i);
+        // Those that were based on it are based on what it was based on.
+        for variant in &mut all {
+            if variant.based_on.is_some() && variant.based_on == gone.name {
+                let merged = variant.clone().over(&gone);
+                *variant = merged;
+            }
+        }
+        let mut comparison = self.document.comparison;
+        comparison.with = comparison.with.clamp(1, all.len().max(1));
+        if all.is_empty() {
+            comparison.layout = Layout::Single;
+        }
+        self.set_views(all, comparison, "Remove a view", registry);
+        self.view.active = 0;
+        let text = format!("Removed view {}.", LETTERS[view]);
+        let step = self.last_step();
+        self.messages.offer_undo(text, step);
+    }
+
+    fn swap_views(&mut self, view: usize, registry: &Registry) {
+        let name = format!("Swap A and {}", LETTERS.get(view).copied().unwrap_or("B"));
+        match swapped(&self.document, view, registry) {
+            Ok(scene) => {
+                let terms = scene.1;
+                self.document.change(name, Extent::All, self.selection, |all| *all = scene.0);
+                self.view.terms = terms;
+            }
+            Err(why) => self.say(Severity::Warning, format!("The views cannot be swapped: {why}.")),
+        }
+    }
+}
+
+/// The scene with view A and another exchanged, and the terms of view A then.
+///
+/// # Errors
+/// The objects differ in what the other view overrides for all of them: a variant cannot hold that.
+fn swapped(scene: &Scene, view: usize, registry: &Registry) -> Result<(Scene, TermSelection), String> {
+    let Some(variant) = scene.overrides(view) else { return Err("there is no such view".to_owned()) };
+    if scene.variants[view - 1].based_on.is_some() {
+        return Err("the view inherits from another".to_owned());
+    }
+    /// The one value of all objects.
+    fn one<T: PartialEq>(mut all: impl Iterator<Item = T>, what: &str) -> Result<Option<T>, String> {
+        let Some(first) = all.next() else { return Ok(None) };
+        if all.any(|other| other != first) {
+            return Err(format!("the objects differ in {what}, which the other view has once for all"));
+        }
+        Ok(Some(first))
+    }
+    let objects = &scene.objects;
+    let mut back = Variant { name: scene.variants[view - 1].name.clone(), ..Variant::default() };
+    if variant.reflection_model.is_some() {
+        back.reflection_model =
+            one(objects.iter().map(|o| scene.model_of(o)), "the reflection model")?.map(str::to_owned);
+    }
+    if variant.shading_model.is_some() {
+        back.shading_model =
+            one(objects.iter().map(|o| scene.shading_model_of(o)), "the shading model")?.map(str::to_owned);
+    }
+    if variant.tessellation.is_some() {
+        let counts = objects
+            .iter()
+            .map(|o| registry.shape(&o.object_type).map_or(1, |shape| shape.tessellation(o.tessellation)));
+        back.tessellation = one(counts, "the tessellation")?;
+    }
+    let mut values = Values::default();
+    for name in variant.material.0.keys() {
+        let Some(p) = registry.material_parameter(name) else { continue };
+        let value: Option<Value> = one(objects.iter().map(|o| o.material.get(p)), p.label)?;
+        if let Some(value) = value {
+            values.set(p.name, value);
+        }
+    }
+    back.material = values;
+    back.tone_mapping = variant.tone_mapping.map(|_| scene.display.tone_mapping);
+    back.exposure = variant.exposure.map(|_| scene.display.exposure);
+    back.encoding = variant.encoding.map(|_| scene.display.encoding);
+    back.terms = variant.terms.map(|_| TermSelection::All);
+    let mut after = variant.applied(scene, registry);
+    after.variants[view - 1] = back;
+    Ok((after, variant.terms.unwrap_or_default()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{panel::state::Action, scene::Object};
+
+    fn session() -> (Session, Registry) {
+        (Session::new(Scene::default()), Registry::builtin())
+    }
+
+    #[test]
+    fn what_is_changed_in_the_active_view_is_overridden_there_and_nowhere_else() {
+        let (mut session, registry) = session();
+        let before = session.document.clone();
+        session.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)), &registry);
+        assert_eq!((session.active(), session.document.variants.len()), (1, 1));
+        session.apply(Action::Edit(Edit::Model("phong".to_owned())), &registry);
+        session.look(&registry);
+        let alpha = ObjectField::Material("alpha", Value::Integer(30));
+        session.apply(Action::Edit(Edit::Object(0, alpha)), &registry);
+        session.look(&registry);
+        session.apply(Action::Expose(0.5), &registry);
+        session.look(&registry);
+        assert_eq!(session.document.reflection_model, before.reflection_model);
+        assert_eq!(session.document.objects, before.objects);
+        assert_eq!(session.document.display, before.display);
+        let variant = session.variant().expect("view B is active");
+        assert_eq!(variant.reflection_model.as_deref(), Some("phong"));
+        assert_eq!(variant.exposure, Some(0.5));
+        assert_eq!(session.scene().objects[0].material.0["alpha"], Value::Integer(30));
+        // What a variant cannot override changes the scene.
+        session.apply(Action::Edit(Edit::Object(0, ObjectField::Size(1.0))), &registry);
+        assert_eq!(session.document.objects[0].size, 1.0);
+        // Back to A, one by one, and all at once.
+        session.apply(Action::Compare(CompareCommand::Reset(1, VariantField::Exposure(None))), &registry);
+        assert_eq!(session.variant().and_then(|v| v.exposure), None);
+        session.apply(Action::Compare(CompareCommand::LikeA(1)), &registry);
+        assert_eq!(session.variant(), Some(&Variant::default()));
+        session.apply(Action::Compare(CompareCommand::Remove(1)), &registry);
+        assert_eq!(session.document.variants, []);
+        assert_eq!(session.document.comparison.layout, Layout::Single);
+        assert_eq!(session.active(), 0);
+        while session.document.done() > 0 {
+            session.apply(Action::Undo, &registry);
+        }
+        assert_eq!(session.document.variants, []);
+        assert_eq!(*session.document, *before);
+    }
+
+    #[test]
+    fn there_are_at_most_four_views() {
+        let (mut session, registry) = session();
+        for _ in 0..5 {
+            session.apply(Action::Compare(CompareCommand::Add), &registry);
+        }
+        assert_eq!(session.document.variants.len(), MAX_VARIANTS);
+        assert!(session.messages.last().is_some_and(|m| m.text.contains("at most four views")));
+    }
+
+    #[test]
+    fn swapping_twice_changes_nothing_that_is_seen_and_what_cannot_be_swapped_stays() {
+        let (mut session, registry) = session();
+        session.apply(Action::Compare(CompareCommand::Add), &registry);
+        session.apply(Action::Edit(Edit::Model("phong".to_owned())), &registry);
+        session.look(&registry);
+        let alpha = ObjectField::Material("alpha", Value::Integer(30));
+        session.apply(Action::Edit(Edit::Object(0, alpha)), &registry);
+        let both = |session: &Session| {
+            [0, 1].map(|view| {
+                let (scene, _) = session.document.seen(view, &registry).expect("both views are there");
+                let p = registry.material_parameter("alpha").expect("it is declared");
+                (scene.model_of(&scene.objects[0]).to_owned(), scene.objects[0].material.get(p))
+            })
+        };
+        let [a, b] = both(&session);
+        assert_ne!(a, b);
+        session.apply(Action::Compare(CompareCommand::Swap(1)), &registry);
+        assert_eq!(both(&session), [b.clone(), a.clone()]);
+        session.apply(Action::Compare(CompareCommand::Swap(1)), &registry);
+        assert_eq!(both(&session), [a, b]);
+        session.document.insert_object(
+            1,
+            Object {
+                reflection_model: Some("eon".to_owned()),
+                position: glam::Vec3::splat(3.0),
+                ..Object::default()
+            },
+            "Add",
+            session.selection,
+            &registry,
+        );
+        let before = session.document.clone();
+        session.apply(Action::Compare(CompareCommand::Swap(1)), &registry);
+        assert_eq!(*session.document, *before);
+        let said = session.messages.last().map(|m| m.text.clone()).unwrap_or_default();
+        assert!(said.contains("the objects differ in the reflection model"), "{said}");
+    }
+}

@@ -1,0 +1,141 @@
+//! Matches: what is asked for, and how they end.
+
+use super::{Effect, Session, Severity};
+use crate::{
+    document::{Edit, VariantField},
+    matching::{Match, MatchError, What, digits, parameters},
+    parameter::Parameter,
+    registry::Registry,
+    scene::{Scene, variant::LETTERS},
+    text::listed,
+};
+
+/// A command about matches.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MatchCommand {
+    /// Ask how this view shall be matched to view A: 1 is view B.
+    Ask(usize),
+    /// Change what is asked for.
+    Change(MatchDraft),
+    /// Begin the match.
+    Start,
+    /// Do not match.
+    Close,
+    /// Stop the match that runs.
+    Cancel,
+}
+
+/// A match that is about to begin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MatchDraft {
+    /// The view that is matched to view A.
+    pub view: usize,
+    /// What is compared.
+    pub what: What,
+    /// The parameters of the view, each with true if it is free.
+    pub parameters: Vec<(&'static Parameter, bool)>,
+}
+
+impl MatchDraft {
+    /// The parameters that are free.
+    pub fn free(&self) -> impl Iterator<Item = &'static Parameter> {
+        self.parameters.iter().filter(|(_, free)| *free).map(|(parameter, _)| *parameter)
+    }
+}
+
+impl Session {
+    pub(super) fn matching(&mut self, command: MatchCommand, registry: &Registry) -> Vec<Effect> {
+        match command {
+            MatchCommand::Cancel => return vec![Effect::CancelMatch],
+            MatchCommand::Ask(_) if self.facts.matching.is_some() => {
+                self.say(Severity::Info, "A match is still running: wait for it, or cancel it below.");
+            }
+            MatchCommand::Ask(view) => {
+                let parameters = parameters(&self.document, view, registry);
+                if parameters.is_empty() {
+                    let letter = LETTERS.get(view).copied().unwrap_or("?");
+                    let text = format!(
+                        "View {letter} shows nothing that could be matched: no visible object has a number or a colour."
+                    );
+                    self.say(Severity::Info, text);
+                } else {
+                    self.match_draft = Some(MatchDraft { view, what: What::default(), parameters });
+                }
+            }
+            MatchCommand::Change(draft) => self.match_draft = Some(draft),
+            MatchCommand::Start => {
+                if let Some(draft) = self.match_draft.take() {
+                    let names = draft.free().map(|parameter| parameter.name).collect();
+                    return vec![Effect::Match { view: draft.view, what: draft.what, parameters: names }];
+                }
+            }
+            MatchCommand::Close => self.match_draft = None,
+        }
+        Vec::new()
+    }
+
+    /// A match on a scene has ended: its values become one step of the history, unless that scene is no longer there.
+    /// Without an outcome the search broke off.
+    pub fn matched(
+        &mut self,
+        scene: &Scene,
+        (view, what): (usize, What),
+        outcome: Option<Result<Match, MatchError>>,
+        registry: &Registry,
+    ) {
+        let letter = LETTERS.get(view).copied().unwrap_or("?");
+        let found = match outcome {
+            Some(Ok(found)) => found,
+            Some(Err(MatchError::Cancelled)) => {
+                let text = format!("The match of view {letter} was cancelled; nothing was changed.");
+                return self.say(Severity::Info, text);
+            }
+            Some(Err(why)) => {
+                return self.say(Severity::Error, format!("View {letter} was not matched: {why}."));
+            }
+            None => {
+                let text = format!("The match of view {letter} broke off: an error of this program.");
+                return self.say(Severity::Error, text);
+            }
+        };
+        // How the views are arranged changes nothing.
+        if (Scene { comparison: self.document.comparison, ..scene.clone() }) != *self.document {
+            let text = format!(
+                "The scene was changed while view {letter} was matched, so nothing was applied. Match it again."
+            );
+            return self.say(Severity::Warning, text);
+        }
+        if found.values.is_empty() {
+            let text = format!(
+                "View {letter} stays as it is: no other values come nearer to view A. Error: {} ({}).",
+                digits(found.before),
+                what.unit()
+            );
+            return self.say(Severity::Info, text);
+        }
+        let values: Vec<_> = found
+            .values
+            .iter()
+            .map(|(name, value)| {
+                let parameter = registry.material_parameter(name);
+                format!("{} {value}", parameter.map_or(*name, |p| p.label))
+            })
+            .collect();
+        let steps = self.document.done();
+        let edit = Edit::Variant(view - 1, VariantField::Materials(found.values, "Match"));
+        self.edit_here(edit, registry);
+        self.look(registry);
+        if self.document.done() != steps {
+            let text = format!(
+                "View {letter} matched to view A on the {}: {}. Error: {} → {} ({}).",
+                what.id(),
+                listed(&values, "and"),
+                digits(found.before),
+                digits(found.after),
+                what.unit()
+            );
+            let step = self.last_step();
+            self.messages.offer_undo(text, step);
+        }
+    }
+}

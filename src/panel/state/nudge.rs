@@ -1,0 +1,168 @@
+//! Steps by which the keys move, turn and resize what is selected.
+
+use glam::{Quat, Vec3};
+
+use super::{HandleMode, Session, Severity};
+use crate::{
+    document::{Edit, LightField, ObjectField, Selection},
+    parameter::Value,
+    registry::Registry,
+    scene::{
+        limits,
+        rotation::{rotation, turned},
+    },
+};
+
+/// A step of a position or a size, metres.
+const METRES: f32 = 0.1;
+/// A step of an angle, degrees.
+const DEGREES: f32 = 5.0;
+
+/// A sum without the digits that are noise.
+fn tidy(v: Vec3) -> Vec3 {
+    (v * 10_000.0).round() / 10_000.0 + Vec3::ZERO
+}
+
+impl Session {
+    /// Moves, turns or resizes what is selected by one step in a direction of the room, as a step of the history.
+    pub(super) fn nudge(&mut self, way: Vec3, registry: &Registry) {
+        self.document.end_gesture();
+        match self.nudged(way, registry) {
+            Ok(edit) => self.edit(edit, registry),
+            Err(why) => self.say(Severity::Info, why),
+        }
+        self.document.end_gesture();
+    }
+
+    /// The change by one step; else the reason why there is none.
+    fn nudged(&self, way: Vec3, registry: &Registry) -> Result<Edit, String> {
+        let name = || self.name_of(self.selection, registry);
+        let has_no = |what: &str| Err(format!("{} has no {what}.", name()));
+        let turn = Quat::from_axis_angle(way, DEGREES.to_radians());
+        // Right, up and back make larger.
+        let sign = (way.x + way.y - way.z).signum();
+        let room = self.document.scene_size;
+        match self.selection {
+            Selection::Object(i) if self.exists(self.selection) => {
+                let object = &self.document.objects[i];
+                let field = match self.view.handles {
+                    HandleMode::Move => {
+                        ObjectField::Position(room.nearest(tidy(object.position + METRES * way)))
+                    }
+                    HandleMode::Turn => {
+                        ObjectField::Rotation(turned(rotation(object.rotation), way, DEGREES.to_radians()))
+                    }
+                    HandleMode::Size => {
+                        let most = limits::object_size(room).max as f32;
+                        let size = tidy(Vec3::splat(object.size + METRES * sign)).x;
+                        // Small ones stay as they are.
+                        let least = object.size.min(METRES);
+                        ObjectField::Size(size.max(least).min(most))
+                    }
+                };
+                Ok(Edit::Object(i, field))
+            }
+            Selection::Light(i) if self.exists(self.selection) => {
+                let light = &self.document.lights[i];
+                let entry = registry.light(&light.light_type);
+                let cone = entry.and_then(|entry| Some((entry.cone_parameter()?, entry)));
+                let field = match (self.view.handles, light.position, light.direction) {
+                    (HandleMode::Move, Some(at), _) => {
+                        LightField::Position(room.nearest(tidy(at + METRES * way)))
+                    }
+                    (HandleMode::Move, None, _) => return has_no("position"),
+                    (HandleMode::Turn, _, Some(direction)) => LightField::Direction(tidy(turn * direction)),
+                    (HandleMode::Turn, _, None) => return has_no("direction"),
+                    (HandleMode::Size, ..) => {
+                        let Some((parameter, entry)) = cone else { return has_no("size") };
+                        let angle = entry.cone_angle(&light.parameters).unwrap_or_default();
+                        let wanted = Value::Number(tidy(Vec3::splat(angle + DEGREES * sign)).x);
+                        match parameter.nearest(&wanted) {
+                            Some(nearest) => LightField::Parameter(parameter.name, nearest),
+                            None => return has_no("size"),
+                        }
+                    }
+                };
+                Ok(Edit::Light(i, field))
+            }
+            _ => Err("Select an object or a light to move it.".to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        panel::state::{Action, HandleChange, ViewChange},
+        scene::{Light, Scene},
+    };
+
+    fn session() -> (Session, Registry) {
+        let registry = Registry::builtin();
+        let mut scene = Scene::default();
+        scene.lights[0] = Light {
+            light_type: "spot".to_owned(),
+            position: Some(Vec3::new(2.0, 3.0, 4.0)),
+            direction: Some(Vec3::NEG_Y),
+            ..Light::default()
+        };
+        (Session::new(scene), registry)
+    }
+
+    fn mode(mode: HandleMode) -> Action {
+        Action::View(ViewChange::Handles(HandleChange::Mode(mode)))
+    }
+
+    #[test]
+    fn each_nudge_is_one_step_along_its_axis() {
+        let (mut session, registry) = session();
+        for _ in 0..2 {
+            session.apply(Action::Nudge(Vec3::X), &registry);
+        }
+        session.apply(Action::Nudge(Vec3::NEG_Z), &registry);
+        assert_eq!(session.document.objects[0].position, Vec3::new(5.2, 5.0, 4.9));
+        assert_eq!(session.document.done(), 3);
+        session.apply(mode(HandleMode::Turn), &registry);
+        session.apply(Action::Nudge(Vec3::Y), &registry);
+        assert_eq!(session.document.objects[0].rotation, Vec3::new(0.0, 5.0, 0.0));
+        session.apply(mode(HandleMode::Size), &registry);
+        let size = session.document.objects[0].size;
+        session.apply(Action::Nudge(Vec3::NEG_X), &registry);
+        assert!((session.document.objects[0].size - size + 0.1).abs() < 1e-4);
+        assert_eq!(session.document.done(), 5);
+    }
+
+    #[test]
+    fn a_nudge_stays_legal_without_a_message() {
+        let (mut session, registry) = session();
+        let messages = session.messages.iter().count();
+        (0..80).for_each(|_| drop(session.apply(Action::Nudge(Vec3::NEG_X), &registry)));
+        assert!(session.document.scene_size.contains(session.document.objects[0].position));
+        session.apply(mode(HandleMode::Size), &registry);
+        (0..80).for_each(|_| drop(session.apply(Action::Nudge(Vec3::NEG_X), &registry)));
+        assert_eq!(session.document.objects[0].size, 0.1);
+        assert_eq!(session.messages.iter().count(), messages);
+    }
+
+    #[test]
+    fn a_light_turns_opens_and_says_what_it_lacks() {
+        let (mut session, registry) = session();
+        session.apply(Action::Select(Selection::Light(0)), &registry);
+        session.apply(mode(HandleMode::Turn), &registry);
+        (0..18).for_each(|_| drop(session.apply(Action::Nudge(Vec3::X), &registry)));
+        let direction = session.document.lights[0].direction.unwrap_or_default();
+        assert!(direction.distance(Vec3::NEG_Z) < 1e-3, "{direction}");
+        session.apply(mode(HandleMode::Size), &registry);
+        let angle = |session: &Session| {
+            registry.light("spot").and_then(|spot| spot.cone_angle(&session.document.lights[0].parameters))
+        };
+        let before = angle(&session).unwrap_or_default();
+        session.apply(Action::Nudge(Vec3::Y), &registry);
+        assert_eq!(angle(&session), Some(before + 5.0));
+        session.document.amend(|scene| scene.lights[0] = Light::default());
+        session.apply(Action::Nudge(Vec3::Y), &registry);
+        let said = session.messages.iter().last().map(|note| note.text.clone()).unwrap_or_default();
+        assert!(said.ends_with("has no size."), "{said}");
+    }
+}

@@ -1,0 +1,217 @@
+//! Variants: the scene with some things changed, to be compared with the scene as it is.
+//!
+//! The scene itself is view A; its variants are the views B, C and D. A variant inherits everything and overrides what
+//! it gives.
+
+use super::{Display, Scene};
+use crate::{
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
+    parameter::Values,
+    registry::Registry,
+};
+
+/// The most variants of a scene: with the scene itself, four views.
+pub const MAX_VARIANTS: usize = 3;
+
+/// The letters of the views: A is the scene, the others are its variants.
+pub const LETTERS: [&str; MAX_VARIANTS + 1] = ["A", "B", "C", "D"];
+
+/// A scene with some things changed. What is `None`, or absent, is inherited.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Variant {
+    /// The user's name for it.
+    pub name: Option<String>,
+    /// The name of another variant, from which it inherits instead of the scene.
+    pub based_on: Option<String>,
+    /// Id of the reflection model of every object.
+    pub reflection_model: Option<String>,
+    /// Id of the shading model of every object.
+    pub shading_model: Option<String>,
+    /// Parameters of the material of every object.
+    pub material: Values,
+    /// The terms of the equation that are shown.
+    pub terms: Option<TermSelection>,
+    /// The curve from light to display.
+    pub tone_mapping: Option<ToneMapping>,
+    /// Exposure in EV.
+    pub exposure: Option<f32>,
+    /// Decoding and encoding of colours.
+    pub encoding: Option<Encoding>,
+    /// Tessellation of every object, as far as the object's type allows it.
+    pub tessellation: Option<u32>,
+}
+
+impl Variant {
+    /// The display, where `inherited` is that of the scene.
+    #[must_use]
+    pub fn display(&self, inherited: Display) -> Display {
+        Display {
+            tone_mapping: self.tone_mapping.unwrap_or(inherited.tone_mapping),
+            exposure: self.exposure.unwrap_or(inherited.exposure),
+            encoding: self.encoding.unwrap_or(inherited.encoding),
+        }
+    }
+
+    /// The scene as the variant shows it. The terms are no part of it.
+    #[must_use]
+    pub fn applied(&self, scene: &Scene, registry: &Registry) -> Scene {
+        let mut shown = Scene { display: self.display(scene.display), ..scene.clone() };
+        if let Some(id) = &self.reflection_model {
+            shown.reflection_model.clone_from(id);
+        }
+        if let Some(id) = &self.shading_model {
+            shown.shading_model.clone_from(id);
+        }
+        for object in &mut shown.objects {
+            if self.reflection_model.is_some() {
+                object.reflection_model = None;
+            }
+            if self.shading_model.is_some() {
+                object.shading_model = None;
+            }
+            if let (Some(count), Some(shape)) = (self.tessellation, registry.shape(&object.object_type)) {
+                object.tessellation = Some(shape.tessellation(Some(count)));
+            }
+            object.material.0.extend(self.material.0.clone());
+        }
+        shown
+    }
+
+    /// The same overrides, and those of `base` where it has none.
+    #[must_use]
+    pub fn over(mut self, base: &Self) -> Self {
+        let Self {
+            name: _,
+            based_on,
+            reflection_model,
+            shading_model,
+            material,
+            terms,
+            tone_mapping,
+            exposure,
+            encoding,
+            tessellation,
+        } = base;
+        self.based_on.clone_from(based_on);
+        self.reflection_model = self.reflection_model.or_else(|| reflection_model.clone());
+        self.shading_model = self.shading_model.or_else(|| shading_model.clone());
+        self.terms = self.terms.or(*terms);
+        self.tone_mapping = self.tone_mapping.or(*tone_mapping);
+        self.exposure = self.exposure.or(*exposure);
+        self.encoding = self.encoding.or(*encoding);
+        self.tessellation = self.tessellation.or(*tessellation);
+        let own = std::mem::replace(&mut self.material, material.clone());
+        self.material.0.extend(own.0);
+        self
+    }
+}
+
+impl Scene {
+    /// The variant with a name.
+    #[must_use]
+    pub fn variant(&self, name: &str) -> Option<&Variant> {
+        self.variants.iter().find(|variant| variant.name.as_deref() == Some(name))
+    }
+
+    /// Everything that a view overrides, including the overrides of the variants on which its variant is based; none
+    /// for view 0, the scene itself.
+    #[must_use]
+    pub fn overrides(&self, view: usize) -> Option<Variant> {
+        let mut variant = self.variants.get(view.checked_sub(1)?)?.clone();
+        // Of variants in a circle, each is asked once at most.
+        for _ in 0..self.variants.len() {
+            let Some(base) = variant.based_on.take().and_then(|name| self.variant(&name)) else { break };
+            variant = variant.over(base);
+        }
+        Some(Variant { based_on: None, ..variant })
+    }
+
+    /// The scene that a view shows, and the terms; view 0 is the scene itself. `None` if there is no such view.
+    #[must_use]
+    pub fn seen(&self, view: usize, registry: &Registry) -> Option<(Self, TermSelection)> {
+        if view == 0 {
+            return Some((self.clone(), TermSelection::All));
+        }
+        let variant = self.overrides(view)?;
+        Some((variant.applied(self, registry), variant.terms.unwrap_or_default()))
+    }
+
+    /// True if two scenes with the same lights and objects differ at most in variants and comparison: then view A shows
+    /// the same.
+    #[must_use]
+    pub fn shows_the_same(&self, other: &Self) -> bool {
+        let words = self.name == other.name && self.description == other.description;
+        let models = (&self.reflection_model, &self.shading_model);
+        words
+            && models == (&other.reflection_model, &other.shading_model)
+            && (self.scene_size, self.observer, self.display)
+                == (other.scene_size, other.observer, other.display)
+    }
+
+    /// The name of a view: that of its variant, of the scene, or its letter.
+    #[must_use]
+    pub fn view_name(&self, view: usize) -> &str {
+        let name = view.checked_sub(1).and_then(|i| self.variants.get(i)?.name.as_deref());
+        name.unwrap_or(LETTERS.get(view).copied().unwrap_or("?"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        parameter::Value,
+        scene::{Object, check},
+    };
+
+    fn scene(variants: Vec<Variant>) -> Scene {
+        Scene { variants, ..Scene::default() }
+    }
+
+    fn named(name: &str, based_on: Option<&str>) -> Variant {
+        Variant { name: Some(name.to_owned()), based_on: based_on.map(str::to_owned), ..Variant::default() }
+    }
+
+    #[test]
+    fn a_variant_inherits_what_it_does_not_override() {
+        let mut base = named("base", None);
+        base.reflection_model = Some("phong".to_owned());
+        base.exposure = Some(1.0);
+        base.material.set("alpha", Value::Integer(20));
+        base.material.set("k_s", Value::Number(0.3));
+        let mut top = named("top", Some("base"));
+        top.exposure = Some(-1.0);
+        top.terms = Some(TermSelection::Specular);
+        top.material.set("alpha", Value::Integer(5));
+        top.tessellation = Some(1000);
+        let mut scene = scene(vec![base, top]);
+        scene.objects.push(Object { reflection_model: Some("eon".to_owned()), ..Object::default() });
+        let registry = Registry::builtin();
+        let (seen, terms) = scene.seen(2, &registry).expect("there is a view C");
+        assert_eq!(terms, TermSelection::Specular);
+        assert_eq!(seen.display.exposure, -1.0);
+        assert_eq!(seen.display.tone_mapping, scene.display.tone_mapping);
+        for object in &seen.objects {
+            assert_eq!(seen.model_of(object), "phong");
+            assert_eq!(seen.shading_model_of(object), "gouraud");
+            assert_eq!(object.material.0["alpha"], Value::Integer(5));
+            assert_eq!(object.material.0["k_s"], Value::Number(0.3));
+            // The type of the object allows no more.
+            assert_eq!(object.tessellation, Some(256));
+        }
+        assert_eq!(scene.seen(0, &registry), Some((scene.clone(), TermSelection::All)));
+        assert_eq!(scene.seen(3, &registry), None);
+        assert_eq!([0, 1, 2, 3].map(|view| scene.view_name(view).to_owned()), ["A", "base", "top", "D"]);
+    }
+
+    #[test]
+    fn variants_in_a_circle_are_refused_and_end() {
+        let scene = scene(vec![named("a", Some("b")), named("b", Some("c")), named("c", Some("a"))]);
+        assert!(scene.overrides(1).is_some());
+        let found = check::scene(&scene, &Registry::builtin());
+        let found: Vec<_> = found.iter().map(ToString::to_string).collect();
+        let expected =
+            "variants[0].based_on is \"b\", but a variant must not be based on itself: a → b → c → a";
+        assert!(found.iter().any(|f| f == expected), "{found:?}");
+    }
+}

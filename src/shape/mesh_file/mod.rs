@@ -1,0 +1,156 @@
+//! Objects from files.
+
+use super::{Declaration, ObjectType, PolygonMesh};
+use crate::{
+    parameter::{FileFormat, FileProblem, Parameter, ParameterKind},
+    parameters,
+};
+
+mod glb;
+mod model;
+mod obj;
+mod ply;
+mod polygon;
+
+use model::{Builder, Model};
+
+/// Models as other programs write them: glTF 2.0 binary, OBJ and PLY, told apart by their first bytes. Of one, renderers
+/// read: the number of vertices, of normals and of polygons; the vertices, around the origin with a largest extent of 1;
+/// the normals; and of each polygon the number of its corners, three or four, four indices of vertices, four of normals
+/// (−1: none), and the direction in which it is brushed.
+pub static FORMAT: FileFormat = FileFormat {
+    name: "a glTF binary, OBJ or PLY file",
+    extensions: &["glb", "obj", "ply"],
+    max_bytes: 32 << 20,
+    read,
+    shipped: &[("knot.glb", include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/knot.glb")))],
+};
+
+fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
+    let whole = |message: String| FileProblem { line: None, message };
+    let mut builder = Builder::default();
+    if bytes.starts_with(glb::BEGIN) {
+        glb::read(bytes, &mut builder)?;
+    } else if bytes.starts_with(ply::BEGIN) {
+        ply::read(bytes, &mut builder)?;
+    } else if bytes.trim_ascii_start().starts_with(b"{") {
+        return Err(whole("it may be a glTF file of text; those must be binary (.glb)".to_owned()));
+    } else {
+        obj::read(bytes, &mut builder)?;
+        if builder.is_empty() {
+            let message = "it begins neither as glTF binary nor as PLY, and has no polygons (f) as OBJ";
+            return Err(whole(message.to_owned()));
+        }
+    }
+    builder.numbers().map_err(whole)
+}
+
+const PATH: Parameter = Parameter {
+    name: "path",
+    symbol: "",
+    label: "model file",
+    unit: "",
+    help: "The glTF binary (.glb), OBJ or PLY file with the polygons; relative to the folder of the scene.",
+    kind: ParameterKind::File { format: &FORMAT, default: "knot.glb" },
+    used_when: None,
+};
+
+const NORMALS: Parameter = Parameter {
+    name: "normals",
+    symbol: "",
+    label: "vertex normals",
+    unit: "",
+    help: "The mean of the normals of the polygons that meet in a vertex, or those of the file, where it has them.",
+    kind: ParameterKind::Choice {
+        options: &[("computed", "Mean of the polygons"), ("file", "From the file")],
+        default: 0,
+    },
+    used_when: None,
+};
+
+parameters! {
+    /// **Mesh**: the polygons of a [file](FORMAT). They are scaled and moved so that the largest extent of the box around
+    /// them is the size of the object, and the middle of that box is its position; x, y and z are those of the file.
+    ///
+    /// Vertices in one place are one, so that the mean of the normals (CA DD9) is over all polygons that meet there. With
+    /// the normals of the file they are one where their normals are equal, too, so that edges that the file means to be
+    /// sharp stay sharp. Polygons of more than four corners are cut into triangles. A polygon is brushed where its first
+    /// texture coordinate grows, and horizontally if the file has none.
+    pub struct MeshFile {
+        /// The polygons.
+        path: file = PATH,
+        /// The origin of vertex normals: 0 for their mean, 1 for the file.
+        normals: choice = NORMALS,
+    }
+}
+
+impl ObjectType for MeshFile {
+    const DECLARATION: Declaration = Declaration {
+        id: "mesh",
+        name: "Mesh",
+        summary: "The polygons of a file: any shape, as modelling programs write it.",
+        glyph: "▲",
+        tessellation_help: "Its polygons are those of the file.",
+        tessellation: 1..=1,
+        default_tessellation: 1,
+    };
+
+    fn mesh(&self, _: u32) -> PolygonMesh {
+        Model::new(&self.path.numbers).map(|model| model.mesh(self.normals == 1)).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    /// The curve along which the tube of `scripts/knot` runs, and its direction, as the file has them.
+    fn curve(t: f32) -> (Vec3, Vec3) {
+        let (s, c) = (f32::sin, f32::cos);
+        let point = Vec3::new(s(t) + 2.0 * s(2.0 * t), c(t) - 2.0 * c(2.0 * t), -s(3.0 * t));
+        let along = Vec3::new(c(t) + 4.0 * c(2.0 * t), -s(t) + 4.0 * s(2.0 * t), -3.0 * c(3.0 * t));
+        (point, along.normalize())
+    }
+
+    #[test]
+    fn the_shipped_model_is_the_knot_of_its_formula() {
+        const EXTENT: f32 = 6.707_968;
+        let mesh = MeshFile { normals: 1, ..MeshFile::default() }.mesh(1);
+        assert_eq!((mesh.positions.len(), mesh.polygons.len()), (128 * 12, 2 * 128 * 12));
+        // The middle of the box around it: the knot has three axes of symmetry, but none along y.
+        let circles = (0..128).map(|i| curve(std::f32::consts::TAU * i as f32 / 128.0)).collect::<Vec<_>>();
+        let offset = mesh.positions.iter().sum::<Vec3>() / mesh.positions.len() as f32
+            - circles.iter().map(|(p, _)| *p).sum::<Vec3>() / 128.0 / EXTENT;
+        let tangents = mesh.vertex_tangents();
+        for ((p, n), t) in mesh.positions.iter().zip(mesh.vertex_normals()).zip(tangents) {
+            let at = (*p - offset) * EXTENT;
+            let (middle, along) = circles
+                .iter()
+                .min_by(|a, b| (at - a.0 - 0.62 * n).length().total_cmp(&(at - b.0 - 0.62 * n).length()))
+                .expect("many");
+            assert!(((at - *middle).length() - 0.62).abs() < 1e-3, "{at}");
+            assert!(((at - *middle) / 0.62 - n).length() < 2e-3, "{at} {n}");
+            assert!(along.dot(n).abs() < 1e-3 && along.dot(t) > 0.95, "{along} {t}");
+        }
+        // The wrong twin, the mean of the polygons, is not exact.
+        let computed = MeshFile::default().mesh(1);
+        let off: f32 =
+            computed.vertex_normals().iter().zip(mesh.vertex_normals()).map(|(a, b)| (*a - b).length()).sum();
+        assert!(off > 0.01 && computed.positions == mesh.positions, "{off}");
+    }
+
+    #[test]
+    fn formats_are_told_apart_by_their_content() {
+        let said = |bytes: &[u8]| read(bytes).expect_err("no model").message;
+        assert!(said(b"").contains("begins neither as glTF binary nor as PLY"));
+        assert!(said(b"a letter\nto nobody").contains("has no polygons (f) as OBJ"));
+        assert!(said(b" {\"asset\":{}}").contains("must be binary (.glb)"));
+        assert!(said(b"glTF").contains("ends before"));
+        assert!(said(b"ply\nformat").contains("no valid PLY file"));
+        assert!(said(&[0xff; 100]).contains("begins neither"));
+        let square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n";
+        assert!(read(square.as_bytes()).is_ok());
+    }
+}

@@ -1,0 +1,317 @@
+//! PLY files: G. Turk (1994), *The PLY Polygon File Format*, Stanford University; as text or binary. Read are the elements
+//! `vertex`, with positions, normals and texture coordinates, and `face`.
+
+use glam::{Vec2, Vec3};
+use ply_rs_bw::{
+    parser::{ParseError, Parser, Reader},
+    ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType},
+};
+
+use super::model::{Builder, Corner, MAX_POLYGONS, MAX_VERTICES};
+use crate::{parameter::FileProblem, text::shortened};
+
+/// The first bytes of such a file.
+pub const BEGIN: &[u8] = b"ply";
+
+/// The names of the list of corners.
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+/// The names of texture coordinates.
+const TEXTURES: [[&str; 2]; 4] =
+    [["s", "t"], ["u", "v"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
+
+/// A vertex.
+#[derive(Clone, Copy, Default)]
+struct Vertex {
+    position: Vec3,
+    normal: Vec3,
+    texture: Vec2,
+}
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let texture = |k: usize| TEXTURES.iter().any(|names| names[k] == name);
+        let to = match name {
+            "x" => &mut self.position.x,
+            "y" => &mut self.position.y,
+            "z" => &mut self.position.z,
+            "nx" => &mut self.normal.x,
+            "ny" => &mut self.normal.y,
+            "nz" => &mut self.normal.z,
+            _ if texture(0) => &mut self.texture.x,
+            _ if texture(1) => &mut self.texture.y,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        match value.to_f32_lossy() {
+            Some(number) => *to = number,
+            None => return PropertyAccessResult::UnsupportedType,
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+/// A face: its corners; none if one is below 0.
+#[derive(Default)]
+struct Face(Option<Vec<u32>>);
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if !CORNERS.contains(&name) {
+            return PropertyAccessResult::Ignored;
+        }
+        self.0 = value.to_u32_list();
+        PropertyAccessResult::Set
+    }
+}
+
+/// Another element, which is passed over.
+struct Other;
+
+impl PropertyAccess for Other {
+    fn new() -> Self {
+        Self
+    }
+}
+
+/// Reads the polygons of a file.
+pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
+    let mut reader = Reader::new(bytes);
+    let header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| told(&e, true))?;
+    let whole = |message: String| FileProblem { line: None, message };
+    let is_text = header.encoding == Encoding::Ascii;
+    let (vertex, face) = (header.elements.get("vertex"), header.elements.get("face"));
+    let (vertex, face) = (declared(vertex, "vertex"), declared(face, "face"));
+    let (vertex, face) = (vertex.map_err(whole)?, face.map_err(whole)?);
+    let has = |names: &[&str]| names.iter().all(|name| vertex.properties.contains_key(*name));
+    let (has_normals, has_texture) = (has(&["nx", "ny", "nz"]), TEXTURES.iter().any(|names| has(names)));
+    for (element, most, what) in [(vertex, MAX_VERTICES, "vertices"), (face, MAX_POLYGONS, "polygons")] {
+        if element.count > most {
+            return Err(whole(format!("it has {} {what}; at most {most} are read", element.count)));
+        }
+    }
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for element in header.elements.values() {
+        let read = match element.name.as_str() {
+            "vertex" => Parser::<Vertex>::new()
+                .read_payload_for_element(&mut reader, element, &header)
+                .map(|v| vertices = v),
+            "face" => Parser::<Face>::new()
+                .read_payload_for_element(&mut reader, element, &header)
+                .map(|f| faces = f),
+            // A file of nothing may claim any number of them.
+            name if element.count > bytes.len() => {
+                return Err(whole(format!(
+                    "the file ends before {} of the element {}",
+                    element.count,
+                    shortened(name)
+                )));
+            }
+            _ => Parser::<Other>::new().read_payload_for_element(&mut reader, element, &header).map(|_| ()),
+        };
+        read.map_err(|e| told(&e, is_text))?;
+    }
+    for (i, Face(face)) in faces.iter().enumerate() {
+        let corner = |index: &u32| {
+            let Vertex { position, normal, texture } = *vertices.get(*index as usize)?;
+            Some(Corner {
+                position,
+                normal: has_normals.then_some(normal),
+                texture: has_texture.then_some(texture),
+            })
+        };
+        let corners: Option<Vec<_>> = face.iter().flatten().map(corner).collect();
+        let corners = corners.filter(|_| face.is_some()).ok_or_else(|| {
+            let count = vertices.len();
+            whole(format!("face {i} has a corner that is none of the {count} vertices, counted from 0"))
+        })?;
+        to.polygon(&corners).map_err(whole)?;
+    }
+    Ok(())
+}
+
+/// An element of the header with the properties that it must have.
+fn declared<'a>(element: Option<&'a ElementDef>, name: &str) -> Result<&'a ElementDef, String> {
+    let element = element.ok_or_else(|| format!("its header has no element {name}"))?;
+    let kind = |name: &str| element.properties.get(name).map(|p| &p.data_type);
+    let rule = if name == "vertex" {
+        let scalar = |axis: &str| matches!(kind(axis), Some(PropertyType::Scalar(_)));
+        (!["x", "y", "z"].into_iter().all(scalar)).then_some("the numbers x, y and z")
+    } else {
+        let list = |name: &str| matches!(kind(name), Some(PropertyType::List(..)));
+        (!CORNERS.into_iter().any(list)).then_some("the list vertex_indices")
+    };
+    match rule {
+        None => Ok(element),
+        Some(rule) => Err(format!("the element {name} of its header must have {rule}")),
+    }
+}
+
+/// A mistake that the library found, in one line, with the line of the file if it is text.
+fn told(error: &ParseError, is_text: bool) -> FileProblem {
+    let said = error.to_string();
+    let said = said.split_once(": ").filter(|_| error.line().is_some()).map_or(&*said, |(_, said)| said);
+    // What follows the first line repeats that of the file.
+    let said = said.lines().next().unwrap_or_default().trim_end_matches(['.', ' ']);
+    FileProblem {
+        line: error.line().filter(|line| is_text && *line > 0),
+        message: format!("it is no valid PLY file: {}", shortened(said)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::{PolygonMesh, mesh_file::model::Model};
+
+    fn numbers(bytes: &[u8]) -> Result<Vec<f32>, String> {
+        let mut builder = Builder::default();
+        read(bytes, &mut builder)
+            .map_err(|FileProblem { line, message }| format!("{}: {message}", line.unwrap_or_default()))?;
+        builder.numbers()
+    }
+
+    fn mesh(bytes: &[u8], own_normals: bool) -> PolygonMesh {
+        match numbers(bytes) {
+            Ok(numbers) => Model::new(&numbers).expect("a model").mesh(own_normals),
+            Err(what) => panic!("{what} in {}", String::from_utf8_lossy(bytes)),
+        }
+    }
+
+    const SQUARE: &str = "ply\nformat ascii 1.0\ncomment a square\nelement vertex 4\nproperty float x\nproperty double y\n\
+                          property float z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\n\
+                          end_header\n0 0 0 7\n2 0 0 7\n2 1 0 7\n0 1 0 7\n4 0 1 2 3\n";
+
+    /// The same as numbers in bytes.
+    fn binary(little: bool) -> Vec<u8> {
+        let header = SQUARE.split_inclusive("end_header\n").next().expect("a header");
+        let mut bytes = header
+            .replace("ascii", if little { "binary_little_endian" } else { "binary_big_endian" })
+            .into_bytes();
+        for (x, y) in [(0.0f32, 0.0f64), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)] {
+            if little {
+                bytes.extend(x.to_le_bytes());
+                bytes.extend(y.to_le_bytes());
+            } else {
+                bytes.extend(x.to_be_bytes());
+                bytes.extend(y.to_be_bytes());
+            }
+            bytes.extend([0, 0, 0, 0, 7]);
+        }
+        bytes.push(4);
+        for i in 0..4i32 {
+            bytes.extend(if little { i.to_le_bytes() } else { i.to_be_bytes() });
+        }
+        bytes
+    }
+
+    #[test]
+    fn text_and_both_orders_of_bytes_give_the_same_mesh() {
+        let expected = [[-0.5, -0.25], [0.5, -0.25], [0.5, 0.25], [-0.5, 0.25]];
+        let windows = SQUARE.replace('\n', "\r\n").into_bytes();
+        for bytes in [SQUARE.as_bytes(), &windows, &binary(true), &binary(false)] {
+            let mesh = mesh(bytes, false);
+            assert_eq!(mesh.positions, expected.map(|[x, y]| Vec3::new(x, y, 0.0)));
+            assert_eq!(mesh.polygons.len(), 1);
+            assert_eq!(mesh.polygons[0].corners(), [0, 1, 2, 3]);
+        }
+    }
+
+    #[test]
+    fn normals_texture_coordinates_and_other_elements_are_understood() {
+        let text = "ply\nformat ascii 1.0\nelement camera 2\nproperty float a\nelement vertex 3\nproperty float x\n\
+                    property float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n\
+                    property float s\nproperty float t\nelement face 1\nproperty list uchar uint vertex_index\n\
+                    property uchar flags\nend_header\n1\n2\n0 0 0 0 3 4 0 0\n1 0 0 0 3 4 0 1\n0 1 0 0 3 4 1 0\n3 0 1 2 9\n";
+        let mesh = mesh(text.as_bytes(), true);
+        assert_eq!(mesh.vertex_normals(), [Vec3::new(0.0, 0.6, 0.8); 3]);
+        // s grows along y.
+        assert!((mesh.polygon_tangents()[0] - Vec3::Y).length() < 1e-6);
+        assert_eq!(super::tests::mesh(text.as_bytes(), false).vertex_normals(), [Vec3::Z; 3]);
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_lines() {
+        for (from, to, expected) in [
+            ("format ascii 1.0\n", "", "0: it is no valid PLY file: No format line found"),
+            ("element vertex 4", "element vertex four", "4: it is no valid PLY file: "),
+            ("element vertex 4", "element point 4", "0: its header has no element vertex"),
+            (
+                "property float z\n",
+                "",
+                "0: the element vertex of its header must have the numbers x, y and z",
+            ),
+            (
+                "uchar int vertex_indices",
+                "uchar int strips",
+                "0: the element face of its header must have the list",
+            ),
+            ("element face", "element faces", "0: its header has no element face"),
+            (
+                "element vertex 4",
+                "element vertex 5000000",
+                "0: it has 5000000 vertices; at most 2000000 are read",
+            ),
+            ("element face 1", "element face 500001", "0: it has 500001 polygons; at most 500000 are read"),
+            ("element face 1", "element face 2", "17: it is no valid PLY file: Unexpected end of file"),
+            ("2 1 0 7", "2 one 0 7", "14: it is no valid PLY file: "),
+            ("2 1 0 7", "2 1", "14: it is no valid PLY file: "),
+            ("4 0 1 2 3", "4 0 1 2", "16: it is no valid PLY file: "),
+            (
+                "4 0 1 2 3",
+                "4 0 1 2 4",
+                "0: face 0 has a corner that is none of the 4 vertices, counted from 0",
+            ),
+            ("4 0 1 2 3", "4 0 1 2 -1", "0: face 0 has a corner that is none of the 4 vertices"),
+            ("4 0 1 2 3", "2 0 1", "it has no polygons with an area"),
+            ("2 0 0 7", "1e99 0 0 7", "0: a corner of polygon 1 is at (inf, 0, 0), which is nowhere"),
+        ] {
+            assert!(SQUARE.contains(from), "{from}");
+            let said = numbers(SQUARE.replacen(from, to, 1).as_bytes()).expect_err(to);
+            assert!(said.starts_with(expected), "{said}\n{expected}");
+            assert!(!said.contains('\n'), "{said}");
+        }
+        assert!(numbers(b"ply").is_err() && numbers(b"ply\n\xff\xfe").is_err());
+    }
+
+    #[test]
+    fn files_that_claim_more_than_they_have_are_refused_at_once() {
+        let header = SQUARE.split_inclusive("end_header\n").next().expect("a header");
+        for encoding in ["ascii", "binary_little_endian"] {
+            let claims =
+                header.replace("ascii", encoding).replace("element vertex 4", "element vertex 2000000");
+            assert!(numbers(claims.as_bytes()).is_err(), "{encoding}");
+            let nothing = header
+                .replace("ascii", encoding)
+                .replace("element vertex", "element nothing 18446744073709551615\nelement vertex");
+            assert!(numbers(nothing.as_bytes()).is_err(), "{encoding}");
+        }
+        let mut long =
+            header.replace("ascii", "binary_little_endian").replace("list uchar", "list uint").into_bytes();
+        long.extend([0; 4 * 17]);
+        long.extend([0xff; 4]);
+        assert!(numbers(&long).is_err());
+    }
+
+    #[test]
+    fn files_with_any_byte_changed_are_read_or_refused() {
+        for whole in [SQUARE.as_bytes().to_vec(), binary(true), binary(false)] {
+            for i in 0..whole.len() {
+                for byte in [0, b'-', b'9', b'\n', b' ', 0x7f, 0xff] {
+                    let mut bytes = whole.clone();
+                    bytes[i] = byte;
+                    if let Ok(numbers) = numbers(&bytes) {
+                        let mesh = Model::new(&numbers).expect("a model").mesh(true);
+                        assert!(mesh.positions.iter().all(|p| p.is_finite()), "byte {i} is {byte}");
+                    }
+                }
+            }
+        }
+    }
+}

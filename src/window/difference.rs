@@ -1,0 +1,336 @@
+//! The numbers and the map of a comparison: two views are read back once they have come to rest, and compared in a thread
+//! of its own.
+//!
+//! The display codes are those on screen. Light, and what objects cover, the CPU renderer says: from the screen alone they
+//! cannot be known.
+
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use bevy::{
+    app::{App, Plugin, PostUpdate},
+    asset::{Assets, Handle, RenderAssetUsages},
+    camera::RenderTarget,
+    ecs::prelude::*,
+    image::Image,
+    math::Vec3,
+    render::{
+        gpu_readback::{Readback, ReadbackComplete},
+        render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages},
+    },
+    window::RequestRedraw,
+};
+use glam::UVec2;
+
+use super::{
+    WindowView,
+    redraw::{SETTLING_FRAMES, Settling},
+    views::{DifferenceMap, OtherView},
+};
+use crate::{
+    compare::{Measured, Pair, Shown},
+    optics::TermSelection,
+    panel::state::{Numbers, PictureArea, Session},
+    reference::{self, Picture, Settings},
+    registry::Registry,
+    render::view::{Drawing, View, ViewSystems, texture_of},
+    scene::{
+        Comparison, Observer, Scene,
+        comparison::{Compared, Layout},
+        observer::vertical_field_of_view,
+        variant::LETTERS,
+    },
+};
+
+/// Compares the views of a comparison.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DifferencePlugin;
+
+impl Plugin for DifferencePlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Comparing>()
+            .init_resource::<DifferenceMap>()
+            .init_resource::<Settling>()
+            .add_systems(PostUpdate, compare.after(ViewSystems));
+    }
+}
+
+/// What is compared.
+#[derive(Clone, Debug, PartialEq)]
+struct Question {
+    comparison: Comparison,
+    /// The other view.
+    with: usize,
+    size: UVec2,
+    /// The pictures that have been drawn of each.
+    drawn: [u64; 2],
+    textures: [Handle<Image>; 2],
+}
+
+/// The answer of the thread.
+struct Answer {
+    measured: Option<Measured>,
+    largest: Option<(f32, [u32; 2])>,
+    map: Option<Vec<u8>>,
+}
+
+/// The comparison that is under way, and the one that is known.
+#[derive(Default, Resource)]
+struct Comparing {
+    asked: Option<Question>,
+    known: Option<Question>,
+    /// The entities that read the textures back, and what they have read.
+    read: Vec<(Entity, Option<Vec<u8>>)>,
+    thread: Option<std::sync::Mutex<Receiver<Answer>>>,
+}
+
+fn compare(
+    area: Option<Res<PictureArea>>,
+    registry: Res<Registry>,
+    views: Query<
+        (&View, &Drawing, &RenderTarget, Option<&OtherView>),
+        Or<(With<WindowView>, With<OtherView>)>,
+    >,
+    mut session: ResMut<Session>,
+    mut comparing: ResMut<Comparing>,
+    mut map: ResMut<DifferenceMap>,
+    mut images: ResMut<Assets<Image>>,
+    mut settling: ResMut<Settling>,
+    mut requests: MessageWriter<RequestRedraw>,
+    mut commands: Commands,
+) {
+    let comparison = session.document.comparison;
+    let with = match (comparison.layout, session.active()) {
+        (Layout::SideBySide, view @ 1..) => view,
+        _ => comparison.with,
+    };
+    let cells = area.as_deref().map_or(&[][..], |area| &area.cells);
+    let own = cells.first().map_or(0, |cell| cell.view);
+    let find = |number: usize| views.iter().find(|(.., other)| other.map_or(own, |other| other.0) == number);
+    let both = (cells.len() > 1).then(|| find(0).zip(find(with))).flatten();
+    let Some(((view, a, target_a, _), (_, b, target_b, _))) = both else {
+        if session.facts.comparison.is_some() {
+            session.bypass_change_detection().facts.comparison = None;
+        }
+        return forget(&mut comparing, &mut commands);
+    };
+    let rests = a.is_done() && b.is_done() && !a.draws() && !b.draws();
+    if rests && let (Some(texture_a), Some(texture_b)) = (texture_of(target_a), texture_of(target_b)) {
+        // Where the edge of a wipe is, and how the views are arranged, changes no number.
+        let question = Question {
+            comparison: Comparison { split: 0.0, ..comparison },
+            with,
+            size: view.size,
+            drawn: [a.drawn(), b.drawn()],
+            textures: [texture_a.clone(), texture_b.clone()],
+        };
+        let under_way = comparing.asked.is_some();
+        if !under_way && comparing.known.as_ref() != Some(&question) {
+            for texture in &question.textures {
+                let reads = commands.spawn(Readback::texture(texture.clone())).observe(arrived).id();
+                comparing.read.push((reads, None));
+            }
+            comparing.asked = Some(question);
+        }
+    }
+    if comparing.asked.is_some() {
+        requests.write(RequestRedraw);
+    }
+    if comparing.thread.is_none()
+        && comparing.read.len() == 2
+        && comparing.read.iter().all(|(_, bytes)| bytes.is_some())
+        && let Some(question) = comparing.asked.clone()
+    {
+        let mut codes = Vec::new();
+        for (entity, bytes) in comparing.read.drain(..) {
+            commands.entity(entity).despawn();
+            codes.extend(bytes);
+        }
+        let job = Job {
+            question,
+            codes,
+            scene: (*session.document).clone(),
+            eye: session.facts.eye,
+            forward: session.facts.camera * Vec3::NEG_Z,
+            registry: registry.clone(),
+        };
+        let (tell, hear) = channel();
+        // It ends by itself; an answer that nobody waits for any more is dropped.
+        std::thread::spawn(move || _ = tell.send(job.run()));
+        comparing.thread = Some(std::sync::Mutex::new(hear));
+    }
+    let Some(heard) =
+        comparing.thread.as_mut().and_then(|thread| thread.get_mut().ok()).map(|t| t.try_recv())
+    else {
+        return;
+    };
+    let answer = match heard {
+        Err(TryRecvError::Empty) => return,
+        Err(TryRecvError::Disconnected) => None,
+        Ok(answer) => Some(answer),
+    };
+    comparing.thread = None;
+    comparing.known = comparing.asked.take();
+    let Some(answer) = answer else { return };
+    let size = comparing.known.as_ref().map_or(UVec2::ONE, |known| known.size);
+    session.bypass_change_detection().facts.comparison = Some(numbers(&answer, with));
+    if let Some(colours) = answer.map {
+        let rgba: Vec<u8> =
+            colours.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
+        let extent = Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 };
+        let mut image = Image::new(
+            extent,
+            TextureDimension::D2,
+            rgba,
+            TextureFormat::Rgba8UnormSrgb,
+            RenderAssetUsages::RENDER_WORLD,
+        );
+        image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+        map.0 = Some(images.add(image));
+    }
+    settling.draw(SETTLING_FRAMES);
+    requests.write(RequestRedraw);
+}
+
+/// Ends what is under way: nothing is compared any more.
+fn forget(comparing: &mut ResMut<Comparing>, commands: &mut Commands) {
+    if comparing.asked.is_none() && comparing.known.is_none() {
+        return;
+    }
+    for (entity, _) in comparing.read.drain(..) {
+        commands.entity(entity).despawn();
+    }
+    **comparing = Comparing::default();
+}
+
+fn arrived(answer: On<ReadbackComplete>, mut comparing: ResMut<Comparing>) {
+    let entity = answer.entity;
+    if let Some((_, bytes)) = comparing.read.iter_mut().find(|(reads, _)| *reads == entity) {
+        bytes.get_or_insert_with(|| answer.data.clone());
+    }
+}
+
+/// Everything that the thread needs.
+struct Job {
+    question: Question,
+    codes: Vec<Vec<u8>>,
+    scene: Scene,
+    eye: Vec3,
+    forward: Vec3,
+    registry: Registry,
+}
+
+impl Job {
+    fn run(self) -> Answer {
+        let size = self.question.size;
+        let shown: Vec<Shown> = [0, self.question.with]
+            .into_iter()
+            .zip(&self.codes)
+            .filter_map(|(view, bytes)| {
+                let codes = codes(bytes, size)?;
+                Shown::of_codes(size.x, size.y, codes).ok()?.with_light(self.light(view)?).ok()
+            })
+            .collect();
+        let nothing = Answer { measured: None, largest: None, map: None };
+        let [a, b] = shown.as_slice() else { return nothing };
+        let comparison = Comparison { with: self.question.with, ..self.question.comparison };
+        let Ok(pair) = Pair::new(a, b) else { return nothing };
+        let largest = pair.differences(&Comparison { sign: Default::default(), ..comparison }).ok();
+        let largest = largest.and_then(|d| d.largest).map(|l| (l.difference.abs(), [l.x, l.y]));
+        let map = (comparison.layout == Layout::Difference).then(|| pair.map(&comparison).ok()).flatten();
+        Answer { measured: pair.measure(), largest, map }
+    }
+
+    /// The light of a view, from where the camera of the window stands.
+    fn light(&self, view: usize) -> Option<Picture> {
+        let size = self.question.size;
+        let (mut seen, terms) = self.scene.seen(view, &self.registry)?;
+        let aspect = size.x as f32 / size.y as f32;
+        let angle = vertical_field_of_view(seen.observer.field_of_view, aspect, true).to_degrees();
+        seen.observer = Observer { position: self.eye, direction: self.forward, field_of_view: angle };
+        let settings = Settings { width: size.x, height: size.y, samples: 1, terms };
+        let terms =
+            if self.question.comparison.values == Compared::Light { terms } else { TermSelection::Ambient };
+        Some(reference::render(&seen, &self.registry, &Settings { terms, ..settings }))
+    }
+}
+
+/// The codes in a texture that was read back, whose rows begin at multiples of 256 bytes.
+fn codes(bytes: &[u8], size: UVec2) -> Option<Vec<u8>> {
+    let row = 4 * size.x as usize;
+    let stride = if size.y > 1 { row.next_multiple_of(256) } else { row };
+    let mut out = Vec::with_capacity(3 * size.x as usize * size.y as usize);
+    for y in 0..size.y as usize {
+        let row = bytes.get(y * stride..y * stride + row)?;
+        out.extend(row.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]));
+    }
+    Some(out)
+}
+
+/// The numbers for people, over the pixels that objects cover.
+fn numbers(answer: &Answer, with: usize) -> Numbers {
+    let Some(measured) = &answer.measured else { return Numbers::default() };
+    let shown = measured.covered.as_ref().unwrap_or(&measured.all);
+    let letter = LETTERS.get(with).copied().unwrap_or("B");
+    let psnr = if shown.psnr.is_finite() { format!("{:.1} dB", shown.psnr) } else { "∞".to_owned() };
+    let mut all = vec![
+        (
+            "RMSE",
+            format!("{:.3}", shown.rmse),
+            format!(
+                "Root mean square error of {letter} against A, in display codes from 0 to 1, over the pixels that \
+                 objects cover; over all pixels {:.3}.",
+                measured.all.rmse
+            ),
+        ),
+        (
+            "FLIP",
+            format!("{:.3}", shown.flip),
+            format!(
+                "Mean FLIP (Andersson et al. 2020): the difference that people see when they flip between the \
+                 pictures, 0 for none to 1, over the pixels that objects cover; over all pixels {:.3}.",
+                measured.all.flip
+            ),
+        ),
+        (
+            "SSIM",
+            format!("{:.3}", shown.ssim),
+            format!(
+                "Structural similarity (Wang et al. 2004): 1 for equal pictures, over the pixels that objects cover; \
+                 over all pixels {:.3}.",
+                measured.all.ssim
+            ),
+        ),
+        (
+            "PSNR",
+            psnr,
+            "Peak signal-to-noise ratio: 20 log₁₀ of 1 / RMSE, over the pixels that objects cover."
+                .to_owned(),
+        ),
+    ];
+    if let Some((difference, [x, y])) = answer.largest {
+        let text = if difference >= 10.0 { format!("{difference:.0}") } else { format!("{difference:.2}") };
+        all.push((
+            "max",
+            text,
+            format!(
+                "The largest difference, in the channel and the values that are chosen: at pixel {x}, {y}."
+            ),
+        ));
+    }
+    Numbers(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_textures_are_read_without_what_fills_them_up() {
+        let size = UVec2::new(3, 2);
+        let mut bytes = vec![0; 256 + 12];
+        bytes[..12].copy_from_slice(&[1, 2, 3, 255, 4, 5, 6, 255, 7, 8, 9, 255]);
+        bytes[256..].copy_from_slice(&[10, 11, 12, 255, 13, 14, 15, 255, 16, 17, 18, 255]);
+        assert_eq!(codes(&bytes, size), Some((1..=18).collect()));
+        assert_eq!(codes(&bytes[..260], size), None);
+    }
+}

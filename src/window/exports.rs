@@ -1,0 +1,137 @@
+//! Exports of the window: one at a time, beside it.
+
+use std::path::{Path, PathBuf};
+
+use bevy::ecs::prelude::*;
+
+use super::background::Background;
+use crate::{
+    export::{
+        ExportError, Form, Progress, Request, form,
+        write::{WriteError, inputs, may_write, write},
+    },
+    files,
+    panel::{
+        export::{SIZE, object},
+        state::{Exporting, Session, Severity},
+    },
+    registry::Registry,
+    scene::Scene,
+};
+
+/// The notes of an export, or why there is none.
+type Outcome = Result<Vec<String>, Vec<String>>;
+
+/// The export that runs, by the name of its form.
+#[derive(Debug, Default, Resource)]
+pub(super) struct Exports(Background<&'static str, Ended>);
+
+/// The id of the form, the place, and the outcome.
+type Ended = (&'static str, PathBuf, Outcome);
+
+/// An export with everything that it needs.
+struct Job {
+    form: &'static Form,
+    scene: Scene,
+    registry: Registry,
+    stem: String,
+    object: usize,
+    path: PathBuf,
+}
+
+impl Exports {
+    /// Begins an export and comes back at once, unless something is in its place: then the user is asked. `wake` is
+    /// called at each step.
+    pub(super) fn begin(
+        &self,
+        id: &str,
+        path: PathBuf,
+        overwrite: bool,
+        session: &mut Session,
+        registry: &Registry,
+        wake: impl Fn() + Send + 'static,
+    ) {
+        let Some(form) = form(id) else { return };
+        if self.0.running().is_some() {
+            return;
+        }
+        let path = with_extension(form, path);
+        let inputs = inputs(session.path.as_deref(), &session.document, registry);
+        match may_write(form, &path, overwrite, &inputs) {
+            Ok(()) => {}
+            Err(WriteError::Exists(_)) => return session.export_exists(form.id, path),
+            Err(error) => return session.say(Severity::Error, format!("{error}.")),
+        }
+        let job = Job {
+            form,
+            scene: (*session.document).clone(),
+            registry: registry.clone(),
+            stem: session.stem(),
+            object: object(session).unwrap_or_default(),
+            path,
+        };
+        let broken = vec!["The export broke off: an error of this program.".to_owned()];
+        let place = job.path.clone();
+        self.0.begin(
+            form.name,
+            wake,
+            move || (form.id, place, Err(broken)),
+            move |progress| {
+                let outcome = run(&job, progress);
+                (form.id, job.path, outcome)
+            },
+        );
+    }
+
+    /// Stops the export at its next step.
+    pub(super) fn cancel(&self) {
+        self.0.cancel();
+    }
+
+    /// Tells the panels how far it is. Returns the folder of one that has just ended well.
+    pub(super) fn report(&self, session: &mut ResMut<Session>) -> Option<PathBuf> {
+        let running =
+            self.0.running().map(|now| Exporting { name: now.label, done: now.done, step: now.step });
+        if session.facts.export != running {
+            session.bypass_change_detection().facts.export = running;
+        }
+        let (form, path, outcome) = self.0.take()?;
+        let folder = if path.is_dir() { path.clone() } else { files::folder_of(&path).to_owned() };
+        let done = outcome.is_ok().then_some(folder);
+        session.exported(form, path, outcome);
+        done
+    }
+}
+
+/// The file with the extension of the form, if the user typed none.
+fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
+    match form.makes {
+        crate::export::Makes::File(extension) if !extension.is_empty() && path.extension().is_none() => {
+            path.with_extension(extension)
+        }
+        _ => path,
+    }
+}
+
+fn run(job: &Job, progress: &Progress) -> Outcome {
+    let Job { form, scene, registry, stem, object, path } = job;
+    let request = Request { scene, registry, stem, size: SIZE, object: *object };
+    let made = (form.make)(&request, progress).and_then(|export| {
+        progress.step(1.0, "writing it")?;
+        Ok(export)
+    });
+    let export = made.map_err(|error| match error {
+        ExportError::Refused(reasons) => reasons.into_iter().map(|reason| format!("{reason}.")).collect(),
+        ExportError::Cancelled => vec!["The export was cancelled.".to_owned()],
+    })?;
+    write(&export, path).map_err(|error| vec![format!("{error}.")])?;
+    Ok(export.notes)
+}
+
+/// Shows a folder in the file manager.
+pub(super) fn reveal(folder: &Path, session: &mut Session) {
+    if let Err(error) = ::open::that_detached(folder) {
+        session
+            .say(Severity::Warning, format!("The folder {} could not be shown: {error}.", folder.display()));
+    }
+}

@@ -1,0 +1,130 @@
+//! The views of a comparison in the window: one camera for all, textures of one size, and their places.
+
+use bevy::{
+    camera::{Camera, Hdr, RenderTarget},
+    ecs::prelude::*,
+    math::URect,
+    render::view::Msaa,
+    transform::components::Transform,
+    window::{PrimaryWindow, Window},
+};
+use bevy_egui::{PrimaryEguiContext, egui::Rect};
+use glam::UVec2;
+
+use super::{
+    WindowView,
+    place::{PicturePlace, area_of},
+};
+use crate::{
+    panel::state::{Cell, PictureArea},
+    render::{
+        camera::{PictureCamera, picture_camera},
+        entities::CurrentScene,
+        overrides::Overrides,
+        show::{ShownPicture, Shows},
+        view::{View, texture_of},
+    },
+};
+
+/// A view beside the one that the window always has: 0 is the scene itself, 1 view B.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct OtherView(pub(super) usize);
+
+/// The map of the difference between two views.
+#[derive(Resource, Clone, Debug, Default)]
+pub(super) struct DifferenceMap(pub(super) Option<bevy::asset::Handle<bevy::image::Image>>);
+
+/// The first cell is that of the view that the window always has.
+fn first(area: &PictureArea) -> usize {
+    area.cells.first().map_or(0, |cell| cell.view)
+}
+
+/// Gives every view that is to be seen a camera, which follows that of the window, and takes it from the others.
+pub(super) fn set_views(
+    area: Option<Res<PictureArea>>,
+    scene: Res<CurrentScene>,
+    main: Query<(Entity, &View, &Transform, &Camera, &Msaa, Option<&Overrides>), With<WindowView>>,
+    mut others: Query<
+        (Entity, &OtherView, &mut View, &mut Transform, &mut Camera, Option<&mut Overrides>),
+        Without<WindowView>,
+    >,
+    mut commands: Commands,
+) {
+    let Ok((entity, view, place, lens, samples, overrides)) = main.single() else { return };
+    let cells: &[Cell] = area.as_deref().map_or(&[], |area| &area.cells);
+    let own = area.as_deref().map_or(0, first);
+    let wanted = Overrides::of_view(&scene.0, own);
+    if overrides != wanted.as_ref() {
+        match wanted {
+            Some(wanted) => _ = commands.entity(entity).insert(wanted),
+            None => _ = commands.entity(entity).remove::<Overrides>(),
+        }
+    }
+    let shown: Vec<_> = cells.iter().map(|cell| cell.view).filter(|shown| *shown != own).collect();
+    let mut known = Vec::new();
+    for (entity, OtherView(number), mut other, mut transform, mut camera, overrides) in &mut others {
+        if !shown.contains(number) || known.contains(number) {
+            commands.entity(entity).despawn();
+            continue;
+        }
+        known.push(*number);
+        other.set_if_neq(*view);
+        transform.set_if_neq(*place);
+        if format!("{:?}", camera.clear_color) != format!("{:?}", lens.clear_color) {
+            camera.clear_color = lens.clear_color;
+        }
+        match (Overrides::of_view(&scene.0, *number), overrides) {
+            (Some(wanted), Some(mut overrides)) => _ = overrides.set_if_neq(wanted),
+            (Some(wanted), None) => _ = commands.entity(entity).insert(wanted),
+            (None, Some(_)) => _ = commands.entity(entity).remove::<Overrides>(),
+            (None, None) => {}
+        }
+    }
+    for number in shown.into_iter().filter(|number| !known.contains(number)) {
+        let samples = if *samples == Msaa::Off { 1 } else { 4 };
+        let mut new = commands.spawn((
+            picture_camera(samples),
+            Hdr,
+            RenderTarget::None { size: UVec2::ONE },
+            OtherView(number),
+            *view,
+        ));
+        // Where the window's camera stands, whoever moves it.
+        new.insert((PictureCamera { follows_observer: false, fits_width: true }, *place));
+        if let Some(overrides) = Overrides::of_view(&scene.0, number) {
+            new.insert(overrides);
+        }
+    }
+}
+
+/// Shows the textures of the views, and the map of their difference, in their places.
+pub(super) fn show_views(
+    area: Option<Res<PictureArea>>,
+    map: Option<Res<DifferenceMap>>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    views: Query<(&RenderTarget, Option<&OtherView>), Or<(With<WindowView>, With<OtherView>)>>,
+    mut shows: Single<&mut Shows, With<PrimaryEguiContext>>,
+) {
+    let area = area_of(area.as_deref(), &window);
+    let own = first(&area);
+    let texture = |view: usize| {
+        let mut all = views.iter().filter(|(_, other)| other.map_or(own, |other| other.0) == view);
+        all.find_map(|(target, _)| texture_of(target).cloned())
+    };
+    let place = |rect: Rect| PicturePlace::of_rect(rect, area.zoom, &window);
+    let mut pictures = Vec::new();
+    if area.cells.is_empty() {
+        let at = PicturePlace::of(&area, &window).at;
+        pictures.extend(texture(own).map(|image| ShownPicture { image, at, part: None }));
+    }
+    for cell in area.cells.iter().filter(|cell| cell.part.is_positive()) {
+        let (whole, part) = (place(cell.rect), place(cell.part));
+        let corner = part.at.saturating_sub(whole.at);
+        let part = (cell.part != cell.rect).then(|| URect::from_corners(corner, corner + part.size));
+        pictures.extend(texture(cell.view).map(|image| ShownPicture { image, at: whole.at, part }));
+    }
+    if let (Some(rect), Some(image)) = (area.map, map.and_then(|map| map.0.clone())) {
+        pictures.push(ShownPicture { image, at: place(rect).at, part: None });
+    }
+    shows.set_if_neq(Shows(pictures));
+}

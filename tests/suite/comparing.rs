@@ -1,0 +1,202 @@
+//! The window with several views of one scene.
+
+use std::fs;
+
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, vec2};
+use lights_camera_models::{
+    panel::state::{Action, CompareCommand, Session},
+    scene::{Variant, comparison::Layout},
+};
+
+use crate::{
+    panels::Bench,
+    screen::{Picture, Screen},
+};
+
+/// A red sphere that view B shows in blue.
+fn scene(layout: &str, more: &str) -> String {
+    format!(
+        r#"{{
+  "scene_size": {{ "height": 10, "width": 10, "depth": 10 }},
+  "reflection_model": "lambert",
+  "shading_model": "phong",
+  "lights": [{{ "type": "ambient", "intensity": 1 }}],
+  "observer": {{ "position": [5, 5, 9.5], "direction": [0, 0, -1] }},
+  "objects": [{{ "type": "sphere", "position": [5, 5, 5], "size": 3, "material": {{ "base_colour": [255, 0, 0] }} }}],
+  "variants": [{{ "name": "in blue", "material": {{ "base_colour": [0, 0, 255] }} }}],
+  "comparison": {{ "layout": "{layout}"{more} }}
+}}"#
+    )
+}
+
+const RED: fn([u8; 3]) -> bool = |p| p[0] > 200 && p[1] < 30 && p[2] < 30;
+const BLUE: fn([u8; 3]) -> bool = |p| p[2] > 200 && p[1] < 30 && p[0] < 30;
+
+#[test]
+fn a_window_shows_the_views_of_a_scene_in_every_layout() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("room.json");
+    fs::write(&file, scene("side_by_side", "")).expect("written");
+    let screen = Screen::new(1280, 720);
+    let mut window = screen.start(&["view", &file.to_string_lossy(), "--size", "1280x720"]);
+    // Between the panels, the picture is from 208 to 936.
+    let (left, right) = (210..570, 574..934);
+    let count = |picture: &Picture, x: &std::ops::Range<u32>, is: fn([u8; 3]) -> bool| {
+        picture.count(x.clone(), 70..640, is)
+    };
+    let picture =
+        window.until("both views", |p| count(p, &left, RED) > 3000 && count(p, &right, BLUE) > 3000);
+    assert_eq!((count(&picture, &left, BLUE), count(&picture, &right, RED)), (0, 0));
+
+    fs::write(&file, scene("wipe", "")).expect("written");
+    let halves = |p: &Picture| count(p, &left, RED) > 10_000 && count(p, &right, BLUE) > 10_000;
+    window.until("the halves of one sphere", halves);
+    let half = count(&window.rest(), &(210..934), BLUE);
+    fs::write(&file, scene("wipe", ", \"split\": 0.4")).expect("written");
+    window.until("more of the other view", |p| count(p, &(210..934), BLUE) > half + half / 8);
+    fs::write(&file, scene("wipe", ", \"edge\": \"horizontal\"")).expect("written");
+    window.until("one above the other", |p| {
+        let (top, bottom) = (70..330, 370..610);
+        p.count(210..934, top.clone(), RED) > 8000
+            && p.count(210..934, bottom.clone(), BLUE) > 8000
+            && p.count(210..934, top, BLUE) + p.count(210..934, bottom, RED) == 0
+    });
+
+    // Viridis: nothing is dark violet, all there is is yellow.
+    fs::write(&file, scene("difference", "")).expect("written");
+    let none = |p: [u8; 3]| p[0].abs_diff(68) < 4 && p[1] < 5 && p[2].abs_diff(84) < 4;
+    let most = |p: [u8; 3]| p[0] > 240 && p[1] > 220 && p[2] < 60;
+    window.until("the map of the difference", |p| {
+        count(p, &(210..934), none) > 100_000 && count(p, &(210..934), most) > 10_000
+    });
+
+    fs::write(&file, scene("single", "")).expect("written");
+    let picture = window.until("view A alone", |p| count(p, &(210..934), RED) > 20_000);
+    assert_eq!(count(&picture, &(210..934), BLUE), 0);
+    assert_eq!(window.said(), "");
+}
+
+const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
+
+fn bench() -> Bench {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    bench
+}
+
+/// The place of what a screen reader calls so.
+fn place(bench: &Bench, label: &str) -> Rect {
+    let seen = bench.tree.iter().find(|seen| seen.label.contains(label));
+    seen.unwrap_or_else(|| panic!("“{label}” is not shown")).rect
+}
+
+fn click(bench: &mut Bench, label: &str) {
+    let at = place(bench, label).center();
+    bench.click_at(at, PointerButton::Primary);
+    bench.settle();
+}
+
+#[test]
+fn a_second_view_is_added_changed_and_taken_back_by_hand() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.settle();
+    assert_eq!(bench.session.document.comparison.layout, Layout::SideBySide);
+    assert_eq!(bench.session.active(), 1);
+    // The shading at the top is that of view B.
+    bench.key(Key::P, Modifiers::NONE);
+    bench.settle();
+    assert_eq!(bench.session.document.shading_model, "gouraud");
+    assert_eq!(bench.session.variant().and_then(|v| v.shading_model.clone()).as_deref(), Some("phong"));
+    place(&bench, "shading model  Phong");
+    click(&mut bench, "shading model: back to A");
+    assert_eq!(bench.session.variant(), Some(&Variant::default()));
+    click(&mut bench, "View A");
+    assert_eq!(bench.session.active(), 0);
+    bench.key(Key::K, CTRL);
+    bench.settle();
+    assert_eq!(bench.session.active(), 1);
+    // A press of a shading model's key in view A is about the scene.
+    click(&mut bench, "View A");
+    bench.key(Key::F, Modifiers::NONE);
+    bench.settle();
+    assert_eq!(bench.session.document.shading_model, "flat");
+}
+
+#[test]
+fn the_edge_of_a_wipe_is_dragged_and_moved_by_keys_and_each_drag_is_one_step() {
+    let mut bench = bench();
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Wipe)));
+    bench.settle();
+    let steps = bench.session.document.done();
+    let edge = place(&bench, "Edge between the views");
+    let (from, to) = (edge.center(), edge.center() + vec2(-100.0, 0.0));
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    bench.frame(vec![Event::PointerMoved(from)]);
+    bench.frame(vec![button(from, true)]);
+    for i in 1..=5 {
+        bench.frame(vec![Event::PointerMoved(from.lerp(to, i as f32 / 5.0))]);
+    }
+    bench.frame(vec![button(to, false)]);
+    bench.settle();
+    let split = bench.session.document.comparison.split;
+    assert!((0.3..0.42).contains(&split), "{split}");
+    assert_eq!(bench.session.document.done(), steps + 1);
+    bench.key(Key::Period, Modifiers::NONE);
+    bench.settle();
+    assert!((bench.session.document.comparison.split - split - 0.02).abs() < 1e-3);
+    // The picture and its other view are as large as before, so neither is drawn again.
+    let size = |bench: &Bench| bench.area.cells.iter().map(|cell| cell.rect.size()).collect::<Vec<_>>();
+    let before = size(&bench);
+    assert_eq!(before.len(), 2);
+    bench.key(Key::Comma, Modifiers::NONE);
+    bench.settle();
+    assert_eq!(size(&bench), before);
+    bench.apply(Action::Undo);
+    bench.apply(Action::Undo);
+    bench.apply(Action::Undo);
+    assert_eq!(bench.session.document.comparison.split, 0.5);
+}
+
+#[test]
+fn views_have_one_size_in_every_layout_and_stay_within_the_picture() {
+    for size in [vec2(1280.0, 720.0), vec2(1920.0, 1080.0), vec2(1000.0, 560.0)] {
+        for views in 1..4 {
+            for layout in Layout::ALL {
+                let mut bench = bench();
+                bench.size = size;
+                for _ in 0..views {
+                    bench.apply(Action::Compare(CompareCommand::Add));
+                }
+                bench.apply(Action::Compare(CompareCommand::Layout(*layout)));
+                bench.settle();
+                bench.settle();
+                let cells = &bench.area.cells;
+                let expected = match layout {
+                    Layout::Single => 1,
+                    Layout::SideBySide => views + 1,
+                    _ => 2,
+                };
+                assert_eq!(cells.len(), expected, "{layout:?}");
+                for cell in cells {
+                    let (a, b) = (cell.rect.size(), cells[0].rect.size());
+                    assert!((a - b).abs().max_elem() < 0.01, "{layout:?}: {a:?} and {b:?}");
+                    assert!(a.min_elem() > 80.0, "{layout:?} at {size:?}: {a:?}");
+                    assert!(bench.area.rect.contains_rect(cell.rect), "{layout:?}");
+                    assert!(cell.part.is_negative() || cell.rect.contains_rect(cell.part), "{layout:?}");
+                }
+                if *layout == Layout::SideBySide {
+                    for (i, a) in cells.iter().enumerate() {
+                        assert!(cells[..i].iter().all(|b| !a.rect.shrink(0.1).intersects(b.rect)));
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,351 @@
+//! The handles of what is selected: a drag of one is a step of the history, and does not turn the camera.
+
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, vec2};
+use glam::{Quat, Vec3};
+use lights_camera_models::{
+    document::{Edit, ObjectField, Selection},
+    panel::{
+        marks::Lens,
+        state::{Action, CompareCommand, HandleChange, HandleMode, Session, ViewChange},
+    },
+    scene::{Light, Scene, comparison::Layout},
+};
+
+use crate::panels::Bench;
+
+const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
+
+/// A sphere seen from the right and above, with a spotlight beside it.
+fn scene() -> Scene {
+    let mut scene = Scene::default();
+    scene.lights.clear();
+    scene.lights.push(Light {
+        light_type: "spot".to_owned(),
+        position: Some(Vec3::new(4.0, 6.0, 5.0)),
+        direction: Some(Vec3::new(0.6, -0.8, 0.0)),
+        ..Light::default()
+    });
+    scene
+}
+
+fn bench(scene: Scene) -> Bench {
+    let mut session = Session::new(scene);
+    session.facts.camera = Quat::from_rotation_y(0.6) * Quat::from_rotation_x(-0.5);
+    session.facts.eye = Vec3::splat(5.0) + session.facts.camera * Vec3::new(0.0, 0.0, 5.0);
+    let mut bench = Bench::new(session);
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    bench
+}
+
+fn handle(bench: &Bench, name: &str) -> Pos2 {
+    let name = format!("Handle: {name}");
+    let found = bench.tree.iter().find(|s| s.label.starts_with(&name));
+    let all = || bench.tree.iter().filter(|s| s.label.starts_with("Handle")).map(|s| s.label.clone());
+    found.unwrap_or_else(|| panic!("no “{name}” among {:?}", all().collect::<Vec<_>>())).rect.center()
+}
+
+fn press(bench: &mut Bench, at: Pos2, pressed: bool) {
+    let modifiers = Modifiers::NONE;
+    bench.frame(vec![Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers }]);
+}
+
+/// Drags in steps, without letting go.
+fn pull(bench: &mut Bench, from: Pos2, by: Vec2, modifiers: Modifiers) {
+    bench.frame(vec![Event::PointerMoved(from)]);
+    press(bench, from, true);
+    for k in 1..=5 {
+        bench.frame(vec![
+            Event::ModifiersChanged(modifiers),
+            Event::PointerMoved(from + by * (k as f32 / 5.0)),
+        ]);
+    }
+}
+
+fn drag(bench: &mut Bench, from: Pos2, by: Vec2, modifiers: Modifiers) {
+    pull(bench, from, by, modifiers);
+    press(bench, from + by, false);
+    bench.frame(vec![Event::ModifiersChanged(Modifiers::NONE)]);
+    bench.settle();
+}
+
+fn position(bench: &Bench) -> Vec3 {
+    bench.session.document.objects[0].position
+}
+
+/// The way in the picture of a step of the selected object along an axis.
+fn way(bench: &Bench, step: Vec3) -> Vec2 {
+    let lens = Lens::of(&bench.session, bench.area.rect);
+    lens.project(position(bench) + step).unwrap() - lens.project(position(bench)).unwrap()
+}
+
+fn mode(mode: HandleMode) -> Action {
+    Action::View(ViewChange::Handles(HandleChange::Mode(mode)))
+}
+
+#[test]
+fn a_drag_along_an_axis_is_one_step_of_the_history() {
+    for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+        let mut bench = bench(scene());
+        let before = position(&bench);
+        // A step of the same name before it is another one.
+        let moved = Edit::Object(0, ObjectField::Position(before + Vec3::X * 0.1));
+        bench.apply(Action::Edit(moved));
+        let start = position(&bench);
+        let by = way(&bench, 0.5 * Vec3::AXES[axis]);
+        let at = handle(&bench, &format!("move Sphere 1 along {letter}"));
+        drag(&mut bench, at, by, Modifiers::NONE);
+        let after = position(&bench);
+        assert!((0..3).all(|i| i == axis || after[i] == start[i]), "{letter}: {start} became {after}");
+        assert!((0.3..0.8).contains(&(after[axis] - start[axis])), "{letter}: {start} became {after}");
+        assert_eq!(bench.session.document.done(), 2, "{letter}");
+        assert!(!bench.session.document.in_gesture());
+        bench.apply(Action::Undo);
+        assert_eq!(position(&bench), start);
+    }
+}
+
+#[test]
+fn a_press_that_does_not_move_the_pointer_changes_nothing() {
+    let mut bench = bench(scene());
+    let at = handle(&bench, "move Sphere 1 along x");
+    drag(&mut bench, at, Vec2::ZERO, CTRL);
+    assert_eq!((bench.session.document.done(), bench.session.selection), (0, Selection::Object(0)));
+}
+
+#[test]
+fn with_ctrl_a_drag_goes_in_steps() {
+    let mut bench = bench(scene());
+    let by = way(&bench, 0.6 * Vec3::X);
+    let at = handle(&bench, "move Sphere 1 along x");
+    drag(&mut bench, at, by, CTRL);
+    let x = position(&bench).x;
+    assert!(x > 5.0 && (4.0 * x).fract() == 0.0, "{x}");
+}
+
+#[test]
+fn the_numbers_are_beside_the_pointer_while_it_drags() {
+    let mut bench = bench(scene());
+    let texts = |bench: &mut Bench| -> Vec<String> {
+        let text = |shape| match shape {
+            bevy_egui::egui::Shape::Text(text) => Some(text.galley.job.text.clone()),
+            _ => None,
+        };
+        bench.shapes().into_iter().filter_map(text).collect()
+    };
+    let at = handle(&bench, "move Sphere 1 along x");
+    let by = way(&bench, 0.6 * Vec3::X);
+    pull(&mut bench, at, by, CTRL);
+    let x = position(&bench).x;
+    assert!(texts(&mut bench).contains(&format!("x {x:.2} m")), "{x}");
+    press(&mut bench, at + by, false);
+    bench.settle();
+    assert!(!texts(&mut bench).contains(&format!("x {x:.2} m")));
+}
+
+#[test]
+fn rings_turn_and_the_handle_outward_resizes() {
+    let mut bench = bench(scene());
+    bench.apply(mode(HandleMode::Turn));
+    let at = handle(&bench, "turn Sphere 1 about y");
+    drag(&mut bench, at, vec2(-20.0, 40.0), CTRL);
+    let turn = bench.session.document.objects[0].rotation;
+    assert!(turn.y != 0.0 && turn.x == 0.0 && turn.z == 0.0, "{turn}");
+    assert!(turn.y % 15.0 == 0.0, "{turn}");
+    assert_eq!(bench.session.document.done(), 1);
+    bench.apply(mode(HandleMode::Size));
+    let size = bench.session.document.objects[0].size;
+    let at = handle(&bench, "size of Sphere 1");
+    drag(&mut bench, at, vec2(40.0, -40.0), Modifiers::NONE);
+    assert!(bench.session.document.objects[0].size > 1.1 * size);
+    drag(&mut bench, at + vec2(40.0, -40.0), vec2(-2000.0, 2000.0), Modifiers::NONE);
+    assert_eq!(bench.session.document.done(), 3, "and every drag is one step");
+    assert!(bench.session.messages.is_empty());
+}
+
+#[test]
+fn a_light_is_turned_and_its_cone_opened() {
+    let mut bench = bench(scene());
+    bench.apply(Action::Select(Selection::Light(0)));
+    for kind in HandleMode::ALL {
+        bench.apply(mode(kind));
+        handle(&bench, "direction of Spot 1");
+        handle(&bench, "cone of Spot 1");
+    }
+    let light = bench.session.document.lights[0].clone();
+    let at = handle(&bench, "direction of Spot 1");
+    drag(&mut bench, at, vec2(-50.0, -10.0), Modifiers::NONE);
+    let after = bench.session.document.lights[0].clone();
+    assert!(after.direction.unwrap().normalize().distance(light.direction.unwrap().normalize()) > 0.1);
+    assert_eq!((after.position, &after.parameters), (light.position, &light.parameters));
+    let moved = handle(&bench, "direction of Spot 1");
+    assert!(moved.distance(at + vec2(-50.0, -10.0)) < 12.0, "{moved:?} follows the pointer from {at:?}");
+    assert_eq!(bench.session.document.done(), 1);
+    let at = handle(&bench, "cone of Spot 1");
+    let lens = Lens::of(&bench.session, bench.area.rect);
+    let out = (at - lens.project(light.position.unwrap()).unwrap()).normalized().rot90() * 30.0;
+    let before = cone(&bench);
+    for way in [out, -out] {
+        let at = handle(&bench, "cone of Spot 1");
+        drag(&mut bench, at, way, Modifiers::NONE);
+    }
+    assert_eq!(bench.session.document.done(), 3);
+    bench.apply(Action::Undo);
+    assert!((cone(&bench) - before).abs() > 5.0, "{} and {before}", cone(&bench));
+    assert_eq!(bench.session.document.lights[0].direction, after.direction);
+}
+
+fn cone(bench: &Bench) -> f32 {
+    let light = &bench.session.document.lights[0];
+    bench.registry.light(&light.light_type).unwrap().cone_angle(&light.parameters).unwrap()
+}
+
+#[test]
+fn the_mark_of_light_from_a_direction_stays_while_it_is_turned() {
+    let mut scene = scene();
+    scene.lights[0] = Light {
+        light_type: "directional".to_owned(),
+        position: None,
+        direction: Some(Vec3::new(0.6, -0.8, 0.1)),
+        ..Light::default()
+    };
+    let mut bench = bench(scene);
+    bench.apply(Action::Select(Selection::Light(0)));
+    let at = handle(&bench, "direction of Directional 1");
+    let by = vec2(25.0, -15.0);
+    pull(&mut bench, at, by, Modifiers::NONE);
+    bench.settle();
+    let moved = handle(&bench, "direction of Directional 1");
+    assert!(moved.distance(at + by) < 14.0, "{moved:?} follows the pointer from {at:?}");
+    press(&mut bench, at + by, false);
+    bench.settle();
+    assert_eq!(bench.session.document.done(), 1);
+}
+
+#[test]
+fn a_place_that_is_taken_is_passed_in_silence() {
+    let mut scene = scene();
+    scene.lights[0].position = Some(Vec3::new(4.0, 5.0, 5.0));
+    let mut bench = bench(scene);
+    bench.apply(Action::Select(Selection::Light(0)));
+    let lens = Lens::of(&bench.session, bench.area.rect);
+    let [from, to] = [4.0, 5.0].map(|x| lens.project(Vec3::new(x, 5.0, 5.0)).unwrap());
+    let at = handle(&bench, "move Spot 1 along x");
+    drag(&mut bench, at, to - from, CTRL);
+    let place = bench.session.document.lights[0].position.unwrap();
+    assert!(place.x > 4.2 && place != position(&bench), "{place}");
+    assert!(bench.session.messages.is_empty(), "{:?}", bench.session.messages);
+    assert_eq!(bench.session.document.done(), 1);
+}
+
+#[test]
+fn escape_takes_a_drag_back() {
+    let mut bench = bench(scene());
+    let before = position(&bench);
+    let at = handle(&bench, "move Sphere 1 along y");
+    pull(&mut bench, at, vec2(0.0, -60.0), Modifiers::NONE);
+    assert!(position(&bench).y > before.y);
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert_eq!((position(&bench), bench.session.document.done()), (before, 0));
+    bench.frame(vec![Event::PointerMoved(at + vec2(0.0, -90.0))]);
+    press(&mut bench, at, false);
+    assert_eq!(position(&bench), before);
+}
+
+#[test]
+fn a_handle_is_not_the_picture_and_the_middle_is() {
+    let mut bench = bench(scene());
+    let lens = Lens::of(&bench.session, bench.area.rect);
+    let middle = lens.project(position(&bench)).unwrap();
+    let tip = handle(&bench, "move Sphere 1 along y");
+    let points =
+        [(tip, false), (tip.lerp(middle, 0.4), false), (middle, true), (middle + vec2(30.0, 60.0), true)];
+    for (at, picture) in points {
+        bench.frame(vec![Event::PointerMoved(at)]);
+        bench.frame(Vec::new());
+        assert_eq!(bench.area.has_pointer, picture, "{at:?}");
+    }
+    bench.apply(Action::View(ViewChange::Handles(HandleChange::Show(false))));
+    bench.frame(vec![Event::PointerMoved(tip)]);
+    bench.frame(Vec::new());
+    assert!(bench.area.has_pointer && !bench.says("Handle:"));
+    bench.apply(mode(HandleMode::Move));
+    assert!(bench.says("Handle:"), "to choose what they do shows them");
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    assert!(!bench.says("Handle:"), "a presentation has none");
+}
+
+#[test]
+fn an_open_menu_or_question_keeps_the_handles_from_the_pointer() {
+    let mut bench = bench(scene());
+    let at = handle(&bench, "move Sphere 1 along x");
+    bench.click("Edit");
+    drag(&mut bench, at, vec2(40.0, 0.0), Modifiers::NONE);
+    assert_eq!(bench.session.document.done(), 0, "the press closes the menu");
+    bench.apply(Action::Edit(Edit::ShadingModel("flat".to_owned())));
+    bench.apply(Action::New);
+    drag(&mut bench, at, vec2(40.0, 0.0), Modifiers::NONE);
+    assert_eq!(bench.session.document.done(), 1);
+}
+
+#[test]
+fn every_view_has_its_handles() {
+    let mut bench = bench(scene());
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
+    bench.apply(Action::Select(Selection::Object(0)));
+    let name = "Handle: move Sphere 1 along x";
+    // From left to right, as the views.
+    let handles = |bench: &Bench| {
+        let named = bench.tree.iter().filter(|s| s.label == name);
+        let mut all: Vec<_> = named.map(|s| s.rect.center()).collect();
+        all.sort_by(|a, b| a.x.total_cmp(&b.x));
+        all
+    };
+    let all = handles(&bench);
+    let cells: Vec<_> = bench.area.cells.iter().map(|cell| cell.rect).collect();
+    assert_eq!((all.len(), cells.len()), (2, 2));
+    for (i, at) in all.into_iter().enumerate() {
+        assert!(cells[i].contains(at));
+        let before = (position(&bench).x, bench.session.document.done());
+        // Within the slack of the first drag, the handles have moved with the object.
+        let now = handles(&bench)[i];
+        drag(&mut bench, now, vec2(30.0, 0.0), Modifiers::NONE);
+        assert!(position(&bench).x > before.0 + 0.1, "view {i}");
+        assert_eq!(bench.session.document.done(), before.1 + 1);
+    }
+}
+
+#[test]
+fn keys_choose_the_handles_and_nudge_the_selection() {
+    let mut bench = bench(scene());
+    let start = position(&bench);
+    let cases = [
+        (Key::ArrowRight, Vec3::X),
+        (Key::ArrowLeft, Vec3::NEG_X),
+        (Key::ArrowUp, Vec3::NEG_Z),
+        (Key::ArrowDown, Vec3::Z),
+        (Key::PageUp, Vec3::Y),
+        (Key::PageDown, Vec3::NEG_Y),
+    ];
+    for (k, (key, way)) in cases.into_iter().enumerate() {
+        let before = position(&bench);
+        bench.key(key, CTRL);
+        assert!((position(&bench) - before - 0.1 * way).length() < 1e-4, "{key:?}");
+        assert_eq!(bench.session.document.done(), k + 1);
+    }
+    assert!((position(&bench) - start).length() < 1e-4);
+    for expected in [HandleMode::Turn, HandleMode::Size, HandleMode::Move] {
+        bench.key(Key::F3, Modifiers::NONE);
+        assert_eq!(bench.session.view.handles, expected);
+    }
+    bench.key(Key::F3, Modifiers::NONE);
+    bench.key(Key::PageUp, CTRL);
+    assert_eq!(bench.session.document.objects[0].rotation, Vec3::new(0.0, 5.0, 0.0));
+    // In a field the keys are those of the text.
+    let done = bench.session.document.done();
+    let field = bench.field("Name").rect.center();
+    bench.click_at(field, PointerButton::Primary);
+    bench.key(Key::ArrowRight, CTRL);
+    assert_eq!(bench.session.document.done(), done);
+}

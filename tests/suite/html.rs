@@ -1,0 +1,321 @@
+//! Pages: small, closed, and with the pictures of `lcm render`, drawn by Chromium with WebGPU and with WebGL 2.
+
+#![cfg(target_os = "linux")]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use lights_camera_models::{
+    export::{ExportError, Progress, Request, html},
+    registry::Registry,
+    scene::{
+        Scene,
+        load::{self, Defaults},
+    },
+};
+use serde_json::{Value, json};
+
+use crate::{
+    browser::{Browser, rgb},
+    support::{lcm, root, shipped_scenes},
+};
+
+const WIDTH: u32 = 384;
+const HEIGHT: u32 = 216;
+
+/// The page of a scene.
+fn page(scene: &Scene) -> Result<Vec<u8>, ExportError> {
+    let registry = Registry::builtin();
+    let request = Request { scene, registry: &registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0 };
+    let export = (html::HTML.make)(&request, &Progress::NONE)?;
+    assert!(export.files.len() == 1 && export.files[0].path.is_empty());
+    Ok(export.files[0].bytes.clone())
+}
+
+fn scene(path: &Path) -> Scene {
+    load::file(path, &Registry::builtin(), Defaults::Refuse).expect("valid").scene
+}
+
+fn shipped(name: &str) -> PathBuf {
+    root().join("scenes").join(name)
+}
+
+#[test]
+fn every_shipped_scene_is_a_page_within_the_limit() {
+    for path in shipped_scenes() {
+        let page = page(&scene(&path)).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        assert!(page.len() <= html::LIMIT, "{}: {}", path.display(), page.len());
+        let page = String::from_utf8(page).expect("UTF-8");
+        // Nothing is loaded from anywhere.
+        assert!(page.contains("Content-Security-Policy\" content=\"default-src 'none';"));
+        for reference in ["http:", "https:", "src=", "href=", "url(", "@import", "import ", "fetch("] {
+            assert!(!page.contains(reference), "{}: {reference}", path.display());
+        }
+        assert!(!page.contains("{{"), "a place is empty");
+    }
+}
+
+/// Translation to GLSL ES 3.00 is a part of making a page.
+#[test]
+fn every_model_can_be_drawn_with_every_shading_model_under_every_light() {
+    let registry = Registry::builtin();
+    let mut scene = scene(&shipped("default.json"));
+    let object = scene.objects[0].clone();
+    scene.objects.clear();
+    for model in registry.models() {
+        let mut object = object.clone();
+        object.reflection_model = Some(model.declaration.id.to_owned());
+        scene.objects.push(object);
+    }
+    let light = scene.lights[0].clone();
+    let mut all = Vec::new();
+    for entry in registry.lights() {
+        let mut light = light.clone();
+        light.set_type(entry, &registry, scene.scene_size);
+        scene.lights = vec![light.clone()];
+        all.push(light);
+        page(&scene).unwrap_or_else(|e| panic!("{}: {e}", entry.declaration.id));
+    }
+    scene.lights = all;
+    page(&scene).expect("all lights at once");
+}
+
+#[test]
+fn what_users_write_is_no_markup() {
+    let mut scene = scene(&shipped("default.json"));
+    scene.name = Some("<script>alert(1)</script>".to_owned());
+    scene.description = Some("{{script}} & \"quoted\"".to_owned());
+    scene.objects[0].name = Some("</script><b>".to_owned());
+    let page = String::from_utf8(page(&scene).expect("a page")).expect("UTF-8");
+    assert!(page.contains("<title>&lt;script&gt;alert(1)&lt;/script&gt;</title>"));
+    assert!(page.contains("{{script}} &amp; &quot;quoted&quot;"));
+    assert_eq!(page.matches("</script>").count(), 3);
+}
+
+#[test]
+fn scenes_that_no_page_can_hold_are_refused_with_the_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = folder.path().join("page.html");
+    let place = place.to_str().expect("Unicode");
+    let refused = |change: &dyn Fn(&mut Value)| {
+        let text = fs::read_to_string(shipped("white_furnace.json")).expect("readable");
+        let mut scene: Value = serde_json::from_str(&text).expect("JSON");
+        change(&mut scene);
+        let run = lcm(&["export", "-", "--as", "html", "-o", place, "-q"], &scene.to_string());
+        assert_eq!(run.status, Some(1), "{}", run.err);
+        assert!(!Path::new(place).exists());
+        run.err
+    };
+    let table = refused(&|scene| scene["display"] = json!({ "tone_mapping": "agx" }));
+    assert!(table.contains("cannot be exported as html: display.tone_mapping: agx is a table"), "{table}");
+    let large = refused(&|scene| {
+        for (i, object) in scene["objects"].as_array_mut().expect("objects").iter_mut().enumerate() {
+            object["type"] = "superellipsoid".into();
+            object["vertical_exponent"] = (0.3 + 0.1 * i as f64).into();
+        }
+    });
+    assert!(large.contains("and 300 kB is the limit") && large.contains("kB are meshes"), "{large}");
+    let hidden = refused(&|scene| {
+        for object in scene["objects"].as_array_mut().expect("objects") {
+            object["visible"] = false.into();
+        }
+    });
+    assert!(hidden.contains("all objects are hidden; make one visible"), "{hidden}");
+}
+
+/// The mean difference of two pictures in levels, and the fraction of values that differ by more than 2.
+#[derive(Clone, Copy, Debug)]
+struct Difference {
+    mean: f64,
+    beyond: f64,
+}
+
+fn difference(a: &[u8], b: &[u8]) -> Difference {
+    assert_eq!(a.len(), b.len());
+    let off = || a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
+    let count = a.len() as f64;
+    Difference {
+        mean: off().map(f64::from).sum::<f64>() / count,
+        beyond: off().filter(|d| *d > 2).count() as f64 / count,
+    }
+}
+
+/// One sample per pixel, so that no edge is smoothed: the page smooths colours as they are shown, and the program light.
+/// Corners stand on a grid in the page, which moves a few pixels of silhouettes; no others may differ.
+const MEAN: f64 = 0.15;
+const BEYOND: f64 = 0.004;
+
+fn rendered(scene: &Path, folder: &Path, options: &[&str]) -> Vec<u8> {
+    let file = folder.join("rendered.png");
+    let size = format!("{WIDTH}x{HEIGHT}");
+    let (scene, out) = (scene.to_str().expect("Unicode"), file.to_str().expect("Unicode"));
+    let mut arguments = vec!["render", scene, "-o", out, "--size", &size, "--samples", "1", "-q"];
+    arguments.extend(["--renderer", "gpu"]);
+    arguments.extend(options);
+    let run = lcm(&arguments, "");
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let (pixels, width) = rgb(&fs::read(&file).expect("a picture"));
+    fs::remove_file(&file).expect("gone");
+    assert_eq!(width, WIDTH as usize);
+    pixels
+}
+
+/// Sets a control of the panel as a user does, and waits until the picture followed.
+fn set(browser: &Browser, selector: &str, value: &str) {
+    browser.run(&format!(
+        "const control = document.querySelector({selector:?});
+        if (control.type === 'radio') control.click();
+        else {{
+            control.value = {value:?};
+            control.dispatchEvent(new Event('input', {{ bubbles: true }}));
+            control.dispatchEvent(new Event('change', {{ bubbles: true }}));
+        }}"
+    ));
+    browser.settle();
+}
+
+/// A scene, and knobs that are turned in its page.
+struct Case {
+    scene: &'static str,
+    shading: Option<&'static str>,
+    /// Parameter, value in the scene, value in the control.
+    knob: Option<(&'static str, Value, &'static str)>,
+}
+
+const fn case(scene: &'static str) -> Case {
+    Case { scene, shading: None, knob: None }
+}
+
+#[test]
+fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(WIDTH, HEIGHT);
+    let folder = tempfile::tempdir().expect("a folder");
+    let knob =
+        |scene, name, value: Value, control| Case { knob: Some((name, value, control)), ..case(scene) };
+    let shaded = |scene, shading| Case { shading: Some(shading), ..case(scene) };
+    let cases = [
+        case("default.json"),
+        case("shapes_and_lights.json"),
+        case("photometric_lamps.json"),
+        case("fresnel_effect.json"),
+        shaded("gouraud_misses_highlight.json", "flat"),
+        shaded("gouraud_misses_highlight.json", "gouraud"),
+        shaded("superellipsoids.json", "derivative"),
+        case("portrait.json"),
+        // Under uniform light, the albedo curve has to follow the knob.
+        knob("portrait.json", "alpha_x", json!(0.6), "0.6"),
+        // And here the lobe's as well.
+        knob("white_furnace.json", "alpha_y", json!(0.7), "0.7"),
+        knob("white_furnace.json", "k_d", json!(0.6), "0.6"),
+    ];
+    // Lamps name it.
+    fs::copy(shipped("wall_washer.ies"), folder.path().join("wall_washer.ies")).expect("copied");
+    let page_file = folder.path().join("page.html");
+    let mut seen = 0;
+    for case in &cases {
+        let mut text: Value =
+            serde_json::from_str(&fs::read_to_string(shipped(case.scene)).expect("readable")).expect("JSON");
+        let original = scene(&shipped(case.scene));
+        fs::write(&page_file, page(&original).expect("a page")).expect("written");
+        let registry = Registry::builtin();
+        let object = case.knob.as_ref().and_then(|(name, ..)| {
+            original.objects.iter().position(|o| {
+                registry.model(original.model_of(o)).is_some_and(|m| m.parameter(name).is_some())
+            })
+        });
+        if let (Some((name, value, _)), Some(object)) = (&case.knob, object) {
+            text["objects"][object]["material"][name] = value.clone();
+        }
+        let changed = folder.path().join("changed.json");
+        fs::write(&changed, text.to_string()).expect("written");
+        let shading = case.shading.map(|s| ["--shading", s]);
+        let expected = rendered(&changed, folder.path(), shading.as_ref().map_or(&[], |s| s.as_slice()));
+        for renderer in ["webgpu", "webgl"] {
+            let what = format!("{} {:?} {:?} {renderer}", case.scene, case.shading, case.knob);
+            browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
+            if let Some(shading) = case.shading {
+                set(&browser, &format!("input[value={shading}]"), "");
+            }
+            if let (Some((name, _, control)), Some(object)) = (&case.knob, object) {
+                browser.run(&format!(
+                    "const list = document.getElementById('object');
+                    list.value = {object};
+                    list.dispatchEvent(new Event('change'));"
+                ));
+                set(&browser, &format!("[data-name={name}] input[type=number]"), control);
+            }
+            let (shown, width) = browser.look();
+            assert_eq!(width, WIDTH as usize, "{what}");
+            let off = difference(&shown, &expected);
+            println!("{what}: {off:?}");
+            assert!(off.mean < MEAN && off.beyond < BEYOND, "{what}: {off:?}");
+            seen += 1;
+        }
+        if case.shading.is_some() || case.knob.is_some() {
+            continue;
+        }
+        // A wrong twin would be found.
+        let wrong = rendered(&shipped(case.scene), folder.path(), &["--exposure", "0.1"]);
+        let off = difference(&wrong, &expected);
+        assert!(off.mean > MEAN || off.beyond > BEYOND, "{}: {off:?}", case.scene);
+    }
+    assert_eq!(seen, 2 * cases.len());
+}
+
+#[test]
+fn a_page_reacts_to_fingers_keys_and_taps() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(900, 600);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("page.html");
+    fs::write(&file, page(&scene(&shipped("gold_three_lights.json"))).expect("a page")).expect("written");
+    browser.open(&file, "renderer=webgl");
+    let (first, _) = browser.look();
+    let key = |key: &str| {
+        browser.run(&format!(
+            "document.getElementById('picture').dispatchEvent(new KeyboardEvent('keydown', {{ key: {key:?} }}))"
+        ));
+        browser.settle();
+        browser.look().0
+    };
+    let turned = key("ArrowLeft");
+    assert!(difference(&first, &turned).mean > 0.5);
+    let back = key("0");
+    assert!(difference(&first, &back).mean < 0.01, "{:?}", difference(&first, &back));
+    // Nothing is drawn while nothing changes.
+    let drawn = browser.run("return document.body.dataset.drawn");
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    assert_eq!(browser.run("return document.body.dataset.drawn"), drawn);
+    // A picture that the system takes away comes back.
+    browser.run(
+        "const canvas = document.querySelector('canvas');
+        document.body.dataset.state = 'busy';
+        canvas.getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()",
+    );
+    browser.settle();
+    let again = browser.look().0;
+    assert!(difference(&first, &again).mean < 0.01, "{:?}", difference(&first, &again));
+    // A tap on the teapot at the right selects it.
+    let tap = "const picture = document.getElementById('picture');
+        const at = { pointerId: 1, isPrimary: true, clientX: 0.8 * picture.clientWidth, clientY: 0.5 * picture.clientHeight };
+        picture.setPointerCapture = () => {};
+        picture.dispatchEvent(new PointerEvent('pointerdown', at));
+        picture.dispatchEvent(new PointerEvent('pointerup', at));
+        return document.getElementById('object').value";
+    assert_ne!(browser.run(tap), "0");
+    // Everything to touch is large enough, and has a name.
+    let small = browser.run(
+        "return [...document.querySelectorAll('button, select, input, summary')]
+            .filter((e) => e.offsetParent && e.getBoundingClientRect().height < 40 && e.type !== 'radio')
+            .map((e) => e.outerHTML)",
+    );
+    assert_eq!(small, json!([]));
+    let nameless = browser.run(
+        "return [...document.querySelectorAll('select, input')]
+            .filter((e) => !e.ariaLabel && e.labels.length === 0).map((e) => e.outerHTML)",
+    );
+    assert_eq!(nameless, json!([]));
+}

@@ -1,0 +1,266 @@
+//! Mitsuba 3 as a witness: it renders exported scenes, and its pictures are ours, in linear light.
+//!
+//! Mitsuba comes from PyPI (`pip install mitsuba`); without it these tests are skipped. `$LCM_PYTHON` names the Python
+//! that has it.
+
+use std::{env, fs, io::Write as _, path::Path, process::Command, sync::LazyLock};
+
+use glam::Vec3;
+use lights_camera_models::{
+    export::write::write,
+    export::{Export, Progress, Request, form},
+    optics::TermSelection,
+    parameter::Value,
+    reference::{self, Picture, Settings},
+    registry::Registry,
+    scene::{Light, Object, Scene},
+};
+
+const WIDTH: u32 = 128;
+const HEIGHT: u32 = 96;
+
+/// Renders a scene to 32-bit numbers, row by row.
+const RENDER: &str = "
+import sys, mitsuba as mi, numpy as np
+mi.set_variant('scalar_rgb')
+for path in sys.argv[1:]:
+    scene = mi.load_file(path)
+    np.array(mi.render(scene, spp=256), dtype='<f4').tofile(path + '.raw')
+";
+
+/// The Python that has Mitsuba, if there is one.
+static PYTHON: LazyLock<Option<String>> = LazyLock::new(|| {
+    let python = env::var("LCM_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let found = Command::new(&python).args(["-c", "import mitsuba, numpy"]).output();
+    found.is_ok_and(|output| output.status.success()).then_some(python)
+});
+
+/// Skips a test, and says so.
+fn skipped() -> bool {
+    let skip = PYTHON.is_none();
+    if skip {
+        // Printed past the capture of tests.
+        let reason =
+            "skipped: Mitsuba 3 is not installed (pip install mitsuba; $LCM_PYTHON names the Python)\n";
+        let _ = std::io::stderr().write_all(reason.as_bytes());
+    }
+    skip
+}
+
+fn exported(scene: &Scene) -> Export {
+    let registry = Registry::builtin();
+    let request = Request { scene, registry: &registry, stem: "scene", size: (WIDTH, HEIGHT), object: 0 };
+    let form = form("mitsuba").expect("listed");
+    (form.make)(&request, &Progress::NONE).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Mitsuba's pictures of exported scenes.
+fn theirs(scenes: &[&Scene]) -> Vec<Vec<Vec3>> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let files: Vec<_> =
+        (0..scenes.len()).map(|i| folder.path().join(i.to_string()).join("scene.xml")).collect();
+    for (scene, file) in scenes.iter().zip(&files) {
+        write(&exported(scene), file.parent().expect("a folder")).expect("written");
+    }
+    let python = PYTHON.as_ref().expect("asked for");
+    let output = Command::new(python).arg("-c").arg(RENDER).args(&files).output().expect("it runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let read = |file: &Path| {
+        let bytes = fs::read(format!("{}.raw", file.display())).expect("written");
+        let numbers = bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b));
+        let numbers: Vec<_> = numbers.collect();
+        numbers.as_chunks::<3>().0.iter().map(|c| Vec3::from_array(*c)).collect()
+    };
+    files.iter().map(|file| read(file)).collect()
+}
+
+fn ours(scene: &Scene) -> Picture {
+    let settings = Settings { width: WIDTH, height: HEIGHT, samples: 4, terms: TermSelection::All };
+    reference::render(scene, &Registry::builtin(), &settings)
+}
+
+/// The error of each pixel within the objects, relative to the mean light there, from the smallest. Edges are left
+/// out: four samples are not 256.
+fn errors(ours: &Picture, theirs: &[Vec3]) -> Vec<f32> {
+    let (width, height) = (ours.width as usize, ours.height as usize);
+    let covered = |x: usize, y: usize| ours.pixels[y * width + x].w == 1.0;
+    let inner = |x: usize, y: usize| (x - 1..=x + 1).all(|x| (y - 1..=y + 1).all(|y| covered(x, y)));
+    let within: Vec<_> = (1..height - 1)
+        .flat_map(|y| (1..width - 1).map(move |x| (x, y)))
+        .filter(|(x, y)| inner(*x, *y))
+        .map(|(x, y)| y * width + x)
+        .collect();
+    assert!(within.len() > 500, "the scene shows little");
+    let mean = within.iter().map(|i| ours.pixels[*i].truncate().element_sum()).sum::<f32>()
+        / (3 * within.len()) as f32;
+    let mut errors: Vec<_> =
+        within.iter().map(|i| (ours.pixels[*i].truncate() - theirs[*i]).abs().max_element() / mean).collect();
+    errors.sort_by(f32::total_cmp);
+    errors
+}
+
+/// Mean error, and the error that all but one in fifty pixels keep to.
+fn compare(ours: &Picture, theirs: &[Vec3]) -> (f32, f32) {
+    let errors = errors(ours, theirs);
+    (errors.iter().sum::<f32>() / errors.len() as f32, errors[errors.len() * 49 / 50])
+}
+
+/// One object, close, and finely tessellated.
+fn scene(object_type: &str, model: &str, values: &[(&'static str, Value)]) -> Scene {
+    let mut object = Object {
+        object_type: object_type.to_owned(),
+        size: 4.0,
+        rotation: Vec3::new(20.0, 30.0, 0.0),
+        ..Object::default()
+    };
+    let finest = *Registry::builtin().shape(object_type).expect("built in").declaration.tessellation.end();
+    object.tessellation = Some(finest.min(128));
+    values.iter().for_each(|(name, value)| object.material.set(*name, value.clone()));
+    Scene {
+        reflection_model: model.to_owned(),
+        shading_model: "phong".to_owned(),
+        objects: vec![object],
+        ..Scene::default()
+    }
+}
+
+fn choice(id: &'static str) -> Value {
+    Value::Choice(id.into())
+}
+
+fn metal(more: &[(&'static str, Value)]) -> Vec<(&'static str, Value)> {
+    let gold = [
+        ("fresnel", choice("conductor")),
+        ("masking", choice("smith_separable")),
+        ("diffuse", choice("none")),
+        ("ior", Value::Triple([0.18, 0.42, 1.37])),
+        ("extinction", Value::Triple([3.42, 2.35, 1.77])),
+    ];
+    gold.into_iter().chain(more.iter().cloned()).collect()
+}
+
+fn light(id: &str, change: impl FnOnce(&mut Light)) -> Light {
+    let registry = Registry::builtin();
+    let mut light = Light::default();
+    light.set_type(registry.light(id).expect("built in"), &registry, Scene::default().scene_size);
+    change(&mut light);
+    light
+}
+
+/// Compares exported scenes, each with a name and a bound of the mean error.
+fn agree(scenes: &[(&str, Scene, f32)]) {
+    let pictures = theirs(&scenes.iter().map(|(_, scene, _)| scene).collect::<Vec<_>>());
+    let mut wrong = Vec::new();
+    for ((name, scene, most), theirs) in scenes.iter().zip(&pictures) {
+        let (mean, nearly_all) = compare(&ours(scene), theirs);
+        println!("{name}: mean {mean:.5}, 98 % within {nearly_all:.5}");
+        if mean.is_nan() || mean > *most || nearly_all > 8.0 * most {
+            wrong.push(format!("{name}: mean {mean}, 98 % within {nearly_all}, bound {most}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn models_look_the_same_in_mitsuba() {
+    if skipped() {
+        return;
+    }
+    let orange = ("base_colour", Value::Colour([240, 130, 40]));
+    let wide = ("alpha_x", Value::Number(0.3));
+    agree(&[
+        ("lambert", scene("sphere", "lambert", std::slice::from_ref(&orange)), 0.005),
+        (
+            "burley",
+            scene("sphere", "burley_diffuse", &[orange.clone(), ("roughness", Value::Number(0.9))]),
+            0.005,
+        ),
+        (
+            "matte phong",
+            scene("sphere", "phong", &[orange, ("k_s", Value::Number(0.0)), ("k_a", Value::Number(0.0))]),
+            0.005,
+        ),
+        ("gold", scene("sphere", "microfacet", &metal(&[])), 0.005),
+        ("beckmann", scene("sphere", "microfacet", &metal(&[("distribution", choice("beckmann"))])), 0.005),
+        (
+            "brushed",
+            scene("sphere", "microfacet", &metal(&[wide.clone(), ("alpha_y", Value::Number(0.1))])),
+            0.01,
+        ),
+        (
+            "glass surface",
+            scene(
+                "sphere",
+                "microfacet",
+                &metal(&[("fresnel", choice("dielectric")), ("ior", Value::Triple([1.5; 3]))]),
+            ),
+            0.005,
+        ),
+        ("mirror", scene("sphere", "microfacet", &metal(&[("fresnel", choice("none"))])), 0.005),
+    ]);
+}
+
+#[test]
+fn lights_and_shapes_look_the_same_in_mitsuba() {
+    if skipped() {
+        return;
+    }
+    let lit = |light: Light| Scene { lights: vec![light], ..scene("sphere", "lambert", &[]) };
+    let centre = Vec3::splat(5.0);
+    let spot = |penumbra: f32| {
+        light("spot", |light| {
+            let position = Vec3::new(7.0, 8.0, 9.0);
+            (light.position, light.direction) = (Some(position), Some(centre - position));
+            light.parameters.set("cone_angle", Value::Number(15.0));
+            light.parameters.set("penumbra", Value::Number(penumbra));
+        })
+    };
+    let warm = |light: &mut Light| light.colour = [255, 200, 120];
+    let mut all = lit(light("point", warm));
+    all.lights.extend([spot(1.0), light("ambient", |light| light.intensity = 0.3)]);
+    let mut flat = scene("cube", "lambert", &[]);
+    flat.shading_model = "derivative".to_owned();
+    agree(&[
+        ("point", lit(light("point", warm)), 0.005),
+        ("soft spot", lit(spot(1.0)), 0.005),
+        ("edged spot", lit(spot(0.3)), 0.005),
+        (
+            "directional",
+            lit(light("directional", |l| l.direction = Some(Vec3::new(-1.0, -1.0, -1.0)))),
+            0.005,
+        ),
+        ("ambient", lit(light("ambient", warm)), 0.005),
+        ("three lights", all, 0.005),
+        ("cube", flat, 0.005),
+    ]);
+}
+
+/// The wrong twins: light without the factor π, another masking, a brushed surface turned.
+#[test]
+fn what_is_different_shows() {
+    if skipped() {
+        return;
+    }
+    let right = scene("sphere", "lambert", &[]);
+    let mut dimmer = right.clone();
+    dimmer.lights[0].intensity *= 0.95;
+    let brushed = |x: f32, y: f32| {
+        let alphas = [("alpha_x", Value::Number(x)), ("alpha_y", Value::Number(y))];
+        scene("sphere", "microfacet", &metal(&alphas))
+    };
+    let mut masked = scene(
+        "sphere",
+        "microfacet",
+        &metal(&[("alpha_x", Value::Number(0.8)), ("alpha_y", Value::Number(0.8))]),
+    );
+    let (turned, separable) = (brushed(0.1, 0.3), masked.clone());
+    let pictures = theirs(&[&right, &brushed(0.3, 0.1), &separable]);
+    masked.objects[0].material.set("masking", choice("smith_height_correlated"));
+    for ((name, wrong), theirs) in
+        [("5 % dimmer", dimmer), ("turned", turned), ("height-correlated", masked)].iter().zip(&pictures)
+    {
+        let (mean, _) = compare(&ours(wrong), theirs);
+        println!("{name}: mean {mean:.5}");
+        assert!(mean > 0.02, "{name}: {mean}");
+    }
+}
