@@ -1,6 +1,6 @@
 //! Matching: the parameters of one view that come nearest to another.
 //!
-//! View A shows Phong's model, and view B Blinn's: which exponent of the one gives the highlight of the other? The
+//! View A shows Blinn's model, and view B Phong's: which exponent of the one gives the highlight of the other? The
 //! search knows nothing about the models. It changes the free parameters of view B within their legal ranges, and
 //! looks for the smallest sum of squared differences between
 //!
@@ -16,13 +16,13 @@
 //!     registry::Registry,
 //!     scene::{Scene, Variant},
 //! };
-//! let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
-//! scene.objects[0].material.set("alpha", Value::Integer(20));
-//! scene.variants = vec![Variant { reflection_model: Some("blinn_phong".to_owned()), ..Variant::default() }];
+//! let mut scene = Scene { reflection_model: "blinn_phong".to_owned(), ..Scene::default() };
+//! scene.objects[0].material.set("alpha", Value::Integer(80));
+//! scene.variants = vec![Variant { reflection_model: Some("phong".to_owned()), ..Variant::default() }];
 //! let request = Request { scene: &scene, view: 1, what: What::Highlight, parameters: &["alpha"] };
 //! let found = match_view(&request, &Registry::builtin(), &Progress::NONE).expect("both have a highlight");
-//! // Four times the exponent: F. Fisher and A. Woo (1994).
-//! assert_eq!(found.values, [("alpha", Value::Integer(80))]);
+//! // A quarter of the exponent: F. Fisher and A. Woo (1994).
+//! assert_eq!(found.values, [("alpha", Value::Integer(20))]);
 //! ```
 
 use crate::{
