@@ -81,6 +81,24 @@ pub fn of_views(
     Caption { facts, ..of_scene(scene, TermSelection::All, registry) }
 }
 
+/// The caption of a picture of a scene: of the view alone, or of several, each with what it shows and its terms.
+#[must_use]
+pub fn of_picture(
+    scene: &Scene,
+    shown: &[(usize, &Scene, TermSelection)],
+    registry: &Registry,
+) -> Caption {
+    match shown {
+        [(_, seen, terms)] => of_scene(seen, *terms, registry),
+        all => {
+            let views: Vec<_> = all.iter().map(|(view, ..)| *view).collect();
+            let terms = all.first().map(|(.., terms)| *terms);
+            let terms = terms.filter(|terms| all.iter().all(|(.., own)| own == terms));
+            of_views(scene, &views, terms, registry)
+        }
+    }
+}
+
 fn title(scene: &Scene, view: usize) -> String {
     let scene_name = scene.name.iter().cloned();
     let letter = LETTERS.get(view).copied().unwrap_or_default();

@@ -358,15 +358,9 @@ fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>) -> (Vec<u8>, [u32; 2
     if !job.with_caption {
         return (rgb8, job.size);
     }
-    let caption = match job.plan.parts.as_slice() {
-        [part] => caption::of_scene(&part.scene, part.terms, registry),
-        parts => {
-            let views: Vec<_> = parts.iter().map(|part| part.cell.view).collect();
-            let terms = parts.first().map(|part| part.terms);
-            let terms = terms.filter(|terms| parts.iter().all(|part| part.terms == *terms));
-            caption::of_views(job.scene, &views, terms, registry)
-        }
-    };
+    let shown: Vec<_> =
+        job.plan.parts.iter().map(|part| (part.cell.view, &part.scene, part.terms)).collect();
+    let caption = caption::of_picture(job.scene, &shown, registry);
     caption::draw(&caption, rgb8, job.size)
 }
 

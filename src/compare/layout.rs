@@ -40,7 +40,7 @@ pub fn cells(comparison: &Comparison, variants: usize, [width, height]: [u32; 2]
         return Some(views.into_iter().map(|view| Cell { view, left: 0, top: 0, width, height }).collect());
     }
     let rows = if views.len() > 2 { 2 } else { 1 };
-    let gap = (width.min(height) / 180).clamp(2, 16);
+    let gap = gap(width.min(height));
     let across = halves(width, gap)?;
     let down = if rows == 1 { [(0, height); 2] } else { halves(height, gap)? };
     let place = |(i, view)| {
@@ -49,6 +49,27 @@ pub fn cells(comparison: &Comparison, variants: usize, [width, height]: [u32; 2]
         Cell { view, left, top, width, height }
     };
     Some(views.into_iter().enumerate().map(place).collect())
+}
+
+/// Pixels between views in a picture whose smaller side has a length.
+fn gap(length: u32) -> u32 {
+    (length / 180).clamp(2, 16)
+}
+
+/// The size of the picture in which every cell of [`cells`] has this size.
+#[must_use]
+pub fn size_around(comparison: &Comparison, variants: usize, [width, height]: [u32; 2]) -> [u32; 2] {
+    let views = comparison.views(variants).len();
+    if comparison.layout != Layout::SideBySide || views < 2 {
+        return [width, height];
+    }
+    let with = |gap: u32| [2 * width + gap, if views > 2 { 2 * height + gap } else { height }];
+    // A wider gap makes the picture larger, but hardly ever so much that the gap grows again.
+    let mut size = with(gap(0));
+    while size != with(gap(size[0].min(size[1]))) {
+        size = with(gap(size[0].min(size[1])));
+    }
+    size
 }
 
 /// Two equal parts of a length, with a gap between them that takes what is left over: start and length of each.

@@ -32,7 +32,7 @@ mod shown;
 mod ssim;
 
 pub use flip::PIXELS_PER_DEGREE;
-pub use layout::{Cell, cells, compose, edge};
+pub use layout::{Cell, cells, compose, edge, size_around};
 pub use metrics::{Measured, Metrics};
 pub use pair::{Differences, Largest, Pair, Unequal};
 pub use shown::{Shown, WrongSize};

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::{
     focus,
     state::{
-        Action, CompareCommand, HandleChange, ModelCommand, PictureArea, SHADER_TAB, Session, Steer,
+        Action, CompareCommand, HandleChange, ModelCommand, PictureArea, PictureCommand, SHADER_TAB, Session, Steer,
         ViewChange,
     },
 };
@@ -79,6 +79,8 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
     add("File", true, false, Key::O, "Open…", Action::OpenDialog);
     add("File", true, false, Key::S, "Save", Action::Save);
     add("File", true, true, Key::S, "Save as…", Action::SaveAsDialog);
+    add("File", true, false, Key::P, "Save the picture…", Action::Picture(PictureCommand::Dialog(None)));
+    add("File", true, true, Key::P, "Copy the picture", Action::Picture(PictureCommand::Copy(None)));
     add("File", true, false, Key::Q, "Quit", Action::Quit);
     add("Edit", true, false, Key::Z, "Undo", Action::Undo);
     add("Edit", true, true, Key::Z, "Redo", Action::Redo);

@@ -67,6 +67,7 @@ pub mod messages;
 pub mod model_override;
 mod notice;
 pub mod picture;
+mod pictures;
 mod placing;
 pub mod presentation;
 pub mod preview;

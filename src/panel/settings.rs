@@ -38,6 +38,8 @@ pub struct Settings {
     pub folded_panels: Vec<String>,
     /// Id of the panel of others that the strip at the bottom shows.
     pub guest_tab: Option<String>,
+    /// True if pictures that are saved or copied have a caption.
+    pub picture_caption: bool,
     /// Files opened or saved, latest first.
     pub recent_files: Vec<PathBuf>,
 }
@@ -73,6 +75,7 @@ impl Default for Settings {
             hidden_panels: view.hidden_panels,
             folded_panels: view.folded_panels,
             guest_tab: view.guest_tab,
+            picture_caption: view.picture_caption,
             recent_files: Vec::new(),
         }
     }
@@ -160,6 +163,7 @@ impl Session {
             hidden_panels: self.view.hidden_panels.clone(),
             folded_panels: self.view.folded_panels.clone(),
             guest_tab: self.view.guest_tab.clone(),
+            picture_caption: self.view.picture_caption,
             recent_files: self.recent_files.clone(),
         }
     }
@@ -174,6 +178,7 @@ impl Session {
         self.view.hidden_panels = settings.hidden_panels;
         self.view.folded_panels = settings.folded_panels;
         self.view.guest_tab = settings.guest_tab;
+        self.view.picture_caption = settings.picture_caption;
         self.recent_files = settings.recent_files;
         self.recent_files.truncate(RECENT_FILES);
     }

@@ -6,7 +6,7 @@ use super::{
     Panel, PanelContext, PanelInfo, Place, chooser, compare, export, glyphs,
     history::HISTORY_TAB,
     keys::{self, Binding},
-    labels, maths, menu, model_override,
+    labels, maths, menu, model_override, pictures,
     segmented::{segment_width, segmented},
     state::{
         Action, HandleChange, HandleMode, MESSAGES_TAB, ModelCommand, SHADER_TAB, Session, ThemeChoice, View,
@@ -202,6 +202,7 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, table: &[Binding],
                 item(ui, "Reload from disk", Action::Reload, actions)
             });
             ui.separator();
+            pictures::menu(ui, session, table, actions);
             export::menu(ui, session, actions);
             ui.separator();
             item(ui, "Quit", Action::Quit, actions);

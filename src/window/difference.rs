@@ -14,7 +14,6 @@ use bevy::{
     image::Image,
     math::Vec3,
     render::{
-        gpu_readback::{Readback, ReadbackComplete},
         render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages},
     },
     window::RequestRedraw,
@@ -23,6 +22,7 @@ use glam::UVec2;
 
 use super::{
     WindowView,
+    readback::{Reading, codes},
     redraw::{SETTLING_FRAMES, Settling},
     views::{DifferenceMap, OtherView},
 };
@@ -78,8 +78,7 @@ struct Answer {
 struct Comparing {
     asked: Option<Question>,
     known: Option<Question>,
-    /// The entities that read the textures back, and what they have read.
-    read: Vec<(Entity, Option<Vec<u8>>)>,
+    read: Option<Reading>,
     thread: Option<std::sync::Mutex<Receiver<Answer>>>,
 }
 
@@ -125,10 +124,7 @@ fn compare(
         };
         let under_way = comparing.asked.is_some();
         if !under_way && comparing.known.as_ref() != Some(&question) {
-            for texture in &question.textures {
-                let reads = commands.spawn(Readback::texture(texture.clone())).observe(arrived).id();
-                comparing.read.push((reads, None));
-            }
+            comparing.read = Some(Reading::begin(&question.textures, &mut commands));
             comparing.asked = Some(question);
         }
     }
@@ -136,15 +132,9 @@ fn compare(
         requests.write(RequestRedraw);
     }
     if comparing.thread.is_none()
-        && comparing.read.len() == 2
-        && comparing.read.iter().all(|(_, bytes)| bytes.is_some())
         && let Some(question) = comparing.asked.clone()
+        && let Some(codes) = Reading::end(&mut comparing.read, &mut commands)
     {
-        let mut codes = Vec::new();
-        for (entity, bytes) in comparing.read.drain(..) {
-            commands.entity(entity).despawn();
-            codes.extend(bytes);
-        }
         let job = Job {
             question,
             codes,
@@ -196,17 +186,10 @@ fn forget(comparing: &mut ResMut<Comparing>, commands: &mut Commands) {
     if comparing.asked.is_none() && comparing.known.is_none() {
         return;
     }
-    for (entity, _) in comparing.read.drain(..) {
-        commands.entity(entity).despawn();
+    if let Some(reading) = comparing.read.take() {
+        reading.abandon(commands);
     }
     **comparing = Comparing::default();
-}
-
-fn arrived(answer: On<ReadbackComplete>, mut comparing: ResMut<Comparing>) {
-    let entity = answer.entity;
-    if let Some((_, bytes)) = comparing.read.iter_mut().find(|(reads, _)| *reads == entity) {
-        bytes.get_or_insert_with(|| answer.data.clone());
-    }
 }
 
 /// Everything that the thread needs.
@@ -242,28 +225,26 @@ impl Job {
 
     /// The light of a view, from where the camera of the window stands.
     fn light(&self, view: usize) -> Option<Picture> {
-        let size = self.question.size;
-        let (mut seen, terms) = self.scene.seen(view, &self.registry)?;
-        let aspect = size.x as f32 / size.y as f32;
-        let angle = vertical_field_of_view(seen.observer.field_of_view, aspect, true).to_degrees();
-        seen.observer = Observer { position: self.eye, direction: self.forward, field_of_view: angle };
-        let settings = Settings { width: size.x, height: size.y, samples: 1, terms };
+        let (seen, terms) = self.scene.seen(view, &self.registry)?;
         let terms =
             if self.question.comparison.values == Compared::Light { terms } else { TermSelection::Ambient };
-        Some(reference::render(&seen, &self.registry, &Settings { terms, ..settings }))
+        Some(light(seen, [self.eye, self.forward], self.question.size, terms, &self.registry))
     }
 }
 
-/// The codes in a texture that was read back, whose rows begin at multiples of 256 bytes.
-fn codes(bytes: &[u8], size: UVec2) -> Option<Vec<u8>> {
-    let row = 4 * size.x as usize;
-    let stride = if size.y > 1 { row.next_multiple_of(256) } else { row };
-    let mut out = Vec::with_capacity(3 * size.x as usize * size.y as usize);
-    for y in 0..size.y as usize {
-        let row = bytes.get(y * stride..y * stride + row)?;
-        out.extend(row.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]));
-    }
-    Some(out)
+/// The light of what a view shows, from an eye in the direction in which it looks.
+pub(super) fn light(
+    mut seen: Scene,
+    [eye, forward]: [Vec3; 2],
+    size: UVec2,
+    terms: TermSelection,
+    registry: &Registry,
+) -> Picture {
+    let aspect = size.x as f32 / size.y as f32;
+    let angle = vertical_field_of_view(seen.observer.field_of_view, aspect, true).to_degrees();
+    seen.observer = Observer { position: eye, direction: forward, field_of_view: angle };
+    let settings = Settings { width: size.x, height: size.y, samples: 1, terms };
+    reference::render(&seen, registry, &settings)
 }
 
 /// The numbers for people, over the pixels that objects cover.
@@ -318,19 +299,4 @@ fn numbers(answer: &Answer, with: usize) -> Numbers {
         ));
     }
     Numbers(all)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_of_textures_are_read_without_what_fills_them_up() {
-        let size = UVec2::new(3, 2);
-        let mut bytes = vec![0; 256 + 12];
-        bytes[..12].copy_from_slice(&[1, 2, 3, 255, 4, 5, 6, 255, 7, 8, 9, 255]);
-        bytes[256..].copy_from_slice(&[10, 11, 12, 255, 13, 14, 15, 255, 16, 17, 18, 255]);
-        assert_eq!(codes(&bytes, size), Some((1..=18).collect()));
-        assert_eq!(codes(&bytes[..260], size), None);
-    }
 }

@@ -81,10 +81,13 @@ pub(super) fn carry_out(
             Effect::Complain(text) => watching::complain(&text),
             // The clipboard belongs to the panels, and so do the dialogs.
             Effect::CopyText(_) => {}
+            // Views are read back first.
+            Effect::Picture { .. } => {}
             dialog @ (Effect::PickOpen
             | Effect::PickSave
             | Effect::PickFile(..)
             | Effect::PickExport(_)
+            | Effect::PickPicture(_)
             | Effect::PickShaderFolder) => {
                 session.wanted_dialog = Some(dialog);
             }

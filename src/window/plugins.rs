@@ -17,7 +17,7 @@ use glam::UVec2;
 use super::{
     ViewOptions, camera::CameraPlugin, capture::CapturePlugin, clipping::ClippingPlugin,
     difference::DifferencePlugin, document::DocumentPlugin, gizmos::GizmosPlugin, pick::PickingPlugin,
-    picture::PicturePlugin, recovery::RecoveryPlugin, requirements::RequirementsPlugin,
+    picture::PicturePlugin, pictures::PicturesPlugin, recovery::RecoveryPlugin, requirements::RequirementsPlugin,
     shaders::ShaderFilesPlugin, shell::ShellPlugin, watching::WatchingPlugin,
 };
 use crate::{
@@ -52,6 +52,7 @@ const SIZE: UVec2 = UVec2::new(1280, 720);
 /// | [`GizmosPlugin`] | the outline of the room |
 /// | [`ClippingPlugin`] | counts clipped pixels |
 /// | [`DifferencePlugin`] | the numbers and the map of a comparison |
+/// | [`PicturesPlugin`] | saves and copies the picture |
 /// | [`WatchingPlugin`] | the file of the scene is followed while others change it |
 /// | [`ShaderFilesPlugin`] | custom models, and shaders on disk; followed too if there is a [`WatchingPlugin`] |
 /// | [`RecoveryPlugin`] | copies of unsaved work, and the question before the window closes on Ctrl+C |
@@ -125,6 +126,7 @@ impl PluginGroup for LabPlugins {
             .add(ScenePlugin)
             .add(DocumentPlugin { options: options.clone(), for_user: !headless })
             .add(PicturePlugin { alone: headless.then(|| size.unwrap_or(SIZE)) })
+            .add(PicturesPlugin)
             .add(GizmosPlugin)
             .add(WatchingPlugin)
             .add(ShaderFilesPlugin { trial_program: options.trial_program.clone() });

@@ -78,6 +78,7 @@ mod study;
 mod support;
 mod swallowed;
 mod table;
+mod taken;
 mod tangents;
 mod testing;
 #[cfg(unix)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-use super::{CompareCommand, Effect, MatchCommand, Session, Severity, Steer, ViewChange};
+use super::{CompareCommand, Effect, MatchCommand, PictureCommand, Session, Severity, Steer, ViewChange};
 use crate::{
     document::{Edit, LightField, ObjectField, Selection, VariantField},
     optics::TermSelection,
@@ -94,6 +94,8 @@ pub enum Action {
     Model(ModelCommand),
     /// Something about exports.
     Export(ExportCommand),
+    /// Something about pictures.
+    Picture(PictureCommand),
     /// Something about the views of a comparison.
     Compare(CompareCommand),
     /// Something about matching views.
@@ -301,6 +303,7 @@ impl Session {
             Action::Copy(text) => return vec![Effect::CopyText(text)],
             Action::Model(ask) => return self.author(ask, registry),
             Action::Export(command) => return self.export(command),
+            Action::Picture(command) => return self.picture(command),
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => self.messages.dismiss(index),
             Action::DismissAll => self.messages.clear(),

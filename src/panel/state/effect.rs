@@ -94,6 +94,17 @@ pub enum Effect {
         /// True to replace what is there: the user was asked.
         overwrite: bool,
     },
+    /// Show the dialog that chooses a file for the picture of a view alone, or of all as they are shown.
+    PickPicture(Option<usize>),
+    /// Save or copy the picture of a view alone, or of all as they are shown.
+    Picture {
+        /// The view that is wanted alone.
+        view: Option<usize>,
+        /// The file; `None` is the clipboard.
+        file: Option<PathBuf>,
+        /// True to replace what is there: the user was asked.
+        overwrite: bool,
+    },
     /// Match a view to view A: see [`match_view`](crate::matching::match_view).
     Match {
         /// The view: 1 is view B.

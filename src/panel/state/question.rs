@@ -52,6 +52,13 @@ pub enum Question {
         /// The file or folder.
         path: PathBuf,
     },
+    /// There is a picture where another one should go.
+    ReplacePicture {
+        /// The view that is wanted alone.
+        view: Option<usize>,
+        /// The file.
+        path: PathBuf,
+    },
     /// An earlier window left unsaved changes.
     Recover(Box<Offer>),
 }
@@ -170,6 +177,7 @@ impl Session {
             }
             (Question::NewerOnDisk { .. }, Answer::Reload) => vec![Effect::LookAtFile { discard: true }],
             (Question::ReplaceExport { form, path }, answer) => self.answer_export(form, path, answer),
+            (Question::ReplacePicture { view, path }, answer) => Self::answer_picture(view, path, answer),
             (Question::NewerOnDisk { path, .. }, _) => {
                 self.disk_undecided(&path);
                 Vec::new()

@@ -128,6 +128,8 @@ pub struct View {
     pub labels: Labels,
     /// True if clipped pixels are marked.
     pub show_clipping: bool,
+    /// True if pictures that are saved or copied have a caption.
+    pub picture_caption: bool,
     /// The terms of the equation that the picture shows.
     pub terms: TermSelection,
     /// The view that the panels show and change: 0 is the scene, 1 view B.
@@ -177,6 +179,7 @@ impl Default for View {
             show_room: true,
             labels: Labels::Off,
             show_clipping: false,
+            picture_caption: true,
             terms: TermSelection::All,
             active: 0,
             blinking: false,
@@ -224,6 +227,8 @@ pub enum ViewChange {
     Labels(Labels),
     /// See [`View::show_clipping`].
     Clipping(bool),
+    /// See [`View::picture_caption`].
+    PictureCaption(bool),
     /// See [`View::terms`].
     Terms(TermSelection),
     /// True if the strip at the bottom is unfolded.
@@ -308,6 +313,7 @@ impl View {
             ViewChange::Room(on) => self.show_room = on,
             ViewChange::Labels(labels) => self.labels = labels,
             ViewChange::Clipping(on) => self.show_clipping = on,
+            ViewChange::PictureCaption(on) => self.picture_caption = on,
             ViewChange::Terms(terms) => self.terms = terms,
             ViewChange::Bottom(open) => self.bottom_open = open,
             ViewChange::BottomTab(id) => {

@@ -1,0 +1,274 @@
+//! Pictures of the window that are saved or copied: views are read back once they have come to rest; the rest is done in a
+//! thread of its own.
+
+use std::{
+    borrow::Cow,
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+};
+
+use arboard::{Clipboard, ImageData};
+use bevy::{
+    app::{App, Plugin, PostUpdate},
+    camera::RenderTarget,
+    ecs::prelude::*,
+    math::Vec3,
+    window::RequestRedraw,
+};
+use glam::UVec2;
+
+use super::{
+    WindowView,
+    background::Background,
+    difference::light,
+    readback::{Reading, codes},
+    views::OtherView,
+};
+use crate::{
+    caption,
+    compare::{Shown, compose, size_around},
+    export::write::inputs,
+    files,
+    optics::TermSelection,
+    panel::state::{Effect, LabEffect, PictureArea, PictureEnd, Session},
+    registry::Registry,
+    render::{
+        capture::png::{self, About},
+        view::{Drawing, View, ViewSystems, texture_of},
+    },
+    scene::{
+        Observer, Scene,
+        comparison::{Compared, Layout},
+        variant::LETTERS,
+    },
+};
+
+/// Saves and copies pictures.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PicturesPlugin;
+
+impl Plugin for PicturesPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Pictures>().add_systems(PostUpdate, take.after(ViewSystems));
+    }
+}
+
+/// The picture that is wanted, and the one that is being written.
+#[derive(Debug, Default, Resource)]
+struct Pictures {
+    wanted: Option<Wanted>,
+    reading: Option<Reading>,
+    /// What is done with that which is being read.
+    job: Option<Job>,
+    work: Background<(), PictureEnd>,
+}
+
+/// A picture: of a view alone or of all, to a file or to the clipboard.
+#[derive(Clone, Debug)]
+struct Wanted {
+    view: Option<usize>,
+    file: Option<PathBuf>,
+}
+
+fn take(
+    area: Option<Res<PictureArea>>,
+    registry: Res<Registry>,
+    views: Query<
+        (&View, &Drawing, &RenderTarget, Option<&OtherView>),
+        Or<(With<WindowView>, With<OtherView>)>,
+    >,
+    mut effects: MessageReader<LabEffect>,
+    mut session: ResMut<Session>,
+    mut pictures: ResMut<Pictures>,
+    mut requests: MessageWriter<RequestRedraw>,
+    mut commands: Commands,
+) {
+    for LabEffect(effect) in effects.read() {
+        let Effect::Picture { view, file, overwrite } = effect.clone() else { continue };
+        let file = file.map(as_png);
+        match file.as_deref().map_or(Ok(true), |file| may_write(file, overwrite, &session, &registry)) {
+            Ok(true) => pictures.wanted = Some(Wanted { view, file }),
+            Ok(false) => session.picture_exists(view, file.unwrap_or_default()),
+            Err(why) => session.pictured(PictureEnd::Failed(why)),
+        }
+    }
+    if let Some(end) = pictures.work.take() {
+        session.pictured(end);
+    }
+    let busy = pictures.job.is_some() || pictures.work.running().is_some();
+    if let Some(Wanted { view, file }) = pictures.wanted.clone().filter(|_| !busy) {
+        let cells = area.as_deref().map_or(&[][..], |area| &area.cells);
+        let own = cells.first().map_or(0, |cell| cell.view);
+        let find =
+            |number: usize| views.iter().find(|(.., other)| other.map_or(own, |other| other.0) == number);
+        let numbers = shown(&session, cells.iter().map(|cell| cell.view).collect(), view);
+        let found: Option<Vec<_>> = numbers.iter().map(|number| find(*number)).collect();
+        let Some(found) = found else {
+            pictures.wanted = None;
+            let letter = view.and_then(|view| LETTERS.get(view)).copied().unwrap_or_default();
+            let why = format!("No picture was taken: view {letter} is not on screen. Choose a layout with it.");
+            return session.pictured(PictureEnd::Failed(why));
+        };
+        let rest = |drawing: &Drawing| drawing.is_done() && !drawing.draws();
+        let textures: Option<Vec<_>> =
+            found.iter().map(|(_, drawing, target, _)| texture_of(target).filter(|_| rest(drawing)).cloned()).collect();
+        if let (Some(textures), Some((first, ..))) = (textures, found.first()) {
+            pictures.reading = Some(Reading::begin(&textures, &mut commands));
+            pictures.job = Some(Job {
+                scene: session.document.named(&registry),
+                registry: registry.clone(),
+                shown: numbers.iter().map(|view| (*view, terms(&session, *view))).collect(),
+                size: first.size,
+                eye: session.facts.eye,
+                forward: session.facts.camera * Vec3::NEG_Z,
+                caption: session.view.picture_caption,
+                file,
+            });
+            pictures.wanted = None;
+        }
+    }
+    let Pictures { reading, job, work, wanted } = &mut *pictures;
+    if let Some(read) = job.as_ref().and_then(|_| Reading::end(reading, &mut commands))
+        && let Some(job) = job.take()
+    {
+        let broken = PictureEnd::Failed("The picture was not taken: an error of this program.".to_owned());
+        work.begin((), || {}, move || broken, move |_| job.run(&read));
+    }
+    if wanted.is_some() || job.is_some() || work.running().is_some() {
+        requests.write(RequestRedraw);
+    }
+}
+
+/// The views of the picture, in the order of the layout: those on screen, but of views that are shown in turn the one that
+/// is shown now.
+fn shown(session: &Session, cells: Vec<usize>, alone: Option<usize>) -> Vec<usize> {
+    let blinks = session.document.comparison.layout == Layout::Blink;
+    match (alone, cells.as_slice()) {
+        (Some(view), _) => vec![view],
+        (None, []) => vec![0],
+        (None, [first, second, ..]) if blinks => {
+            vec![if session.view.blinking { *second } else { *first }]
+        }
+        (None, _) => cells,
+    }
+}
+
+/// The terms that a view shows.
+fn terms(session: &Session, view: usize) -> TermSelection {
+    session.document.overrides(view).and_then(|variant| variant.terms).unwrap_or(session.view.terms)
+}
+
+/// The file with the extension of pictures, if the user typed none.
+fn as_png(file: PathBuf) -> PathBuf {
+    if file.extension().is_none() { file.with_extension("png") } else { file }
+}
+
+/// False if the user must be asked first, since there is a picture already.
+fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registry) -> Result<bool, String> {
+    if !file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        let png = file.with_extension("png");
+        return Err(format!(
+            "The picture was not saved to {}: only PNG files can be written; name it {}.",
+            file.display(),
+            png.file_name().unwrap_or_default().to_string_lossy()
+        ));
+    }
+    let inputs = inputs(session.path.as_deref(), &session.document, registry);
+    files::may_overwrite(file, files::PNG, inputs.iter().map(PathBuf::as_path))
+        .map_err(|refused| format!("The picture was not saved: {refused}."))?;
+    Ok(overwrite || !file.exists())
+}
+
+/// A picture with everything that it needs.
+#[derive(Debug)]
+struct Job {
+    scene: Scene,
+    registry: Registry,
+    /// The views, and the terms that they show.
+    shown: Vec<(usize, TermSelection)>,
+    /// The size of each.
+    size: UVec2,
+    eye: Vec3,
+    forward: Vec3,
+    caption: bool,
+    file: Option<PathBuf>,
+}
+
+impl Job {
+    fn run(self, read: &[Vec<u8>]) -> PictureEnd {
+        let drawn = self.draw(read);
+        let end = drawn.and_then(|(rgb8, size)| match &self.file {
+            Some(file) => self.save(file, &rgb8, size).map(|()| PictureEnd::Saved(file.clone())),
+            None => copy(&rgb8, size).map(|()| PictureEnd::Copied(size)),
+        });
+        end.unwrap_or_else(PictureEnd::Failed)
+    }
+
+    /// The picture, red, green, blue, and its size.
+    fn draw(&self, read: &[Vec<u8>]) -> Result<(Vec<u8>, [u32; 2]), String> {
+        let unread = || "The picture was not taken: the GPU gave no pixels.".to_owned();
+        let mut comparison = self.scene.comparison;
+        if self.shown.len() < 2 {
+            comparison.layout = Layout::Single;
+        }
+        let needs_light = comparison.layout == Layout::Difference && comparison.values == Compared::Light;
+        let mut scenes = Vec::new();
+        let mut pictures = Vec::new();
+        for ((view, terms), bytes) in self.shown.iter().zip(read) {
+            let seen = self.scene.seen(*view, &self.registry).map(|(seen, _)| seen).ok_or_else(unread)?;
+            let codes = codes(bytes, self.size).ok_or_else(unread)?;
+            let mut picture = Shown::of_codes(self.size.x, self.size.y, codes).map_err(|e| e.to_string())?;
+            if needs_light {
+                let light = light(seen.clone(), [self.eye, self.forward], self.size, *terms, &self.registry);
+                picture = picture.with_light(light).map_err(|e| e.to_string())?;
+            }
+            pictures.push(picture);
+            scenes.push((*view, seen, *terms));
+        }
+        if pictures.is_empty() {
+            return Err(unread());
+        }
+        let size = match comparison.layout {
+            Layout::Single => self.size.to_array(),
+            _ => size_around(&comparison, self.scene.variants.len(), self.size.to_array()),
+        };
+        let rgb8 = compose(&comparison, size, &pictures).map_err(|e| e.to_string())?;
+        if !self.caption {
+            return Ok((rgb8, size));
+        }
+        let shown: Vec<_> = scenes.iter().map(|(view, seen, terms)| (*view, seen, *terms)).collect();
+        Ok(caption::draw(&caption::of_picture(&self.scene, &shown, &self.registry), rgb8, size))
+    }
+
+    fn save(&self, file: &Path, rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
+        let about = About::scene(&self.seen_from_here(), &self.registry).with("Renderer", "GPU");
+        png::write(file, width, height, rgb8, &about)
+            .map_err(|error| format!("{} could not be written: {error}.", file.display()))
+    }
+
+    /// The scene with its observer where the camera is, so that whoever opens the picture sees the same.
+    fn seen_from_here(&self) -> Scene {
+        let Observer { position, direction, .. } = self.scene.observer;
+        let moved = position.distance(self.eye) > 1e-4
+            || direction.normalize_or_zero().distance(self.forward) > 1e-4;
+        let mut scene = self.scene.clone();
+        if moved {
+            (scene.observer.position, scene.observer.direction) = (self.eye, self.forward);
+        }
+        scene
+    }
+}
+
+/// Puts a picture on the clipboard. Under X11 it is there as long as this program runs.
+fn copy(rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
+    static CLIPBOARD: Mutex<Option<Clipboard>> = Mutex::new(None);
+    let rgba: Vec<u8> = rgb8.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
+    let picture =
+        ImageData { width: width as usize, height: height as usize, bytes: Cow::Owned(rgba) };
+    let mut clipboard = CLIPBOARD.lock().unwrap_or_else(PoisonError::into_inner);
+    let set = match &mut *clipboard {
+        Some(clipboard) => clipboard.set_image(picture),
+        none => Clipboard::new().and_then(|new| none.insert(new).set_image(picture)),
+    };
+    set.map_err(|error| format!("The picture was not copied: {error}. Save it instead."))
+}
