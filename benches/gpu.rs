@@ -1,14 +1,17 @@
 //! Frames of the GPU renderer at 1280×720, one sample per pixel: against a frame of the same app with
-//! nothing in the room, over objects and lights, by model, and against Bevy's own material.
+//! nothing in the room, over objects, lights and views, by model, and against Bevy's own material.
 
 use bevy::{
     app::Update,
     asset::Assets,
+    camera::{Hdr, RenderTarget},
     color::Color,
     ecs::prelude::*,
+    image::Image,
     light::{GlobalAmbientLight, PointLight},
     mesh::{Mesh, Mesh3d},
     pbr::{MeshMaterial3d, StandardMaterial},
+    render::render_resource::TextureFormat,
     transform::components::Transform,
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -17,12 +20,14 @@ use lights_camera_models::{
     parameter::Values,
     registry::Registry,
     render::{
+        camera::picture_camera,
         capture::gpu::{GpuRenderer, Output},
         entities::SceneEntities,
         meshes::shared_mesh,
+        overrides::Overrides,
         parts::Animated,
     },
-    scene::{Light, Object, Observer, Scene},
+    scene::{Light, Object, Observer, Scene, Variant},
 };
 
 fn renderer(scene: Scene) -> GpuRenderer {
@@ -228,5 +233,28 @@ fn moved(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, models, frames, moved);
+/// A frame of one view, and of two of the same size: the scene, and beside it under another reflection model.
+fn views(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("views");
+    group.sample_size(50);
+    let phong = Variant { reflection_model: Some("phong".to_owned()), ..Variant::default() };
+    let scene = Scene { variants: vec![phong], ..Scene::default() };
+    for round in 1..=2 {
+        let mut one = renderer(scene.clone());
+        group.bench_function(BenchmarkId::new("one", round), |b| b.iter(|| frame(&mut one)));
+        drop(one);
+        let mut two = renderer(scene.clone());
+        let world = two.app().world_mut();
+        let format = TextureFormat::Rgba8UnormSrgb;
+        let target = Image::new_target_texture(1280, 720, format, None);
+        let target = world.resource_mut::<Assets<Image>>().add(target);
+        let overrides = Overrides::of_view(&scene, 1).expect("view B differs");
+        world.spawn((picture_camera(1), Hdr, RenderTarget::Image(target.into()), overrides));
+        two.settle().expect("the GPU draws");
+        group.bench_function(BenchmarkId::new("two", round), |b| b.iter(|| frame(&mut two)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, models, frames, moved, views);
 criterion_main!(benches);

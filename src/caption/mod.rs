@@ -83,11 +83,7 @@ pub fn of_views(
 
 /// The caption of a picture of a scene: of the view alone, or of several, each with what it shows and its terms.
 #[must_use]
-pub fn of_picture(
-    scene: &Scene,
-    shown: &[(usize, &Scene, TermSelection)],
-    registry: &Registry,
-) -> Caption {
+pub fn of_picture(scene: &Scene, shown: &[(usize, &Scene, TermSelection)], registry: &Registry) -> Caption {
     match shown {
         [(_, seen, terms)] => of_scene(seen, *terms, registry),
         all => {

@@ -314,8 +314,11 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         pair.measure().ok_or_else(|| Failure::Invalid("the pictures have no pixels".to_owned()))?;
 
     if let Some(output) = &arguments.output {
-        let about =
-            About::program().with("Source", listed(&read.iter().map(Input::name).collect::<Vec<_>>(), "and"));
+        let about = match read.as_slice() {
+            [Input::Scene(_, scene)] => About::scene(&Scene { comparison, ..(**scene).clone() }, registry),
+            _ => About::program(),
+        };
+        let about = about.with("Source", listed(&read.iter().map(Input::name).collect::<Vec<_>>(), "and"));
         let (size, rgb8) = if comparison.layout == Layout::SideBySide {
             side_by_side(&comparison, size, &views, arguments.samples, registry)?
         } else {

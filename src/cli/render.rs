@@ -358,8 +358,7 @@ fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>) -> (Vec<u8>, [u32; 2
     if !job.with_caption {
         return (rgb8, job.size);
     }
-    let shown: Vec<_> =
-        job.plan.parts.iter().map(|part| (part.cell.view, &part.scene, part.terms)).collect();
+    let shown: Vec<_> = job.plan.parts.iter().map(|part| (part.cell.view, &part.scene, part.terms)).collect();
     let caption = caption::of_picture(job.scene, &shown, registry);
     caption::draw(&caption, rgb8, job.size)
 }

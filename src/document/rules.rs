@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{Document, Edit, LightField, ObjectField, Selection, edit::put_in_variant};
+use super::{Document, Edit, LightField, ObjectField, Selection, VariantField, edit::put_in_variant};
 use crate::{
     parameter::{Parameter, Value},
     registry::Registry,
@@ -94,6 +94,11 @@ impl Document {
             Edit::Variant(i, _) if *i >= self.scene.variants.len() => {
                 Err("There is no such variant.".to_owned())
             }
+            Edit::Variant(i, VariantField::Name(name))
+                if name.trim().is_empty() && is_basis(&self.scene, *i) =>
+            {
+                Err("Other views are based on this one by its name: give it another one.".to_owned())
+            }
             Edit::Variant(i, field) => variants(&self.scene, registry, |scene| {
                 put_in_variant(scene, *i, field.clone());
             }),
@@ -180,6 +185,12 @@ impl Document {
             }
         }
     }
+}
+
+/// True if other variants inherit from one by its name.
+fn is_basis(scene: &Scene, i: usize) -> bool {
+    let name = scene.variants.get(i).and_then(|variant| variant.name.as_ref());
+    name.is_some() && scene.variants.iter().any(|other| other.based_on.as_ref() == name)
 }
 
 /// `Ok` if the variants of a scene are legal after a change.

@@ -316,8 +316,7 @@ fn menu(ui: &mut Ui, view: usize, session: &Session, actions: &mut Vec<Action>) 
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     let button = icon::button(ui, Icon::Down, &format!("Menu of view {letter}"));
     let id = ui.make_persistent_id(("view menu", view));
-    let chosen = knob::drop_down(&button, id, |ui, _| {
-        ui.set_min_width(200.0);
+    let chosen = knob::drop_down(&button, id, 176.0, |ui, _| {
         let mut chosen = None;
         let mut item = |ui: &mut Ui, text: String, command: CompareCommand| {
             if ui.add(Button::new(text).frame(false)).clicked() {
@@ -504,7 +503,7 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32) {
     let palette = Palette::here(ui);
     let mut left = room;
     let laid_out = numbers.entries().map(|(name, value, help)| {
-        let text = format!("{name} {value}");
+        let text = format!("{name} {value}").trim_end().to_owned();
         (theme::elided(ui, &text, TextStyle::Body, palette.text, f32::INFINITY), text, help)
     });
     let mut fits = |(galley, ..): &(std::sync::Arc<egui::Galley>, String, &str)| {

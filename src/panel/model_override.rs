@@ -79,7 +79,7 @@ pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Obj
     let id = ui.make_persistent_id("model override");
     let scene_model = model_name(&session.scene().reflection_model);
     let scene_shading = shading_name(&session.scene().shading_model);
-    let out = knob::drop_down(&button, id, |ui, list| {
+    let out = knob::drop_down(&button, id, knob::WIDE, |ui, list| {
         let mut out = None;
         ui.label(theme::strong(ui, "Override model and shading"));
         ui.label(theme::small(

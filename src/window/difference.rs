@@ -13,9 +13,7 @@ use bevy::{
     ecs::prelude::*,
     image::Image,
     math::Vec3,
-    render::{
-        render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages},
-    },
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages},
     window::RequestRedraw,
 };
 use glam::UVec2;
@@ -161,8 +159,9 @@ fn compare(
     comparing.thread = None;
     comparing.known = comparing.asked.take();
     let Some(answer) = answer else { return };
+    let several = session.document.variants.len() > 1;
     let size = comparing.known.as_ref().map_or(UVec2::ONE, |known| known.size);
-    session.bypass_change_detection().facts.comparison = Some(numbers(&answer, with));
+    session.bypass_change_detection().facts.comparison = Some(numbers(&answer, with, several));
     if let Some(colours) = answer.map {
         let rgba: Vec<u8> =
             colours.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
@@ -247,56 +246,60 @@ pub(super) fn light(
     reference::render(&seen, registry, &settings)
 }
 
-/// The numbers for people, over the pixels that objects cover.
-fn numbers(answer: &Answer, with: usize) -> Numbers {
+/// The numbers for people, over the pixels that objects cover; of which views, if there are `several` beside A.
+fn numbers(answer: &Answer, with: usize, several: bool) -> Numbers {
     let Some(measured) = &answer.measured else { return Numbers::default() };
     let shown = measured.covered.as_ref().unwrap_or(&measured.all);
     let letter = LETTERS.get(with).copied().unwrap_or("B");
     let psnr = if shown.psnr.is_finite() { format!("{:.1} dB", shown.psnr) } else { "∞".to_owned() };
     let mut all = vec![
-        (
-            "RMSE",
+        [
+            "RMSE".to_owned(),
             format!("{:.3}", shown.rmse),
             format!(
                 "Root mean square error of {letter} against A, in display codes from 0 to 1, over the pixels that \
                  objects cover; over all pixels {:.3}.",
                 measured.all.rmse
             ),
-        ),
-        (
-            "FLIP",
+        ],
+        [
+            "FLIP".to_owned(),
             format!("{:.3}", shown.flip),
             format!(
                 "Mean FLIP (Andersson et al. 2020): the difference that people see when they flip between the \
                  pictures, 0 for none to 1, over the pixels that objects cover; over all pixels {:.3}.",
                 measured.all.flip
             ),
-        ),
-        (
-            "SSIM",
+        ],
+        [
+            "SSIM".to_owned(),
             format!("{:.3}", shown.ssim),
             format!(
                 "Structural similarity (Wang et al. 2004): 1 for equal pictures, over the pixels that objects cover; \
                  over all pixels {:.3}.",
                 measured.all.ssim
             ),
-        ),
-        (
-            "PSNR",
+        ],
+        [
+            "PSNR".to_owned(),
             psnr,
             "Peak signal-to-noise ratio: 20 log₁₀ of 1 / RMSE, over the pixels that objects cover."
                 .to_owned(),
-        ),
+        ],
     ];
+    if several {
+        let help = format!("The numbers are about views {letter} and A. Click another view to compare it.");
+        all.insert(0, [format!("{letter} to A"), String::new(), help]);
+    }
     if let Some((difference, [x, y])) = answer.largest {
         let text = if difference >= 10.0 { format!("{difference:.0}") } else { format!("{difference:.2}") };
-        all.push((
-            "max",
+        all.push([
+            "max".to_owned(),
             text,
             format!(
                 "The largest difference, in the channel and the values that are chosen: at pixel {x}, {y}."
             ),
-        ));
+        ]);
     }
     Numbers(all)
 }

@@ -37,7 +37,7 @@ use crate::{
         view::{Drawing, View, ViewSystems, texture_of},
     },
     scene::{
-        Observer, Scene,
+        Comparison, Observer, Scene,
         comparison::{Compared, Layout},
         variant::LETTERS,
     },
@@ -106,12 +106,15 @@ fn take(
         let Some(found) = found else {
             pictures.wanted = None;
             let letter = view.and_then(|view| LETTERS.get(view)).copied().unwrap_or_default();
-            let why = format!("No picture was taken: view {letter} is not on screen. Choose a layout with it.");
+            let why =
+                format!("No picture was taken: view {letter} is not on screen. Choose a layout with it.");
             return session.pictured(PictureEnd::Failed(why));
         };
         let rest = |drawing: &Drawing| drawing.is_done() && !drawing.draws();
-        let textures: Option<Vec<_>> =
-            found.iter().map(|(_, drawing, target, _)| texture_of(target).filter(|_| rest(drawing)).cloned()).collect();
+        let textures: Option<Vec<_>> = found
+            .iter()
+            .map(|(_, drawing, target, _)| texture_of(target).filter(|_| rest(drawing)).cloned())
+            .collect();
         if let (Some(textures), Some((first, ..))) = (textures, found.first()) {
             pictures.reading = Some(Reading::begin(&textures, &mut commands));
             pictures.job = Some(Job {
@@ -122,6 +125,7 @@ fn take(
                 eye: session.facts.eye,
                 forward: session.facts.camera * Vec3::NEG_Z,
                 caption: session.view.picture_caption,
+                alone: view.is_some(),
                 file,
             });
             pictures.wanted = None;
@@ -191,6 +195,8 @@ struct Job {
     eye: Vec3,
     forward: Vec3,
     caption: bool,
+    /// The picture is that of one view, whatever others the scene has.
+    alone: bool,
     file: Option<PathBuf>,
 }
 
@@ -241,17 +247,22 @@ impl Job {
     }
 
     fn save(&self, file: &Path, rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
-        let about = About::scene(&self.seen_from_here(), &self.registry).with("Renderer", "GPU");
+        let about = About::scene(&self.pictured(), &self.registry).with("Renderer", "GPU");
         png::write(file, width, height, rgb8, &about)
             .map_err(|error| format!("{} could not be written: {error}.", file.display()))
     }
 
-    /// The scene with its observer where the camera is, so that whoever opens the picture sees the same.
-    fn seen_from_here(&self) -> Scene {
+    /// The scene that the picture shows, with its observer where the camera is: whoever opens the picture sees the same.
+    fn pictured(&self) -> Scene {
         let Observer { position, direction, .. } = self.scene.observer;
-        let moved = position.distance(self.eye) > 1e-4
-            || direction.normalize_or_zero().distance(self.forward) > 1e-4;
-        let mut scene = self.scene.clone();
+        let moved =
+            position.distance(self.eye) > 1e-4 || direction.normalize_or_zero().distance(self.forward) > 1e-4;
+        let alone = self.shown.first().filter(|_| self.alone);
+        let alone = alone.and_then(|(view, _)| self.scene.seen(*view, &self.registry));
+        let mut scene = match alone {
+            Some((seen, _)) => Scene { variants: Vec::new(), comparison: Comparison::default(), ..seen },
+            None => self.scene.clone(),
+        };
         if moved {
             (scene.observer.position, scene.observer.direction) = (self.eye, self.forward);
         }
@@ -263,8 +274,7 @@ impl Job {
 fn copy(rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
     static CLIPBOARD: Mutex<Option<Clipboard>> = Mutex::new(None);
     let rgba: Vec<u8> = rgb8.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
-    let picture =
-        ImageData { width: width as usize, height: height as usize, bytes: Cow::Owned(rgba) };
+    let picture = ImageData { width: width as usize, height: height as usize, bytes: Cow::Owned(rgba) };
     let mut clipboard = CLIPBOARD.lock().unwrap_or_else(PoisonError::into_inner);
     let set = match &mut *clipboard {
         Some(clipboard) => clipboard.set_image(picture),

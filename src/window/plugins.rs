@@ -17,8 +17,9 @@ use glam::UVec2;
 use super::{
     ViewOptions, camera::CameraPlugin, capture::CapturePlugin, clipping::ClippingPlugin,
     difference::DifferencePlugin, document::DocumentPlugin, gizmos::GizmosPlugin, pick::PickingPlugin,
-    picture::PicturePlugin, pictures::PicturesPlugin, recovery::RecoveryPlugin, requirements::RequirementsPlugin,
-    shaders::ShaderFilesPlugin, shell::ShellPlugin, watching::WatchingPlugin,
+    picture::PicturePlugin, pictures::PicturesPlugin, recovery::RecoveryPlugin,
+    requirements::RequirementsPlugin, shaders::ShaderFilesPlugin, shell::ShellPlugin,
+    watching::WatchingPlugin,
 };
 use crate::{
     panel::PanelPlugin,

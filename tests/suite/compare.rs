@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use glam::Vec4;
 use lights_camera_models::{
-    compare::{Cell, Measured, Pair, Shown, Unequal, cells, compose},
+    compare::{Cell, Measured, Pair, Shown, Unequal, cells, compose, size_around},
     parameter::Value,
     reference::{Picture, Settings},
     registry::Registry,
@@ -289,6 +289,10 @@ fn cells_are_equal_and_fill_the_picture() {
                 assert!(cell.left + width <= size[0] && cell.top + height <= size[1]);
             }
             assert_eq!(cells[1].left + width, size[0]);
+            let around = size_around(&beside, variants, [width, height]);
+            let again =
+                lights_camera_models::compare::cells(&beside, variants, around).expect("there is room");
+            assert!(again.iter().all(|cell| (cell.width, cell.height) == (width, height)), "{size:?}");
             assert!(cells[1].left > width, "there is a gap");
         }
     }
@@ -475,6 +479,22 @@ fn the_command_draws_the_comparison() {
         let expected = composed(&scene, &layout(Layout::from_id(id).expect("known")), [160, 90]);
         same(&drawn(&["compare", "all.json", "--layout", id]), &expected, id);
         same(&drawn(&["render", "all.json", "--renderer", "cpu", "--layout", id]), &expected, id);
+    }
+    // The picture holds the comparison, and opens as it.
+    let wiped = drawn(&["compare", "all.json", "--layout", "wipe", "--with", "dark"]);
+    fs::rename(folder.path().join("x.png"), folder.path().join("wiped.png")).expect("writable");
+    same(&drawn(&["render", "wiped.png", "--renderer", "cpu"]), &wiped, "opened again");
+    // The GPU arranges the same.
+    for id in ["single", "side_by_side", "wipe", "difference", "blink"] {
+        drawn(&["render", "all.json", "--renderer", "cpu", "--layout", id]);
+        fs::rename(folder.path().join("x.png"), folder.path().join("cpu.png")).expect("writable");
+        drawn(&["render", "all.json", "--renderer", "gpu", "--layout", id]);
+        let flip = |other: &str| {
+            let run = run(folder.path(), &["compare", other, "x.png"]);
+            numbers(&run)["all"]["flip"].as_f64().expect("a number")
+        };
+        let (same, other) = (flip("cpu.png"), flip("wiped.png"));
+        assert!(same < 0.005 && (id == "wipe" || other > 4.0 * same.max(0.001)), "{id}: {same} and {other}");
     }
     // Without a layout: that of the scene, or side by side.
     assert!(drawn(&["compare", "all.json"]) == drawn(&["compare", "all.json", "--layout", "side_by_side"]));

@@ -4,6 +4,7 @@ use std::fs;
 
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, vec2};
 use lights_camera_models::{
+    document::{Edit, VariantField},
     panel::state::{Action, CompareCommand, Session},
     scene::{Variant, comparison::Layout},
 };
@@ -199,4 +200,24 @@ fn views_have_one_size_in_every_layout_and_stay_within_the_picture() {
             }
         }
     }
+}
+
+#[test]
+fn a_view_gets_a_name_and_one_that_others_are_based_on_keeps_it() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.settle();
+    bench.type_into("Name of view B", "sharp");
+    bench.key(Key::Enter, Modifiers::NONE);
+    bench.settle();
+    assert_eq!(bench.session.variant().and_then(|v| v.name.as_deref()), Some("sharp"));
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name("soft".to_owned()))));
+    let mut scene = (*bench.session.document).clone();
+    scene.variants.push(Variant { based_on: Some("soft".to_owned()), ..Variant::default() });
+    let mut bench = Bench::new(Session::new(scene));
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name("hard".to_owned()))));
+    assert_eq!(bench.session.document.variants[1].based_on.as_deref(), Some("hard"));
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name(String::new()))));
+    assert_eq!(bench.session.document.variants[0].name.as_deref(), Some("hard"));
+    assert!(bench.says("based on this one by its name"));
 }

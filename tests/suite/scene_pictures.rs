@@ -113,7 +113,7 @@ fn each_mistake_of_a_picture_is_told_and_ends_with_status_1() {
     let cases: [(Vec<u8>, &str); 9] = [
         (
             with_text("XML:com.adobe.xmp", b"<x/>"),
-            "only texts called \"XML:com.adobe.xmp\"; pictures of lcm render have one",
+            "only texts called \"XML:com.adobe.xmp\"; pictures that this program writes have one",
         ),
         (good[..40].to_vec(), "x.png: the picture is truncated, and there is no scene in what is left"),
         (scene.clone().into_bytes(), "x.png: this is not a PNG picture, though its name ends in .png"),

@@ -6,8 +6,12 @@ use bevy::{app::App, ecs::message::Messages};
 use bevy_egui::egui::{Key, Modifiers, Rect, pos2, vec2};
 use lights_camera_models::{
     panel::state::{Cell, Effect, LabEffect, PictureArea, Question, Session, Severity, ViewChange},
+    parameter::Value,
     registry::Registry,
-    scene::{Scene, load::{self, Defaults}},
+    scene::{
+        Scene,
+        load::{self, Defaults},
+    },
     window::LabPlugins,
 };
 
@@ -121,6 +125,10 @@ fn views_are_taken_together_or_one_alone() {
     let alone = Picture::read(&file);
     assert_eq!((alone.width, alone.height), (120, 90));
     assert!(alone.count(0..120, 0..90, BLUE) > 500 && alone.count(0..120, 0..90, RED) == 0);
+    let scene = opened(&file);
+    assert!(scene.variants.is_empty());
+    let colour = scene.objects[0].material.0.get("base_colour");
+    assert_eq!(colour, Some(&Value::Colour([0, 0, 255])));
     let _ = take(&mut app, None, &file, true);
     let both = Picture::read(&file);
     assert_eq!((both.width, both.height), (242, 90));

@@ -78,6 +78,8 @@ pub(super) fn header(
 pub(super) enum Text {
     /// A name, in the size of headings.
     Heading,
+    /// A name, in the size of labels.
+    Name,
     /// Sentences, in as many lines as they need.
     Sentences,
 }
@@ -102,6 +104,7 @@ pub(super) fn text_field(
     let stroke = egui::Stroke::new(1.0, if focused { palette.accent } else { palette.line });
     let (edit, style) = match kind {
         Text::Heading => (TextEdit::singleline(&mut text), egui::TextStyle::Heading),
+        Text::Name => (TextEdit::singleline(&mut text), egui::TextStyle::Body),
         Text::Sentences => {
             (TextEdit::multiline(&mut text).desired_rows(2).return_key(None), egui::TextStyle::Body)
         }
@@ -137,7 +140,7 @@ pub(super) fn text_field(
         }
     }
     // A name may be longer than its field.
-    response.on_hover_text(if kind == Text::Heading && !value.is_empty() { value } else { label });
+    response.on_hover_text(if kind != Text::Sentences && !value.is_empty() { value } else { label });
 }
 
 pub(super) fn position_limits(size: SceneSize) -> [Limits; 3] {

@@ -4,8 +4,9 @@ use bevy_egui::egui::{
     Align, CursorIcon, Id, Layout, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
 };
 
+use super::part::{Text, text_field};
 use crate::{
-    document::VariantField,
+    document::{Edit, VariantField},
     panel::{
         icon::{self, Icon},
         state::{Action, CompareCommand, Session},
@@ -32,6 +33,14 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, format!("View {letter}")));
         ui.label(theme::small(ui, if rows.is_empty() { "as A" } else { "differs from A in" }));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let name = variant.name.as_deref().unwrap_or_default();
+            let width = (ui.available_width() - 8.0).min(150.0);
+            let label = format!("Name of view {letter}");
+            text_field(ui, "view name", &label, name, "name", width, Text::Name, |text| {
+                actions.push(Action::Edit(Edit::Variant(view - 1, VariantField::Name(text))));
+            });
+        });
     });
     for (name, value, field) in rows {
         ui.horizontal(|ui| {

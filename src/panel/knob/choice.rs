@@ -33,7 +33,7 @@ pub fn list_knob<R>(
         button
     });
     explain(label, |ui| tooltip(ui, caption, "", ""));
-    let out = drop_down(&button, id, list);
+    let out = drop_down(&button, id, WIDE, list);
     if out.is_some() {
         Popup::close_id(ui.ctx(), id);
     }
@@ -41,14 +41,17 @@ pub fn list_knob<R>(
     out
 }
 
-/// The popup of a button: `list`, which gets an id of its own.
+/// The width of a list of models, points: the authors of most fit beside their names.
+pub(in crate::panel) const WIDE: f32 = 460.0;
+
+/// The popup of a button, so wide if there is room: `list`, which gets an id of its own.
 pub(in crate::panel) fn drop_down<R>(
     button: &Response,
     id: Id,
+    width: f32,
     list: impl FnOnce(&mut Ui, Id) -> Option<R>,
 ) -> Option<R> {
-    // The authors of most models fit beside their names.
-    let width = f32::min(460.0, button.ctx.content_rect().width() - 32.0);
+    let width = f32::min(width, button.ctx.content_rect().width() - 32.0);
     let list_id = id.with("list");
     let popup = Popup::from_toggle_button_response(button)
         .id(id)

@@ -20,7 +20,7 @@ mod readout;
 mod slider;
 mod vector;
 
-pub(super) use choice::drop_down;
+pub(super) use choice::{WIDE, drop_down};
 pub use choice::{choice_knob, choice_with_help, list_knob};
 pub use colour::{colour_knob, colour_sample, parse_hex};
 pub use field::{Field, field, parse};

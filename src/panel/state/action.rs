@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-use super::{CompareCommand, Effect, MatchCommand, PictureCommand, Session, Severity, Steer, ViewChange};
+use super::{CompareCommand, Effect, MatchCommand, Session, Severity, Steer, ViewChange};
 use crate::{
     document::{Edit, LightField, ObjectField, Selection, VariantField},
     optics::TermSelection,
@@ -145,6 +145,22 @@ pub enum ExportCommand {
     Cancel,
     /// Show a folder in the file manager.
     Reveal(PathBuf),
+}
+
+/// A command about pictures. The view is the one that is wanted alone; `None` means all as they are shown.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PictureCommand {
+    /// Choose a file for the picture.
+    Dialog(Option<usize>),
+    /// Save the picture to a file.
+    To {
+        /// The view.
+        view: Option<usize>,
+        /// The file.
+        path: PathBuf,
+    },
+    /// Put the picture on the clipboard.
+    Copy(Option<usize>),
 }
 
 /// A command about custom models and shaders.

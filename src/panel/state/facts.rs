@@ -95,11 +95,11 @@ impl Clipping {
 
 /// The numbers of a comparison.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Numbers(pub Vec<(&'static str, String, String)>);
+pub struct Numbers(pub Vec<[String; 3]>);
 
 impl Numbers {
     /// The name of each, its value, and one sentence.
     pub fn entries(&self) -> impl Iterator<Item = (&str, &str, &str)> {
-        self.0.iter().map(|(name, value, help)| (*name, value.as_str(), help.as_str()))
+        self.0.iter().map(|[name, value, help]| (name.as_str(), value.as_str(), help.as_str()))
     }
 }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use bevy::ecs::resource::Resource;
 
-pub use action::{Action, Answer, ExportCommand, ModelCommand};
+pub use action::{Action, Answer, ExportCommand, ModelCommand, PictureCommand};
 pub use area::{Cell, PictureArea};
 pub(super) use author::BUILT_IN;
 pub use author::{LawCheck, ModelDraft, NameProblem, check_name};
@@ -20,7 +20,7 @@ pub use facts::{Clipping, Exporting, Facts, Matching, Numbers};
 pub use files::RECENT_FILES;
 pub use matching::{MatchCommand, MatchDraft};
 pub use messages::{Badge, MAX_MESSAGES, Messages, Note};
-pub use pictures::{PictureCommand, PictureEnd};
+pub use pictures::PictureEnd;
 pub use place::{PanelInfo, Place};
 pub use question::{MissingPart, Question, Questions};
 pub use recovery::Offer;

@@ -2,24 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::{Action, Answer, Effect, ExportCommand, Note, Question, Session, Severity};
+use super::{Action, Answer, Effect, ExportCommand, Note, PictureCommand, Question, Session, Severity};
 use crate::{files, scene::variant::LETTERS};
-
-/// A command about pictures. The view is the one that is wanted alone; `None` means all as they are shown.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum PictureCommand {
-    /// Choose a file for the picture.
-    Dialog(Option<usize>),
-    /// Save the picture to a file.
-    To {
-        /// The view.
-        view: Option<usize>,
-        /// The file.
-        path: PathBuf,
-    },
-    /// Put the picture on the clipboard.
-    Copy(Option<usize>),
-}
 
 /// The end of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]

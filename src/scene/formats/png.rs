@@ -19,7 +19,7 @@ use crate::{
 /// The keyword of the text that is the scene of a picture: JSON as in a scene file.
 pub const SCENE_KEYWORD: &str = "lights-camera-models scene";
 /// The way to a picture with a scene, for messages.
-const WRITERS: &str = "pictures of lcm render have one, unless --no-scene is given";
+const WRITERS: &str = "pictures that this program writes have one, unless --no-scene is given";
 /// More names of texts would be a list, not a message.
 const MOST_NAMED: usize = 3;
 
