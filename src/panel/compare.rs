@@ -28,6 +28,8 @@ use crate::{
 const HEADER: f32 = 28.0;
 /// Height of a row of the bar, points.
 const ROW: f32 = 34.0;
+/// In a narrower bar, the numbers have a row of their own.
+const NARROW: f32 = 560.0;
 /// Between views, points.
 const GAP: f32 = 2.0;
 /// Width of the place in which the edge of a wipe can be grasped, points.
@@ -87,6 +89,7 @@ pub fn arrange(session: &Session, whole: Rect) -> Arrangement {
         Layout::Wipe | Layout::Difference => 2.0,
         _ => 1.0,
     };
+    let rows = if rows > 0.0 && whole.width() < NARROW { rows + 1.0 } else { rows };
     let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
     let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top()));
     let below_header = |rect: Rect| Rect::from_min_max(rect.min + vec2(0.0, HEADER), rect.max);
@@ -435,9 +438,16 @@ fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<Action>) {
         if let Some(i) = segmented(ui, "Layout", &names, chosen, tip) {
             actions.push(Action::Compare(CompareCommand::Layout(Layout::ALL[i])));
         }
-        let room = rect.width() - width - 28.0;
-        ui.with_layout(Direction::right_to_left(Align::Center), |ui| numbers(ui, session, room));
+        if rect.width() >= NARROW {
+            let room = rect.width() - width - 28.0;
+            ui.with_layout(Direction::right_to_left(Align::Center), |ui| numbers(ui, session, room));
+        }
     });
+    if rect.width() < NARROW {
+        let last = row((rect.height() / ROW).round() - 1.0);
+        let right = UiBuilder::new().max_rect(last).layout(Direction::right_to_left(Align::Center));
+        ui.scope_builder(right, |ui| numbers(ui, session, last.width()));
+    }
     if !matches!(comparison.layout, Layout::Wipe | Layout::Difference) {
         return;
     }
