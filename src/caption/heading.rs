@@ -82,7 +82,8 @@ pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Regis
     parts[0].continues = false;
     let name = view.checked_sub(1).and_then(|i| scene.variants.get(i)?.name.clone());
     // A name that says the same as the first words is no name of its own.
-    let name = name.filter(|name| !line(&parts).starts_with(name.as_str()));
+    let said = line(&parts).to_lowercase();
+    let name = name.filter(|name| !said.starts_with(&name.to_lowercase()));
     name.map(|name| Part::new(0, name)).into_iter().chain(parts).collect()
 }
 
@@ -93,7 +94,8 @@ fn values(seen: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
         let Some(model) = registry.model(id) else { continue };
         let own: Vec<_> = if said.values {
             let colour = |kind: &ParameterKind| matches!(kind, ParameterKind::Colour { .. });
-            differing(model, &objects).filter(|(p, _)| !colour(&p.kind)).map(|(p, _)| p.name).collect()
+            let own = differing(model, &objects).filter(|(p, _)| said.colours || !colour(&p.kind));
+            own.map(|(p, _)| p.name).collect()
         } else {
             Vec::new()
         };

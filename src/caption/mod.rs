@@ -43,10 +43,19 @@ pub fn of_scene(scene: &Scene, terms: TermSelection, registry: &Registry) -> Cap
 #[must_use]
 pub fn of_view(scene: &Scene, view: usize, registry: &Registry) -> Option<Caption> {
     let (seen, terms) = scene.seen(view, registry)?;
-    let mut caption = of_scene(&seen, terms, registry);
+    Some(of_seen(scene, (view, &seen, terms), registry))
+}
+
+/// The caption of a view that shows a scene and terms.
+fn of_seen(
+    scene: &Scene,
+    (view, seen, terms): (usize, &Scene, TermSelection),
+    registry: &Registry,
+) -> Caption {
+    let mut caption = of_scene(seen, terms, registry);
     let tessellation = scene.overrides(view).and_then(|variant| variant.tessellation);
     caption.facts.extend(tessellation.map(|count| Part::new(1, format!("tessellation {count}"))));
-    Some(Caption { title: title(scene, view), ..caption })
+    Caption { title: title(scene, view), ..caption }
 }
 
 /// The caption of a picture with several views: what is the same in all, and then what each has of its own. `terms` are
@@ -72,7 +81,7 @@ pub fn of_views(
         let mut of_view = Said::of(scene, *view);
         of_view.terms &= terms.is_none();
         // The values are said nowhere else.
-        of_view.values = said.model;
+        (of_view.values, of_view.colours) = (said.model, true);
         let parts = heading::parts_of(scene, *view, &of_view, registry);
         let letter = LETTERS.get(*view).copied().unwrap_or_default();
         facts.push(Part::new(0, format!("{letter}:")));
@@ -85,7 +94,7 @@ pub fn of_views(
 #[must_use]
 pub fn of_picture(scene: &Scene, shown: &[(usize, &Scene, TermSelection)], registry: &Registry) -> Caption {
     match shown {
-        [(_, seen, terms)] => of_scene(seen, *terms, registry),
+        [one] => of_seen(scene, *one, registry),
         all => {
             let views: Vec<_> = all.iter().map(|(view, ..)| *view).collect();
             let terms = all.first().map(|(.., terms)| *terms);

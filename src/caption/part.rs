@@ -31,7 +31,7 @@ impl Part {
     }
 
     /// The sign between another part and this one. What ends in a colon leads the next.
-    pub(super) fn joint(&self, before: &Self) -> &'static str {
+    pub(crate) fn joint(&self, before: &Self) -> &'static str {
         if before.text.ends_with(':') {
             " "
         } else if self.continues {

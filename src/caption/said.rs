@@ -17,6 +17,8 @@ pub(super) struct Said {
     pub(super) tessellation: bool,
     /// Also the values that are not the defaults, colours apart: they make a model what it is where others have another.
     pub(super) values: bool,
+    /// The colours among them too.
+    pub(super) colours: bool,
 }
 
 impl Said {

@@ -18,7 +18,7 @@ use super::{
     workshop::{Workshop, drawable},
 };
 use crate::{
-    compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose},
+    compare::{Largest, Measured, Metrics, Pair, Shown, cells, compose, size_around},
     failure::Failure,
     reference::Settings,
     registry::Registry,
@@ -313,25 +313,13 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let measured =
         pair.measure().ok_or_else(|| Failure::Invalid("the pictures have no pixels".to_owned()))?;
 
-    if let Some(output) = &arguments.output {
-        let about = match read.as_slice() {
-            [Input::Scene(_, scene)] => About::scene(&Scene { comparison, ..(**scene).clone() }, registry),
-            _ => About::program(),
-        };
-        let about = about.with("Source", listed(&read.iter().map(Input::name).collect::<Vec<_>>(), "and"));
-        let (size, rgb8) = if comparison.layout == Layout::SideBySide {
-            side_by_side(&comparison, size, &views, arguments.samples, registry)?
-        } else {
-            (size, compose(&comparison, size, &shown).map_err(invalid)?)
-        };
-        outputs::tidy_beside(output);
-        png::write(output, size[0], size[1], &rgb8, &about).map_err(|e| match e.kind() {
-            io::ErrorKind::BrokenPipe => Failure::Closed,
-            _ => Failure::Write(format!("{} could not be written: {e}", output.display())),
-        })?;
-        options.tell(format_args!("wrote {}", output.display()));
-    }
-
+    let drawn = match &arguments.output {
+        Some(_) if comparison.layout == Layout::SideBySide => {
+            Some(side_by_side(&comparison, size, &views, arguments.samples, registry)?)
+        }
+        Some(_) => Some((size, compose(&comparison, size, &shown).map_err(invalid)?)),
+        None => None,
+    };
     let report = Report {
         a: a.report(),
         b: b.report(),
@@ -345,8 +333,30 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     };
     let printed = print(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()));
     let broken = broken(arguments, &measured, differences.largest)?;
+    // The numbers matter even if the picture cannot be written.
+    if let (Some(output), Some((size, rgb8))) = (&arguments.output, drawn) {
+        write(output, size, &rgb8, &about(&read, comparison, registry))?;
+        options.tell(format_args!("wrote {}", output.display()));
+    }
     // Limits matter even if nobody reads the numbers.
     if broken.is_empty() { printed } else { Err(Failure::Invalid(broken.join("\n"))) }
+}
+
+/// What the picture says of itself: also its scene, if it shows one.
+fn about(read: &[Input], comparison: Comparison, registry: &Registry) -> About {
+    let about = match read {
+        [Input::Scene(_, scene)] => About::scene(&Scene { comparison, ..(**scene).clone() }, registry),
+        _ => About::program(),
+    };
+    about.with("Source", listed(&read.iter().map(Input::name).collect::<Vec<_>>(), "and"))
+}
+
+fn write(output: &Path, [width, height]: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
+    outputs::tidy_beside(output);
+    png::write(output, width, height, rgb8, about).map_err(|e| match e.kind() {
+        io::ErrorKind::BrokenPipe => Failure::Closed,
+        _ => Failure::Write(format!("{} could not be written: {e}", output.display())),
+    })
 }
 
 /// The comparison, and the views that it shows: those of a scene, or view A of each input.
@@ -438,8 +448,7 @@ fn side_by_side(
     let variants = views.len() - 1;
     let places = |size| cells(comparison, variants, size);
     let whole = if views.iter().any(|view| view.input.scene().is_none()) {
-        let fits = |whole: &[u32; 2]| places(*whole).is_some_and(|cells| cells[0].width == size[0]);
-        (0..32).map(|gap| [2 * size[0] + gap, size[1]]).find(fits)
+        Some(size_around(comparison, variants, size))
     } else {
         Some(size)
     };

@@ -8,6 +8,7 @@ use serde_json::json;
 use super::{
     Options, Outcome, print, print_text, progress,
     scenes::Source,
+    views::find,
     workshop::{Workshop, drawable},
 };
 use crate::{
@@ -21,7 +22,7 @@ use crate::{
         save::{self, Expected},
         variant::LETTERS,
     },
-    text::{number, one_of, quoted},
+    text::number,
 };
 
 #[derive(Args, Debug)]
@@ -81,7 +82,10 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let registry = &workshop.registry;
     drawable(registry, &scene)?;
     let invalid = |why: &dyn std::fmt::Display| Failure::Invalid(format!("{}: {why}", source.name()));
-    let view = view(&scene, &arguments.view).map_err(|why| invalid(&why))?;
+    let view = view(&scene, &arguments.view).map_err(|failure| match failure {
+        Failure::Invalid(why) => invalid(&why),
+        other => other,
+    })?;
     let free: Vec<&str> = match arguments.free.as_slice() {
         [] => {
             let all = matching::parameters(&scene, view, registry);
@@ -106,18 +110,16 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         error => invalid(&error),
     })?;
     let before: Vec<Value> = found.values.iter().map(|(name, _)| now(&scene, view, name, registry)).collect();
-    if let Some(file) = &arguments.output {
-        for (name, value) in &found.values {
-            scene.variants[view - 1].material.set(*name, value.clone());
-        }
-        write(file, &scene, registry, expected)?;
-    }
     if arguments.json {
         print(&as_json(&found, view, what))?;
     } else {
         print_text(&in_words(&found, &before, view, what))?;
     }
     if let Some(file) = &arguments.output {
+        for (name, value) in &found.values {
+            scene.variants[view - 1].material.set(*name, value.clone());
+        }
+        write(file, &scene, registry, expected)?;
         options.tell(format_args!("wrote {}", file.display()));
     }
     Ok(())
@@ -135,22 +137,18 @@ fn unwritten(error: &save::SaveError) -> Failure {
     Failure::Write(format!("{error}{advice}"))
 }
 
-/// The view with a letter or a name.
-fn view(scene: &Scene, wanted: &str) -> Result<usize, String> {
-    let views = 1..=scene.variants.len();
-    let is = |view: &usize| {
-        LETTERS[*view].eq_ignore_ascii_case(wanted)
-            || scene.variants[*view - 1].name.as_deref() == Some(wanted)
-    };
-    if let Some(view) = views.clone().find(is) {
-        return Ok(view);
+/// The view with a letter or a name, which is not A.
+fn view(scene: &Scene, wanted: &str) -> Result<usize, Failure> {
+    if scene.variants.is_empty() {
+        let why = "the scene has no variants, so there is no view to be matched to view A";
+        return Err(Failure::Invalid(why.to_owned()));
     }
-    if views.is_empty() {
-        return Err("the scene has no variants, so there is no view to be matched to view A".to_owned());
+    match find(scene, wanted) {
+        Ok(0) => {
+            Err(Failure::Usage("--view is A, to which another view is matched; name that one".to_owned()))
+        }
+        found => found.map_err(|why| Failure::Invalid(format!("--view: {why}"))),
     }
-    let known = views.map(|view| LETTERS[view]);
-    let rule = one_of("the view to be matched to view A", known);
-    Err(format!("--view is {}, but {rule}, or the name of a variant", quoted(wanted)))
 }
 
 /// The present value of a parameter in a view: that of the first visible object.

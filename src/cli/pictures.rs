@@ -5,10 +5,7 @@ use std::{io::Cursor, path::Path};
 use png::{ColorType, Decoder, Transformations};
 
 use super::render::MAX_SIDE;
-use crate::{compare::Shown, failure::Failure, files};
-
-/// The largest file of a picture: one of the largest size, not compressed.
-const MAX_BYTES: u64 = 1 << 30;
+use crate::{compare::Shown, failure::Failure, files, scene::load::MAX_PICTURE_BYTES};
 
 /// True if a path leads to a picture: its content begins as one, or its name says so.
 pub(super) fn is_picture(path: &Path) -> bool {
@@ -20,7 +17,7 @@ pub(super) fn is_picture(path: &Path) -> bool {
 /// Reads a PNG file: its colours with eight bits, as they are.
 pub(super) fn read(path: &Path) -> Result<Shown, Failure> {
     let name = path.display();
-    let bytes = files::read_input(path, MAX_BYTES)
+    let bytes = files::read_input(path, MAX_PICTURE_BYTES)
         .map_err(|error| Failure::Invalid(format!("{name} could not be read: {error}")))?;
     decode(&bytes).map_err(|what| Failure::Invalid(format!("{name}: {what}")))
 }

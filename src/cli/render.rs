@@ -155,6 +155,8 @@ struct Job<'a> {
     samples: u32,
     with_scene: bool,
     with_caption: bool,
+    /// One view was asked for.
+    alone: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
@@ -188,10 +190,11 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let registry = &workshop.registry;
     let size = [arguments.size.width, arguments.size.height];
     let mut plans = Vec::with_capacity(sources.len());
-    for (scene, source) in scenes.iter_mut().zip(&sources) {
+    for (scene, source) in scenes.iter().zip(&sources) {
         match plan(scene, arguments, size, registry) {
             Ok(plan) => plans.push(plan),
-            Err(why) => problems.push(format!("{}: {why}", source.name())),
+            Err(Failure::Invalid(why)) => problems.push(format!("{}: {why}", source.name())),
+            Err(other) => return Err(other),
         }
     }
     if !problems.is_empty() {
@@ -236,6 +239,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             samples: arguments.samples,
             with_scene: !arguments.no_scene,
             with_caption: arguments.caption,
+            alone: arguments.view.is_some(),
         };
         painter.draw(&job, registry)?;
         bar.inc(1);
@@ -307,8 +311,9 @@ impl Painter {
             }
         };
         let renderer = if gpu { "GPU" } else { "CPU" };
-        let about =
-            About::scene(job.scene, registry).with("Source", job.source.name()).with("Renderer", renderer);
+        let about = About::scene(&pictured(job), registry)
+            .with("Source", job.source.name())
+            .with("Renderer", renderer);
         let about = if job.with_scene { about } else { about.without_scene() };
         let (rgb8, [width, height]) = captioned(job, registry, rgb8);
         png::write(job.file, width, height, &rgb8, &about).map_err(|e| match e.kind() {
@@ -387,26 +392,30 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry) -> Result<Shown, Failure>
     cpu_can_draw(&part.scene, registry).map(|()| shown)
 }
 
-/// The views that the picture of a scene shows; what the command line says of them is also said by the scene then.
-fn plan(
-    scene: &mut Scene,
-    arguments: &Arguments,
-    size: [u32; 2],
-    registry: &Registry,
-) -> Result<Plan, String> {
+/// The views that the picture of a scene shows.
+fn plan(scene: &Scene, arguments: &Arguments, size: [u32; 2], registry: &Registry) -> Result<Plan, Failure> {
     if let Some(name) = &arguments.view {
-        let plan = Plan::of_view(scene, views::find(scene, name)?, size, arguments.term, registry);
-        *scene =
-            Scene { variants: Vec::new(), comparison: Comparison::default(), ..plan.parts[0].scene.clone() };
-        return Ok(plan);
+        let view = views::find(scene, name).map_err(Failure::Invalid)?;
+        return Ok(Plan::of_view(scene, view, size, arguments.term, registry));
     }
+    let mut comparison = scene.comparison;
     if let Some(layout) = arguments.layout {
         if layout != Layout::Single && scene.variants.is_empty() {
-            return Err(format!("there are no variants for --layout {}", layout.id()));
+            return Err(Failure::Invalid(format!("there are no variants for --layout {}", layout.id())));
         }
-        scene.comparison.layout = layout;
+        comparison.layout = layout;
     }
-    Plan::new(scene, scene.comparison, size, arguments.term, registry)
+    Plan::new(scene, comparison, size, arguments.term, registry)
+}
+
+/// The scene that a picture holds: what the command line says of its views is also said by it.
+fn pictured(job: &Job) -> Scene {
+    match job.plan.parts.as_slice() {
+        [part] if job.alone => {
+            Scene { variants: Vec::new(), comparison: Comparison::default(), ..part.scene.clone() }
+        }
+        _ => Scene { comparison: job.plan.comparison, ..job.scene.clone() },
+    }
 }
 
 /// Fails if the CPU renderer is known to lack something that a scene's models need.
@@ -456,8 +465,8 @@ impl Changes {
         })
     }
 
-    /// The scene with the changes. A model from the command line replaces the overrides of objects too: the point is to
-    /// see the whole scene with it.
+    /// The scene with the changes. A model from the command line replaces the overrides of objects and views too: the
+    /// point is to see the whole scene with it.
     fn apply(&self, mut scene: Scene) -> Scene {
         if let Some(id) = &self.reflection {
             scene.reflection_model.clone_from(id);
@@ -469,6 +478,12 @@ impl Changes {
         }
         scene.display.tone_mapping = self.tone_mapping.unwrap_or(scene.display.tone_mapping);
         scene.display.exposure = self.exposure.unwrap_or(scene.display.exposure);
+        for variant in &mut scene.variants {
+            variant.reflection_model.take_if(|_| self.reflection.is_some());
+            variant.shading_model.take_if(|_| self.shading.is_some());
+            variant.tone_mapping.take_if(|_| self.tone_mapping.is_some());
+            variant.exposure.take_if(|_| self.exposure.is_some());
+        }
         scene
     }
 }

@@ -4,6 +4,7 @@ use clap::Args;
 
 use crate::{
     compare::{Cell, cells},
+    failure::Failure,
     optics::TermSelection,
     registry::Registry,
     scene::{
@@ -141,9 +142,12 @@ impl Plan {
         size: [u32; 2],
         terms: TermSelection,
         registry: &Registry,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, Failure> {
         let cells = cells(&comparison, scene.variants.len(), size).ok_or_else(|| {
-            format!("a picture of {}x{} pixels has no room for the views side by side", size[0], size[1])
+            Failure::Usage(format!(
+                "a picture of {}x{} pixels has no room for the views side by side",
+                size[0], size[1]
+            ))
         })?;
         let part = |cell: Cell| {
             let (scene, own) = scene.seen(cell.view, registry)?;

@@ -47,16 +47,27 @@ impl Texts {
         };
         let title = format!("{factor}{difference}: {channel}, {}", values.name());
         let end = short(full(values) / amplification);
+        // As many digits behind the point as the end has.
+        let digits = end.split_once('.').map_or(0, |(_, digits)| digits.len());
+        let middle = format!("{:.digits$}", 0.5 * full(values) / amplification);
         let numbers = match sign {
-            Sign::Absolute => ["0".to_owned(), short(0.5 * full(values) / amplification), end],
+            Sign::Absolute => ["0".to_owned(), middle, end],
             Sign::Signed => [format!("−{end}"), "0".to_owned(), format!("+{end}")],
         };
         Self { title, numbers }
     }
 }
 
+/// The amplification at which a difference has nearly the last colour of a map: 1, 2, 5, 10, …, 100.
+#[must_use]
+pub fn fitting_amplification(values: Compared, largest: f32) -> f32 {
+    let fits = |factor: &f32| factor * largest <= full(values);
+    [100.0, 50.0, 20.0, 10.0, 5.0, 2.0].into_iter().find(fits).unwrap_or(1.0)
+}
+
 /// A number with three digits that count.
-fn short(number: f32) -> String {
+#[must_use]
+pub fn short(number: f32) -> String {
     let digits = 2 - (number.abs().max(1e-9).log10().floor() as i32).min(2);
     let text = format!("{number:.*}", usize::try_from(digits).unwrap_or_default());
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }

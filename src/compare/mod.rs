@@ -33,6 +33,7 @@ mod ssim;
 
 pub use flip::PIXELS_PER_DEGREE;
 pub use layout::{Cell, cells, compose, edge, size_around};
+pub use legend::{fitting_amplification, short};
 pub use metrics::{Measured, Metrics};
 pub use pair::{Differences, Largest, Pair, Unequal};
 pub use shown::{Shown, WrongSize};

@@ -197,7 +197,9 @@ fn is_basis(scene: &Scene, i: usize) -> bool {
 fn variants(scene: &Scene, registry: &Registry, change: impl FnOnce(&mut Scene)) -> Result<(), String> {
     let mut after = scene.clone();
     change(&mut after);
-    let problem = check::variants(&after, registry).into_iter().next();
+    // What a changed model file made wrong before must not keep the rest from being edited.
+    let known = check::variants(scene, registry);
+    let problem = check::variants(&after, registry).into_iter().find(|problem| !known.contains(problem));
     problem.map_or(Ok(()), |problem| Err(format!("{problem}.")))
 }
 

@@ -18,8 +18,6 @@ use crate::{
 const VALUES: usize = 4;
 /// More lines would hide the picture.
 const LINES: usize = 2;
-/// Between parts of the caption.
-const DOT: &str = " · ";
 
 /// The models, the shading and the display of the picture; with one object, its key values.
 #[must_use]
@@ -111,13 +109,25 @@ pub(super) struct Lines {
 
 impl Lines {
     /// Sets parts of a caption in lines of at most this width, broken between parts.
-    pub(super) fn of(ui: &Ui, mut parts: Vec<Part>, size: f32, colour: Color32, width: f32) -> Self {
+    pub(super) fn of(ui: &Ui, parts: Vec<Part>, size: f32, colour: Color32, width: f32) -> Self {
+        Self::within(ui, parts, size, colour, width, LINES)
+    }
+
+    /// The same in so many lines, as far as parts can be left out.
+    pub(super) fn within(
+        ui: &Ui,
+        mut parts: Vec<Part>,
+        size: f32,
+        colour: Color32,
+        width: f32,
+        most: usize,
+    ) -> Self {
         let all = parts.len();
         loop {
             let lines = Self::set(ui, &parts, size, colour, width);
             let last = parts.iter().rposition(|p| p.rank > 0 && parts.iter().all(|q| q.rank <= p.rank));
             match last {
-                Some(i) if lines.1 > LINES => drop(parts.remove(i)),
+                Some(i) if lines.1 > most => drop(parts.remove(i)),
                 _ => return Self { cut: parts.len() < all, ..lines.0 },
             }
         }
@@ -127,7 +137,6 @@ impl Lines {
     fn set(ui: &Ui, parts: &[Part], size: f32, colour: Color32, width: f32) -> (Self, usize) {
         let font = FontId::proportional(size);
         let text = |text: &str| theme::elided(ui, text, font.clone(), colour, width);
-        let (dot, open) = (text(DOT), text(DOT.trim_end()));
         let height = text("A").size().y;
         let baseline =
             |g: &Galley| g.rows.first().and_then(|r| r.row.glyphs.first()).map_or(0.0, |g| g.pos.y);
@@ -138,7 +147,9 @@ impl Lines {
                 .then(|| maths::lay_out(ui, &maths::parse_symbol(part.symbol), 1.1 * size, colour));
             let lead = symbol.as_ref().map_or(0.0, |s| s.width + 0.3 * size);
             // A line that goes on ends with the sign between parts.
-            let more = if i + 1 < parts.len() { open.size().x } else { 0.0 };
+            let more = parts.get(i + 1).map_or(0.0, |next| text(next.joint(part).trim_end()).size().x);
+            let joint = i.checked_sub(1).map_or("", |before| part.joint(&parts[before]));
+            let (dot, open) = (text(joint), text(joint.trim_end()));
             if at.x > 0.0 && at.x + dot.size().x + lead + galley.size().x + more > width {
                 runs.push((at, open.clone()));
                 at = vec2(0.0, at.y + height);

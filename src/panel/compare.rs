@@ -7,15 +7,17 @@ use bevy_egui::egui::{
 };
 
 use super::{
+    caption::Lines,
     icon::{self, Icon},
     keys::{self, Binding},
     knob, matching,
     segmented::{segment_width, segmented},
-    state::{Action, Cell, CompareCommand, MatchCommand, Session},
+    state::{Action, Cell, CompareCommand, LARGEST, MatchCommand, Session},
     theme::{self, Palette},
 };
 use crate::{
-    caption::{line, view_parts},
+    caption::{Part, line, view_parts},
+    compare::fitting_amplification,
     registry::Registry,
     scene::{
         Comparison,
@@ -75,9 +77,10 @@ impl Arrangement {
     }
 }
 
-/// Arranges the views of a session in the place that the panels leave. In a presentation there is no bar.
+/// Arranges the views of a session in the place that the panels leave. In a presentation there is no bar, but a footer of
+/// this height.
 #[must_use]
-pub fn arrange(session: &Session, whole: Rect) -> Arrangement {
+pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
     let variants = session.document.variants.len();
     if variants == 0 {
         let cells = vec![Cell { view: 0, rect: whole, part: whole }];
@@ -86,14 +89,20 @@ pub fn arrange(session: &Session, whole: Rect) -> Arrangement {
     let comparison = &session.document.comparison;
     let rows = match comparison.layout {
         _ if session.view.presenting => 0.0,
+        _ if whole.width() < NARROW => match comparison.layout {
+            Layout::Difference => 4.0,
+            Layout::Wipe => 3.0,
+            _ => 2.0,
+        },
         Layout::Wipe | Layout::Difference => 2.0,
         _ => 1.0,
     };
-    let rows = if rows > 0.0 && whole.width() < NARROW { rows + 1.0 } else { rows };
     let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
-    let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top()));
-    let below_header = |rect: Rect| Rect::from_min_max(rect.min + vec2(0.0, HEADER), rect.max);
-    let header = |rect: Rect| Rect::from_min_size(rect.min, vec2(rect.width(), HEADER));
+    let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top() - footer));
+    // Large enough for the last row.
+    let high = if session.view.presenting { (0.055 * whole.height()).max(HEADER) } else { HEADER };
+    let below_header = |rect: Rect| Rect::from_min_max(rect.min + vec2(0.0, high), rect.max);
+    let header = |rect: Rect| Rect::from_min_size(rect.min, vec2(rect.width(), high));
     let halves = |rect: Rect| {
         let middle = rect.center().x;
         [rect.with_max_x(middle - 0.5 * GAP), rect.with_min_x(middle + 0.5 * GAP)]
@@ -219,7 +228,7 @@ pub fn show(
         ui.painter().text(rect.center(), Align2::CENTER_CENTER, "Ctrl+B adds a view", font, palette.weak);
         places.push(rect);
     }
-    if comparison.layout == Layout::Wipe && several {
+    if comparison.layout == Layout::Wipe && several && !session.view.presenting {
         places.push(wipe(ui, arrangement.picture, comparison, &mut actions));
     }
     if let Some(rect) = arrangement.bar {
@@ -250,6 +259,13 @@ fn header(
     );
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     let text = words(session, view, registry);
+    let comparison = &session.document.comparison;
+    // Of views that are shown in turn, the one on screen stands out.
+    let hidden =
+        comparison.layout == Layout::Blink && view != if session.view.blinking { comparison.with } else { 0 };
+    let lit = if comparison.layout == Layout::Blink { !hidden } else { active };
+    let ink = if hidden { palette.weak } else { palette.text };
+    let scale = rect.height() / HEADER;
     let click = ui.interact(rect, Id::new(("view header", view)), Sense::click());
     click.widget_info(|| {
         WidgetInfo::selected(WidgetType::RadioButton, true, active, format!("View {letter}: {text}"))
@@ -261,7 +277,9 @@ fn header(
     ui.scope_builder(
         UiBuilder::new().max_rect(inner).layout(Direction::right_to_left(Align::Center)),
         |ui| {
-            menu(ui, view, session, actions);
+            if !session.view.presenting {
+                menu(ui, view, session, actions);
+            }
             if !several && session.document.comparison.layout == Layout::Single {
                 for other in (0..=session.document.variants.len()).rev() {
                     let name = LETTERS[other];
@@ -279,20 +297,32 @@ fn header(
                 }
             }
             ui.with_layout(Direction::left_to_right(Align::Center), |ui| {
+                let size = scale * TextStyle::Body.resolve(ui.style()).size;
                 let badge = egui::Rect::from_center_size(
-                    pos2(ui.max_rect().left() + 10.0, rect.center().y),
-                    vec2(20.0, 20.0),
+                    pos2(ui.max_rect().left() + 10.0 * scale, rect.center().y),
+                    vec2(20.0, 20.0) * scale,
                 );
-                let (fill, ink) =
-                    if active { (palette.accent, palette.panel) } else { (palette.field, palette.text) };
+                let (fill, on) = if lit { (palette.accent, palette.panel) } else { (palette.field, ink) };
                 ui.painter().rect(badge, 4.0, fill, Stroke::new(1.0, palette.line), StrokeKind::Inside);
-                let font = egui::FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-                ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, ink);
-                let room = (ui.max_rect().width() - 30.0).max(0.0);
-                let galley = theme::elided(ui, &text, TextStyle::Body, palette.text, room);
-                let at =
-                    Align2::LEFT_CENTER.anchor_size(badge.right_center() + vec2(8.0, 0.0), galley.size());
-                ui.painter().galley(at.min, galley, palette.text);
+                let font = egui::FontId::new(size, theme::semibold());
+                ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, on);
+                let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
+                let at = badge.right_center() + vec2(8.0, 0.0) * scale;
+                // With symbols as in the equation, if the words have room.
+                let dots = theme::elided(ui, ", …", egui::FontId::proportional(size), ink, room);
+                let parts = in_parts(session, view, registry);
+                let lines = Lines::within(ui, parts, size, ink, room - dots.size().x, 1);
+                if lines.size.y < 1.9 * size && lines.size.x <= room {
+                    let place = Align2::LEFT_CENTER.anchor_size(at, lines.size);
+                    if lines.cut {
+                        ui.painter().galley(place.right_top(), dots, ink);
+                    }
+                    lines.paint(ui, place.min, ink);
+                } else {
+                    let galley = theme::elided(ui, &text, egui::FontId::proportional(size), ink, room);
+                    let at = Align2::LEFT_CENTER.anchor_size(at, galley.size());
+                    ui.painter().galley(at.min, galley, ink);
+                }
             });
         },
     );
@@ -306,12 +336,16 @@ fn header(
 
 /// A view in words: its name, unless what it shows says the same, and what it shows.
 fn words(session: &Session, view: usize, registry: &Registry) -> String {
-    let shown = line(&view_parts(&session.document, view, registry));
+    line(&in_parts(session, view, registry))
+}
+
+/// The same in parts.
+fn in_parts(session: &Session, view: usize, registry: &Registry) -> Vec<Part> {
+    let shown = view_parts(&session.document, view, registry);
+    let said = line(&shown).to_lowercase();
     let name = view.checked_sub(1).and_then(|i| session.document.variants.get(i)?.name.as_deref());
-    match name {
-        Some(name) if !shown.to_lowercase().contains(&name.to_lowercase()) => format!("{name} · {shown}"),
-        _ => shown,
-    }
+    let name = name.filter(|name| !said.contains(&name.to_lowercase()));
+    name.map(|name| Part::new(0, name)).into_iter().chain(shown).collect()
 }
 
 /// What can be done with a view.
@@ -422,6 +456,8 @@ fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<Action>) {
     let row = |i: f32| {
         Rect::from_min_size(rect.min + vec2(0.0, i * ROW), vec2(rect.width(), ROW)).shrink2(vec2(6.0, 2.0))
     };
+    // In the second row of a difference there is room for its largest.
+    let first = |name: &str| comparison.layout != Layout::Difference || name != LARGEST;
     let left = |place: Rect| UiBuilder::new().max_rect(place).layout(Direction::left_to_right(Align::Center));
     ui.scope_builder(left(row(0.0)), |ui| {
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
@@ -435,18 +471,24 @@ fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<Action>) {
             }
         };
         let width: f32 = names.iter().map(|name| segment_width(ui, name)).sum();
-        if let Some(i) = segmented(ui, "Layout", &names, chosen, tip) {
-            actions.push(Action::Compare(CompareCommand::Layout(Layout::ALL[i])));
+        let mut layout = comparison.layout;
+        if width + 16.0 > rect.width() {
+            choose(ui, "layout", Layout::ALL, &mut layout, Layout::name, Layout::summary);
+        } else if let Some(i) = segmented(ui, "Layout", &names, chosen, tip) {
+            layout = Layout::ALL[i];
+        }
+        if layout != comparison.layout {
+            actions.push(Action::Compare(CompareCommand::Layout(layout)));
         }
         if rect.width() >= NARROW {
             let room = rect.width() - width - 28.0;
-            ui.with_layout(Direction::right_to_left(Align::Center), |ui| numbers(ui, session, room));
+            ui.with_layout(Direction::right_to_left(Align::Center), |ui| numbers(ui, session, room, first));
         }
     });
     if rect.width() < NARROW {
         let last = row((rect.height() / ROW).round() - 1.0);
         let right = UiBuilder::new().max_rect(last).layout(Direction::right_to_left(Align::Center));
-        ui.scope_builder(right, |ui| numbers(ui, session, last.width()));
+        ui.scope_builder(right, |ui| numbers(ui, session, last.width(), |_| true));
     }
     if !matches!(comparison.layout, Layout::Wipe | Layout::Difference) {
         return;
@@ -470,19 +512,48 @@ fn bar(ui: &mut Ui, rect: Rect, session: &Session, actions: &mut Vec<Action>) {
             if let Some(i) = segmented(ui, "Sign", &names, at, tip) {
                 now.sign = Sign::ALL[i];
             }
-            choose(ui, "channel", Channel::ALL, &mut now.channel, Channel::name, Channel::summary);
-            choose(ui, "values", Compared::ALL, &mut now.values, Compared::name, Compared::summary);
-            ui.label(theme::small(ui, "×"));
-            let field =
-                egui::DragValue::new(&mut now.amplification).range(AMPLIFICATIONS).speed(0.2).max_decimals(0);
-            ui.add(field).on_hover_text(
-                "Amplification: differences are multiplied by this before they become colours, 1 to 100.",
-            );
+            if rect.width() >= NARROW {
+                chosen_values(ui, &mut now);
+            }
+            amplification(ui, session, &mut now);
+        }
+        if comparison.layout == Layout::Difference && rect.width() >= NARROW {
+            let room = ui.available_width();
+            let largest = |name: &str| name == LARGEST;
+            ui.with_layout(Direction::right_to_left(Align::Center), |ui| numbers(ui, session, room, largest));
         }
         if now != comparison {
             actions.push(Action::Compare(CompareCommand::Set(now)));
         }
     });
+    if comparison.layout == Layout::Difference && rect.width() < NARROW {
+        let mut now = comparison;
+        ui.scope_builder(left(row(2.0)), |ui| chosen_values(ui, &mut now));
+        if now != comparison {
+            actions.push(Action::Compare(CompareCommand::Set(now)));
+        }
+    }
+}
+
+/// The choice of what is compared.
+fn chosen_values(ui: &mut Ui, now: &mut Comparison) {
+    choose(ui, "channel", Channel::ALL, &mut now.channel, Channel::name, Channel::summary);
+    choose(ui, "values", Compared::ALL, &mut now.values, Compared::name, Compared::summary);
+}
+
+/// The amplification, and a button that chooses it by the largest difference.
+fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
+    let help = "Differences are multiplied by this before they become colours, 1 to 100.";
+    ui.label(theme::small(ui, "amplify ×")).on_hover_text(help);
+    let field = egui::DragValue::new(&mut now.amplification).range(AMPLIFICATIONS).speed(0.2).max_decimals(0);
+    ui.add(field).on_hover_text(help);
+    let largest = session.facts.comparison.as_ref().and_then(|numbers| numbers.largest);
+    let fitting = largest.map(|largest| fitting_amplification(now.values, largest));
+    let fit = ui.add_enabled(fitting.is_some_and(|f| f != now.amplification), Button::new("fit").small());
+    let fit = fit.on_hover_text("Amplify so that the largest difference has nearly the last colour.");
+    if let (true, Some(fitting)) = (fit.clicked(), fitting) {
+        now.amplification = fitting;
+    }
 }
 
 /// A list of choices.
@@ -507,12 +578,13 @@ fn choose<T: Copy + PartialEq>(
 /// Between two numbers, points.
 const SPACE: f32 = 14.0;
 
-/// The numbers of the comparison; those that have no room are left out.
-fn numbers(ui: &mut Ui, session: &Session, room: f32) {
+/// Those numbers of the comparison that are wanted; those that have no room are left out.
+fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> bool) {
     let Some(numbers) = &session.facts.comparison else { return };
     let palette = Palette::here(ui);
     let mut left = room;
-    let laid_out = numbers.entries().map(|(name, value, help)| {
+    let entries = numbers.entries().filter(|(name, ..)| wanted(name));
+    let laid_out = entries.map(|(name, value, help)| {
         let text = format!("{name} {value}").trim_end().to_owned();
         (theme::elided(ui, &text, TextStyle::Body, palette.text, f32::INFINITY), text, help)
     });

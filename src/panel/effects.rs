@@ -35,6 +35,7 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
             }
         },
         Effect::SaveFile { path, overwrite } => {
+            session.settle_comparison();
             match files.save(&path, &session.document.named(registry), registry, overwrite) {
                 Saved::Done => session.saved(path, registry),
                 Saved::ChangedOnDisk => {

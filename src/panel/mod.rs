@@ -212,7 +212,9 @@ pub fn show(
     }
     let rect = ui.available_rect_before_wrap();
     focus::region(&ctx, Region::Picture, rect);
-    let arrangement = compare::arrange(&session, rect);
+    let several = presenting && !session.document.variants.is_empty();
+    let footer = several.then(|| presentation::Footer::of(ui, rect, &session, registry));
+    let arrangement = compare::arrange(&session, rect, footer.as_ref().map_or(0.0, |footer| footer.height));
     let compares = !arrangement.is_single();
     let rect = if compares { arrangement.picture } else { rect };
     let stage = (presenting && !compares).then(|| presentation::Stage::of(ui, rect, &session, registry));
@@ -223,6 +225,9 @@ pub fn show(
         picture::overlays(ui, [rect, frame], &area.written, stage.as_ref(), &session, registry)
     };
     let (asked, places) = compare::show(ui, &arrangement, &session, registry);
+    if let Some(footer) = footer {
+        footer.paint(ui, whole, &session);
+    }
     over.places.extend(places);
     actions.append(&mut over.actions);
     actions.extend(asked);

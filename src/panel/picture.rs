@@ -56,9 +56,7 @@ pub fn overlays(
     }
     clipping::paint(&ui.painter_at(whole), whole, session, ui.pixels_per_point());
     // In a presentation the picture has no marks, and what it says of itself is as large as the rest.
-    if stage.is_none() {
-        marked(ui, rect, written, session, registry, &mut all);
-    }
+    marked(ui, rect, written, session, registry, &mut all);
     all.written.extend(labels::labels(ui, rect, session.active(), session, registry));
     ui.scope(|ui| {
         let free = stage.map_or(rect, |stage| stage.paint(ui, session));
@@ -82,6 +80,9 @@ pub fn overlays(
 
 /// Paints the marks of a view, and over them the handles of what is selected.
 fn marked(ui: &Ui, rect: Rect, written: &[Rect], session: &Session, registry: &Registry, to: &mut Overlaid) {
+    if session.view.presenting {
+        return;
+    }
     for paint in [marks::marks, handles::handles] {
         let (asked, places) = paint(ui, rect, written, session, registry);
         to.actions.extend(asked);

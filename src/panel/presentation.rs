@@ -21,7 +21,7 @@ use super::{
     theme::Palette,
     typeset::Break,
 };
-use crate::{reflection::Term, registry::Registry};
+use crate::{reflection::Term, registry::Registry, scene::variant::LETTERS};
 
 /// The size of the caption, as a fraction of the height of the screen. The capitals of its font are 0.727 of it high.
 const CAPTION: f32 = 0.036;
@@ -176,14 +176,7 @@ impl Stage {
         let mut free = self.picture;
         if !self.equation.is_empty() {
             ui.painter().rect_filled(self.plate, 8.0, palette.panel);
-            for (i, (which, start, width)) in self.block.columns.iter().enumerate() {
-                let size = vec2(*width, self.block.size.y);
-                let place = Rect::from_min_size(self.plate.min + padding + vec2(*start, 0.0), size);
-                let mut ui = ui.new_child(UiBuilder::new().id_salt(("column", i)).max_rect(place));
-                ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * height));
-                let sizes = Sizes { column: true, even: self.block.even };
-                maths::equation_of(&mut ui, &self.equation[which.clone()], sizes, |_| None);
-            }
+            columns(ui, &self.block, &self.equation, self.plate.min + padding, height);
             let above = self.plate.left() < free.center().x && self.plate.top() <= free.top();
             if above && self.plate.right() > free.left() {
                 free.min.y = free.min.y.max(self.plate.bottom());
@@ -191,6 +184,71 @@ impl Stage {
         }
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(CAPTION * height));
         free.with_max_y(free.bottom().min(self.caption.top()))
+    }
+}
+
+/// What stands below the views of a comparison: the equation and the caption of the active one.
+#[derive(Clone, Debug)]
+pub struct Footer {
+    equation: Vec<Definition>,
+    block: Block,
+    parts: Vec<caption::Part>,
+    /// Its height, points.
+    pub height: f32,
+}
+
+impl Footer {
+    /// The most of the height that the equation takes; a larger one is left out.
+    const MOST: f32 = 0.3;
+
+    /// The footer of a screen.
+    #[must_use]
+    pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
+        let padding = padding(whole);
+        let most = whole.width() - 2.0 * padding.x;
+        let models = models_shown(session);
+        let model = models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1);
+        let mut equation = model.map_or_else(Vec::new, |m| maths::definitions(m.declaration.equation));
+        let mut parts = caption::parts(session, registry);
+        let letter = LETTERS.get(session.active()).copied().unwrap_or_default();
+        parts.insert(0, caption::Part::new(0, format!("{letter}:")));
+        let words = Lines::of(ui, parts.clone(), CAPTION * whole.height(), Palette::here(ui).text, most);
+        let mut ui = ui.new_child(UiBuilder::new().id_salt("footer trial").max_rect(whole).invisible());
+        ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * whole.height()));
+        let blocks = (1..=4).map(|columns| Block::of(&ui, &equation, columns, most, true));
+        let order = |a: &Block, b: &Block| a.broken.cmp(&b.broken).then(a.size.y.total_cmp(&b.size.y));
+        let mut block = blocks.min_by(order).unwrap_or_default();
+        if block.size.y > Self::MOST * whole.height() {
+            (equation, block) = (Vec::new(), Block::default());
+        }
+        let gap = if equation.is_empty() { 0.0 } else { block.size.y + padding.y };
+        Self { equation, block, parts, height: words.size.y + gap + 2.0 * padding.y }
+    }
+
+    /// Paints it at the lower end of the screen.
+    pub(super) fn paint(&self, ui: &mut Ui, whole: Rect, session: &Session) {
+        let palette = Palette::here(ui);
+        let (height, padding) = (whole.height(), padding(whole));
+        let place = whole.with_min_y(whole.bottom() - self.height);
+        ui.painter().rect_filled(place, 0.0, palette.panel);
+        let at = place.min + padding;
+        columns(ui, &self.block, &self.equation, at, height);
+        let width = whole.width() - 2.0 * padding.x;
+        let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width);
+        let gap = if self.equation.is_empty() { 0.0 } else { self.block.size.y + padding.y };
+        words.paint(ui, at + vec2(0.0, gap), palette.text);
+        notice::show(ui, whole.with_max_y(place.top()), CAPTION * height, since(ui).0, session);
+    }
+}
+
+/// Sets an equation in its columns from a corner on.
+fn columns(ui: &mut Ui, block: &Block, equation: &[Definition], at: Pos2, height: f32) {
+    for (i, (which, start, width)) in block.columns.iter().enumerate() {
+        let place = Rect::from_min_size(at + vec2(*start, 0.0), vec2(*width, block.size.y));
+        let mut ui = ui.new_child(UiBuilder::new().id_salt(("column", i)).max_rect(place));
+        ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * height));
+        let sizes = Sizes { column: true, even: block.even };
+        maths::equation_of(&mut ui, &equation[which.clone()], sizes, |_| None);
     }
 }
 

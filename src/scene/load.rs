@@ -19,6 +19,8 @@ use crate::{files, registry::Registry};
 /// Larger files are refused before they are read. The largest legal scene, with every parameter of 10 000 objects
 /// given, is less than a tenth of this.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
+/// The largest file of a picture that is opened: one of the largest size, not compressed.
+pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
 /// The name of standard input in messages.
 pub const STDIN: &str = "standard input";
 
@@ -97,12 +99,19 @@ pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<
     in_folder(&bytes(path, registry)?, (&path.display().to_string(), folder), registry, defaults)
 }
 
+/// The most bytes that are read of a file: in a picture, the scene is a small part.
+fn most(path: &FilePath) -> u64 {
+    let begins = files::PNG.begins;
+    let is_picture = files::read_start(path, begins.len() as u64).is_ok_and(|start| start == begins);
+    if is_picture { MAX_PICTURE_BYTES } else { MAX_FILE_BYTES }
+}
+
 /// Reads the content of a path from the command line: a file, or a stream such as `/dev/stdin`.
 ///
 /// # Errors
 /// [`LoadError`]; its text names it as `path` does.
 pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
-    files::read_input(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e, registry))
+    files::read_input(path, most(path)).map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads the content of a scene file, valid or not.
@@ -110,7 +119,7 @@ pub fn input_bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, Load
 /// # Errors
 /// [`LoadError`] if it is not a regular file, too large, or cannot be read.
 pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError> {
-    files::read(path, MAX_FILE_BYTES).map_err(|e| LoadError::from_file(path, e, registry))
+    files::read(path, most(path)).map_err(|e| LoadError::from_file(path, e, registry))
 }
 
 /// Reads a scene from a stream, for example [standard input](STDIN).

@@ -25,9 +25,9 @@ use super::{
     views::{DifferenceMap, OtherView},
 };
 use crate::{
-    compare::{Measured, Pair, Shown},
+    compare::{Measured, Pair, Shown, short},
     optics::TermSelection,
-    panel::state::{Numbers, PictureArea, Session},
+    panel::state::{LARGEST, Numbers, PictureArea, Session},
     reference::{self, Picture, Settings},
     registry::Registry,
     render::view::{Drawing, View, ViewSystems, texture_of},
@@ -96,10 +96,7 @@ fn compare(
     mut commands: Commands,
 ) {
     let comparison = session.document.comparison;
-    let with = match (comparison.layout, session.active()) {
-        (Layout::SideBySide, view @ 1..) => view,
-        _ => comparison.with,
-    };
+    let with = session.compared_with();
     let cells = area.as_deref().map_or(&[][..], |area| &area.cells);
     let own = cells.first().map_or(0, |cell| cell.view);
     let find = |number: usize| views.iter().find(|(.., other)| other.map_or(own, |other| other.0) == number);
@@ -137,6 +134,7 @@ fn compare(
             question,
             codes,
             scene: (*session.document).clone(),
+            terms: [0, with].map(|view| session.terms_of(view)),
             eye: session.facts.eye,
             forward: session.facts.camera * Vec3::NEG_Z,
             registry: registry.clone(),
@@ -161,7 +159,8 @@ fn compare(
     let Some(answer) = answer else { return };
     let several = session.document.variants.len() > 1;
     let size = comparing.known.as_ref().map_or(UVec2::ONE, |known| known.size);
-    session.bypass_change_detection().facts.comparison = Some(numbers(&answer, with, several));
+    session.bypass_change_detection().facts.comparison =
+        Some(numbers(&answer, with, several, comparison.values));
     if let Some(colours) = answer.map {
         let rgba: Vec<u8> =
             colours.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
@@ -174,7 +173,7 @@ fn compare(
             RenderAssetUsages::RENDER_WORLD,
         );
         image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
-        map.0 = Some(images.add(image));
+        map.0 = Some((images.add(image), size));
     }
     settling.draw(SETTLING_FRAMES);
     requests.write(RequestRedraw);
@@ -196,6 +195,8 @@ struct Job {
     question: Question,
     codes: Vec<Vec<u8>>,
     scene: Scene,
+    /// The terms that view A and the other show.
+    terms: [TermSelection; 2],
     eye: Vec3,
     forward: Vec3,
     registry: Registry,
@@ -206,10 +207,11 @@ impl Job {
         let size = self.question.size;
         let shown: Vec<Shown> = [0, self.question.with]
             .into_iter()
+            .zip(self.terms)
             .zip(&self.codes)
-            .filter_map(|(view, bytes)| {
+            .filter_map(|((view, terms), bytes)| {
                 let codes = codes(bytes, size)?;
-                Shown::of_codes(size.x, size.y, codes).ok()?.with_light(self.light(view)?).ok()
+                Shown::of_codes(size.x, size.y, codes).ok()?.with_light(self.light(view, terms)?).ok()
             })
             .collect();
         let nothing = Answer { measured: None, largest: None, map: None };
@@ -223,8 +225,9 @@ impl Job {
     }
 
     /// The light of a view, from where the camera of the window stands.
-    fn light(&self, view: usize) -> Option<Picture> {
-        let (seen, terms) = self.scene.seen(view, &self.registry)?;
+    fn light(&self, view: usize, terms: TermSelection) -> Option<Picture> {
+        let (seen, _) = self.scene.seen(view, &self.registry)?;
+        // What is covered shows in the cheapest term too.
         let terms =
             if self.question.comparison.values == Compared::Light { terms } else { TermSelection::Ambient };
         Some(light(seen, [self.eye, self.forward], self.question.size, terms, &self.registry))
@@ -246,8 +249,14 @@ pub(super) fn light(
     reference::render(&seen, registry, &settings)
 }
 
+/// A likeness up to 1; what is not equal is not 1.
+fn likeness(value: f64) -> String {
+    let text = format!("{value:.3}");
+    if value < 1.0 && text == "1.000" { "> 0.999".to_owned() } else { text }
+}
+
 /// The numbers for people, over the pixels that objects cover; of which views, if there are `several` beside A.
-fn numbers(answer: &Answer, with: usize, several: bool) -> Numbers {
+fn numbers(answer: &Answer, with: usize, several: bool, values: Compared) -> Numbers {
     let Some(measured) = &answer.measured else { return Numbers::default() };
     let shown = measured.covered.as_ref().unwrap_or(&measured.all);
     let letter = LETTERS.get(with).copied().unwrap_or("B");
@@ -273,7 +282,7 @@ fn numbers(answer: &Answer, with: usize, several: bool) -> Numbers {
         ],
         [
             "SSIM".to_owned(),
-            format!("{:.3}", shown.ssim),
+            likeness(shown.ssim),
             format!(
                 "Structural similarity (Wang et al. 2004): 1 for equal pictures, over the pixels that objects cover; \
                  over all pixels {:.3}.",
@@ -292,14 +301,11 @@ fn numbers(answer: &Answer, with: usize, several: bool) -> Numbers {
         all.insert(0, [format!("{letter} to A"), String::new(), help]);
     }
     if let Some((difference, [x, y])) = answer.largest {
-        let text = if difference >= 10.0 { format!("{difference:.0}") } else { format!("{difference:.2}") };
-        all.push([
-            "max".to_owned(),
-            text,
-            format!(
-                "The largest difference, in the channel and the values that are chosen: at pixel {x}, {y}."
-            ),
-        ]);
+        let unit = if values == Compared::Codes { " of 255" } else { "" };
+        let help = format!(
+            "The largest difference, in the channel and the values that are chosen: at pixel {x}, {y}."
+        );
+        all.push([LARGEST.to_owned(), format!("{}{unit}", short(difference)), help]);
     }
-    Numbers(all)
+    Numbers { all, largest: answer.largest.map(|(difference, _)| difference) }
 }

@@ -1,6 +1,6 @@
 //! Matches of the window: one at a time, beside it.
 
-use bevy::ecs::prelude::*;
+use bevy::{ecs::prelude::*, math::Vec3};
 
 use super::background::Background;
 use crate::{
@@ -28,12 +28,16 @@ impl Matches {
     ) {
         let (scene, registry) = ((*session.document).clone(), registry.clone());
         let same = scene.clone();
+        // Pictures are compared as they are seen: from where the camera stands.
+        let mut seen = scene.clone();
+        seen.observer.position = session.facts.eye;
+        seen.observer.direction = session.facts.camera * Vec3::NEG_Z;
         self.0.begin(
             view,
             wake,
             move || (same, view, what, None),
             move |progress| {
-                let request = Request { scene: &scene, view, what, parameters: &parameters };
+                let request = Request { scene: &seen, view, what, parameters: &parameters };
                 let outcome = match_view(&request, &registry, progress);
                 (scene, view, what, Some(outcome))
             },

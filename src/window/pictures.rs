@@ -3,8 +3,10 @@
 
 use std::{
     borrow::Cow,
+    collections::VecDeque,
     path::{Path, PathBuf},
     sync::{Mutex, PoisonError},
+    time::{Duration, Instant},
 };
 
 use arboard::{Clipboard, ImageData};
@@ -56,7 +58,8 @@ impl Plugin for PicturesPlugin {
 /// The picture that is wanted, and the one that is being written.
 #[derive(Debug, Default, Resource)]
 struct Pictures {
-    wanted: Option<Wanted>,
+    /// In the order in which they were asked for.
+    wanted: VecDeque<Wanted>,
     reading: Option<Reading>,
     /// What is done with that which is being read.
     job: Option<Job>,
@@ -68,7 +71,11 @@ struct Pictures {
 struct Wanted {
     view: Option<usize>,
     file: Option<PathBuf>,
+    since: Instant,
 }
+
+/// The longest that views are waited for: those of a scene that a system moves never rest.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 fn take(
     area: Option<Res<PictureArea>>,
@@ -87,7 +94,7 @@ fn take(
         let Effect::Picture { view, file, overwrite } = effect.clone() else { continue };
         let file = file.map(as_png);
         match file.as_deref().map_or(Ok(true), |file| may_write(file, overwrite, &session, &registry)) {
-            Ok(true) => pictures.wanted = Some(Wanted { view, file }),
+            Ok(true) => pictures.wanted.push_back(Wanted { view, file, since: Instant::now() }),
             Ok(false) => session.picture_exists(view, file.unwrap_or_default()),
             Err(why) => session.pictured(PictureEnd::Failed(why)),
         }
@@ -96,7 +103,7 @@ fn take(
         session.pictured(end);
     }
     let busy = pictures.job.is_some() || pictures.work.running().is_some();
-    if let Some(Wanted { view, file }) = pictures.wanted.clone().filter(|_| !busy) {
+    if let Some(Wanted { view, file, since }) = pictures.wanted.front().cloned().filter(|_| !busy) {
         let cells = area.as_deref().map_or(&[][..], |area| &area.cells);
         let own = cells.first().map_or(0, |cell| cell.view);
         let find =
@@ -104,13 +111,13 @@ fn take(
         let numbers = shown(&session, cells.iter().map(|cell| cell.view).collect(), view);
         let found: Option<Vec<_>> = numbers.iter().map(|number| find(*number)).collect();
         let Some(found) = found else {
-            pictures.wanted = None;
+            pictures.wanted.pop_front();
             let letter = view.and_then(|view| LETTERS.get(view)).copied().unwrap_or_default();
             let why =
                 format!("No picture was taken: view {letter} is not on screen. Choose a layout with it.");
             return session.pictured(PictureEnd::Failed(why));
         };
-        let rest = |drawing: &Drawing| drawing.is_done() && !drawing.draws();
+        let rest = |drawing: &Drawing| drawing.is_done() && !drawing.draws() || since.elapsed() > PATIENCE;
         let textures: Option<Vec<_>> = found
             .iter()
             .map(|(_, drawing, target, _)| texture_of(target).filter(|_| rest(drawing)).cloned())
@@ -118,17 +125,18 @@ fn take(
         if let (Some(textures), Some((first, ..))) = (textures, found.first()) {
             pictures.reading = Some(Reading::begin(&textures, &mut commands));
             pictures.job = Some(Job {
-                scene: session.document.named(&registry),
+                scene: scene(&session, &registry),
                 registry: registry.clone(),
-                shown: numbers.iter().map(|view| (*view, terms(&session, *view))).collect(),
+                shown: numbers.iter().map(|view| (*view, session.terms_of(*view))).collect(),
                 size: first.size,
                 eye: session.facts.eye,
                 forward: session.facts.camera * Vec3::NEG_Z,
                 caption: session.view.picture_caption,
-                alone: view.is_some(),
+                // In a layout that shows one view, a variant alone is meant too.
+                alone: view.is_some() || matches!(numbers.as_slice(), [shown] if *shown > 0),
                 file,
             });
-            pictures.wanted = None;
+            pictures.wanted.pop_front();
         }
     }
     let Pictures { reading, job, work, wanted } = &mut *pictures;
@@ -138,7 +146,7 @@ fn take(
         let broken = PictureEnd::Failed("The picture was not taken: an error of this program.".to_owned());
         work.begin((), || {}, move || broken, move |_| job.run(&read));
     }
-    if wanted.is_some() || job.is_some() || work.running().is_some() {
+    if !wanted.is_empty() || job.is_some() || work.running().is_some() {
         requests.write(RequestRedraw);
     }
 }
@@ -157,9 +165,11 @@ fn shown(session: &Session, cells: Vec<usize>, alone: Option<usize>) -> Vec<usiz
     }
 }
 
-/// The terms that a view shows.
-fn terms(session: &Session, view: usize) -> TermSelection {
-    session.document.overrides(view).and_then(|variant| variant.terms).unwrap_or(session.view.terms)
+/// The scene of the picture, in which the view is compared that is compared on screen.
+fn scene(session: &Session, registry: &Registry) -> Scene {
+    let mut scene = session.document.named(registry);
+    scene.comparison.with = session.compared_with();
+    scene
 }
 
 /// The file with the extension of pictures, if the user typed none.

@@ -30,9 +30,9 @@ use crate::{
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct OtherView(pub(super) usize);
 
-/// The map of the difference between two views.
+/// The map of the difference between two views, and its size.
 #[derive(Resource, Clone, Debug, Default)]
-pub(super) struct DifferenceMap(pub(super) Option<bevy::asset::Handle<bevy::image::Image>>);
+pub(super) struct DifferenceMap(pub(super) Option<(bevy::asset::Handle<bevy::image::Image>, UVec2)>);
 
 /// The first cell is that of the view that the window always has.
 fn first(area: &PictureArea) -> usize {
@@ -123,8 +123,12 @@ pub(super) fn show_views(
         let part = (cell.part != cell.rect).then(|| URect::from_corners(corner, corner + part.size));
         pictures.extend(texture(cell.view).map(|image| ShownPicture { image, at: whole.at, part }));
     }
-    if let (Some(rect), Some(image)) = (area.map, map.and_then(|map| map.0.clone())) {
-        pictures.push(ShownPicture { image, at: place(rect).at, part: None });
+    if let Some(rect) = area.map {
+        let place = place(rect);
+        let map = map.and_then(|map| map.0.clone()).filter(|(_, size)| *size == place.size);
+        // Until there is a map for a place of this size, view A is shown.
+        let image = map.map(|(image, _)| image).or_else(|| texture(own));
+        pictures.extend(image.map(|image| ShownPicture { image, at: place.at, part: None }));
     }
     shows.set_if_neq(Shows(pictures));
 }

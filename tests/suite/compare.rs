@@ -658,7 +658,7 @@ fn the_command_says_what_is_wrong() {
         (&["render", "all.json", "--size", "3x3"], 0, ""),
         (
             &["render", "all.json", "--size", "3x3", "--layout", "side_by_side"],
-            1,
+            2,
             "has no room for the views",
         ),
     ] {

@@ -4,9 +4,15 @@ use std::fs;
 
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, vec2};
 use lights_camera_models::{
+    compare::fitting_amplification,
     document::{Edit, VariantField},
-    panel::state::{Action, CompareCommand, Session},
-    scene::{Variant, comparison::Layout},
+    optics::TermSelection,
+    panel::state::{Action, CompareCommand, Numbers, Session, ViewChange},
+    parameter::{Value, Values},
+    scene::{
+        Comparison, Scene, Variant,
+        comparison::{Compared, Layout},
+    },
 };
 
 use crate::{
@@ -220,4 +226,100 @@ fn a_view_gets_a_name_and_one_that_others_are_based_on_keeps_it() {
     bench.apply(Action::Edit(Edit::Variant(0, VariantField::Name(String::new()))));
     assert_eq!(bench.session.document.variants[0].name.as_deref(), Some("hard"));
     assert!(bench.says("based on this one by its name"));
+}
+
+/// A scene with three variants, of which the last is based on the first.
+fn three() -> Bench {
+    let colour = |rgb| Values([("base_colour".into(), Value::Colour(rgb))].into());
+    let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+    scene.variants = vec![
+        Variant {
+            name: Some("b".to_owned()),
+            reflection_model: Some("lambert".to_owned()),
+            material: colour([0, 0, 255]),
+            ..Variant::default()
+        },
+        Variant { exposure: Some(1.0), ..Variant::default() },
+        Variant { based_on: Some("b".to_owned()), exposure: Some(2.0), ..Variant::default() },
+    ];
+    scene.comparison = Comparison { layout: Layout::SideBySide, with: 2, ..Comparison::default() };
+    Bench::new(Session::new(scene))
+}
+
+/// What a view shows, but for names.
+fn seen(bench: &Bench, view: usize) -> (String, String, String) {
+    let (scene, _) = bench.session.document.seen(view, &bench.registry).expect("there is such a view");
+    let object = &scene.objects[0];
+    let colour = bench.registry.material_parameter("base_colour").expect("there is one");
+    let model = scene.model_of(object).to_owned();
+    (model, format!("{:?}", object.material.get(colour)), format!("{:?}", scene.display))
+}
+
+#[test]
+fn views_are_swapped_and_the_others_stay_as_they_are() {
+    let mut bench = three();
+    let before: Vec<_> = (0..4).map(|view| seen(&bench, view)).collect();
+    bench.apply(Action::Compare(CompareCommand::Swap(1)));
+    let after: Vec<_> = (0..4).map(|view| seen(&bench, view)).collect();
+    assert_eq!([&after[0], &after[1]], [&before[1], &before[0]]);
+    assert_eq!(after[2..], before[2..]);
+    bench.apply(Action::Undo);
+    assert_eq!((0..4).map(|view| seen(&bench, view)).collect::<Vec<_>>(), before);
+    // Terms are no part of the scene that would be view A.
+    bench.apply(Action::Edit(Edit::Variant(0, VariantField::Terms(Some(TermSelection::Specular)))));
+    bench.apply(Action::Compare(CompareCommand::Swap(1)));
+    assert!(bench.says("terms of its own"));
+    assert_eq!(seen(&bench, 0), before[0]);
+}
+
+#[test]
+fn the_compared_view_stays_the_same_when_one_before_it_goes() {
+    let mut bench = three();
+    let with = bench.session.document.comparison.with;
+    let before = seen(&bench, with);
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.apply(Action::Compare(CompareCommand::Remove(1)));
+    assert_eq!(bench.session.document.comparison.with, with - 1);
+    assert_eq!(seen(&bench, with - 1), before);
+}
+
+#[test]
+fn a_scene_is_saved_with_the_view_that_was_compared() {
+    let mut bench = three();
+    bench.apply(Action::Compare(CompareCommand::Activate(3)));
+    assert_eq!((bench.session.compared_with(), bench.session.document.comparison.with), (3, 2));
+    assert!(!bench.session.is_dirty(), "looking at another view changes no scene");
+    let steps = bench.session.document.steps().len();
+    bench.session.settle_comparison();
+    assert_eq!(bench.session.document.comparison.with, 3);
+    assert_eq!(bench.session.document.steps().len(), steps);
+}
+
+#[test]
+fn a_presentation_of_views_has_equation_and_caption_and_no_handles() {
+    let mut bench = three();
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    assert!(bench.says("Handle: "));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    bench.settle();
+    assert!(!bench.says("Handle: ") && !bench.says("Menu of view"));
+    let written: Vec<_> = crate::layout::texts(&mut bench).into_iter().map(|(text, _)| text).collect();
+    let written = written.join(" ");
+    assert!(written.contains("A:") && written.contains("Phong"), "{written}");
+}
+
+#[test]
+fn the_amplification_is_fitted_to_the_largest_difference() {
+    for (largest, expected) in [(255.0, 1.0), (128.0, 1.0), (100.0, 2.0), (12.0, 20.0), (0.5, 100.0)] {
+        assert_eq!(fitting_amplification(Compared::Codes, largest), expected, "{largest}");
+    }
+    assert_eq!(fitting_amplification(Compared::Light, 0.1), 10.0);
+    let mut bench = three();
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+    bench.session.facts.comparison = Some(Numbers { largest: Some(12.0), ..Numbers::default() });
+    bench.settle();
+    click(&mut bench, "fit");
+    assert_eq!(bench.session.document.comparison.amplification, 20.0);
 }

@@ -153,7 +153,7 @@ fn the_list_of_keys_has_its_descriptions_in_line_and_clear_of_the_scroll_bar() {
 }
 
 /// The texts on screen, and their places.
-fn texts(bench: &mut Bench) -> Vec<(String, Rect)> {
+pub fn texts(bench: &mut Bench) -> Vec<(String, Rect)> {
     let text = |shape| match shape {
         Shape::Text(text) => Some((text.galley.text().to_owned(), text.visual_bounding_rect())),
         _ => None,

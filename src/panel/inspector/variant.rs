@@ -12,8 +12,10 @@ use crate::{
         state::{Action, CompareCommand, Session},
         theme::{self, Palette},
     },
+    reflection::usage::unused,
     registry::Registry,
     scene::{Variant, limits::number, variant::LETTERS},
+    text::{listed, plural},
 };
 
 /// Says which view is shown here, and what it overrides. Nothing where the scene has no variants.
@@ -29,7 +31,13 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
         ui.add_space(4.0);
         return;
     };
-    let rows = overridden(variant, registry);
+    let own = overridden(variant, registry);
+    let all = session.document.overrides(view).map_or_else(Vec::new, |all| overridden(&all, registry));
+    let used = |field: &VariantField| match field {
+        VariantField::Material(name, _) => uses(session, name, registry),
+        _ => true,
+    };
+    let (rows, unused): (Vec<_>, Vec<_>) = all.into_iter().partition(|(.., field)| used(field));
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, format!("View {letter}")));
         ui.label(theme::small(ui, if rows.is_empty() { "as A" } else { "differs from A in" }));
@@ -45,12 +53,17 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
     for (name, value, field) in rows {
         ui.horizontal(|ui| {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let help = format!("{name}: back to A");
-                if icon::button(ui, Icon::Reset, &help).clicked() {
+                // What it has from the view that it is based on is that view's to change.
+                let mine = own.iter().any(|(.., known)| *known == field);
+                let base = variant.based_on.as_deref().map_or("A".to_owned(), |base| format!("“{base}”"));
+                let help = format!("{name}: back to {base}");
+                if mine && icon::button(ui, Icon::Reset, &help).clicked() {
                     actions.push(Action::Compare(CompareCommand::Reset(view, field)));
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    bar(ui, ui.max_rect(), &palette);
+                    if mine {
+                        bar(ui, ui.max_rect(), &palette);
+                    }
                     ui.add_space(8.0);
                     let room = ui.available_width();
                     let text = format!("{name}  {value}");
@@ -61,6 +74,11 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
                 });
             });
         });
+    }
+    if !unused.is_empty() {
+        let names: Vec<_> = unused.iter().map(|(name, ..)| name.as_str()).collect();
+        let text = format!("And {}, which the model does not use.", plural(unused.len(), "value"));
+        ui.label(theme::small(ui, text)).on_hover_text(listed(&names, "and"));
     }
     if variant.based_on.is_some() {
         let name = variant.based_on.as_deref().unwrap_or_default();
@@ -73,6 +91,15 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
         ),
     ));
     ui.add_space(4.0);
+}
+
+/// True if the model of a visible object of the active view has a parameter, and uses it.
+fn uses(session: &Session, name: &str, registry: &Registry) -> bool {
+    session.scene().shown().any(|object| {
+        let model = registry.model(session.scene().model_of(object));
+        let parameter = model.and_then(|model| Some((model, model.parameter(name)?)));
+        parameter.is_some_and(|(model, p)| unused(model.parameters, p, &object.material).is_none())
+    })
 }
 
 /// The mark of what is overridden.

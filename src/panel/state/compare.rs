@@ -64,6 +64,24 @@ impl Session {
         }
     }
 
+    /// The view that is compared with view A: the active one, where views stand side by side.
+    #[must_use]
+    pub fn compared_with(&self) -> usize {
+        match (self.document.comparison.layout, self.active()) {
+            (Layout::SideBySide, view @ 1..) => view,
+            _ => self.document.comparison.with,
+        }
+    }
+
+    /// Takes over into the scene which view is compared with view A, before the scene is written. This is no step of the
+    /// history.
+    pub fn settle_comparison(&mut self) {
+        let with = self.compared_with();
+        if with != self.document.comparison.with {
+            self.document.amend(|scene| scene.comparison.with = with);
+        }
+    }
+
     /// True if [`look`](Self::look) is to be called: the active view shows something else.
     #[must_use]
     pub fn is_stale(&self) -> bool {
@@ -87,7 +105,13 @@ impl Session {
     /// The terms that the active view shows.
     #[must_use]
     pub fn terms(&self) -> TermSelection {
-        let own = self.document.overrides(self.active()).and_then(|variant| variant.terms);
+        self.terms_of(self.active())
+    }
+
+    /// The terms that a view shows.
+    #[must_use]
+    pub fn terms_of(&self, view: usize) -> TermSelection {
+        let own = self.document.overrides(view).and_then(|variant| variant.terms);
         own.unwrap_or(self.view.terms)
     }
 
@@ -225,7 +249,8 @@ impl Session {
             }
         }
         let mut comparison = self.document.comparison;
-        comparison.with = comparison.with.clamp(1, all.len().max(1));
+        let with = if comparison.with > view { comparison.with - 1 } else { comparison.with };
+        comparison.with = with.clamp(1, all.len().max(1));
         if all.is_empty() {
             comparison.layout = Layout::Single;
         }
@@ -239,24 +264,24 @@ impl Session {
     fn swap_views(&mut self, view: usize, registry: &Registry) {
         let name = format!("Swap A and {}", LETTERS.get(view).copied().unwrap_or("B"));
         match swapped(&self.document, view, registry) {
-            Ok(scene) => {
-                let terms = scene.1;
-                self.document.change(name, Extent::All, self.selection, |all| *all = scene.0);
-                self.view.terms = terms;
-            }
+            Ok(scene) => self.document.change(name, Extent::All, self.selection, |all| *all = scene),
             Err(why) => self.say(Severity::Warning, format!("The views cannot be swapped: {why}.")),
         }
     }
 }
 
-/// The scene with view A and another exchanged, and the terms of view A then.
+/// The scene with view A and another exchanged. Further views show what they showed.
 ///
 /// # Errors
-/// The objects differ in what the other view overrides for all of them: a variant cannot hold that.
-fn swapped(scene: &Scene, view: usize, registry: &Registry) -> Result<(Scene, TermSelection), String> {
+/// The objects differ in what the other view overrides for all of them: a variant cannot hold that. Or it shows terms of
+/// its own: the scene itself cannot hold that.
+fn swapped(scene: &Scene, view: usize, registry: &Registry) -> Result<Scene, String> {
     let Some(variant) = scene.overrides(view) else { return Err("there is no such view".to_owned()) };
     if scene.variants[view - 1].based_on.is_some() {
         return Err("the view inherits from another".to_owned());
+    }
+    if variant.terms.is_some() {
+        return Err("the view shows terms of its own, which the scene itself has not".to_owned());
     }
     /// The one value of all objects.
     fn one<T: PartialEq>(mut all: impl Iterator<Item = T>, what: &str) -> Result<Option<T>, String> {
@@ -294,10 +319,17 @@ fn swapped(scene: &Scene, view: usize, registry: &Registry) -> Result<(Scene, Te
     back.tone_mapping = variant.tone_mapping.map(|_| scene.display.tone_mapping);
     back.exposure = variant.exposure.map(|_| scene.display.exposure);
     back.encoding = variant.encoding.map(|_| scene.display.encoding);
-    back.terms = variant.terms.map(|_| TermSelection::All);
     let mut after = variant.applied(scene, registry);
-    after.variants[view - 1] = back;
-    Ok((after, variant.terms.unwrap_or_default()))
+    let swapped = view - 1;
+    for (_, other) in after.variants.iter_mut().enumerate().filter(|(i, _)| *i != swapped) {
+        if other.based_on.is_some() && other.based_on == back.name {
+            other.based_on = None;
+        } else if other.based_on.is_none() {
+            *other = other.clone().over(&back);
+        }
+    }
+    after.variants[swapped] = back;
+    Ok(after)
 }
 
 #[cfg(test)]

@@ -93,13 +93,21 @@ impl Clipping {
     }
 }
 
+/// The name of the largest difference among the numbers.
+pub const LARGEST: &str = "largest";
+
 /// The numbers of a comparison.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Numbers(pub Vec<[String; 3]>);
+pub struct Numbers {
+    /// The name of each, its value, and one sentence.
+    pub all: Vec<[String; 3]>,
+    /// The largest difference, in the values that are compared.
+    pub largest: Option<f32>,
+}
 
 impl Numbers {
     /// The name of each, its value, and one sentence.
     pub fn entries(&self) -> impl Iterator<Item = (&str, &str, &str)> {
-        self.0.iter().map(|[name, value, help]| (name.as_str(), value.as_str(), help.as_str()))
+        self.all.iter().map(|[name, value, help]| (name.as_str(), value.as_str(), help.as_str()))
     }
 }

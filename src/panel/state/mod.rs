@@ -16,7 +16,7 @@ pub use author::{LawCheck, ModelDraft, NameProblem, check_name};
 pub use compare::CompareCommand;
 pub use disk::OnDisk;
 pub use effect::{Effect, LabEffect, RecoveryChoice, Steer};
-pub use facts::{Clipping, Exporting, Facts, Matching, Numbers};
+pub use facts::{Clipping, Exporting, Facts, LARGEST, Matching, Numbers};
 pub use files::RECENT_FILES;
 pub use matching::{MatchCommand, MatchDraft};
 pub use messages::{Badge, MAX_MESSAGES, Messages, Note};

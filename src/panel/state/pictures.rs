@@ -21,7 +21,11 @@ impl Session {
         let effect = |view, file, overwrite| Effect::Picture { view, file, overwrite };
         vec![match command {
             PictureCommand::Dialog(view) => Effect::PickPicture(view),
-            PictureCommand::To { view, path } => effect(view, Some(path), false),
+            // The dialog has asked about the name that was typed, but not about the one with an ending.
+            PictureCommand::To { view, path } => {
+                let asked = path.extension().is_some();
+                effect(view, Some(path), asked)
+            }
             PictureCommand::Copy(view) => effect(view, None, false),
         }]
     }
