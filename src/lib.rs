@@ -36,6 +36,7 @@
 //! - [`document`]: the one writer of the scene: edits, checks, undo and redo.
 //! - [`caption`]: pictures in words, and the strip below a picture that says them.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
+//! - [`explain`]: the colour of one pixel, with the equation and every number in it.
 //! - [`compare`]: pictures compared: layouts of views, maps of differences, numbers.
 //! - [`matching`]: the parameters of one view that come nearest to another.
 //! - [`library`]: the shader library: the files of all shader texts, and their errors.
@@ -89,6 +90,8 @@ pub mod document;
 pub mod caption;
 
 pub mod reference;
+
+pub mod explain;
 
 pub mod compare;
 pub mod matching;

@@ -32,6 +32,7 @@ mod check;
 mod compare;
 mod custom;
 mod evaluate;
+mod explain;
 mod export;
 mod matching;
 mod models;
@@ -153,6 +154,11 @@ enum Command {
     },
     /// Write a scene as code: a project, shaders, a page, a program, a scene for another renderer
     Export(export::Arguments),
+    /// Explain the colour of a pixel: the equation with its numbers, light by light, and the way to the display
+    ///
+    /// Prints a worked example: where the equation was evaluated, directions and cosines, the intensity of each light, each
+    /// term, their sum, exposure, tone mapping, encoding and code. One sample, at the pixel's centre, by the CPU renderer.
+    Explain(explain::Arguments),
     /// Find the parameters of a view that come nearest to view A
     Match(matching::Arguments),
     /// List the reflection models with their laws and parameters; write and check custom models
@@ -299,6 +305,9 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
         Some(Command::New { file }) => new::run(&file, options, &known),
         Some(Command::Export(arguments)) => {
             export::run(&arguments, options, &mut places.open(options, known)?)
+        }
+        Some(Command::Explain(arguments)) => {
+            explain::run(&arguments, options, &mut places.open(options, known)?)
         }
         Some(Command::Match(arguments)) => {
             matching::run(&arguments, options, &mut places.open(options, known)?)

@@ -20,6 +20,7 @@ mod editors;
 mod equations;
 mod examples;
 mod executable;
+mod explain;
 mod export;
 mod export_bevy;
 mod export_shaders;
