@@ -2,6 +2,7 @@
 
 use super::{Geometry, Lit, Model, Setting, angle, number, triple};
 use crate::{
+    optics::TermSelection,
     parameter::{Parameter, ParameterKind, Value},
     reflection::Term,
     text::mathematics::{Atom, parse, same_symbol},
@@ -215,6 +216,14 @@ impl Lit {
             let unsaid = lines[before..].iter().all(|line| line.value.is_none());
             if unsaid && (value != Vec3::ZERO || lines.len() > before) {
                 lines.insert(before, Line { term, text: "", numbers: None, value: Some(value) });
+            }
+        }
+        // A model may have one formula for all of its light.
+        for part in model.declaration.equation.iter().filter(|part| part.term == Term::Total) {
+            if let Some(numbers) = put_in(part.text, &symbols).filter(|_| self.geometry.is_some()) {
+                let defines = part.text.split_once('=').is_some_and(|(head, _)| head.trim() == "I");
+                let value = defines.then(|| self.response.select(TermSelection::All));
+                lines.push(Line { term: Term::Total, text: part.text, numbers: Some(numbers), value });
             }
         }
         lines

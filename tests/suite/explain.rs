@@ -17,7 +17,7 @@ use lights_camera_models::{
 };
 use serde_json::json;
 
-use crate::support::{lcm, lcm_in, root, shipped_scenes};
+use crate::support::{lcm, lcm_in, root, shipped_scenes, written};
 
 const SMALL: Settings = Settings { width: 160, height: 90, samples: 1, terms: TermSelection::All };
 
@@ -100,48 +100,45 @@ fn every_number_leads_to_the_code_of_the_picture() {
     for path in shipped_scenes() {
         let shipped = load::file(&path, &registry, Defaults::Use).unwrap_or_else(|e| panic!("{e}")).scene;
         for shading in registry.shading_models() {
-            for _ in 0..3 {
-                let view = (random(&mut seed) * (shipped.variants.len() + 1) as f32) as usize;
-                let (mut scene, terms) = shipped.seen(view, &registry).expect("there is such a view");
-                let models = registry.models();
-                let model =
-                    models[(random(&mut seed) * models.len() as f32) as usize % models.len()].declaration.id;
-                // Sometimes as it is: with overrides of objects.
-                if random(&mut seed) < 0.7 {
-                    model.clone_into(&mut scene.reflection_model);
-                    shading.declaration.id.clone_into(&mut scene.shading_model);
-                    for object in &mut scene.objects {
-                        (object.reflection_model, object.shading_model) = (None, None);
-                    }
+            let view = (random(&mut seed) * (shipped.variants.len() + 1) as f32) as usize;
+            let (mut scene, terms) = shipped.seen(view, &registry).expect("there is such a view");
+            let models = registry.models();
+            let model =
+                models[(random(&mut seed) * models.len() as f32) as usize % models.len()].declaration.id;
+            // Sometimes as it is: with overrides of objects.
+            if random(&mut seed) < 0.7 {
+                model.clone_into(&mut scene.reflection_model);
+                shading.declaration.id.clone_into(&mut scene.shading_model);
+                for object in &mut scene.objects {
+                    (object.reflection_model, object.shading_model) = (None, None);
                 }
-                let tones = ToneMapping::ALL;
-                scene.display.tone_mapping = tones[(random(&mut seed) * 8.0) as usize % 8];
-                scene.display.exposure = 4.0 * random(&mut seed) - 2.0;
-                let settings = Settings { terms, ..SMALL };
-                let picture = reference::render(&scene, &registry, &settings);
-                let codes = picture.to_rgb8(&scene.display);
-                let pick = |side: u32, seed: &mut u64| ((random(seed) * side as f32) as u32).min(side - 1);
-                let mut previous: Option<Explanation> = None;
-                for _ in 0..8 {
-                    let pixel = [pick(SMALL.width, &mut seed), pick(SMALL.height, &mut seed)];
-                    let explained =
-                        explain::pixel(&scene, &registry, &settings, pixel).expect("in the picture");
-                    let i = (pixel[1] * SMALL.width + pixel[0]) as usize;
-                    let code = [codes[3 * i], codes[3 * i + 1], codes[3 * i + 2]];
-                    let light = picture.pixels[i];
-                    wrong(&explained, code, light.truncate())
-                        .unwrap_or_else(|what| panic!("{} {model} {pixel:?}: {what}", path.display()));
-                    assert_eq!(explained.seen.is_some(), light.w == 1.0, "{}", path.display());
-                    match explained.seen {
-                        Some(_) => objects += 1,
-                        None => backgrounds += 1,
-                    }
-                    // The wrong twin: the explanation of another pixel.
-                    if let Some(other) = previous {
-                        refused += usize::from(wrong(&other, code, light.truncate()).is_err());
-                    }
-                    previous = Some(explained);
+            }
+            let tones = ToneMapping::ALL;
+            scene.display.tone_mapping = tones[(random(&mut seed) * 8.0) as usize % 8];
+            scene.display.exposure = 4.0 * random(&mut seed) - 2.0;
+            let settings = Settings { terms, ..SMALL };
+            let picture = reference::render(&scene, &registry, &settings);
+            let codes = picture.to_rgb8(&scene.display);
+            let pick = |side: u32, seed: &mut u64| ((random(seed) * side as f32) as u32).min(side - 1);
+            let mut previous: Option<Explanation> = None;
+            for _ in 0..12 {
+                let pixel = [pick(SMALL.width, &mut seed), pick(SMALL.height, &mut seed)];
+                let explained = explain::pixel(&scene, &registry, &settings, pixel).expect("in the picture");
+                let i = (pixel[1] * SMALL.width + pixel[0]) as usize;
+                let code = [codes[3 * i], codes[3 * i + 1], codes[3 * i + 2]];
+                let light = picture.pixels[i];
+                wrong(&explained, code, light.truncate())
+                    .unwrap_or_else(|what| panic!("{} {model} {pixel:?}: {what}", path.display()));
+                assert_eq!(explained.seen.is_some(), light.w == 1.0, "{}", path.display());
+                match explained.seen {
+                    Some(_) => objects += 1,
+                    None => backgrounds += 1,
                 }
+                // The wrong twin: the explanation of another pixel.
+                if let Some(other) = previous {
+                    refused += usize::from(wrong(&other, code, light.truncate()).is_err());
+                }
+                previous = Some(explained);
             }
         }
     }
@@ -461,7 +458,7 @@ fn custom_models_are_explained_by_the_interpreter() {
         "render",
         "a.json",
         "--models",
-        ".",
+        "models",
         "--size",
         "640x360",
         "--renderer",
@@ -532,4 +529,31 @@ fn the_factors_of_a_light_are_its_light() {
     let factors = emitter.factors(&record, Vec3::ONE);
     assert!(near(product(&factors), intensity, 1e-6));
     assert!(!near(product(&factors[1..]), intensity, 1e-2));
+}
+
+#[test]
+fn models_that_say_less_are_explained_as_far_as_they_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::create_dir(folder.path().join("models")).expect("writable");
+    let response = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), 0.5 * vec3(max(dot(frame.n, l), 0.0)), vec3(0.0));
+}
+";
+    let explained = |id: &str, declaration: &str| {
+        let text = format!("/* lcm {declaration} */\n{response}");
+        fs::write(folder.path().join(format!("models/{id}.wgsl")), text).expect("writable");
+        let scene = Scene { reflection_model: id.to_owned(), ..scene("lambert", "phong") };
+        let mut text: serde_json::Value = serde_json::from_str(&written(&scene)).expect("JSON");
+        text["reflection_model"] = json!(id);
+        fs::write(folder.path().join("a.json"), text.to_string()).expect("writable");
+        let run = lcm_in(folder.path(), &["explain", "a.json", "--models", "models", "--at", "640,360"], b"");
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{id}");
+        run.out
+    };
+    let silent = explained("silent", "{ \"parameters\": [] }");
+    assert!(silent.contains("\n    I_d = (0.3"), "{silent}");
+    let whole = explained("whole", "{ \"equation\": \"I = max(0, N·L)/2\", \"parameters\": [] }");
+    for expected in ["    I = max(0, N·L)/2\n      = max(0, 0.60", ")/2\n      = (0.3", "\n    I_d = (0.3"] {
+        assert!(whole.contains(expected), "{expected}\n{whole}");
+    }
 }
