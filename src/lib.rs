@@ -42,6 +42,7 @@
 //! - [`recovery`]: crash recovery of unsaved work.
 //! - [`render`]: drawing with Bevy.
 //! - [`export`]: a scene as code: projects, shader files, pages, programs.
+//! - [`curves`]: curves of models: BRDF, albedo, factors alone, image slices; measured data; figures.
 //!
 //! The program:
 //!
@@ -98,6 +99,8 @@ pub mod recovery;
 pub mod render;
 
 pub mod export;
+
+pub mod curves;
 
 pub mod panel;
 pub mod window;

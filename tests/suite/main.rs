@@ -58,6 +58,7 @@ mod panels;
 mod photometric;
 mod pictures;
 mod placing;
+mod plot;
 mod plugins;
 mod pointer;
 mod presentation;
