@@ -93,7 +93,7 @@ pub fn curve(
             grid(0.0, GRAZING, if fine { 45 } else { 15 }, last)
         }
         Kind::Fresnel => grid(0.0, 90.0, 45, &[]),
-        Kind::Distribution => grid(0.0, 90.0, 90, &around(0.0)),
+        Kind::Distribution => grid(0.0, GRAZING, 90, &around(0.0)),
         _ => grid(-GRAZING, GRAZING, 90, &lobes),
     };
     let mut points = adaptive::at(&angles, &value, progress)?;

@@ -48,12 +48,15 @@ impl Sheet {
             if let Some(missing) = curve.missing() {
                 notes.push(format!("{}: {missing}; the curve has a gap there.", curve.name));
             }
-            if self.log && curve.points.iter().any(|p| self.value(p.rgb) <= 0.0) {
-                notes.push(format!(
-                    "{}: values of 0 or less have no place on a logarithmic axis.",
-                    curve.name
-                ));
-            }
+            let mut values = curve.points.iter().map(|p| self.value(p.rgb)).filter(|v| v.is_finite());
+            let what = if self.log && values.clone().any(|v| v < 0.0) {
+                "negative values have"
+            } else if self.log && values.clone().next().is_some() && !values.any(|v| v > 0.0) {
+                "every value is 0, which has"
+            } else {
+                continue;
+            };
+            notes.push(format!("{}: {what} no place on a logarithmic axis.", curve.name));
         }
         for slice in &self.slices {
             match slice.missing() {
@@ -114,7 +117,7 @@ impl Sheet {
                 radius: self.axis(true),
                 series: self.series(),
                 light: self.setup.theta_i,
-                size: (960, 600),
+                size: (960, 500),
                 notes: self.notes(),
             }),
             _ => {
@@ -156,9 +159,8 @@ impl Sheet {
         let all: usize = self.slices.iter().map(|s| s.values.len()).sum();
         let clipped: usize = self.slices.iter().map(|s| s.clipped(self.channel)).sum();
         let mut notes = vec![if self.log {
-            format!("π f, logarithmic: from 10⁻{LOG_RANGE} (black) over 1 (grey) to 10{} (white).", '²')
-                .replace("10⁻2", "0.01")
-                .replace("10²", "100")
+            let range = 10f32.powf(LOG_RANGE);
+            format!("π f, logarithmic: {} is black, 1 is grey, {range} is white.", 1.0 / range)
         } else {
             let part = 100.0 * clipped as f64 / all.max(1) as f64;
             let digits = if part < 10.0 { 1 } else { 0 };

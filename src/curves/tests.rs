@@ -99,7 +99,7 @@ fn factors_are_those_of_the_response() {
         let model = subject(id, &[]);
         let mut twin = 0.0f32;
         for (theta_i, theta_o, phi) in
-            [(10.0, 30.0, 150.0), (60.0, 50.0, 180.0), (40.0, 5.0, 77.0), (80.0, 70.0, 190.0)]
+            [(10.0, 30.0, 150.0), (60.0, 50.0, 180.0), (40.0, 5.0, 77.0), (85.0, 60.0, 180.0)]
         {
             let l = crate::optics::geometry::direction(theta_i, 0.0);
             let v = crate::optics::geometry::direction(theta_o, phi);
@@ -268,7 +268,7 @@ fn measured_data_is_what_was_measured() {
         "Krylon blue was measured with the light at 10°, 20°, 30°, 40°, 50°, 60°, 70° and 80°, not at 45°"
     );
     assert!(
-        at(Kind::Albedo, 45.0).contains("at single directions only: there is no directional albedo of it")
+        at(Kind::Albedo, 45.0).contains("at single directions only: there is no directional albedo E of it")
     );
     assert!(at(Kind::Fresnel, 45.0).contains("has no Fresnel factor F"));
     let gold = Subject::measured("gold-metallic-paint").expect("fitted");
@@ -293,4 +293,21 @@ fn light_from_below_is_refused() {
         let error = Setup::new(Kind::Brdf, theta, phi).err().map(|e| e.to_string()).unwrap_or_default();
         assert!(error.contains(said), "{error}");
     }
+}
+
+#[test]
+fn what_a_logarithmic_axis_cannot_show_is_said() {
+    let setup = Setup::new(Kind::Brdf, 30.0, 0.0).expect("legal");
+    let said = |values: [f32; 3], log: bool| {
+        let point = |(i, v): (usize, f32)| Point { angle: i as f64, rgb: Vec3::splat(v) };
+        let points = values.into_iter().enumerate().map(point).collect();
+        let curves = vec![Curve { name: "x".to_owned(), points, measured: false }];
+        let sheet = Sheet { curves, log, ..Sheet::new(setup) };
+        assert!(!sheet.figure().svg().contains("NaN"));
+        sheet.notes().join(" ")
+    };
+    assert_eq!(said([1.0, 0.0, 1.0], true), "", "a zero leaves at the foot of the plot");
+    assert_eq!(said([1.0, -1.0, 1.0], true), "x: negative values have no place on a logarithmic axis.");
+    assert_eq!(said([0.0; 3], true), "x: every value is 0, which has no place on a logarithmic axis.");
+    assert_eq!(said([0.0, -1.0, 1.0], false), "");
 }

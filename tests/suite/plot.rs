@@ -107,7 +107,6 @@ fn refused(arguments: &[&str], status: i32, expected: &str) {
     let run = lcm(&[&["plot"], arguments].concat(), "");
     assert_eq!((run.status, run.out.as_str()), (Some(status), ""), "{arguments:?}: {}", run.err);
     assert!(run.err.contains(expected), "{}\nnot: {expected}", run.err);
-    assert_eq!(run.err.lines().count(), run.err.lines().filter(|l| !l.trim().is_empty()).count());
 }
 
 #[test]

@@ -100,19 +100,21 @@ impl Axis {
     /// The label of a value; on a logarithmic axis, of a power of ten.
     pub(super) fn text(&self, at: f64) -> String {
         if !self.log {
-            let digits = (1.0 - self.step().log10()).floor().clamp(0.0, 9.0) as usize;
             // 0.2, but 0.25: as many digits as the step has.
-            let digits = (0..digits).find(|d| {
-                let scaled = self.step() * 10f64.powi(*d as i32);
-                (scaled - scaled.round()).abs() < 1e-6
-            });
-            return format!("{:.*}", digits.unwrap_or(9), at + 0.0).replace('-', "−");
+            let whole = |digits: &usize| {
+                let scaled = self.step() * 10f64.powi(*digits as i32);
+                (scaled - scaled.round()).abs() < 1e-6 * scaled
+            };
+            let digits = (0..9).find(whole).unwrap_or(9);
+            return format!("{:.*}", digits, at + 0.0).replace('-', "−");
         }
         if (at - at.round()).abs() > 1e-6 {
             return String::new();
         }
         let power = at.round() as i32;
-        if (-2..=3).contains(&power) {
+        // Numbers or powers, but not both on one axis, except near 1.
+        let short = self.from > 0.000_99 && self.to < 1001.0;
+        if short && (-3..=3).contains(&power) || (-1..=1).contains(&power) {
             return format!("{}", 10f64.powi(power));
         }
         let superscript = |c: char| match c {
@@ -135,8 +137,8 @@ mod tests {
     fn logarithmic_axes_are_labelled_at_powers_of_ten() {
         let axis = Axis::log("f", 1e-4, 1e4);
         assert_eq!(
-            ["0.01", "1", "1000", "10⁻⁴", "10⁴", ""],
-            [-2.0, 0.0, 3.0, -4.0, 4.0, 0.5].map(|x| axis.text(x))
+            ["10⁻²", "0.1", "1", "10³", "10⁻⁴", "10⁴", ""],
+            [-2.0, -1.0, 0.0, 3.0, -4.0, 4.0, 0.5].map(|x| axis.text(x))
         );
         assert_eq!(labels(&Axis::log("f", 0.1, 1000.0)), ["0.1", "1", "10", "100", "1000"]);
         assert_eq!(

@@ -46,17 +46,23 @@ pub(super) fn around(pen: &mut impl Pen, parts: &Around) -> [f64; 4] {
         bottom -= 8.0;
     }
     if !parts.legend.is_empty() {
-        let names = parts.legend.iter().map(|series| pen.width(FONT - 1.0, &series.name));
-        let room = names.fold(0.0, f64::max).min(0.34 * width - SAMPLE).max(40.0);
+        let names: Vec<_> = parts.legend.iter().map(|series| joined(&series.name)).collect();
+        let widest = names.iter().map(|name| pen.width(FONT - 1.0, name)).fold(0.0, f64::max);
+        let room = widest.min(0.34 * width - SAMPLE).max(40.0);
         right -= room + SAMPLE + 14.0;
         let left = right + 8.0;
         let mut y = top + 30.0;
-        for series in parts.legend {
-            let lines = pen.lines(FONT - 1.0, &series.name, room);
+        for (series, name) in parts.legend.iter().zip(&names) {
+            let lines = pen.lines(FONT - 1.0, name, room);
             line(pen, &[[left, y], [left + SAMPLE - 8.0, y]], series);
             mark(pen, [left + 0.5 * (SAMPLE - 8.0), y], series);
             for text in lines {
-                pen.text([left + SAMPLE, y + 0.33 * FONT], Anchor::Start, FONT - 1.0, &text);
+                pen.text(
+                    [left + SAMPLE, y + 0.33 * FONT],
+                    Anchor::Start,
+                    FONT - 1.0,
+                    &text.replace('\u{a0}', " "),
+                );
                 y += FONT + 3.0;
             }
             y += 7.0;
@@ -64,6 +70,16 @@ pub(super) fn around(pen: &mut impl Pen, parts: &Around) -> [f64; 4] {
         right -= 6.0;
     }
     [MARGIN, top, right, bottom]
+}
+
+/// A name that is not broken between a parameter and its value, nor within brackets.
+fn joined(name: &str) -> String {
+    let mut depth = 0i32;
+    let kept = |c: char| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        if depth > 0 && c == ' ' { '\u{a0}' } else { c }
+    };
+    name.replace(" = ", "\u{a0}=\u{a0}").chars().map(kept).collect()
 }
 
 /// Draws the line of a series.

@@ -32,7 +32,7 @@ pub struct Slices {
 /// The side of a picture.
 const SIDE: f64 = 320.0;
 /// The room between two pictures, with labels.
-const GAP: [f64; 2] = [84.0, 6.5 * FONT];
+const GAP: [f64; 2] = [84.0, 5.6 * FONT];
 /// The most pictures in a row.
 const ROW: usize = 3;
 /// The quantities of the axes.
@@ -48,9 +48,11 @@ impl Slices {
 
     /// Width and height.
     pub(super) fn size(&self) -> [f64; 2] {
+        // In a narrow figure, remarks may need two lines.
+        let lines = self.notes.len() as f64 * if self.columns() == 1 { 2.0 } else { 1.0 };
         let rows = self.tiles.len().div_ceil(self.columns()).max(1);
         let width = (self.columns() as f64 * (SIDE + GAP[0]) + 28.0).max(560.0);
-        [width, rows as f64 * (SIDE + GAP[1]) + 80.0 + 19.0 * 2.0 * self.notes.len() as f64]
+        [width, rows as f64 * (SIDE + GAP[1]) + 56.0 + 19.0 * lines]
     }
 }
 
