@@ -101,35 +101,40 @@ impl Curve {
     /// The points without a finite value.
     #[must_use]
     pub fn missing(&self) -> Option<Missing> {
-        let mut angles = self.points.iter().filter(|p| !p.rgb.is_finite()).map(|p| p.angle);
-        let first = angles.next()?;
-        let last = angles.next_back().unwrap_or(first);
-        Some(Missing { first, last, all: self.points.iter().all(|p| !p.rgb.is_finite()) })
+        let runs = self.points.chunk_by(|a, b| a.rgb.is_finite() == b.rgb.is_finite());
+        let broken = runs.filter(|run| !run[0].rgb.is_finite());
+        let ranges: Vec<_> = broken.map(|run| (run[0].angle, run[run.len() - 1].angle)).collect();
+        let all = self.points.iter().all(|p| !p.rgb.is_finite());
+        (!ranges.is_empty()).then_some(Missing { ranges, all })
     }
 }
 
 /// Points of a curve that have no finite value.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Missing {
-    /// The angle of the first.
-    pub first: f64,
-    /// The angle of the last.
-    pub last: f64,
+    /// The first and the last angle of each gap, degrees.
+    pub ranges: Vec<(f64, f64)>,
     /// True if no point has a finite value.
     pub all: bool,
 }
 
 impl std::fmt::Display for Missing {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let degrees = |v: f64| format!("{}°", (v * 100.0).round() / 100.0 + 0.0).replace('-', "−");
-        let (first, last) = (degrees(self.first), degrees(self.last));
+        /// The most gaps that are listed.
+        const LISTED: usize = 3;
         if self.all {
-            f.write_str("no value is a finite number")
-        } else if first == last {
-            write!(f, "the value at {first} is not a finite number")
-        } else {
-            write!(f, "some values from {first} to {last} are not finite numbers")
+            return f.write_str("no value is a finite number");
         }
+        let degrees = |v: f64| format!("{}°", (v * 10.0).round() / 10.0 + 0.0).replace('-', "−");
+        let range = |(first, last): &(f64, f64)| match (degrees(*first), degrees(*last)) {
+            (first, last) if first == last => format!("at {first}"),
+            (first, last) => format!("from {first} to {last}"),
+        };
+        let mut gaps: Vec<_> = self.ranges.iter().take(LISTED).map(range).collect();
+        if self.ranges.len() > LISTED {
+            gaps.push("elsewhere".to_owned());
+        }
+        write!(f, "values are not finite numbers {}", crate::text::listed(&gaps, "and"))
     }
 }
 

@@ -46,7 +46,7 @@ impl Sheet {
         let mut notes = Vec::new();
         for curve in &self.curves {
             if let Some(missing) = curve.missing() {
-                notes.push(format!("{}: {missing}; the curve has a gap there.", curve.name));
+                notes.push(format!("{}: {missing}, where the curve has a gap.", curve.name));
             }
             let mut values = curve.points.iter().map(|p| self.value(p.rgb)).filter(|v| v.is_finite());
             let what = if self.log && values.clone().any(|v| v < 0.0) {
@@ -75,7 +75,10 @@ impl Sheet {
     #[must_use]
     pub fn heading(&self) -> String {
         let Setup { kind, theta_i, phi_i } = self.setup;
-        let mut words = kind.name().to_owned();
+        let mut words = match kind {
+            Kind::Slice => "image slice of the BRDF".to_owned(),
+            _ => kind.name().to_owned(),
+        };
         if let Some(first) = words.get(..1) {
             words = format!("{}{}", first.to_uppercase(), &words[1..]);
         }

@@ -201,7 +201,7 @@ fn values_that_are_no_numbers_are_said_and_shown() {
     });
     let curve = Curve { name: "broken".to_owned(), points: points.collect(), measured: false };
     let missing = curve.missing().expect("there are some");
-    assert_eq!(missing.to_string(), "some values from −3° to 2° are not finite numbers");
+    assert_eq!(missing.to_string(), "values are not finite numbers from −3° to −2° and at 2°");
     let none = Curve { points: vec![Point { angle: 1.0, rgb: Vec3::NAN }], ..curve.clone() };
     assert_eq!(none.missing().map(|m| m.to_string()).as_deref(), Some("no value is a finite number"));
     let whole = Curve { points: vec![Point { angle: 1.0, rgb: Vec3::ONE }], ..curve.clone() };
@@ -211,10 +211,10 @@ fn values_that_are_no_numbers_are_said_and_shown() {
         for log in [false, true] {
             let with = |curve: &Curve| Sheet { curves: vec![curve.clone()], log, ..Sheet::new(setup) };
             let note =
-                "broken: some values from −3° to 2° are not finite numbers; the curve has a gap there.";
+                "broken: values are not finite numbers from −3° to −2° and at 2°, where the curve has a gap.";
             assert_eq!(with(&curve).notes(), [note]);
             // In several lines, perhaps.
-            assert!(with(&curve).figure().svg().contains("broken: some values"));
+            assert!(with(&curve).figure().svg().contains("broken: values are not"));
             assert!(!with(&whole).figure().svg().contains("finite"));
             let csv = with(&curve).csv();
             assert!(csv.contains(",NaN,NaN,NaN,NaN\n") && csv.contains(",inf,inf,inf,inf\n"), "{csv}");

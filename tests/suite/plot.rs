@@ -2,7 +2,12 @@
 
 use std::fs;
 
-use crate::support::{Run, command_in, lcm, lcm_in, names};
+use lights_camera_models::{
+    curves::{Kind, subjects_with},
+    registry::Registry,
+};
+
+use crate::support::{Run, command_in, lcm, lcm_in, names, root};
 
 /// The rows of a CSV file below its header, without the name of the curve, which must be the first word of each.
 fn rows(csv: &str, curve: &str, header: &str) -> Vec<Vec<String>> {
@@ -216,8 +221,7 @@ fn the_curve_goes_through_its_points() {
         let run = lcm_in(folder.path(), &["plot", model, "--theta-i", "30", "-o", "a.svg"], b"");
         assert_eq!(run.status, Some(0), "{}", run.err);
         let svg = fs::read_to_string(folder.path().join("a.svg")).expect("written");
-        let curve =
-            svg.lines().filter(|l| l.contains("stroke=\"#0072b2\"")).next_back().expect("a curve").to_owned();
+        let curve = svg.lines().rfind(|l| l.contains("stroke=\"#0072b2\"")).expect("a curve").to_owned();
         let points =
             curve.split("points=\"").nth(1).and_then(|p| p.split('"').next()).expect("points").to_owned();
         let heights =
@@ -244,18 +248,36 @@ fn custom_models_are_plotted_and_what_is_no_number_is_said() {
             command_in(folder.path(), [&["plot", "broken", "--models", "."], arguments].concat()).output();
         output.expect("it runs").into()
     };
-    let note =
-        "Broken: some values from −89.9° to 89.9° are not finite numbers; the curve has a gap there.\n";
+    let note = "Broken: values are not finite numbers from −89.9° to −60° and from 60° to 89.9°, where the curve has a gap.\n";
     let run = plot(&["--theta-i", "20"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), note));
     assert!(run.out.contains(",NaN,NaN,NaN,NaN\n"));
     let run = plot(&["--theta-i", "20", "-o", "a.svg"]);
     assert_eq!((run.status, run.err), (Some(0), format!("{note}wrote a.svg\n")));
     let svg = fs::read_to_string(folder.path().join("a.svg")).expect("written");
-    assert!(svg.contains("Broken: some values") && !svg.contains("NaN"));
+    assert!(svg.contains("Broken: values are not") && !svg.contains("NaN"));
     let run = plot(&["--kind", "slice", "-o", "a.png"]);
     assert!(run.err.contains("values are not finite numbers (magenta and black)"), "{}", run.err);
     let run = plot(&["--kind", "fresnel"]);
     assert_eq!(run.status, Some(2));
     assert!(run.err.contains("Broken has no Fresnel factor F"), "{}", run.err);
+}
+
+#[test]
+fn the_documents_name_every_kind_and_every_model_with_factors() {
+    let read =
+        |name: &str| fs::read_to_string(root().join("docs").join(name)).expect("there").replace('\n', " ");
+    let commands = read("command-line.md");
+    for kind in Kind::ALL {
+        assert!(commands.contains(&format!("| `{}` | ", kind.id())), "{}", kind.id());
+    }
+    let registry = Registry::builtin();
+    let code = |ids: &[&str]| ids.iter().map(|id| format!("`{id}`")).collect::<Vec<_>>();
+    let all = code(&subjects_with(Kind::Distribution, &registry));
+    let (last, first) = all.split_last().expect("some");
+    let models = read("reflection-models.md");
+    assert!(models.contains(&format!("F, D and G exist for {} and {last}", first.join(", "))));
+    let only: Vec<_> =
+        code(&subjects_with(Kind::Fresnel, &registry)).into_iter().filter(|id| !all.contains(id)).collect();
+    assert!(models.contains(&format!("F alone for {} too", only.join(", "))), "{only:?}");
 }

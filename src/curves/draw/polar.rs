@@ -33,7 +33,14 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) {
     let [left, top, right, bottom] = layout::around(pen, &parts);
     let bottom = bottom - 2.0 * FONT - 16.0;
     let [centre, floor] = [0.5 * (left + right), bottom];
-    let full = (0.5 * (right - left) - 2.0 * FONT).min(bottom - top - 2.2 * FONT).max(20.0);
+    let named = named(plot.light);
+    // Labels at the sides need room beyond the circle.
+    let sideways = |(angle, name): &(f64, String)| {
+        let room = 0.5 * (right - left) - 0.8 * FONT - pen.width(FONT - 2.0, name);
+        room / angle.to_radians().sin().abs().max(0.1)
+    };
+    let room = named.iter().map(sideways).fold(0.5 * (right - left) - 2.0 * FONT, f64::min);
+    let full = room.min(bottom - top - 2.2 * FONT).max(20.0);
     let at = |angle: f64, radius: f64| {
         let (sin, cos) = angle.to_radians().sin_cos();
         [centre + radius * sin, floor - radius * cos]
@@ -46,7 +53,6 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) {
         pen.stroke(&arc([centre, floor], r, -90.0, 90.0), Ink::Grid, 1.0, &[]);
         pen.text([centre + r, floor + FONT + 3.0], Anchor::Middle, FONT - 2.0, &label);
     }
-    let named = [(-plot.light, "light"), (plot.light, "mirror")];
     for angle in [-90.0, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0f64] {
         pen.stroke(&[at(angle, 0.0), at(angle, full)], Ink::Grid, 1.0, &[]);
         if angle.abs() < 85.0 && named.iter().all(|(other, _)| (other - angle).abs() > 12.0) {
@@ -56,14 +62,10 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) {
     pen.stroke(&arc([centre, floor], full, -90.0, 90.0), Ink::Grid, 1.0, &[]);
     pen.stroke(&[[centre - full - FONT, floor], [centre + full + FONT, floor]], Ink::Text, 1.5, &[]);
     pen.text([centre, floor + 2.0 * FONT + 13.0], Anchor::Middle, FONT, &plot.radius.label);
-    let degrees = format!("{}°", (plot.light * 10.0).round() / 10.0);
-    if plot.light < 6.0 {
-        // Light and mirror direction would cover each other.
-        label(pen, at(0.0, full + 0.7 * FONT), 0.0, &format!("light {degrees}"));
-    } else {
-        for (angle, name) in named {
-            label(pen, at(angle, full + 0.7 * FONT), angle, &format!("{name} {degrees}"));
-        }
+    for (angle, name) in &named {
+        label(pen, at(*angle, full + 0.7 * FONT), *angle, name);
+    }
+    if named.len() > 1 {
         pen.stroke(&[at(plot.light, 0.0), at(plot.light, full)], Ink::Text, 1.0, &[3.0, 4.0]);
     }
     let from = -plot.light;
@@ -94,6 +96,15 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) {
             layout::mark(pen, *point, series);
         }
     }
+}
+
+/// The labels of light and mirror direction with their angles; one where they would cover each other.
+fn named(light: f64) -> Vec<(f64, String)> {
+    let degrees = format!("{}°", (light * 10.0).round() / 10.0);
+    if light < 6.0 {
+        return vec![(-light, format!("light {degrees}"))];
+    }
+    vec![(-light, format!("light {degrees}")), (light, format!("mirror {degrees}"))]
 }
 
 /// A label outside the circle.
