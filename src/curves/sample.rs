@@ -29,11 +29,11 @@ fn albedo_view(angle: f64, phi: f64) -> Vec3 {
     DVec3::new(sin * x, sin * y, mu).as_vec3()
 }
 
-/// Angles with equal steps, and some special ones, by size.
-fn grid(from: f64, to: f64, steps: u32, special: &[f64]) -> Vec<f64> {
-    let even = (0..=steps).map(|i| from + (to - from) * f64::from(i) / f64::from(steps));
-    let mut angles: Vec<_> =
-        even.chain(special.iter().copied().filter(|a| (from..=to).contains(a))).collect();
+/// The angles from one to another with equal steps, and some special ones up to grazing, by size.
+fn grid(from: i32, to: i32, step: usize, special: &[f64]) -> Vec<f64> {
+    let even = (from..=to).step_by(step).map(f64::from);
+    let special = special.iter().copied().filter(|a| (-GRAZING..=GRAZING).contains(a));
+    let mut angles: Vec<_> = even.chain(special).collect();
     angles.sort_by(f64::total_cmp);
     angles.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
     angles
@@ -84,17 +84,17 @@ pub fn curve(
         }
     };
     let around = |centre: f64| [-0.5, -0.05, 0.0, 0.05, 0.5].map(|step| centre + step);
-    // Where lobes stand: the mirror direction, the way back to the light, the normal.
-    let lobes: Vec<f64> = [theta_i, -theta_i, 0.0].into_iter().flat_map(around).collect();
     let fine = detail == Detail::Fine;
-    let angles = match kind {
-        Kind::Albedo => {
-            let last: &[f64] = if fine { &[87.0, 88.5, 89.0, 89.5] } else { &[88.5] };
-            grid(0.0, GRAZING, if fine { 45 } else { 15 }, last)
+    let angles = match (kind, fine) {
+        (Kind::Albedo, true) => grid(0, 88, 2, &[87.0, 88.5, 89.0, 89.5, GRAZING]),
+        (Kind::Albedo, false) => grid(0, 84, 6, &[87.0, 89.0, GRAZING]),
+        (Kind::Fresnel, _) => grid(0, 90, 2, &[]),
+        (Kind::Distribution, _) => grid(0, 89, 1, &[0.05, 0.5, GRAZING]),
+        _ => {
+            // Where lobes stand: the mirror direction, the way back to the light, the normal.
+            let lobes = [theta_i, -theta_i, 0.0].into_iter().flat_map(around);
+            grid(-88, 88, 2, &lobes.chain([-GRAZING, GRAZING]).collect::<Vec<_>>())
         }
-        Kind::Fresnel => grid(0.0, 90.0, 45, &[]),
-        Kind::Distribution => grid(0.0, GRAZING, 90, &around(0.0)),
-        _ => grid(-GRAZING, GRAZING, 90, &lobes),
     };
     let mut points = adaptive::at(&angles, &value, progress)?;
     if fine && kind != Kind::Albedo {

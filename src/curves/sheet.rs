@@ -128,13 +128,16 @@ impl Sheet {
                     Kind::Albedo | Kind::Fresnel | Kind::Distribution => (0.0, 90.0),
                     _ => (-90.0, 90.0),
                 };
+                let y = self.axis(false);
+                let mut notes = self.notes();
+                notes.extend(self.beyond(&y));
                 Figure::Plot(Plot {
                     title,
                     heading,
                     x: Axis::new(self.setup.kind.angle(), from, to, 7),
-                    y: self.axis(false),
+                    y,
                     series: self.series(),
-                    notes: self.notes(),
+                    notes,
                     ..Plot::default()
                 })
             }
@@ -153,6 +156,19 @@ impl Sheet {
         Ok(bytes)
     }
 
+    /// What the axis cuts off.
+    fn beyond(&self, axis: &Axis) -> Vec<String> {
+        let largest = |curve: &Curve| {
+            let values = curve.points.iter().map(|p| self.value(p.rgb));
+            values.filter(|v| v.is_finite()).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let over = |curve: &&Curve| largest(curve) > axis.to * 1.001;
+        let note = |curve: &Curve| {
+            format!("{} rises to {:.3} at grazing angles, beyond the plot.", curve.name, largest(curve))
+        };
+        self.curves.iter().filter(over).map(note).collect()
+    }
+
     fn tiles(&self, heading: String, title: String) -> Slices {
         let tiles = self
             .slices
@@ -167,7 +183,10 @@ impl Sheet {
         } else {
             let part = 100.0 * clipped as f64 / all.max(1) as f64;
             let digits = if part < 10.0 { 1 } else { 0 };
-            format!("π f in sRGB: 1 is white; {part:.digits$} % of the pixels would be brighter.")
+            match clipped {
+                0 => "π f in sRGB: 1 is white.".to_owned(),
+                _ => format!("π f in sRGB: 1 is white; {part:.digits$} % of the pixels would be brighter."),
+            }
         }];
         notes.extend(self.notes());
         Slices { title, heading, tiles, notes }
@@ -192,12 +211,22 @@ impl Sheet {
         self.curves.iter().map(each).collect()
     }
 
-    /// The axis of the values, wide enough for all.
+    /// The largest angle whose values the axis must hold. Some models rise without limit towards grazing angles, and the
+    /// rest of a curve shall not be flat because of its last degree.
+    fn limit(&self) -> f64 {
+        let Setup { kind, theta_i, .. } = self.setup;
+        let rises = kind == Kind::Albedo || kind.is_lobe() && theta_i <= 70.0;
+        if rises { 86.0 } else { 90.0 }
+    }
+
+    /// The axis of the values, wide enough for those up to the limit.
     fn axis(&self, from_centre: bool) -> Axis {
         let kind = self.setup.kind;
+        let limit = if from_centre || self.log { 90.0 } else { self.limit() };
         let values = || {
             let points = self.curves.iter().flat_map(|curve| &curve.points);
-            points.map(|p| self.value(p.rgb)).filter(|v| v.is_finite())
+            let shown = points.filter(move |p| p.angle.abs() <= limit);
+            shown.map(|p| self.value(p.rgb)).filter(|v| v.is_finite())
         };
         let top = values().fold(f64::NEG_INFINITY, f64::max);
         if self.log {

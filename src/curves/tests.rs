@@ -311,3 +311,21 @@ fn what_a_logarithmic_axis_cannot_show_is_said() {
     assert_eq!(said([0.0; 3], true), "x: every value is 0, which has no place on a logarithmic axis.");
     assert_eq!(said([0.0, -1.0, 1.0], false), "");
 }
+
+#[test]
+fn what_rises_beyond_the_plot_is_said() {
+    let figure = |theta_i: f64| {
+        let curves = ["ward", "lambert"].map(|id| fine(&subject(id, &[]), Kind::Brdf, theta_i)).to_vec();
+        let setup = Setup::new(Kind::Brdf, theta_i, 0.0).expect("legal");
+        let draw::Figure::Plot(plot) = (Sheet { curves, ..Sheet::new(setup) }).figure() else {
+            panic!("a plot")
+        };
+        plot
+    };
+    let cut = figure(70.0);
+    assert!(cut.y.to < 12.0 && cut.notes.len() == 1, "{:?} {:?}", cut.y, cut.notes);
+    assert!(cut.notes[0].starts_with("Ward rises to ") && cut.notes[0].ends_with("beyond the plot."));
+    // At grazing light the highlight itself is there.
+    let whole = figure(80.0);
+    assert!(whole.notes.is_empty() && whole.y.to > 20.0, "{:?} {:?}", whole.y, whole.notes);
+}

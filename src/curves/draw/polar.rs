@@ -45,13 +45,18 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) {
         let (sin, cos) = angle.to_radians().sin_cos();
         [centre + radius * sin, floor - radius * cos]
     };
+    let mut free = f64::NEG_INFINITY;
     for (value, label) in plot.radius.marks() {
         let r = full * plot.radius.place(value);
         if label.is_empty() || r > full + 0.5 {
             continue;
         }
         pen.stroke(&arc([centre, floor], r, -90.0, 90.0), Ink::Grid, 1.0, &[]);
-        pen.text([centre + r, floor + FONT + 3.0], Anchor::Middle, FONT - 2.0, &label);
+        let half = 0.5 * pen.width(FONT - 2.0, &label);
+        if centre + r - half > free {
+            pen.text([centre + r, floor + FONT + 3.0], Anchor::Middle, FONT - 2.0, &label);
+            free = centre + r + half + 5.0;
+        }
     }
     for angle in [-90.0, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0f64] {
         pen.stroke(&[at(angle, 0.0), at(angle, full)], Ink::Grid, 1.0, &[]);
