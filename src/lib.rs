@@ -43,6 +43,7 @@
 //! - [`recovery`]: crash recovery of unsaved work.
 //! - [`render`]: drawing with Bevy.
 //! - [`export`]: a scene as code: projects, shader files, pages, programs.
+//! - [`curves`]: curves of models: BRDF, albedo, factors alone, image slices; measured data; figures.
 //!
 //! The program:
 //!
@@ -101,6 +102,8 @@ pub mod recovery;
 pub mod render;
 
 pub mod export;
+
+pub mod curves;
 
 pub mod panel;
 pub mod window;

@@ -59,6 +59,7 @@ mod panels;
 mod photometric;
 mod pictures;
 mod placing;
+mod plot;
 mod plugins;
 mod pointer;
 mod presentation;
